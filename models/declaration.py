@@ -1,0 +1,76 @@
+"""Declaring the quantities of a block: type, unit, meaning and bounds, each on one line.
+
+    class Parameters(NamedTuple):
+        J_1: Annotated[float, Real("kg.m2", "inertia of the motor side", 1e-4, 10.0)] = 0.055
+
+The value behind the `=` is the start value. Everything that others say about a variable (the FMI
+variable, its checks, the tables of the documentation) is read from here with `variables`.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple, get_type_hints
+
+
+@dataclass(frozen=True)
+class Real:
+    """A floating-point quantity with its unit (Modelica notation, "1" for none) and bounds."""
+
+    unit: str
+    description: str
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    nominal: float | None = None
+
+
+@dataclass(frozen=True)
+class Integer:
+    """A whole number and its bounds."""
+
+    description: str
+    minimum: int = -(2**31)
+    maximum: int = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Boolean:
+    """True or false."""
+
+    description: str
+
+
+@dataclass(frozen=True)
+class Enumeration:
+    """A whole number from 1 to len(items); item k has the name items[k - 1] and a meaning."""
+
+    name: str
+    description: str
+    items: tuple[tuple[str, str], ...]
+
+
+Declaration = Real | Integer | Boolean | Enumeration
+
+
+class Variable(NamedTuple):
+    """One declared quantity: its name, its declaration, its start value (None if it has none)."""
+
+    name: str
+    declaration: Declaration
+    start: Any
+
+
+def variables(record: type) -> tuple[Variable, ...]:
+    """The declared quantities of a NamedTuple class, in the order of its fields.
+
+    Raises:
+        TypeError: a field carries no declaration.
+    """
+    hints = get_type_hints(record, include_extras=True)
+    defaults = getattr(record, "_field_defaults")
+    found = []
+    for name, hint in hints.items():
+        declared = [m for m in getattr(hint, "__metadata__", ()) if isinstance(m, Declaration)]
+        if not declared:
+            raise TypeError(f"{record.__module__}.{record.__name__}.{name} has no declaration")
+        found.append(Variable(name, declared[0], defaults.get(name)))
+    return tuple(found)

@@ -1,0 +1,129 @@
+"""The operations of the model equations that work on floats and on symbols alike.
+
+A model never branches on data with `if`: it calls `where`, `maximum` or `minimum`, so that the
+same function can be called with symbols and traced. A symbol is any object with the arithmetic and
+comparison operators, a method of the same name for each function below (`x.sin()`), and
+`condition.where(value, otherwise)`, `condition.logical_and(other)` and so on for the result of a
+comparison. Both values of `where` are always computed, so neither may raise.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+
+def where(condition: Any, value: Any, otherwise: Any) -> Any:
+    """`value` where the condition holds, else `otherwise`."""
+    if condition is True:
+        return value
+    if condition is False:
+        return otherwise
+    return condition.where(value, otherwise)
+
+
+def maximum(a: Any, b: Any) -> Any:
+    return where(a >= b, a, b)
+
+
+def minimum(a: Any, b: Any) -> Any:
+    return where(a <= b, a, b)
+
+
+def clip(x: Any, lower: Any, upper: Any) -> Any:
+    """x limited to [lower, upper]; NaN becomes a limit."""
+    return minimum(maximum(x, lower), upper)
+
+
+def sign(x: Any) -> Any:
+    return where(x > 0.0, 1.0, where(x < 0.0, -1.0, 0.0))
+
+
+def logical_and(a: Any, b: Any) -> Any:
+    if a.__class__ is bool and b.__class__ is bool:
+        return a and b
+    return a.logical_and(b) if a.__class__ is not bool else b.logical_and(a)
+
+
+def logical_or(a: Any, b: Any) -> Any:
+    if a.__class__ is bool and b.__class__ is bool:
+        return a or b
+    return a.logical_or(b) if a.__class__ is not bool else b.logical_or(a)
+
+
+def logical_not(a: Any) -> Any:
+    return not a if a.__class__ is bool else a.logical_not()
+
+
+def is_finite(x: Any) -> Any:
+    """False for NaN and both infinities; written with comparisons, so that it traces."""
+    return abs(x) <= 1.7976931348623157e308
+
+
+def sin(x: Any) -> Any:
+    try:
+        return math.sin(x)
+    except TypeError:
+        return x.sin()
+
+
+def cos(x: Any) -> Any:
+    try:
+        return math.cos(x)
+    except TypeError:
+        return x.cos()
+
+
+def atan(x: Any) -> Any:
+    try:
+        return math.atan(x)
+    except TypeError:
+        return x.atan()
+
+
+def tanh(x: Any) -> Any:
+    try:
+        return math.tanh(x)
+    except TypeError:
+        return x.tanh()
+
+
+def sqrt(x: Any) -> Any:
+    try:
+        return math.sqrt(x)
+    except TypeError:
+        return x.sqrt()
+
+
+def log(x: Any) -> Any:
+    try:
+        return math.log(x)
+    except TypeError:
+        return x.log()
+
+
+def floor(x: Any) -> Any:
+    try:
+        return float(math.floor(x))
+    except TypeError:
+        return x.floor()
+
+
+def fmod(x: Any, y: Any) -> Any:
+    """Remainder of x/y with the sign of x, exact in floating point."""
+    try:
+        return math.fmod(x, y)
+    except TypeError:
+        return x.fmod(y)
+
+
+def interpolate(values: Sequence[Any], position: Any) -> Any:
+    """Linear interpolation between values[0], values[1], ...; held beyond either end."""
+    position = clip(position, 0.0, len(values) - 1.0)
+    if position.__class__ is float:
+        left = min(int(position), len(values) - 2)
+        return values[left] + (position - left) * (values[left + 1] - values[left])
+    result = values[0]
+    for k in range(len(values) - 1):
+        share = clip(position - k, 0.0, 1.0)
+        result = result + share * (values[k + 1] - values[k])
+    return result
