@@ -1,0 +1,151 @@
+"""Integrating a continuous block, with its kinks located instead of stepped over.
+
+Between its surfaces a block is smooth and the method has order 8. When a surface changes sign
+within a step, the step is shortened so that it ends just behind the surface; an excursion that
+leaves and comes back within one step is found from the slopes at both ends.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from .dop853 import A, B
+
+LOCATION_TOLERANCE = 1e-13
+"""Time in s within which a crossing is located; it moves the state by less than rounding does."""
+
+PROBE = 1e-7
+"""Time in s over which the slope of a surface is taken."""
+
+MOST_CROSSINGS = 16
+"""Crossings located in one step; what rests on a surface may cross it without end."""
+
+
+def stepper(block: Any) -> Callable[[Any, Any, Any, Any, float], Any]:
+    """Function (x, dx, u, p, h) -> x after one step of length h, dx being the derivative at x.
+
+    It is written out for the fields of the block's State (as NamedTuple writes its methods), which
+    is ten times faster than looping over them.
+    """
+    fields = block.State._fields
+    lines = [f"def step(x, dx, u, p, h, f=f, State=State):\n    {_targets('x', fields)} = x"]
+    lines.append(f"    {_targets('k0_', fields)} = dx")
+    for stage, weights in enumerate(A[1:], start=1):
+        lines.append(f"    {_targets(f'k{stage}_', fields)} = f({_advanced(weights, fields)}, u, p)")
+    lines.append(f"    return {_advanced(B, fields)}")
+    scope: dict[str, Any] = {"f": block.derivative, "State": block.State}
+    exec("\n".join(lines), scope)
+    return scope["step"]
+
+
+def _targets(prefix: str, fields: tuple[str, ...]) -> str:
+    return "".join(f"{prefix}{n}, " for n in range(len(fields)))
+
+
+def _advanced(weights: dict[int, float], fields: tuple[str, ...]) -> str:
+    """Source of the state advanced by h times the weighted stages."""
+    sums = (" + ".join(f"{a!r} * k{j}_{n}" for j, a in weights.items()) for n in range(len(fields)))
+    return "State(" + ", ".join(f"x{n} + h * ({total})" for n, total in enumerate(sums)) + ")"
+
+
+class Start(NamedTuple):
+    """Where a step starts: state, its derivative, and what is held over the step."""
+
+    x: Any
+    dx: Any
+    u: Any
+    p: Any
+
+
+class Integrator:
+    """Advances the state of one continuous block; keeps nothing between two calls."""
+
+    def __init__(self, block: Any) -> None:
+        self.derivative = block.derivative
+        self.surfaces = block.surfaces or (lambda x, u, p: ())
+        self.step_size = block.step_size
+        self.step = stepper(block)
+
+    def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
+        """The state `duration` s later, with the inputs u held.
+
+        Args:
+            x, u, p: State, Input and Parameters of the block.
+            duration: any time >= 0 in s, divided into equal steps no longer than block.step_size.
+        """
+        steps = max(1, math.ceil(duration / self.step_size - 1e-9))
+        sides = [g > 0.0 for g in self.surfaces(x, u, p)]
+        for _ in range(steps):
+            x = self._advance_through(x, u, p, duration / steps, sides)
+        return x
+
+    def _advance_through(self, x: Any, u: Any, p: Any, h: float, sides: list[bool]) -> Any:
+        """The state after one step of length h, split at every surface on its way.
+
+        `sides` says on which side of each surface the state is, and is kept up to date. It is
+        remembered rather than looked up: at a crossing the value is zero but for rounding.
+        """
+        for _ in range(MOST_CROSSINGS):
+            start = Start(x, self.derivative(x, u, p), u, p)
+            x_end = self.step(*start, h)
+            crossings = self._crossings(start, h, x_end, sides)
+            if not crossings:
+                return x_end
+            length, surface = min(crossings)
+            x = self.step(*start, length)
+            sides[surface] = not sides[surface]
+            h -= length
+            if h <= LOCATION_TOLERANCE:
+                return x
+        return self.step(x, self.derivative(x, u, p), u, p, h)
+
+    def _crossings(self, start: Start, h: float, x_end: Any, sides: list[bool]) -> list[tuple[float, int]]:
+        """Each crossing within a step of length h: length of the step to it, number of the surface."""
+        values = self.surfaces(start.x, start.u, start.p)
+        slopes = self._slopes(start, values)
+        found = []
+        for n, g_end in enumerate(self.surfaces(x_end, start.u, start.p)):
+            beyond = h if (g_end > 0.0) != sides[n] else None
+            if beyond is None and abs(values[n]) < (-slopes[n] if sides[n] else slopes[n]) * h:
+                beyond = self._excursion(n, start, h, x_end, slopes[n], sides[n])
+            if beyond is not None:
+                found.append((self._locate(n, start, beyond, values[n], sides[n]), n))
+        return found
+
+    def _slopes(self, start: Start, values: tuple[float, ...]) -> list[float]:
+        """Time derivatives of the surfaces, whose values at the start are given."""
+        x = type(start.x)(*(a + PROBE * b for a, b in zip(start.x, start.dx, strict=True)))
+        probe = self.surfaces(x, start.u, start.p)
+        return [(later - now) / PROBE for now, later in zip(values, probe, strict=True)]
+
+    def _value(self, n: int, start: Start, length: float) -> float:
+        return self.surfaces(self.step(*start, length), start.u, start.p)[n]
+
+    def _excursion(
+        self, n: int, start: Start, h: float, x_end: Any, slope: float, side: bool
+    ) -> float | None:
+        """Length of a step to beyond surface n, if the state goes there and is back before h."""
+        end = Start(x_end, self.derivative(x_end, start.u, start.p), start.u, start.p)
+        slope_end = self._slopes(end, self.surfaces(x_end, start.u, start.p))[n]
+        if slope_end * slope >= 0.0:
+            return None
+        turn = h * slope / (slope - slope_end)
+        return turn if (self._value(n, start, turn) > 0.0) != side else None
+
+    def _locate(self, n: int, start: Start, far: float, g_near: float, side: bool) -> float:
+        """Shortest step (to LOCATION_TOLERANCE) that ends beyond surface n; one of length `far` does.
+
+        Regula falsi as modified by Illinois, which keeps the crossing between near and far.
+        """
+        near, g_far = 0.0, self._value(n, start, far)
+        if (g_near > 0.0) != side:
+            g_near = 0.0
+        while far - near > LOCATION_TOLERANCE:
+            length = far - g_far * (far - near) / (g_far - g_near)
+            length = min(max(length, near + 0.3 * LOCATION_TOLERANCE), far - 0.3 * LOCATION_TOLERANCE)
+            g = self._value(n, start, length)
+            if (g > 0.0) != side:
+                far, g_far, g_near = length, g, 0.5 * g_near
+            else:
+                near, g_near, g_far = length, g, 0.5 * g_far
+        return far

@@ -1,0 +1,28 @@
+"""Wheel brake as bristle friction: slides under load, holds as a spring at rest.
+
+    z' = w_s - |w_s| z/z_br,   w_s = omega limited to +-omega_sat     (Dahl 1968; LuGre without Stribeck)
+    T  = T_brake (z + t_br z')/z_br
+
+Sliding, z tends to z_br sign(omega) and the torque to T_brake sign(omega); at rest the bristle is a
+spring T_brake/z_br with a damper. omega_sat only limits the rate of z, not the torque.
+"""
+
+from typing import Annotated, Any
+
+from .declaration import Real
+from .operators import maximum, minimum
+
+BristleDeflection = Annotated[float, Real("rad", "twist of the brake bristles at sliding", 1e-4, 0.1)]
+BristleDamping = Annotated[float, Real("s", "damping time of the brake bristles", 1e-4, 0.1)]
+BristleSpeedLimit = Annotated[float, Real("rad/s", "wheel speed that limits the rate of the bristles", 1.0, 50.0)]
+
+
+def bristle_rate(omega: Any, z: Any, p: Any) -> Any:
+    """dz/dt in rad/s for a wheel speed omega (rad/s) and a bristle twist z (rad)."""
+    w_s = minimum(maximum(omega, -p.omega_sat), p.omega_sat)
+    return w_s - abs(w_s) * z / p.z_br
+
+
+def grip(z: Any, dz: Any, p: Any) -> Any:
+    """Share of the brake torque capacity that acts, in [-1, 1] while sliding."""
+    return (z + p.t_br * dz) / p.z_br

@@ -1,0 +1,150 @@
+"""Two inertias joined by an elastic gear with backlash, and a vehicle on a tyre (paper, eq. (2)).
+
+    J_1 domega_1/dt = T_mot - T_gear
+    J_2 domega_2/dt = T_load + T_gear
+           dphi/dt  = omega_1 - omega_2          T_gear = C b(phi, phi_B)
+
+Everything is referred to the motor shaft. The vehicle acts through the load torque of a linear tyre
+with relaxation and of the brakes; w = omega_2/i is the speed of the wheels:
+
+    T_load  = -(r F + T_brake q)/i               v_s = r w - v
+    F       = c_slip/sigma_s u + d_low v_s/(1 + (v/v_low)^2)
+    du/dt   = v_s - max(|r w|, |v|) u/sigma_s
+    m dv/dt = F - m g (c_rr tanh(v/v_rr) + sin(slope)) - c_wa v |v|
+
+With `recorded_load` vehicle and tyre are left out and T_load_rec takes the place of T_load; what
+they would show then follows omega_2 without slip.
+"""
+
+from typing import Annotated, Any, NamedTuple
+
+from . import brake, vehicle
+from .block import Block
+from .declaration import Boolean, Real
+from .gear_play import dead_zone
+from .operators import maximum, sign, where
+from .plant import Input, Output
+
+
+class Parameters(NamedTuple):
+    J_1: vehicle.MotorInertia = 0.055
+    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = 0.30
+    C: Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)] = 117.4
+    phi_B: vehicle.HalfGap = 0.157
+    i: vehicle.GearRatio = 9.0
+    m: vehicle.Mass = 1450.0
+    r: vehicle.WheelRadius = 0.29
+    c_slip: vehicle.SlipStiffness = 140000.0
+    sigma_s: Annotated[float, Real("m", "relaxation length of the linear tyre", 0.02, 1.0)] = 0.05
+    d_low: vehicle.LowSpeedDamping = 4000.0
+    v_low: vehicle.LowSpeed = 0.5
+    c_rr: vehicle.RollingResistance = 0.012
+    v_rr: vehicle.RollingSpeed = 0.1
+    c_wa: vehicle.AirDrag = 0.42
+    g: vehicle.Gravity = 9.81
+    z_br: brake.BristleDeflection = 0.005
+    t_br: brake.BristleDamping = 0.005
+    omega_sat: brake.BristleSpeedLimit = 20.0
+    v_0: vehicle.StartSpeed = 0.0
+    T_0: vehicle.StartTorque = 0.0
+    recorded_load: Annotated[bool, Boolean("leave the vehicle out and take T_load_rec as load torque")] = False
+
+
+class State(NamedTuple):
+    omega_1: Annotated[float, Real("rad/s", "speed of the motor")]
+    omega_2: Annotated[float, Real("rad/s", "speed of the wheels, motor side")]
+    phi: Annotated[float, Real("rad", "twist of the drive train, motor side")]
+    v: Annotated[float, Real("m/s", "speed of the vehicle")]
+    u: Annotated[float, Real("m", "longitudinal deflection of the tyre")]
+    z: Annotated[float, Real("rad", "twist of the brake bristles, wheel side")]
+
+
+def start(u: Input, p: Parameters) -> State:
+    """Standstill, or stationary rolling at v_0 with the motor torque T_0 on a level road."""
+    v, T_0, i, r = p.v_0, p.T_0, p.i, p.r
+    rolling = v > 0.0
+    resisting = p.m * p.g * p.c_rr + p.c_wa * v * v
+    a = (i * T_0 / r - resisting) / (p.m + (p.J_1 + p.J_2) * i * i / (r * r))
+    T_gear = where(p.recorded_load, T_0, T_0 - p.J_1 * i * a / r)
+    slip = where(p.recorded_load, 0.0, i * (T_gear - p.J_2 * i * a / r) / r / p.c_slip)
+    omega_2 = i * v * (1.0 + slip) / r
+    twist = T_gear / p.C + sign(T_gear) * p.phi_B
+    return State(
+        omega_1=where(rolling, omega_2, 0.0),
+        omega_2=where(rolling, omega_2, 0.0),
+        phi=where(rolling, twist, 0.0),
+        v=v,
+        u=where(rolling, p.sigma_s * slip, 0.0),
+        z=where(rolling, p.z_br, 0.0),
+    )
+
+
+def gear_torque(x: State, p: Parameters) -> Any:
+    return p.C * dead_zone(x.phi, p.phi_B)
+
+
+def tyre_force(x: State, p: Parameters) -> Any:
+    """Force in N of the tyre on the vehicle."""
+    v_s = p.r * x.omega_2 / p.i - x.v
+    return p.c_slip / p.sigma_s * x.u + vehicle.standstill_damping(x.v, p) * v_s
+
+
+def load_torque(x: State, u: Input, F: Any, dz: Any, p: Parameters) -> Any:
+    """Torque in N.m (motor side) of tyre force F (N) and brake, or the recorded one."""
+    T_br = u.T_brake * brake.grip(x.z, dz, p)
+    return where(p.recorded_load, u.T_load_rec, -(p.r * F + T_br) / p.i)
+
+
+def derivative(x: State, u: Input, p: Parameters) -> State:
+    w = x.omega_2 / p.i
+    F = tyre_force(x, p)
+    dz = brake.bristle_rate(w, x.z, p)
+    T_load = load_torque(x, u, F, dz, p)
+    T_gear = gear_torque(x, p)
+    return State(
+        omega_1=(u.T_mot - T_gear) / p.J_1,
+        omega_2=(T_load + T_gear) / p.J_2,
+        phi=x.omega_1 - x.omega_2,
+        v=(F - vehicle.resistance(x.v, u.slope, p.m * p.g, p)) / p.m,
+        u=p.r * w - x.v - maximum(abs(p.r * w), abs(x.v)) * x.u / p.sigma_s,
+        z=dz,
+    )
+
+
+def output(x: State, u: Input, p: Parameters) -> Output:
+    dx = derivative(x, u, p)
+    w = x.omega_2 / p.i
+    F = tyre_force(x, p)
+    return Output(
+        omega_1=x.omega_1,
+        omega_2=x.omega_2,
+        omega_wheel_L=w,
+        omega_wheel_R=w,
+        T_gear=gear_torque(x, p),
+        T_load=load_torque(x, u, F, dx.z, p),
+        T_rim=where(p.recorded_load, -p.i * u.T_load_rec, p.r * F),
+        phi=x.phi,
+        v=where(p.recorded_load, p.r * w, x.v),
+        a_body=where(p.recorded_load, p.r * dx.omega_2 / p.i, dx.v),
+        pitch=0.0,
+    )
+
+
+def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
+    """Both flanks of the gap."""
+    return (x.phi - p.phi_B, x.phi + p.phi_B)
+
+
+BLOCK = Block(
+    name="TwoMassDriveline",
+    description="Design model: two inertias, elastic gear with backlash, vehicle on a linear tyre",
+    Parameters=Parameters,
+    Input=Input,
+    State=State,
+    Output=Output,
+    start=start,
+    output=output,
+    derivative=derivative,
+    surfaces=surfaces,
+    step_size=0.001,
+)
