@@ -1,0 +1,29 @@
+"""Fatigue of the gear by counting the cycles of its torque."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+EXPONENT = 5.0
+"""Slope of the assumed fatigue line."""
+
+
+class MissingExtra(ImportError):
+    """A package of an optional extra is not installed; the message names the extra."""
+
+
+def damage(T_gear: NDArray[np.float64]) -> float:
+    """Sum of count * range^5 over the rainflow cycles of T_gear (ASTM E1049; half cycles count 0.5).
+
+    In (N.m)^5, of use only relative to another run.
+
+    Raises:
+        MissingExtra: the package rainflow is not installed.
+    """
+    try:
+        import rainflow
+    except ImportError as error:
+        raise MissingExtra(
+            "counting load cycles needs the package rainflow: "
+            "install the extra `replay`, as in pip install 'driveline-damping[replay]'"
+        ) from error
+    return float(sum(count * swing**EXPONENT for swing, count in rainflow.count_cycles(T_gear)))

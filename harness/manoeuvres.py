@@ -1,0 +1,173 @@
+"""The manoeuvres: what the driver, the brakes and the road do, as functions of time.
+
+A signal takes an array of instants in s and gives the values there. At a jump it already has the new
+value. Instants are taken as whole nanoseconds, so that `k * step_size` meets a jump whatever the
+rounding of the product.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Signal = Callable[[Any], NDArray[np.float64]]
+
+KMH = 1.0 / 3.6
+
+
+def nanoseconds(t: ArrayLike) -> NDArray[np.float64]:
+    """t in s, rounded to whole nanoseconds."""
+    return np.round(np.asarray(t, dtype=float), 9)
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Straight lines between points, held beyond both ends; two points at one instant are a jump."""
+
+    times: NDArray[np.float64]
+    values: NDArray[np.float64]
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        return np.asarray(np.interp(nanoseconds(t), self.times, self.values))
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """values[k] from k * interval on; the first and the last value are held beyond the ends."""
+
+    interval: float
+    values: NDArray[np.float64]
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        k = np.floor(nanoseconds(t) / self.interval + 1e-6).astype(int)
+        return self.values[np.clip(k, 0, len(self.values) - 1)]
+
+
+def lines(*points: tuple[float, float]) -> Lines:
+    """The signal through the points (t in s, value)."""
+    return Lines(np.array([t for t, _ in points], float), np.array([value for _, value in points], float))
+
+
+NOTHING = lines((0.0, 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Manoeuvre:
+    """One run of the loop and what its metrics refer to.
+
+    Attributes:
+        name: as on the command line.
+        description: one line.
+        duration: in s.
+        v_0: speed at the start in m/s.
+        T_driver: demanded motor torque in N.m.
+        T_brake: brake torque capacity of the driven wheels in N.m, wheel side.
+        slope: of the road in rad, positive uphill.
+        t_0: instant in s from which the metrics count; of a step, its first instant.
+        dT: height of the demanded step in N.m, None if the manoeuvre is not a step.
+        plateau_ends: instants in s at which the demand leaves a constant value, for the metric `hold`.
+    """
+
+    name: str
+    description: str
+    duration: float
+    v_0: float
+    T_driver: Signal
+    T_brake: Signal = NOTHING
+    slope: Signal = NOTHING
+    t_0: float = 0.0
+    dT: float | None = None
+    plateau_ends: tuple[float, ...] = ()
+
+    @property
+    def T_0(self) -> float:
+        """Demanded torque at the start in N.m, with which a rolling start is stationary."""
+        return float(self.T_driver(0.0))
+
+
+def step(
+    name: str, description: str, v_0: float, before: float, after: float, rise: float = 0.0
+) -> Manoeuvre:
+    """The demand goes from one torque (N.m) to another at 1 s, in a jump or within `rise` seconds."""
+    demand = lines((0.0, before), (1.0, before), (1.0 + rise, after))
+    return Manoeuvre(name, description, 6.0, v_0, demand, t_0=1.0, dT=after - before)
+
+
+def creep_torque(t: ArrayLike) -> NDArray[np.float64]:
+    """7 +- 15 N.m at 0.45 Hz, with flanks four times as steep as a sine and flat tops."""
+    return 7.0 + 15.0 * np.clip(4.0 * np.sin(2.0 * np.pi * 0.45 * np.asarray(t, dtype=float)), -1.0, 1.0)
+
+
+def shift_register(length: int) -> NDArray[np.int64]:
+    """The first bits of the pseudo-random binary sequence x^9 + x^5 + 1, which repeats after 511."""
+    stages = [1] * 9
+    bits = []
+    for _ in range(length):
+        bits.append(stages[8])
+        stages = [stages[8] ^ stages[4], *stages[:8]]
+    return np.array(bits)
+
+
+DRIVE = lines(
+    (0.0, 12.0), (0.5, 12.0), (0.7, 100.0), (2.0, 100.0), (2.2, 30.0), (3.2, 30.0), (3.3, 125.0),
+    (4.5, 125.0), (4.6, -18.0), (5.6, -18.0), (5.8, 80.0), (7.0, 80.0), (7.1, 12.0), (8.0, 12.0),
+    (8.2, 110.0), (9.4, 110.0), (9.5, -24.0), (10.6, -24.0), (10.7, 70.0), (12.0, 70.0), (12.2, 130.0),
+    (13.2, 130.0), (13.3, -28.0), (14.5, -28.0), (14.8, 45.0), (16.0, 45.0), (16.3, -24.0), (20.0, -24.0),
+)  # fmt: skip
+DRIVE_PLATEAU_ENDS = (2.0, 3.2, 4.5, 5.6, 7.0, 8.0, 9.4, 10.6, 12.0, 13.2, 14.5, 16.0)
+
+_PRBS = Manoeuvre(
+    name="prbs",
+    description="pseudo-random binary torque of 15 N.m around 8 N.m at 15 km/h",
+    duration=10.0,
+    v_0=15 * KMH,
+    T_driver=Held(0.04, 8.0 + 15.0 * (2.0 * shift_register(511) - 1.0)),
+)
+
+MANOEUVRES: dict[str, Manoeuvre] = {
+    manoeuvre.name: manoeuvre
+    for manoeuvre in (
+        step("tipin15", "tip-in through the backlash at 15 km/h", 15 * KMH, -12.0, 100.0),
+        step("tipin50", "tip-in through the backlash at 50 km/h", 50 * KMH, -12.0, 100.0),
+        step("tipin15r", "tip-in through the backlash at 15 km/h in 150 ms", 15 * KMH, -12.0, 100.0, 0.15),
+        step("tipin50r", "tip-in through the backlash at 50 km/h in 150 ms", 50 * KMH, -12.0, 100.0, 0.15),
+        step("tipin0", "tip-in at 15 km/h with the teeth in contact", 15 * KMH, 20.0, 100.0),
+        step("tipout", "let go of the pedal at 50 km/h", 50 * KMH, 100.0, -30.0),
+        step("launch", "pull away from standstill within 100 ms", 0.0, 0.0, 120.0, 0.1),
+        Manoeuvre(
+            name="drive",
+            description="uneven driving that ends under the brakes, as on the paper's test track",
+            duration=20.0,
+            v_0=3.0,
+            T_driver=DRIVE,
+            T_brake=lines((16.2, 0.0), (16.6, 1300.0)),
+            t_0=0.3,
+            plateau_ends=DRIVE_PLATEAU_ENDS,
+        ),
+        Manoeuvre("creep", "the gear floats through zero torque at 15 km/h", 12.0, 15 * KMH, creep_torque),
+        _PRBS,
+        replace(_PRBS, name="prbs15", description="the first 5 s of prbs", duration=5.0),
+        Manoeuvre(
+            name="launch_brake",
+            description="pull away, cross a 5 % hump and brake to a stop",
+            duration=10.0,
+            v_0=0.0,
+            T_driver=lines((0.5, 0.0), (0.6, 120.0), (4.0, 120.0), (4.2, 0.0)),
+            T_brake=lines((5.0, 0.0), (5.3, 1500.0), (9.5, 1500.0), (9.6, 0.0)),
+            slope=lines((2.0, 0.0), (2.5, 0.05), (3.5, 0.05), (4.0, 0.0)),
+        ),
+        Manoeuvre(
+            name="hill_hold",
+            description="stand on a 10 % grade under the brakes, then pull away uphill",
+            duration=6.0,
+            v_0=0.0,
+            T_driver=lines((3.0, 0.0), (3.4, 90.0)),
+            T_brake=lines((3.0, 1500.0), (3.3, 0.0)),
+            slope=lines((0.2, 0.0), (0.7, 0.10)),
+        ),
+    )
+}
+
+COMPARED = tuple(name for name in MANOEUVRES if name not in ("prbs15", "launch_brake", "hill_hold"))

@@ -1,0 +1,50 @@
+"""How far a record swings, and how fast the swinging fades."""
+
+from math import log, pi, sqrt
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+SPAN = 0.2
+"""Length in s of the piece within which a swing is measured: more than one period of the drive train."""
+
+
+def amplitude(x: NDArray[np.float64], T_s: float) -> NDArray[np.float64]:
+    """A(t) = (max - min)/2 of x over [t, t + 0.2 s), for every sample at which that piece is complete."""
+    pieces = np.lib.stride_tricks.sliding_window_view(x, round(SPAN / T_s))
+    return np.ptp(pieces, axis=1) / 2.0
+
+
+def damping_ratio(y: NDArray[np.float64], T_s: float, first: int, overshoot: float) -> float:
+    """Damping ratio of y from sample `first` on, by its logarithmic decrement.
+
+    y, relative to its step, is low-passed at 12 Hz without phase shift. Of its extremes above 0.02 the
+    first 30 that alternate are taken; s is the mean decrease of ln|extreme| from one to the next, and
+    zeta = s/sqrt(pi^2 + s^2). With fewer than three it follows from the overshoot alone, the
+    decrement of one half period.
+    """
+    low_pass = butter(2, 12.0, fs=1.0 / T_s, output="sos")
+    extremes = _alternating_extremes(np.asarray(sosfiltfilt(low_pass, y))[first:], round(0.03 / T_s))[:30]
+    if len(extremes) >= 3:
+        s = -Polynomial.fit(np.arange(len(extremes)), np.log(np.abs(extremes)), 1).convert().coef[1]
+    else:
+        s = -log(max(1e-4, overshoot))
+    return min(1.0, float(s / sqrt(pi**2 + s**2)))
+
+
+def _alternating_extremes(y: NDArray[np.float64], apart: int) -> list[float]:
+    """Extremes of y above 0.02 that alternate in sign and are `apart` samples away from each other.
+
+    Of those that do not alternate or are closer, the largest is kept.
+    """
+    slope = np.diff(y)
+    turning = np.flatnonzero((slope[:-1] * slope[1:] <= 0.0) & (slope[:-1] != 0.0)) + 1
+    kept: list[int] = []
+    for k in turning[np.abs(y[turning]) > 0.02]:
+        if not kept or (y[k] * y[kept[-1]] < 0.0 and k - kept[-1] >= apart):
+            kept.append(int(k))
+        elif abs(y[k]) > abs(y[kept[-1]]):
+            kept[-1] = int(k)
+    return [float(y[k]) for k in kept]
