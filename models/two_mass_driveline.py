@@ -131,8 +131,8 @@ def output(x: State, u: Input, p: Parameters) -> Output:
 
 
 def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
-    """Both flanks of the gap."""
-    return (x.phi - p.phi_B, x.phi + p.phi_B)
+    """Both flanks of the gap, and wheels at rest (where the brake bristles turn round)."""
+    return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2)
 
 
 BLOCK = Block(

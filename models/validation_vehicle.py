@@ -268,13 +268,15 @@ def output(x: State, u: Input, p: Parameters) -> Output:
 
 
 def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
-    """The flanks of the gap and the penetrations at which the impact damping is full."""
+    """The flanks of the gap, the penetrations at which the impact damping is full, wheels at rest."""
     flank = p.phi_B / p.i
     return (
         x.gamma - flank,
         x.gamma + flank,
         x.gamma - flank - p.y_g,
         x.gamma + flank + p.y_g,
+        x.omega_L,
+        x.omega_R,
     )
 
 
@@ -289,5 +291,5 @@ BLOCK = Block(
     output=output,
     derivative=derivative,
     surfaces=surfaces,
-    step_size=0.001,
+    step_size=0.0005,
 )
