@@ -1,17 +1,18 @@
 """Fatigue of the gear by counting the cycles of its torque."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from .errors import DrivelineError
 
 EXPONENT = 5.0
 """Slope of the assumed fatigue line."""
 
 
-class MissingExtra(ImportError):
+class MissingExtra(DrivelineError):
     """A package of an optional extra is not installed; the message names the extra."""
 
 
-def damage(T_gear: NDArray[np.float64]) -> float:
+def damage(T_gear: np.ndarray) -> float:
     """Sum of count * range^5 over the rainflow cycles of T_gear (ASTM E1049; half cycles count 0.5).
 
     In (N.m)^5, of use only relative to another run.

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Signal = Callable[[Any], NDArray[np.float64]]
+Signal = Callable[[Any], np.ndarray]
 
 KMH = 1.0 / 3.6
 
 
-def nanoseconds(t: ArrayLike) -> NDArray[np.float64]:
+def nanoseconds(t: ArrayLike) -> np.ndarray:
     """t in s, rounded to whole nanoseconds."""
     return np.round(np.asarray(t, dtype=float), 9)
 
@@ -26,10 +26,10 @@ def nanoseconds(t: ArrayLike) -> NDArray[np.float64]:
 class Lines:
     """Straight lines between points, held beyond both ends; two points at one instant are a jump."""
 
-    times: NDArray[np.float64]
-    values: NDArray[np.float64]
+    times: np.ndarray
+    values: np.ndarray
 
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, t: ArrayLike) -> np.ndarray:
         return np.asarray(np.interp(nanoseconds(t), self.times, self.values))
 
 
@@ -38,9 +38,9 @@ class Held:
     """values[k] from k * interval on; the first and the last value are held beyond the ends."""
 
     interval: float
-    values: NDArray[np.float64]
+    values: np.ndarray
 
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, t: ArrayLike) -> np.ndarray:
         k = np.floor(nanoseconds(t) / self.interval + 1e-6).astype(int)
         return self.values[np.clip(k, 0, len(self.values) - 1)]
 
@@ -95,12 +95,12 @@ def step(
     return Manoeuvre(name, description, 6.0, v_0, demand, t_0=1.0, dT=after - before)
 
 
-def creep_torque(t: ArrayLike) -> NDArray[np.float64]:
+def creep_torque(t: ArrayLike) -> np.ndarray:
     """7 +- 15 N.m at 0.45 Hz, with flanks four times as steep as a sine and flat tops."""
     return 7.0 + 15.0 * np.clip(4.0 * np.sin(2.0 * np.pi * 0.45 * np.asarray(t, dtype=float)), -1.0, 1.0)
 
 
-def shift_register(length: int) -> NDArray[np.int64]:
+def shift_register(length: int) -> np.ndarray:
     """The first bits of the pseudo-random binary sequence x^9 + x^5 + 1, which repeats after 511."""
     stages = [1] * 9
     bits = []

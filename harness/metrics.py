@@ -9,13 +9,12 @@ from math import nan
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
 from .manoeuvres import Manoeuvre
 from .oscillation import amplitude, damping_ratio
 from .spectrum import band_rms
 
-Signal = NDArray[np.float64]
+Signal = np.ndarray
 
 T_S = 0.002
 """Sample time of the controller in s."""
@@ -60,7 +59,7 @@ class Metrics:
     hold: float
 
 
-def evaluate(results: NDArray[np.void], manoeuvre: Manoeuvre, T_s: float = T_S) -> Metrics:
+def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Metrics:
     """The metrics of one run.
 
     Args:
@@ -100,7 +99,7 @@ def evaluate(results: NDArray[np.void], manoeuvre: Manoeuvre, T_s: float = T_S) 
     )
 
 
-def at_samples(results: NDArray[np.void], T_s: float = T_S) -> NDArray[np.void]:
+def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
     """The rows of a run at 0, T_s, 2 T_s, ...
 
     Raises:
@@ -154,7 +153,7 @@ def withheld(e: Signal, T_s: float, dT: float) -> float:
     return float(-np.sum(e)) * T_s / dT
 
 
-def impact_speed(results: NDArray[np.void], t_0: float) -> float:
+def impact_speed(results: np.ndarray, t_0: float) -> float:
     """Largest speed in rad/s, motor side, with which the teeth meet from t_0 on; 0 if they never do.
 
     The gap closes between two rows when T_gear leaves zero or changes its sign. The speed is that of
@@ -183,5 +182,5 @@ def hold(t: Signal, T_gear: Signal, plateau_ends: tuple[float, ...]) -> float:
     return float(np.mean(swings)) if swings else nan
 
 
-def _between(t: Signal, start: float, end: float) -> NDArray[np.bool_]:
+def _between(t: Signal, start: float, end: float) -> np.ndarray:
     return (t >= start - 1e-9) & (t <= end + 1e-9)

@@ -4,20 +4,19 @@ from math import log, pi, sqrt
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 SPAN = 0.2
 """Length in s of the piece within which a swing is measured: more than one period of the drive train."""
 
 
-def amplitude(x: NDArray[np.float64], T_s: float) -> NDArray[np.float64]:
+def amplitude(x: np.ndarray, T_s: float) -> np.ndarray:
     """A(t) = (max - min)/2 of x over [t, t + 0.2 s), for every sample at which that piece is complete."""
     pieces = np.lib.stride_tricks.sliding_window_view(x, round(SPAN / T_s))
     return np.ptp(pieces, axis=1) / 2.0
 
 
-def damping_ratio(y: NDArray[np.float64], T_s: float, first: int, overshoot: float) -> float:
+def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> float:
     """Damping ratio of y from sample `first` on, by its logarithmic decrement.
 
     y, relative to its step, is low-passed at 12 Hz without phase shift. Of its extremes above 0.02 the
@@ -34,7 +33,7 @@ def damping_ratio(y: NDArray[np.float64], T_s: float, first: int, overshoot: flo
     return min(1.0, float(s / sqrt(pi**2 + s**2)))
 
 
-def _alternating_extremes(y: NDArray[np.float64], apart: int) -> list[float]:
+def _alternating_extremes(y: np.ndarray, apart: int) -> list[float]:
     """Extremes of y above 0.02 that alternate in sign and are `apart` samples away from each other.
 
     Of those that do not alternate or are closer, the largest is kept.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .errors import DrivelineError
 from .names import nearest
 
 GAP_LIMIT = 3.0
@@ -35,7 +35,7 @@ COLUMNS = {
 }
 
 
-class RecordingError(ValueError):
+class RecordingError(DrivelineError):
     """A recording that cannot be used; the message says where and why."""
 
 
@@ -52,10 +52,10 @@ class Recording:
     """
 
     name: str
-    time: NDArray[np.float64]
-    v: NDArray[np.float64]
-    elevation: NDArray[np.float64]
-    T_mot: NDArray[np.float64]
+    time: np.ndarray
+    v: np.ndarray
+    elevation: np.ndarray
+    T_mot: np.ndarray
 
 
 def read_recording(path: Path) -> Recording:
@@ -126,7 +126,7 @@ def _number(path: Path, line: int, header: list[str], row: list[str], place: int
     return value
 
 
-def _check_time(path: Path, time: NDArray[np.float64], lines: list[int]) -> None:
+def _check_time(path: Path, time: np.ndarray, lines: list[int]) -> None:
     steps = np.diff(time)
     backward = np.flatnonzero(steps <= 0.0)
     if len(backward):

@@ -12,10 +12,10 @@ from typing import Self
 
 import numpy as np
 from fmpy import read_model_description
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.ndimage import gaussian_filter1d
 
+from .errors import WiringError
 from .manoeuvres import Held, Lines, Manoeuvre
 from .recording import Recording
 
@@ -49,24 +49,26 @@ class RoadLoad:
         """The start values of the parameters of these names.
 
         Raises:
-            ValueError: the FMU lacks one of them.
+            WiringError: the FMU lacks one of them.
         """
-        variables = {v.name: v for v in read_model_description(path, validate=False).modelVariables}
-        missing = [field.name for field in fields(cls) if field.name not in variables]
+        description = read_model_description(path, validate=False)
+        starts = {v.name: float(v.start) for v in description.modelVariables if v.type == "Real" and v.start}
+        names = [field.name for field in fields(cls)]
+        missing = [name for name in names if name not in starts]
         if missing:
-            raise ValueError(
-                f"{path} has no parameter {', '.join(missing)}; a recorded drive needs "
-                f"{', '.join(field.name for field in fields(cls))} of the vehicle to work out the brakes"
+            raise WiringError(
+                f"{path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(names)} "
+                f"of the vehicle to work out the brakes"
             )
-        return cls(*(float(variables[field.name].start) for field in fields(cls)))
+        return cls(*(starts[name] for name in names))
 
     def surplus(
         self,
-        T_mot: NDArray[np.float64],
-        v: NDArray[np.float64],
-        a: NDArray[np.float64],
-        slope: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+        T_mot: np.ndarray,
+        v: np.ndarray,
+        a: np.ndarray,
+        slope: np.ndarray,
+    ) -> np.ndarray:
         """Force in N by which the motor pushes more than the motion takes.
 
         F = i T_mot/r - m g (c_rr + sin(slope)) - c_wa v^2 - 1.09 m a
@@ -103,9 +105,7 @@ def road(recording: Recording, load: RoadLoad, held: float | None = None) -> Man
     )
 
 
-def road_slope(
-    v: NDArray[np.float64], elevation: NDArray[np.float64], interval: float
-) -> NDArray[np.float64]:
+def road_slope(v: np.ndarray, elevation: np.ndarray, interval: float) -> np.ndarray:
     """Slope in rad from coarse elevation (m) and speed (m/s), `interval` seconds apart.
 
     Elevation is smoothed over 8 s (Gaussian), the slope over 2 s and limited to +-0.08.
@@ -117,12 +117,12 @@ def road_slope(
 
 
 def brake_torque(
-    T_driver: NDArray[np.float64],
-    v: NDArray[np.float64],
-    slope: NDArray[np.float64],
+    T_driver: np.ndarray,
+    v: np.ndarray,
+    slope: np.ndarray,
     interval: float,
     load: RoadLoad,
-) -> NDArray[np.float64]:
+) -> np.ndarray:
     """Torque of the brakes in N.m, wheel side; acceleration is smoothed over 0.5 s."""
     a = gaussian_filter1d(np.gradient(v, interval), 0.5 / interval)
     F = np.clip(load.surplus(T_driver, v, a, slope) - F_UNCERTAIN, 0.0, F_BRAKE_MAX)

@@ -1,13 +1,12 @@
 """The share of a record that lies in a band of frequencies."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 DRIVE_TRAIN = (5.0, 50.0)
 
 
 def band_rms(
-    x: NDArray[np.float64], T_s: float, band: tuple[float, float] = DRIVE_TRAIN, derivative: bool = False
+    x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN, derivative: bool = False
 ) -> float:
     """The rms of the part of x (N samples, T_s apart) within a band in Hz, both ends included.
 
