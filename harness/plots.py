@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib
 import numpy as np
+from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -134,7 +134,7 @@ def plot_replay(
     Returns:
         The files written.
     """
-    with matplotlib.rc_context(STYLE):
+    with style.context(STYLE):
         figure = Figure(figsize=(7.2, 7.4), layout=ConstrainedLayoutEngine(h_pad=0.11))
         speed, torque, close = figure.subplots(3, 1)
         t = runs[0]["time"]
@@ -173,7 +173,7 @@ def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:
 def _compare(
     runs: Sequence[np.ndarray], panels: Sequence[Panel], window: tuple[float, float], title: str, stem: Path
 ) -> list[Path]:
-    with matplotlib.rc_context(STYLE):
+    with style.context(STYLE):
         figure = Figure(figsize=(7.2, 2.0 * len(panels) + 0.7), layout=ConstrainedLayoutEngine(h_pad=0.11))
         grid = figure.subplots(len(panels), len(runs), sharex=True, sharey="row", squeeze=False)
         figure.suptitle(title, fontsize=10)

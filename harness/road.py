@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
-from fmpy import read_model_description
 from scipy.integrate import cumulative_trapezoid
 from scipy.ndimage import gaussian_filter1d
 
 from .errors import WiringError
+from .interface import Interface
 from .manoeuvres import Held, Lines, Manoeuvre
 from .recording import Recording
 
@@ -51,8 +51,8 @@ class RoadLoad:
         Raises:
             WiringError: the FMU lacks one of them.
         """
-        description = read_model_description(path, validate=False)
-        starts = {v.name: float(v.start) for v in description.modelVariables if v.type == "Real" and v.start}
+        variables = Interface(path).variables.values()
+        starts = {v.name: float(v.start) for v in variables if v.type == "Real" and v.start}
         names = [field.name for field in fields(cls)]
         missing = [name for name in names if name not in starts]
         if missing:

@@ -54,10 +54,10 @@ def samples() -> np.ndarray:
         if k % per_sample == 0:
             rows.append((round(t, 1), round(3.6 * v, 2), round(elevation(distance), 1), round(T_mot, 2)))
         slope = (elevation(distance + 0.5) - elevation(distance - 0.5)) / 1.0
-        F = CAR.i * T_mot / CAR.r - CAR.m * CAR.g * slope - CAR.c_wa * v * v
+        push = CAR.i * T_mot / CAR.r - CAR.m * CAR.g * slope - CAR.c_wa * v * v
         resistance = CAR.m * CAR.g * CAR.c_rr + float(BRAKE(t))
-        standing = v == 0.0 and F <= resistance
-        v = 0.0 if standing else max(0.0, v + STEP * (F - resistance) / (ROTATING_MASS * CAR.m))
+        standing = v == 0.0 and push <= resistance
+        v = 0.0 if standing else max(0.0, v + STEP * (push - resistance) / (ROTATING_MASS * CAR.m))
         distance += STEP * v
     return np.array(rows)
 

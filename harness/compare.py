@@ -1,0 +1,102 @@
+"""The main job: every manoeuvre on every plant, without and with damping, side by side.
+
+The runs know nothing of each other and are spread over the cores; what comes back is in the order
+of the cases, whatever finishes first.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import repeat
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from .manoeuvres import MANOEUVRES
+from .metrics import Metrics, at_samples, evaluate
+from .plots import plot_drive, plot_step
+from .report import Row, write_markdown, write_metrics
+from .results import write_csv
+from .simulate import simulate
+from .workers import workers
+
+CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
+
+
+class Case(NamedTuple):
+    """One run: a plant (name or file of an FMU), a manoeuvre by name, damping on or off."""
+
+    plant: str
+    manoeuvre: str
+    control: bool
+
+    @property
+    def plant_name(self) -> str:
+        return Path(self.plant).stem
+
+    @property
+    def file_name(self) -> str:
+        return f"{self.plant_name}_{self.manoeuvre}_{'on' if self.control else 'off'}"
+
+
+class Outcome(NamedTuple):
+    """A case that was run."""
+
+    case: Case
+    metrics: Metrics
+    results: np.ndarray
+
+    @property
+    def row(self) -> Row:
+        return Row(self.case.plant_name, self.case.manoeuvre, self.case.control, self.metrics)
+
+
+def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
+    """All combinations, the runs without and with damping next to each other."""
+    return [
+        Case(plant, manoeuvre, control)
+        for plant in plants
+        for manoeuvre in manoeuvres
+        for control in (False, True)
+    ]
+
+
+def run_case(case: Case, seed: int, folder: Path) -> Outcome:
+    """Simulates a case, writes its signals at the controller's samples to `folder` and evaluates it."""
+    manoeuvre = MANOEUVRES[case.manoeuvre]
+    results = simulate(manoeuvre, plant=case.plant, control=case.control, seed=seed)
+    write_csv(at_samples(results), folder / f"{case.file_name}.csv")
+    return Outcome(case, evaluate(results, manoeuvre), results)
+
+
+def run_cases(todo: Sequence[Case], seed: int, folder: Path) -> Iterator[Outcome]:
+    """Runs the cases in parallel; yields their outcomes in the order of the cases.
+
+    Args:
+        seed: of the noise of all runs.
+        folder: for the CSV files, made if absent.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with workers() as pool:
+        yield from pool.map(run_case, todo, repeat(seed), repeat(folder))
+
+
+def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
+    """Writes the table as Markdown and all metrics as CSV; returns the files."""
+    rows = [outcome.row for outcome in outcomes]
+    table, metrics = folder / "table.md", folder / "metrics.csv"
+    write_markdown(rows, table)
+    write_metrics(rows, metrics)
+    return [table, metrics]
+
+
+def write_figures(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
+    """Draws the test drive and the close-ups of the steps that were run; returns the files."""
+    files = []
+    for off, on in zip(outcomes[::2], outcomes[1::2], strict=True):
+        name = off.case.manoeuvre
+        plot = plot_drive if name == "drive" else plot_step if name in CLOSE_UPS else None
+        if plot:
+            runs = (off.results, on.results)
+            stem = folder / f"{off.case.plant_name}_{name}"
+            files += plot(runs, MANOEUVRES[name], off.case.plant_name, stem)
+    return files
