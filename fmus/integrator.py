@@ -135,17 +135,21 @@ class Integrator:
     def _locate(self, n: int, start: Start, far: float, g_near: float, side: bool) -> float:
         """Shortest step (to LOCATION_TOLERANCE) that ends beyond surface n; one of length `far` does.
 
-        Regula falsi as modified by Illinois, which keeps the crossing between near and far.
+        Regula falsi as modified by Illinois, and a bisection whenever that has not halved the bracket
+        (a surface that a block at rest lies on is flat there).
         """
         near, g_far = 0.0, self._value(n, start, far)
         if (g_near > 0.0) != side:
             g_near = 0.0
+        bisect = False
         while far - near > LOCATION_TOLERANCE:
-            length = far - g_far * (far - near) / (g_far - g_near)
+            width = far - near
+            length = near + 0.5 * width if bisect else far - g_far * width / (g_far - g_near)
             length = min(max(length, near + 0.3 * LOCATION_TOLERANCE), far - 0.3 * LOCATION_TOLERANCE)
             g = self._value(n, start, length)
             if (g > 0.0) != side:
                 far, g_far, g_near = length, g, 0.5 * g_near
             else:
                 near, g_near, g_far = length, g, 0.5 * g_far
+            bisect = far - near > 0.5 * width
         return far
