@@ -1,0 +1,17 @@
+"""What the user of the harness can mend; the message says what is wrong and what is allowed."""
+
+
+class DrivelineError(Exception):
+    """Base of all errors of the harness; the command line prints them without a traceback."""
+
+    exit_code = 2
+
+
+class WiringError(DrivelineError):
+    """FMUs, connections, inputs or parameters that do not fit together, found before the run."""
+
+
+class SimulationError(DrivelineError):
+    """An FMU refused a call; the message names instance, function, time and what the FMU logged."""
+
+    exit_code = 1
