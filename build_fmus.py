@@ -1,0 +1,49 @@
+"""Builds the FMUs; `python build_fmus.py --help` says how."""
+
+import argparse
+from difflib import get_close_matches
+from pathlib import Path
+
+from fmus.catalogue import FMUS
+from fmus.packaging import build
+
+DESCRIPTION = "Build the FMI 2.0 co-simulation FMUs of the damping loop."
+
+EXAMPLES = f"""FMUs: {", ".join(FMUS)}
+
+examples:
+  python build_fmus.py                          all of them, into build/
+  python build_fmus.py TwoMassDriveline         only that one
+  python build_fmus.py --output /srv/fmus       somewhere else
+
+The same sources give the same files, byte by byte.
+"""
+
+
+def known(name: str) -> str:
+    """The name itself.
+
+    Raises:
+        argparse.ArgumentTypeError: there is no such FMU; says which are near.
+    """
+    if name in FMUS:
+        return name
+    near = get_close_matches(name, FMUS, n=2, cutoff=0.5)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(FMUS)}"
+    raise argparse.ArgumentTypeError(f"no FMU is called {name!r}; {hint}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=DESCRIPTION, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", type=known, metavar="FMU", help="which to build (default: all)")
+    parser.add_argument("--output", type=Path, default=Path("build"), help="folder (default: build)")
+    arguments = parser.parse_args()
+    for name in dict.fromkeys(arguments.names or FMUS):
+        path = build(FMUS[name], arguments.output)
+        print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
