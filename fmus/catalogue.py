@@ -1,10 +1,16 @@
 """The FMUs of the project."""
 
-from . import motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
+from . import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
 from .fmu import Fmu
 
 FMUS: dict[str, Fmu] = {
     module.FMU.name: module.FMU
-    for module in (two_mass_driveline, validation_vehicle, motor_torque_loop, wheel_speed_can)
+    for module in (
+        two_mass_driveline,
+        validation_vehicle,
+        motor_torque_loop,
+        wheel_speed_can,
+        damping_controller,
+    )
 }
 """By name, in the order in which they are built."""

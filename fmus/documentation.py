@@ -78,24 +78,23 @@ def _prose(docstring: str) -> str:
 
 def _table(title: str, of_kind: Iterable[Variable]) -> str:
     """A table of variables under a heading."""
-    rows = "\n".join(_row(variable) for variable in of_kind)
-    return (
-        f"<h2>{title}</h2>\n<table>\n<tr><th>Name</th><th>Unit</th><th>Start</th><th>Allowed</th>"
-        f"<th>Meaning</th></tr>\n{rows}\n</table>"
+    head = (
+        ("Name", "Unit", "Meaning") if title == "Outputs" else ("Name", "Unit", "Meaning", "Start", "Allowed")
     )
+    rows = ["".join(f"<th>{name}</th>" for name in head)]
+    for variable in of_kind:
+        rows.append("".join(f"<td>{escape(cell)}</td>" for cell in _cells(variable)))
+    body = "\n".join(f"<tr>{row}</tr>" for row in rows)
+    return f"<h2>{title}</h2>\n<table>\n{body}\n</table>"
 
 
-def _row(variable: Variable) -> str:
+def _cells(variable: Variable) -> tuple[str, ...]:
     meaning = variable.declaration.description
     if isinstance(variable.declaration, Enumeration):
         items = (f"{k}: {what}" for k, (_, what) in enumerate(variable.declaration.items, start=1))
         meaning = f"{meaning} ({'; '.join(items)})"
-    is_output = variable.causality == "output"
-    cells = (
-        variable.name,
-        variable.unit or "–",
-        "" if is_output else str(variable.start),
-        "" if is_output else variable.allowed(),
-        meaning,
-    )
-    return "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"
+    cells = (variable.name, variable.unit or "–", meaning)
+    if variable.causality == "output":
+        return cells
+    start = variable.start
+    return (*cells, f"{start:g}" if isinstance(start, float) else str(start).lower(), variable.allowed())

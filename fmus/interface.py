@@ -55,6 +55,8 @@ class Variable(NamedTuple):
         if isinstance(self.declaration, Enumeration):
             return " or ".join(f"{k} ({name})" for k, (name, _) in enumerate(self.declaration.items, 1))
         unit = f" {self.unit}" if self.unit else ""
+        if isinstance(self.declaration, Integer):
+            return f"{low} to {high}"
         if low <= -LARGEST and high >= LARGEST:
             return f"any finite number{unit and ' in'}{unit}"
         if high >= LARGEST:
