@@ -2,7 +2,6 @@
 
 import sys
 from collections.abc import Iterator
-from multiprocessing import parent_process
 from time import monotonic
 
 from rich.console import Console
@@ -13,12 +12,9 @@ QUIET = 1.0
 
 
 def chunks(length: int, label: str, size: int = 200) -> Iterator[range]:
-    """range(length) in pieces, shown on stderr as progress if it takes longer than a second.
-
-    A worker process stays silent: who started it shows the progress.
-    """
+    """range(length) in pieces, shown on stderr as progress if it takes longer than a second."""
     began = monotonic()
-    silent = parent_process() is not None or not sys.stderr.isatty()
+    silent = not sys.stderr.isatty()
     with Progress(console=Console(file=sys.stderr), transient=True, disable=silent) as bar:
         task = bar.add_task(label, total=length, visible=False)
         for k in range(0, length, size):

@@ -1,0 +1,1 @@
+"""Runs FMUs in closed loop and evaluates what they do."""
