@@ -99,7 +99,8 @@ def _add_variable(listed: Element, variable: Variable, sampled: bool) -> None:
     if variable.causality == "parameter":
         attributes |= {"variability": "fixed", "initial": "exact"}
     else:
-        discrete = sampled or not isinstance(declaration, Real)
+        # what feeds a sampled block may change at any time; what leaves it may not
+        discrete = not isinstance(declaration, Real) or (sampled and variable.causality == "output")
         attributes["variability"] = "discrete" if discrete else "continuous"
         if variable.causality == "output":
             attributes["initial"] = "calculated"

@@ -1,0 +1,81 @@
+"""A small host for the tests: variables by name, and everything the FMU logs."""
+
+from contextlib import contextmanager
+
+import fmpy
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+
+
+class Host:
+    """One instance of an FMU, and the text of the last message it logged."""
+
+    def __init__(self, path, unpacked, name="instance"):
+        self.description = fmpy.read_model_description(str(path))
+        self.variables = {v.name: v for v in self.description.modelVariables}
+        self.message = ""
+        self._callbacks = fmi2CallbackFunctions()
+        self._callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
+        self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+        self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        self.fmu = FMU2Slave(
+            guid=self.description.guid,
+            unzipDirectory=str(unpacked),
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName=name,
+        )
+        self.fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
+
+    def _keep(self, _environment, _name, _status, _category, message):
+        self.message = message.decode()
+
+    def names(self, causality):
+        return [v.name for v in self.variables.values() if v.causality == causality]
+
+    def _function(self, verb, name):
+        kind = self.variables[name].type
+        return getattr(self.fmu, verb + ("Integer" if kind == "Enumeration" else kind))
+
+    def set(self, **values):
+        for name, value in values.items():
+            self._function("set", name)([self.variables[name].valueReference], [value])
+
+    def get(self, name):
+        return self._function("get", name)([self.variables[name].valueReference])[0]
+
+    def outputs(self):
+        return {name: self.get(name) for name in self.names("output")}
+
+    def initialize(self, start_time=0.0, **values):
+        """Sets parameters and inputs, and goes through initialization mode."""
+        self.set(**values)
+        self.fmu.setupExperiment(startTime=start_time)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def step(self, time, step_size):
+        self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=step_size)
+
+    def refuses(self, call, *arguments, **named):
+        """The message with which the FMU refuses a call; fails if it does not."""
+        with pytest.raises(FMICallException):
+            call(*arguments, **named)
+        return self.message
+
+
+@contextmanager
+def opened(path, folder, name="instance"):
+    """An instance of the FMU, unpacked into the folder, and freed at the end."""
+    fmpy.extract(str(path), str(folder))
+    host = Host(path, folder, name)
+    try:
+        yield host
+    finally:
+        host.fmu.freeInstance()
