@@ -12,6 +12,7 @@ from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import MaxNLocator
 
 from .manoeuvres import Manoeuvre
 from .oscillation import amplitude
@@ -195,6 +196,7 @@ def _compare(
         for axes, heading in zip(grid[0], TITLES, strict=True):
             axes.set_title(heading, pad=20 if len(panels[0].lines) > 1 else 6)
             axes.set_xlim(*window)
+            axes.xaxis.set_major_locator(MaxNLocator(5))
         for axes in grid[-1]:
             axes.set_xlabel("time in s")
         return _write(figure, stem)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
+from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from .damage import damage, require_counting
@@ -99,8 +100,8 @@ def rows(rides: Sequence[Ride]) -> list[tuple[str, str, float, float]]:
 
 def terminal_table(rides: Sequence[Ride], title: str) -> Table:
     """Both rides side by side, and their ratio."""
-    table = Table(title=title, title_justify="left")
-    table.add_column("")
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
+    table.add_column("", no_wrap=True)
     table.add_column("unit")
     for heading in ("without damping", "with damping", "with/without"):
         table.add_column(heading, justify="right")

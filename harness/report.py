@@ -7,19 +7,25 @@ from math import isnan
 from pathlib import Path
 from typing import NamedTuple
 
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
 from rich.table import Table
 
 from .metrics import Metrics
 
 
 class Shown(NamedTuple):
-    """How a metric is shown: heading, unit, factor from SI and decimals."""
+    """How a metric is shown: heading (in lines), unit, factor from SI and decimals."""
 
     metric: str
     heading: str
     unit: str
     factor: float
     decimals: int
+
+    @property
+    def plain_heading(self) -> str:
+        return self.heading.replace("-\n", "").replace("\n", " ")
 
 
 class Row(NamedTuple):
@@ -33,15 +39,23 @@ class Row(NamedTuple):
 
 SHOWN = (
     Shown("ts", "settling", "ms", 1e3, 0),
-    Shown("OS", "overshoot", "%", 1e2, 0),
-    Shown("zeta", "damping ratio", "1", 1.0, 2),
-    Shown("bTg", "gear torque 5-50 Hz", "N.m", 1.0, 1),
-    Shown("bJ", "body jerk 5-50 Hz", "m/s3", 1.0, 1),
-    Shown("imp", "impact speed", "rad/s", 1.0, 1),
-    Shown("t90", "delay to 90 %", "ms", 1e3, 0),
-    Shown("loss", "torque withheld", "ms", 1e3, 1),
-    Shown("dT_stat", "stationary change", "N.m", 1.0, 2),
+    Shown("OS", "over-\nshoot", "%", 1e2, 0),
+    Shown("zeta", "damping\nratio", "1", 1.0, 2),
+    Shown("bTg", "torque\n5-50 Hz", "N.m", 1.0, 1),
+    Shown("bJ", "jerk\n5-50 Hz", "m/s3", 1.0, 1),
+    Shown("imp", "impact\nspeed", "rad/s", 1.0, 1),
+    Shown("t90", "delay\nto 90 %", "ms", 1e3, 0),
+    Shown("loss", "torque\nwithheld", "ms", 1e3, 1),
+    Shown("dT_stat", "stat.\nchange", "N.m", 1.0, 2),
 )
+NUMBER_WIDTH = 5
+"""Columns of the terminal that a number may need."""
+
+
+def wide_console() -> Console:
+    """Standard output; wide enough for the tables where it is no terminal with a width of its own."""
+    console = Console()
+    return console if console.is_terminal else Console(width=max(console.width, 120))
 
 
 def cells(row: Row) -> list[str]:
@@ -57,11 +71,18 @@ def _value(metrics: Metrics, shown: Shown) -> str:
 
 def terminal_table(rows: Sequence[Row]) -> Table:
     """The table for the terminal; each plant is a section, each manoeuvre a pair of rows."""
-    table = Table(title="without (off) and with (on) active damping", header_style="", title_justify="left")
+    table = Table(
+        title="without (off) and with (on) active damping",
+        title_justify="left",
+        box=SIMPLE_HEAD,
+        padding=0,
+    )
     table.add_column("manoeuvre", no_wrap=True)
-    table.add_column("damping")
+    table.add_column("", min_width=3)
     for shown in SHOWN:
-        table.add_column(f"{shown.heading}\n{shown.unit}", justify="right")
+        table.add_column(
+            f"{shown.heading}\n{shown.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold"
+        )
     for k, row in enumerate(rows):
         if k == 0 or row.plant != rows[k - 1].plant:
             table.add_section()
@@ -72,7 +93,7 @@ def terminal_table(rows: Sequence[Row]) -> Table:
 
 def write_markdown(rows: Sequence[Row], path: Path) -> None:
     """The same table as Markdown, with the plant as first column."""
-    heads = ["plant", "manoeuvre", "damping", *(f"{shown.heading}, {shown.unit}" for shown in SHOWN)]
+    heads = ["plant", "manoeuvre", "damping", *(f"{shown.plain_heading}, {shown.unit}" for shown in SHOWN)]
     lines = [heads, ["---"] * 3 + ["---:"] * len(SHOWN), *([row.plant, *cells(row)] for row in rows)]
     path.write_text("".join(f"| {' | '.join(line)} |\n" for line in lines), encoding="utf-8")
 

@@ -3,14 +3,13 @@
 import argparse
 from pathlib import Path
 
-from rich.console import Console
 from rich.progress import track
 
 from ..compare import cases, run_cases, write_figures, write_tables
 from ..errors import DrivelineError
 from ..manoeuvres import COMPARED, MANOEUVRES
 from ..names import nearest
-from ..report import terminal_table
+from ..report import terminal_table, wide_console
 from ..wiring import PLANTS, plant_file
 
 NAME = "compare"
@@ -22,13 +21,12 @@ Runs every manoeuvre on every plant twice, with the damping off and on, and prin
   settling         until the gear torque swings by less than 5 % of the demanded step
   overshoot        of the gear torque over its final value
   damping ratio    from the decrement of the gear torque
-  gear torque,     their rms between 5 and 50 Hz: what wears the gear
-  body jerk          and what the passengers feel
+  torque, jerk     rms between 5 and 50 Hz of the gear torque, which wears the gear, and of the
+                   jerk of the body, which the passengers feel
   impact speed     with which the teeth meet after the backlash
   delay to 90 %    until the gear torque has made 90 % of its way
   torque withheld  impulse taken from the driver over the step: a lag by that time
-  stationary       mean torque that the damping adds when all is quiet
-    change
+  stat. change     mean torque that the damping adds at the end, when all is quiet
 """
 
 EXAMPLES = """\
@@ -73,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
         if name not in MANOEUVRES:
             raise DrivelineError(f"unknown manoeuvre {name}; {nearest(name, MANOEUVRES)}")
     todo = cases(plants, manoeuvres)
-    console = Console()
+    console = wide_console()
     outcomes = list(
         track(
             run_cases(todo, args.seed, args.output / "runs"),

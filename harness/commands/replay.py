@@ -3,11 +3,10 @@
 import argparse
 from pathlib import Path
 
-from rich.console import Console
-
 from ..errors import DrivelineError
 from ..recording import COLUMNS, read_recording
 from ..replay import replay, terminal_table, write
+from ..report import wide_console
 from ..road import RoadLoad, road
 from ..wiring import PLANTS, plant_file
 
@@ -66,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     recording = read_recording(args.recording)
     path = plant_file(args.plant)
     manoeuvre = road(recording, RoadLoad.of_fmu(path), args.held)
-    console = Console()
+    console = wide_console()
     console.print(f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, without and with damping")
     rides = replay(manoeuvre, recording, args.plant, args.seed)
     console.print(terminal_table(rides, f"{path.stem} on {recording.name}"))
