@@ -6,8 +6,8 @@ torque will act. The damping torque opposes the twisting motion and vanishes whe
     T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear],   k_d times k_gap in the gap
 
 While the estimated twist is in the gap, for at most t_land, the demand is limited to T_land, so that
-the teeth land softly. What is added to the driver's demand is limited to T_damp_max and fades in
-and out within t_fade. The literal form of the paper, an imperfect derivative of the estimated gear
+the teeth land softly. The damping torque is limited to T_damp_max; what is added to the driver's
+demand fades in and out within t_fade. The literal form of the paper, an imperfect derivative of the estimated gear
 torque (Sugiura and Hori 1996) behind an observer without load, is lambda_v = k_d = T_pred = 0,
 K_T_l = Kw_T_l = H_T_l = 0, T_land = T_max.
 
@@ -63,7 +63,7 @@ class Parameters(NamedTuple):
     omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = design.omega_w
     T_land: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0)] = design.T_land
     t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0)] = design.t_land
-    T_damp_max: Annotated[float, Real("N.m", "limit of what is added to the demand", 0.0, 2000.0)] = 60.0
+    T_damp_max: Annotated[float, Real("N.m", "limit of the damping torque", 0.0, 2000.0)] = 60.0
     T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = 180.0
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
@@ -241,11 +241,11 @@ def update(x: State, u: Input, p: Parameters) -> State:
 
     e_pred = estimator.predict(e, motor.T_mot, p.T_pred, p)
     law = damping_law(e_pred, p)
-    landing = where(in_gap(e_pred, p), minimum(x.landing + T_S, p.t_land + T_S), 0.0)
+    landing = where(in_gap(e, p), minimum(x.landing + T_S, p.t_land + T_S), 0.0)
     T_driver = demand(u, p)
     soft = logical_and(landing > 0.0, landing <= p.t_land)
     T_soft = where(soft, clip(T_driver, -p.T_land, p.T_land), T_driver)
-    T_damp = level * clip(T_soft - T_driver + x.washout - law, -p.T_damp_max, p.T_damp_max)
+    T_damp = level * (T_soft - T_driver + clip(x.washout - law, -p.T_damp_max, p.T_damp_max))
     T_ref = clip(T_driver + T_damp, -p.T_max, p.T_max)
 
     damping = where(wheel, 1.0 * WITH_WHEEL_SPEED, 1.0 * WITHOUT_WHEEL_SPEED)
