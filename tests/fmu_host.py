@@ -72,8 +72,11 @@ class Host:
 
 @contextmanager
 def opened(path, folder, name="instance"):
-    """An instance of the FMU, unpacked into the folder, and freed at the end."""
-    fmpy.extract(str(path), str(folder))
+    """An instance of the FMU, unpacked into the folder if that is empty, and freed at the end."""
+    folder = folder.resolve()
+    folder.mkdir(exist_ok=True)
+    if not any(folder.iterdir()):
+        fmpy.extract(str(path), str(folder))
     host = Host(path, folder, name)
     try:
         yield host
