@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import distribution
 from pathlib import Path, PurePosixPath
+from types import ModuleType
 
 from pythonfmu.builder import FmuBuilder
 
@@ -83,15 +84,24 @@ def _packed_by_pythonfmu(fmu: Fmu, package: str, files: dict[str, bytes]) -> dic
 
 @contextmanager
 def _no_traces(package: str) -> Iterator[None]:
-    """Takes back what PythonFMU's builder leaves in sys.path and sys.modules."""
+    """Takes back what PythonFMU's builder leaves in sys.path and sys.modules.
+
+    It imports the package, so one of that name that belongs to a loaded FMU is set aside meanwhile.
+    """
     path, write_bytecode = list(sys.path), sys.dont_write_bytecode
+    loaded = _taken_out(package)
     sys.dont_write_bytecode = True
     try:
         yield
     finally:
         sys.path[:], sys.dont_write_bytecode = path, write_bytecode
-        for name in [name for name in sys.modules if name.startswith(package)]:
-            del sys.modules[name]
+        _taken_out(package)
+        sys.modules.update(loaded)
+
+
+def _taken_out(package: str) -> dict[str, ModuleType]:
+    """Modules whose names begin so, which sys.modules then has no more."""
+    return {name: sys.modules.pop(name) for name in list(sys.modules) if name.startswith(package)}
 
 
 def _documentation(fmu: Fmu) -> dict[str, bytes]:

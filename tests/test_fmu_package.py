@@ -8,6 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from fmu_host import opened
 
 from fmus.bundle import imported, source_path
 from fmus.catalogue import FMUS
@@ -66,11 +67,18 @@ def test_an_unknown_name_is_answered_with_the_nearest():
     assert "no FMU is called 'TwoMasDriveline'; did you mean TwoMassDriveline?" in said
 
 
-def test_the_builder_leaves_no_trace(tmp_path):
-    before = list(sys.path), {name for name in sys.modules if name.startswith("driveline")}
-    path = build(FMUS["MotorTorqueLoop"], tmp_path)
-    assert (list(sys.path), {name for name in sys.modules if name.startswith("driveline")}) == before
-    assert list(tmp_path.iterdir()) == [path]
+def test_the_builder_leaves_no_trace_even_while_the_fmu_is_loaded(built, tmp_path):
+    def ours():
+        return {name: module for name, module in sys.modules.items() if name.startswith("driveline_")}
+
+    name = "MotorTorqueLoop"
+    with opened(built / f"{name}.fmu", tmp_path / "unpacked") as host:
+        before = list(sys.path), ours()
+        path = build(FMUS[name], tmp_path / "built")
+        assert (list(sys.path), ours()) == before
+        host.initialize(T_ref=50.0)
+        assert host.get("T_mot") == 50.0
+    assert list((tmp_path / "built").iterdir()) == [path]
 
 
 @pytest.mark.parametrize("name", FMUS)
