@@ -17,6 +17,7 @@ from .plots import plot_drive, plot_step
 from .report import Row, write_markdown, write_metrics
 from .results import write_csv
 from .simulate import simulate
+from .wiring import BUILD
 from .workers import workers
 
 CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
@@ -60,24 +61,25 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(case: Case, seed: int, folder: Path) -> Outcome:
+def run_case(case: Case, seed: int, folder: Path, fmus: Path = BUILD) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to `folder` and evaluates it."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
-    results = simulate(manoeuvre, plant=case.plant, control=case.control, seed=seed)
+    results = simulate(manoeuvre, plant=case.plant, control=case.control, seed=seed, folder=fmus)
     write_csv(at_samples(results), folder / f"{case.file_name}.csv")
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
-def run_cases(todo: Sequence[Case], seed: int, folder: Path) -> Iterator[Outcome]:
+def run_cases(todo: Sequence[Case], seed: int, folder: Path, fmus: Path = BUILD) -> Iterator[Outcome]:
     """Runs the cases in parallel; yields their outcomes in the order of the cases.
 
     Args:
         seed: of the noise of all runs.
         folder: for the CSV files, made if absent.
+        fmus: folder of the built FMUs.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with workers() as pool:
-        yield from pool.map(run_case, todo, repeat(seed), repeat(folder))
+        yield from pool.map(run_case, todo, repeat(seed), repeat(folder), repeat(fmus))
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

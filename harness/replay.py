@@ -18,6 +18,7 @@ from .plots import plot_replay
 from .recording import Recording
 from .results import write_csv
 from .simulate import simulate
+from .wiring import BUILD
 from .workers import workers
 
 KEPT = [
@@ -57,9 +58,16 @@ class Ride:
     signals: np.ndarray
 
 
-def ride(manoeuvre: Manoeuvre, recording: Recording, plant: str, control: bool, seed: int = 1) -> Ride:
+def ride(
+    manoeuvre: Manoeuvre,
+    recording: Recording,
+    plant: str,
+    control: bool,
+    seed: int = 1,
+    fmus: Path = BUILD,
+) -> Ride:
     """Simulates the manoeuvre of a recording and evaluates it against the recording."""
-    results = simulate(manoeuvre, plant=plant, control=control, seed=seed)
+    results = simulate(manoeuvre, plant=plant, control=control, seed=seed, folder=fmus)
     signals = repack_fields(at_samples(results)[KEPT])
     metrics = evaluate(signals, manoeuvre)
     recorded = np.interp(signals["time"], recording.time - recording.time[0], recording.v)
@@ -72,7 +80,9 @@ def ride(manoeuvre: Manoeuvre, recording: Recording, plant: str, control: bool, 
     )
 
 
-def replay(manoeuvre: Manoeuvre, recording: Recording, plant: str, seed: int = 1) -> tuple[Ride, Ride]:
+def replay(
+    manoeuvre: Manoeuvre, recording: Recording, plant: str, seed: int = 1, fmus: Path = BUILD
+) -> tuple[Ride, Ride]:
     """The rides without and with damping, at the same time on two cores.
 
     The one without damping runs in this process, where it can show its progress.
@@ -82,8 +92,8 @@ def replay(manoeuvre: Manoeuvre, recording: Recording, plant: str, seed: int = 1
     """
     require_counting()
     with workers(1) as pool:
-        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed)
-        undamped = ride(manoeuvre, recording, plant, False, seed)
+        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed, fmus)
+        undamped = ride(manoeuvre, recording, plant, False, seed, fmus)
         return undamped, damped.result()
 
 

@@ -5,7 +5,8 @@ import csv
 import pytest
 
 from harness.cli import main
-from harness.compare import cases
+from harness.compare import cases, run_cases, write_figures, write_tables
+from harness.wiring import PLANTS
 
 
 def test_runs_without_and_with_damping_are_neighbours():
@@ -30,9 +31,11 @@ def test_unknown_names_are_answered_with_the_nearest(arguments, said, capsys):
 
 @pytest.fixture(scope="module")
 def compared(built, tmp_path_factory):
-    """Folder of a comparison of one step on both plants."""
+    """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
-    assert main(["compare", "--manoeuvre", "tipin15", "--output", str(folder)]) == 0
+    outcomes = list(run_cases(cases(PLANTS, ["tipin15"]), 1, folder / "runs", built))
+    write_tables(outcomes, folder)
+    write_figures(outcomes, folder)
     return folder
 
 
@@ -40,7 +43,7 @@ def test_damping_settles_the_tip_in_on_both_plants(compared):
     with (compared / "metrics.csv").open(newline="", encoding="utf-8") as file:
         rows = {(row["plant"], row["control"]): row for row in csv.DictReader(file)}
     assert len(rows) == 4
-    for plant in ("TwoMassDriveline", "ValidationVehicle"):
+    for plant in PLANTS:
         off, on = rows[plant, "0"], rows[plant, "1"]
         assert float(on["ts"]) < 0.4 * float(off["ts"])
         assert float(on["bTg"]) < 0.5 * float(off["bTg"])
@@ -60,6 +63,6 @@ def test_without_damping_the_design_model_rings_as_in_the_reference_study(compar
 def test_everything_that_is_announced_is_written(compared):
     names = {path.relative_to(compared).as_posix() for path in compared.rglob("*") if path.is_file()}
     assert {"table.md", "metrics.csv"} <= names
-    for plant in ("TwoMassDriveline", "ValidationVehicle"):
+    for plant in PLANTS:
         assert {f"{plant}_tipin15.png", f"{plant}_tipin15.pdf"} <= names
         assert {f"runs/{plant}_tipin15_off.csv", f"runs/{plant}_tipin15_on.csv"} <= names

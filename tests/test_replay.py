@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from harness.cli import main
+from harness.damage import MissingExtra
 from harness.recording import read_recording
-from harness.replay import ride
+from harness.replay import replay, ride, write
 from harness.road import RoadLoad, road
 from harness.town_drive import PATH
-from harness.wiring import plant_file
 
 TRIP = Path(__file__).parents[2] / "shared" / "data" / "bmw_i3_trip_a01.csv"
 
@@ -32,7 +32,10 @@ def short_drive(tmp_path_factory):
 def replayed(built, short_drive, tmp_path_factory):
     """Folder of a replay of the short drive."""
     folder = tmp_path_factory.mktemp("replay")
-    assert main(["replay", str(short_drive), "--held", "0.5", "--output", str(folder)]) == 0
+    recording = read_recording(short_drive)
+    manoeuvre = road(recording, RoadLoad.of_fmu(built / "ValidationVehicle.fmu"), held=0.5)
+    rides = replay(manoeuvre, recording, "ValidationVehicle", fmus=built)
+    write(rides, recording, "ValidationVehicle", folder)
     return folder
 
 
@@ -52,22 +55,21 @@ def test_figure_and_signals_every_10_ms_are_written(replayed):
     assert times == pytest.approx(np.arange(801) * 0.01)
 
 
-@pytest.mark.usefixtures("built")
-def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands():
+def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands(built):
     recording = read_recording(PATH)
-    manoeuvre = road(recording, RoadLoad.of_fmu(plant_file("ValidationVehicle")))
-    result = ride(manoeuvre, recording, "ValidationVehicle", control=True)
-    assert result.speed_error < 1.0
+    manoeuvre = road(recording, RoadLoad.of_fmu(built / "TwoMassDriveline.fmu"))
+    result = ride(manoeuvre, recording, "TwoMassDriveline", control=False, fmus=built)
+    assert result.speed_error < 0.15 * np.sqrt(np.mean(recording.v**2))
     at_the_light = (result.signals["time"] > 29.0) & (result.signals["time"] < 32.5)
     assert np.abs(result.signals["plant.v"][at_the_light]).max() < 1e-3
 
 
 @pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")
-@pytest.mark.usefixtures("built")
-def test_a_real_car_pulls_away_in_simulation_too():
+def test_a_real_car_pulls_away_in_simulation_too(built):
     recording = read_recording(TRIP)
-    manoeuvre = replace(road(recording, RoadLoad.of_fmu(plant_file("ValidationVehicle"))), duration=15.0)
-    signals = ride(manoeuvre, recording, "ValidationVehicle", control=True).signals
+    load = RoadLoad.of_fmu(built / "ValidationVehicle.fmu")
+    manoeuvre = replace(road(recording, load), duration=10.0)
+    signals = ride(manoeuvre, recording, "ValidationVehicle", control=False, fmus=built).signals
     assert np.abs(signals["plant.v"][signals["time"] < 2.0]).max() < 1e-3
     assert signals["plant.v"][-1] > 1.0
 
@@ -77,9 +79,9 @@ def test_a_missing_recording_is_named(capsys):
     assert "nowhere.csv" in capsys.readouterr().err
 
 
-def test_without_the_counting_package_the_extra_is_named_before_the_run(
-    short_drive, built, monkeypatch, capsys
-):
+def test_without_the_counting_package_the_extra_is_named_before_the_run(short_drive, monkeypatch):
     monkeypatch.setitem(sys.modules, "rainflow", None)
-    assert main(["replay", str(short_drive)]) != 0
-    assert "extra `replay`" in capsys.readouterr().err
+    recording = read_recording(short_drive)
+    load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
+    with pytest.raises(MissingExtra, match="extra `replay`"):
+        replay(road(recording, load), recording, "ValidationVehicle")
