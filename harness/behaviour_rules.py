@@ -16,7 +16,7 @@ Outputs = list[tuple[str, Any]]
 STEPS = 100
 """Communication steps of a run that is compared with another."""
 
-MOST_STEPS = 20_000
+MOST_STEPS = 2000
 """Communication steps of the default experiment that are tried."""
 
 STEP_FACTORS = (1.0, 0.1, 3.7, 1e-3, 10.0, 1.0)

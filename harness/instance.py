@@ -33,7 +33,7 @@ _keys = count(1)
 
 def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes | None) -> None:
     if environment in _logs and message:
-        _logs[environment].append((status, message.decode("utf-8", "replace").strip()))
+        _logs[environment].append((status, " ".join(message.decode("utf-8", "replace").split())))
 
 
 # one callback for all, never freed: fmpy's proxy, which fills in the arguments of the message, knows one
