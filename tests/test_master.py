@@ -121,8 +121,7 @@ def test_the_loop_starts_consistently(built):
 @pytest.mark.parametrize("plant", PLANTS)
 def test_runs_are_reproducible_and_seeds_matter(built, plant):
     first, second, other = (
-        simulate(MANOEUVRES["hill_hold"], plant, step_size=2e-3, seed=seed, folder=built)
-        for seed in (1, 1, 2)
+        simulate(SHORT, plant, step_size=2e-3, seed=seed, folder=built) for seed in (1, 1, 2)
     )
     np.testing.assert_array_equal(first, second)
     assert (first["motor.omega_1_meas"] != other["motor.omega_1_meas"]).any()
