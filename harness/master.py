@@ -5,8 +5,8 @@ comes later gets what those before it put out at the end of the step. Jacobi giv
 outputs of the beginning of the step. What each does to the loop's dead time is in the documentation.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from enum import Enum
 from math import floor, isfinite
 
@@ -60,8 +60,21 @@ def run(
         WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
         SimulationError: an FMU refused a call.
     """
+    with prepared(system, duration, step_size, inputs or {}, parameters or {}) as loop:
+        loop.run(scheme, label)
+        return loop.results
+
+
+@contextmanager
+def prepared(
+    system: System,
+    duration: float,
+    step_size: float,
+    inputs: Mapping[str, Source],
+    parameters: Mapping[str, float],
+) -> Iterator["Loop"]:
+    """The loop before its first step; arguments and errors as for `run`. Afterwards all FMUs are gone."""
     time = instants(duration, step_size)
-    inputs, parameters = dict(inputs or {}), dict(parameters or {})
     interfaces = {name: Interface(path) for name, path in system.instances.items()}
     check_interfaces(system, interfaces, inputs, parameters)
     layout = Layout(interfaces, list(inputs))
@@ -73,8 +86,7 @@ def run(
         instances = [stack.enter_context(instantiated(*item)) for item in interfaces.items()]
         loop = Loop(system, instances, layout, table, step_size)
         loop.initialize(parameters)
-        loop.run(scheme, label)
-    return table.astype(layout.results)
+        yield loop
 
 
 def instants(duration: float, step_size: float) -> NDArray[np.float64]:
@@ -111,6 +123,7 @@ class Loop:
     ) -> None:
         self.instances = instances
         self.table = table
+        self.columns = layout.results
         self.known = layout.known
         self.row = bytearray(layout.dtype.itemsize)
         self.step_size = step_size
@@ -121,6 +134,11 @@ class Loop:
         self.sends = [sends(i, _of(i.name, sources), self.row, layout) for i in instances]
         self.steps = [[advance(i, self.row, step_size)] for i in instances]
         self.receives = [receives(i, self.row, layout) for i in instances]
+
+    @property
+    def results(self) -> np.ndarray:
+        """The table with truth values as such."""
+        return self.table.astype(self.columns)
 
     def initialize(self, parameters: Mapping[str, float]) -> None:
         """Brings all instances from instantiation to the first step, with consistent outputs.

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from .manoeuvres import Manoeuvre
-from .master import Scheme, run
+from .master import Scheme, Source, run
 from .wiring import BUILD, PLANTS, loop
 
 
@@ -37,18 +37,27 @@ def simulate(
         WiringError: the plant or a parameter does not fit.
         SimulationError: an FMU refused a call.
     """
-    start = {"plant.v_0": manoeuvre.v_0, "plant.T_0": manoeuvre.T_0, "motor.seed": seed, "can.seed": seed}
     return run(
         loop(plant, folder),
         duration=manoeuvre.duration,
         step_size=step_size,
-        inputs={
-            "controller.T_driver": manoeuvre.T_driver,
-            "controller.enable": control,
-            "plant.T_brake": manoeuvre.T_brake,
-            "plant.slope": manoeuvre.slope,
-        },
-        parameters=start | dict(parameters or {}),
+        inputs=signals(manoeuvre, control),
+        parameters=start(manoeuvre, seed) | dict(parameters or {}),
         scheme=scheme,
         label=manoeuvre.name,
     )
+
+
+def signals(manoeuvre: Manoeuvre, control: bool = True) -> dict[str, Source]:
+    """What the loop is given from outside during a manoeuvre."""
+    return {
+        "controller.T_driver": manoeuvre.T_driver,
+        "controller.enable": control,
+        "plant.T_brake": manoeuvre.T_brake,
+        "plant.slope": manoeuvre.slope,
+    }
+
+
+def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:
+    """Parameters with which the loop starts a manoeuvre."""
+    return {"plant.v_0": manoeuvre.v_0, "plant.T_0": manoeuvre.T_0, "motor.seed": seed, "can.seed": seed}

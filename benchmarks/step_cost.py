@@ -1,0 +1,217 @@
+"""What a communication step of the loop costs: under our master, call by call with fmpy, and bare.
+
+The contenders take turns, so that whatever else the machine does hits all of them; medians are shown.
+`bare` is the time inside the FMU calls alone, taken with a clock around each while the master runs.
+"""
+
+import argparse
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partialmethod
+from statistics import median
+from time import perf_counter
+from typing import Any
+from unittest.mock import patch
+
+from rich.console import Console
+from rich.table import Table
+
+from harness.instance import Instance
+from harness.interface import type_of
+from harness.manoeuvres import MANOEUVRES
+from harness.master import Loop, Scheme, prepared
+from harness.simulate import signals, start
+from harness.wiring import CONNECTIONS, PLANTS, System, loop
+
+STEP_SIZE = 1e-3
+MICRO = 1e6
+
+EXAMPLES = """\
+examples:
+  python -m benchmarks.step_cost
+  python -m benchmarks.step_cost --plant TwoMassDriveline --repetitions 15
+  python -m benchmarks.step_cost --plant my_vehicle.fmu --duration 5
+"""
+
+
+@dataclass
+class Costs:
+    """Microseconds per communication step of one plant's loop, one element a repetition.
+
+    Attributes:
+        master: under our master.
+        fmpy: call by call, one variable each.
+        bare: inside the FMU calls.
+        overhead: what the master adds to these, in the same run, as a share of them.
+        calls: inside the calls, by instance and function.
+    """
+
+    master: list[float] = field(default_factory=list)
+    fmpy: list[float] = field(default_factory=list)
+    bare: list[float] = field(default_factory=list)
+    overhead: list[float] = field(default_factory=list)
+    calls: dict[tuple[str, str], list[float]] = field(default_factory=lambda: defaultdict(list))
+
+
+class Stopwatch:
+    """Takes the time of FMU calls, less its own."""
+
+    def __init__(self) -> None:
+        self.laps: dict[tuple[str, str], list[float]] = defaultdict(list)
+        self.outside, self.inside = self._own_cost()
+
+    def function(self, instance: Instance, name: str) -> Callable[..., int]:
+        """Stands in for `Instance.function`."""
+        return self.watched(instance.slave.dll[name], (instance.name, name))
+
+    def watched(self, call: Callable[..., int], key: tuple[str, str]) -> Callable[..., int]:
+        clock, note = perf_counter, self.laps[key].append
+
+        def watched_call(*arguments: Any) -> int:
+            began = clock()
+            status = call(*arguments)
+            note(clock() - began)
+            return status
+
+        return watched_call
+
+    def _own_cost(self) -> tuple[float, float]:
+        """Seconds that watching adds to a call, outside and inside of the lap it takes."""
+        count = 20_000
+        key = ("", "")
+        nothing = self.watched(id, key)
+        began = perf_counter()
+        for _ in range(count):
+            nothing(self)
+        total = (perf_counter() - began) / count
+        lap = median(self.laps.pop(key))
+        return total - lap, lap
+
+    def spent(self) -> dict[tuple[str, str], float]:
+        """Seconds inside the calls, by instance and function."""
+        return {key: sum(laps) - len(laps) * self.inside for key, laps in self.laps.items()}
+
+    @property
+    def cost(self) -> float:
+        """Seconds that all the watching took."""
+        return sum(map(len, self.laps.values())) * (self.outside + self.inside)
+
+
+def step_with_master(loop: Loop) -> None:
+    loop.run(Scheme.GAUSS_SEIDEL, "benchmark")
+
+
+def step_with_fmpy(loop: Loop) -> None:
+    """The same steps with one call of FMU2Slave a variable."""
+    sources = {target: source for source, target in CONNECTIONS}
+    rows = loop.results
+    assert rows.dtype.names and rows.dtype.fields
+    plans = []
+    for instance in loop.instances:
+        inputs = []
+        for v in instance.interface.of_causality("input"):
+            source = sources.get(f"{instance.name}.{v.name}", f"{instance.name}.{v.name}")
+            if source in rows.dtype.fields:
+                inputs.append((getattr(instance.slave, f"set{type_of(v)}"), v.valueReference, source))
+        outputs = [
+            (getattr(instance.slave, f"get{type_of(v)}"), v.valueReference, f"{instance.name}.{v.name}")
+            for v in instance.interface.of_causality("output")
+        ]
+        plans.append((inputs, instance.slave.doStep, outputs))
+    values = {name: rows[name][0].item() for name in rows.dtype.names}
+    given = {name: rows[name].tolist() for name in signals(MANOEUVRES["drive"])}
+    for k in range(len(rows) - 1):
+        for name, samples in given.items():
+            values[name] = samples[k]
+        for inputs, do_step, outputs in plans:
+            for set_value, reference, name in inputs:
+                set_value([reference], [values[name]])
+            do_step(k * STEP_SIZE, STEP_SIZE)
+            for get_value, reference, name in outputs:
+                values[name] = get_value([reference])[0]
+
+
+def timed(system: System, duration: float, step: Callable[[Loop], None]) -> float:
+    """Microseconds per communication step, without loading and initialization."""
+    manoeuvre = MANOEUVRES["drive"]
+    with prepared(system, duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre)) as loop:
+        began = perf_counter()
+        step(loop)
+        return (perf_counter() - began) / (len(loop.table) - 1) * MICRO
+
+
+def measure(plant: str, duration: float, repetitions: int) -> Costs:
+    """Lets the contenders take turns."""
+    system, costs = loop(plant), Costs()
+    steps = round(duration / STEP_SIZE)
+    for _ in range(repetitions):
+        costs.master.append(timed(system, duration, step_with_master))
+        costs.fmpy.append(timed(system, duration, step_with_fmpy))
+        watch = Stopwatch()
+        with patch.object(Instance, "function", partialmethod(_watched, watch)):
+            total = timed(system, duration, step_with_master) - watch.cost / steps * MICRO
+        spent = {key: seconds / steps * MICRO for key, seconds in watch.spent().items()}
+        costs.bare.append(sum(spent.values()))
+        costs.overhead.append(total / costs.bare[-1] - 1.0)
+        for key, value in spent.items():
+            costs.calls[key].append(value)
+    return costs
+
+
+def _watched(instance: Instance, watch: Stopwatch, name: str) -> Callable[..., int]:
+    return watch.function(instance, name)
+
+
+def contenders(results: dict[str, Costs]) -> Table:
+    table = Table("", "µs a step", "master = 1", "times real time", title="the loop at 1 ms")
+    for plant, costs in results.items():
+        for name, values in (("our master", costs.master), ("fmpy, one variable a call", costs.fmpy),
+                             ("bare FMU calls", costs.bare)):  # fmt: skip
+            cost = median(values)
+            table.add_row(
+                f"{plant}: {name}",
+                f"{cost:.1f}",
+                f"{median(v / m for v, m in zip(values, costs.master, strict=True)):.2f}",
+                f"{STEP_SIZE * MICRO / cost:.1f}",
+            )
+        table.add_row(
+            f"{plant}: the master adds", "", f"{100 * median(costs.overhead):.1f} %", "", end_section=True
+        )
+    return table
+
+
+def blocks(results: dict[str, Costs]) -> Table:
+    table = Table("", "set", "step", "get", "sum", title="each block, µs a step")
+    for plant, costs in results.items():
+        for instance in dict.fromkeys(instance for instance, _ in costs.calls):
+            spent = {
+                part: sum(
+                    median(values)
+                    for (name, function), values in costs.calls.items()
+                    if name == instance and function.startswith(f"fmi2{part}")
+                )
+                for part in ("Set", "DoStep", "Get")
+            }
+            table.add_row(
+                f"{plant}: {instance}", *(f"{v:.1f}" for v in (*spent.values(), sum(spent.values())))
+            )
+        table.add_section()
+    return table
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--plant", action="append", metavar="NAME|FILE", help="only this one (repeatable)")
+    parser.add_argument("--duration", type=float, default=2.0, help="of a run in s (default: %(default)s)")
+    parser.add_argument("--repetitions", type=int, default=7, help="(default: %(default)s)")
+    args = parser.parse_args()
+    results = {plant: measure(plant, args.duration, args.repetitions) for plant in args.plant or PLANTS}
+    console = Console()
+    console.print(contenders(results), blocks(results))
+
+
+if __name__ == "__main__":
+    main()
