@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy.util import read_csv
+from fmu_host import opened
 from foreign import build_relay
 
 from harness.errors import SimulationError, WiringError
@@ -125,6 +126,28 @@ def test_runs_are_reproducible_and_seeds_matter(built, plant):
     )
     np.testing.assert_array_equal(first, second)
     assert (first["motor.omega_1_meas"] != other["motor.omega_1_meas"]).any()
+
+
+def test_stepping_by_hand_gives_the_same(built, tmp_path):
+    """Motor and plant, one call of fmpy a variable, against the bound calls of the master."""
+    files = {"motor": built / "MotorTorqueLoop.fmu", "plant": built / f"{PLANTS[0]}.fmu"}
+    wires = (Connection("motor.T_mot", "plant.T_mot"), Connection("plant.omega_1", "motor.omega_1"))
+    T_ref = np.where(np.arange(201) < 50, 0.0, 60.0)
+    results = run(System(files, wires), 0.2, inputs={"motor.T_ref": T_ref}, parameters={"plant.v_0": 5.0})
+    with (
+        opened(files["motor"], tmp_path / "motor") as motor,
+        opened(files["plant"], tmp_path / "plant") as plant,
+    ):
+        plant.initialize(v_0=5.0)
+        motor.initialize(T_ref=T_ref[0], omega_1=plant.get("omega_1"))
+        for k in range(200):
+            motor.set(T_ref=T_ref[k], omega_1=plant.get("omega_1"))
+            motor.step(k * 1e-3, 1e-3)
+            plant.set(T_mot=motor.get("T_mot"))
+            plant.step(k * 1e-3, 1e-3)
+            for name, host in {"motor": motor, "plant": plant}.items():
+                row = results[k + 1]
+                assert {v: row[f"{name}.{v}"] for v in host.outputs()} == host.outputs()
 
 
 def test_csv_gives_the_same_numbers_back(relay, tmp_path):
