@@ -106,20 +106,20 @@ def step_with_fmpy(loop: Loop) -> None:
     """The same steps with one call of FMU2Slave a variable."""
     sources = {target: source for source, target in CONNECTIONS}
     rows = loop.results
-    assert rows.dtype.names and rows.dtype.fields
+    columns = rows.dtype.names or ()
     plans = []
     for instance in loop.instances:
         inputs = []
         for v in instance.interface.of_causality("input"):
             source = sources.get(f"{instance.name}.{v.name}", f"{instance.name}.{v.name}")
-            if source in rows.dtype.fields:
+            if source in columns:
                 inputs.append((getattr(instance.slave, f"set{type_of(v)}"), v.valueReference, source))
         outputs = [
             (getattr(instance.slave, f"get{type_of(v)}"), v.valueReference, f"{instance.name}.{v.name}")
             for v in instance.interface.of_causality("output")
         ]
         plans.append((inputs, instance.slave.doStep, outputs))
-    values = {name: rows[name][0].item() for name in rows.dtype.names}
+    values = {name: rows[name][0].item() for name in columns}
     given = {name: rows[name].tolist() for name in signals(MANOEUVRES["drive"])}
     for k in range(len(rows) - 1):
         for name, samples in given.items():
