@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from exact_driveline import ExactDriveline
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fmus.integrator import Integrator
 from models import two_mass_driveline as driveline
-from tests.exact_driveline import ExactDriveline
 
 RECORDED = driveline.Parameters(recorded_load=True)
 
@@ -19,7 +19,7 @@ def rattling(h: float, duration: float, seed: int) -> tuple[list[float], list[fl
 
     def sines(amplitude: float, low: float, high: float) -> list[float]:
         waves = zip(rng.uniform(low, high, 6), rng.uniform(0.0, 6.0, 6), strict=True)
-        return sum(amplitude * np.sin(2.0 * np.pi * f * t + angle) for f, angle in waves).tolist()
+        return np.sum([amplitude * np.sin(2.0 * np.pi * f * t + angle) for f, angle in waves], axis=0).tolist()
 
     return sines(12.0, 1.0, 9.0), sines(6.0, 0.3, 3.0)
 
