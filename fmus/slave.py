@@ -46,7 +46,8 @@ class BlockSlave:
     """Mixed into PythonFMU's Fmi2Slave with the class attribute `block`.
 
     Before initialization mode is left there is no state x: the outputs then are those of the state that
-    the present inputs and parameters would start from.
+    the present inputs and parameters would start from. What the last tick of a sampled block computed
+    is `coming`, and becomes its state x at the next tick.
     """
 
     block: Any
@@ -61,6 +62,7 @@ class BlockSlave:
         self.start_time = self.time = 0.0
         self.ticks = 0
         self.x: Any = None
+        self.coming: Any = None
 
     @fmi_call
     def get_real(self, vrs: list[int]) -> list[float]:
@@ -117,7 +119,7 @@ class BlockSlave:
     @fmi_call
     def exit_initialization_mode(self) -> None:
         self._require(Mode.INITIALIZATION, "fmi2ExitInitializationMode")
-        self.x = self.block.start(self.values.u, self.values.p)
+        self.x = self.coming = self.block.start(self.values.u, self.values.p)
         self._enter(Mode.STEPPING)
 
     @fmi_call
@@ -156,27 +158,30 @@ class BlockSlave:
 
     def _tick(self, end: float) -> None:
         """All ticks before `end` that have not been made; tick k is due at start_time + k T_s."""
-        due = math.ceil((end - self.start_time) / self.block.sample_time - TICK_TOLERANCE)
-        x = self.x
+        samples = (end - self.start_time) / self.block.sample_time
+        due = math.ceil(samples - TICK_TOLERANCE)
+        x, coming = self.x, self.coming
         for _ in range(self.ticks, due):
-            x = self.block.update(x, self.values.u, self.values.p)
-        self.x, self.ticks = x, max(self.ticks, due)
+            x, coming = coming, self.block.update(coming, self.values.u, self.values.p)
+        self.x = coming if due - samples <= TICK_TOLERANCE else x
+        self.coming, self.ticks = coming, max(self.ticks, due)
 
     @fmi_call
     def _get_fmu_state(self) -> bytes:
         """The saved state, which is its own serialised form."""
-        content = (self.mode, self.start_time, self.time, self.ticks, self.x, self.values.u, self.values.p)
+        times = (self.start_time, self.time, self.ticks)
+        content = (self.mode, times, self.x, self.coming, self.values.u, self.values.p)
         return snapshot.pack(type(self).__module__, content)
 
     @fmi_call
     def _set_fmu_state(self, state: bytes) -> None:
         try:
-            mode, start_time, time, ticks, x, u, p = snapshot.unpack(type(self).__module__, state)
+            mode, times, x, coming, u, p = snapshot.unpack(type(self).__module__, state)
         except ValueError as error:
             raise Refused(f"the FMU state is refused: {error}") from error
         self.values.restore(u, p)
-        self.x = None if x is None else self.block.State._make(x)
-        self.start_time, self.time, self.ticks = start_time, time, ticks
+        self.x, self.coming = (state and self.block.State._make(state) for state in (x, coming))
+        self.start_time, self.time, self.ticks = times
         self._enter(Mode(mode))
 
     @staticmethod

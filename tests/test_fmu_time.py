@@ -73,19 +73,21 @@ def counter():
     return slave
 
 
-def test_a_tick_is_made_at_the_start_of_the_step_that_begins_there(counter):
+def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later(counter):
     counter.do_step(0.0, 0.001)
-    assert counter.get_real([1]) == [1.0]
+    assert counter.get_real([1]) == [0.0]
     counter.set_real([0], [10.0])
     counter.do_step(0.001, 0.001)
     assert counter.get_real([1]) == [1.0]
     counter.do_step(0.002, 0.0001)
+    assert counter.get_real([1]) == [1.0]
+    counter.do_step(0.0021, 0.0019)
     assert counter.get_real([1]) == [11.0]
 
 
 def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter):
     counter.do_step(0.0, 0.0033)
-    assert counter.get_real([1]) == [2.0]
+    assert counter.get_real([1]) == [1.0]
     counter.do_step(0.0033, 0.0107)
     assert counter.get_real([1]) == [7.0]
 
