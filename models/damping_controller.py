@@ -13,7 +13,8 @@ K_T_l = Kw_T_l = H_T_l = 0, T_land = T_max.
 
 A motor speed or torque signal that is not finite, out of range, jumping or frozen is not used; if
 that lasts, the driver's demand is passed through (fallback). A lost, late or absurd wheel speed only
-ends the mode that uses it. A demand that is not finite counts as zero.
+ends the mode that uses it. A demand that is not finite counts as zero. At rest (neither demand nor
+motion) the damping fades out and the estimator is held, until there is one or the other.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -69,6 +70,9 @@ class Parameters(NamedTuple):
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_frozen: Annotated[float, Real("s", "a speed unchanged for so long is frozen", 0.01, 10.0)] = 0.1
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
+    T_rest: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
+    omega_rest: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
+    t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 2000.0
     e_max: Annotated[float, Real("rad/s", "largest plausible error of the estimated speeds", 1.0, 1000.0)] = 40.0
 
@@ -99,6 +103,7 @@ class State(NamedTuple):
     level: Annotated[float, Real("1", "share of the damping that acts")]
     washout: Annotated[float, Real("N.m", "stationary part of the damping law")]
     landing: Annotated[float, Real("s", "time spent in the gap")]
+    quiet: Annotated[float, Real("s", "time without demand and motion")]
     T_ref: Annotated[float, Real("N.m", "torque reference")]
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
     ahead: Annotated[tuple[float, ...], Real("1", "estimate for the instant at which T_ref appears")]
@@ -156,6 +161,7 @@ def start(u: Input, p: Parameters) -> State:
         level=where(u.enable, 1.0, 0.0),
         washout=damping_law(e, p),
         landing=0.0,
+        quiet=where(is_still(T_driver, omega_1, p), p.t_rest + p.t_fade, 0.0),
         T_ref=T_driver,
         T_damp=0.0,
         ahead=tuple(e),
@@ -200,8 +206,8 @@ def motor_signals(x: State, u: Input, omega_1_hat: Any, p: Parameters) -> Motor:
     )
 
 
-def estimate(x: State, u: Input, p: Parameters) -> tuple[Estimate, Motor, Any, Any]:
-    """The corrected estimate; the motor signals; whether a message came; time since the last one."""
+def estimate(x: State, u: Input, p: Parameters) -> tuple[Estimate, Motor, Any]:
+    """The corrected estimate, the motor signals, the time since the last usable message."""
     before = Estimate(x.omega_1, x.omega_2, x.phi, x.T_l)
     T_mot = where(plausible(u.T_mot_est, 2.0 * p.T_max), u.T_mot_est, x.T_mot)
     e = estimator.predict(before, 0.5 * (x.T_mot + T_mot), T_S, p)
@@ -220,11 +226,21 @@ def estimate(x: State, u: Input, p: Parameters) -> tuple[Estimate, Motor, Any, A
     fresh = estimator.at_rest_with(motor_speed(u, e, p), motor.T_mot, p)
     e = Estimate(*(where(lost, a, b) for a, b in zip(fresh, e, strict=True)))
     silence = where(usable, 0.0, minimum(x.silence + T_S, p.t_stale))
-    return estimator.bounded(e, p), motor, usable, silence
+    return estimator.bounded(e, p), motor, silence
 
 
 def motor_speed(u: Input, e: Estimate, p: Parameters) -> Any:
     return where(plausible(u.omega_1_meas, p.omega_max), u.omega_1_meas, e.omega_1)
+
+
+def is_still(T_driver: Any, omega_1: Any, p: Parameters) -> Any:
+    """Neither demand nor motion."""
+    return logical_and(abs(T_driver) <= p.T_rest, abs(omega_1) <= p.omega_rest)
+
+
+def resting(quiet: Any, p: Parameters) -> Any:
+    """From 0 to 1 as the damping fades out at rest, `quiet` s after the last demand or motion."""
+    return clip((quiet - p.t_rest) / p.t_fade, 0.0, 1.0)
 
 
 def toward(value: Any, target: Any, p: Parameters) -> Any:
@@ -234,7 +250,11 @@ def toward(value: Any, target: Any, p: Parameters) -> Any:
 
 
 def update(x: State, u: Input, p: Parameters) -> State:
-    e, motor, _, silence = estimate(x, u, p)
+    e, motor, silence = estimate(x, u, p)
+    T_driver = demand(u, p)
+    quiet = where(is_still(T_driver, motor.omega_1, p), minimum(x.quiet + T_S, p.t_rest + p.t_fade), 0.0)
+    rest = resting(quiet, p)
+    e = Estimate(*(where(rest >= 1.0, 0.0, value) for value in e))
     trusted = motor.bad <= p.t_bad
     wheel = logical_and(logical_and(u.valid, silence < p.t_stale), trusted)
     level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), p)
@@ -242,10 +262,9 @@ def update(x: State, u: Input, p: Parameters) -> State:
     e_pred = estimator.predict(e, motor.T_mot, p.T_pred, p)
     law = damping_law(e_pred, p)
     landing = where(in_gap(e, p), minimum(x.landing + T_S, p.t_land + T_S), 0.0)
-    T_driver = demand(u, p)
     soft = logical_and(landing > 0.0, landing <= p.t_land)
     T_soft = where(soft, clip(T_driver, -p.T_land, p.T_land), T_driver)
-    T_damp = level * (T_soft - T_driver + clip(x.washout - law, -p.T_damp_max, p.T_damp_max))
+    T_damp = level * (1.0 - rest) * (T_soft - T_driver + clip(x.washout - law, -p.T_damp_max, p.T_damp_max))
     T_ref = clip(T_driver + T_damp, -p.T_max, p.T_max)
 
     damping = where(wheel, 1.0 * WITH_WHEEL_SPEED, 1.0 * WITHOUT_WHEEL_SPEED)
@@ -262,6 +281,7 @@ def update(x: State, u: Input, p: Parameters) -> State:
         level=level,
         washout=x.washout + minimum(p.omega_w * T_S, 1.0) * (law - x.washout),
         landing=landing,
+        quiet=quiet,
         T_ref=T_ref,
         T_damp=T_ref - T_driver,
         ahead=tuple(estimator.predict(e, motor.T_mot, T_S, p)),
