@@ -1,0 +1,47 @@
+# Each target works alone on a fresh machine with Python 3.11 or later, a C compiler, make and git.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/ready
+
+.PHONY: help setup demo test lint check bench docs clean
+
+help: ## what can be made
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
+
+$(READY): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[replay,dev]'
+	@touch $@
+
+setup: $(READY) ## the virtual environment alone
+
+demo: $(READY) ## build the FMUs, compare with and without damping, replay a short drive
+	$(BIN)/driveline build
+	$(BIN)/driveline compare
+	$(BIN)/driveline replay harness/data/town_drive.csv
+
+test: $(READY) ## all tests
+	$(BIN)/python -m pytest -n auto --dist loadfile
+
+lint: $(READY) ## format, lint and types
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/pyright
+
+check: $(READY) ## build the FMUs and run every compliance check on them
+	$(BIN)/driveline build
+	$(BIN)/driveline check build/*.fmu
+
+bench: $(READY) ## cost per communication step, side by side
+	$(BIN)/driveline build
+	$(BIN)/python -m benchmarks.step_cost
+
+docs: $(READY) ## the tables of the documentation that are computed
+	$(BIN)/driveline build
+	$(BIN)/driveline coupling --output docs/coupling.md
+
+clean: ## everything that was made
+	rm -rf $(VENV) build results *.egg-info
