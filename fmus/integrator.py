@@ -135,21 +135,25 @@ class Integrator:
     def _locate(self, n: int, start: Start, far: float, g_near: float, side: bool) -> float:
         """Shortest step (to LOCATION_TOLERANCE) that ends beyond surface n; one of length `far` does.
 
-        Regula falsi as modified by Illinois, and a bisection whenever that has not halved the bracket
-        (a surface that a block at rest lies on is flat there).
+        Regula falsi as modified by Illinois: when the same end moves twice, the value at the other
+        counts half. Three steps without halving the bracket (a surface that a block at rest lies on
+        is flat there) are followed by a bisection.
         """
         near, g_far = 0.0, self._value(n, start, far)
         if (g_near > 0.0) != side:
             g_near = 0.0
-        bisect = False
+        moved, slow = "", 0
         while far - near > LOCATION_TOLERANCE:
             width = far - near
+            bisect = slow == 3 or g_far == g_near
             length = near + 0.5 * width if bisect else far - g_far * width / (g_far - g_near)
             length = min(max(length, near + 0.3 * LOCATION_TOLERANCE), far - 0.3 * LOCATION_TOLERANCE)
             g = self._value(n, start, length)
             if (g > 0.0) != side:
-                far, g_far, g_near = length, g, 0.5 * g_near
+                far, g_far, g_near = length, g, 0.5 * g_near if moved == "far" else g_near
+                moved = "far"
             else:
-                near, g_near, g_far = length, g, 0.5 * g_far
-            bisect = far - near > 0.5 * width
+                near, g_near, g_far = length, g, 0.5 * g_far if moved == "near" else g_far
+                moved = "near"
+            slow = 0 if bisect or width >= 2.0 * (far - near) else slow + 1
         return far

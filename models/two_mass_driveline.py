@@ -28,7 +28,9 @@ from .plant import Input, Output
 
 class Parameters(NamedTuple):
     J_1: vehicle.MotorInertia = 0.055
-    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = 0.30
+    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = (
+        0.30
+    )
     C: Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)] = 117.4
     phi_B: vehicle.HalfGap = 0.157
     i: vehicle.GearRatio = 9.0
@@ -47,7 +49,9 @@ class Parameters(NamedTuple):
     omega_sat: brake.BristleSpeedLimit = 20.0
     v_0: vehicle.StartSpeed = 0.0
     T_0: vehicle.StartTorque = 0.0
-    recorded_load: Annotated[bool, Boolean("leave the vehicle out and take T_load_rec as load torque")] = False
+    recorded_load: Annotated[bool, Boolean("leave the vehicle out and take T_load_rec as load torque")] = (
+        False
+    )
 
 
 class State(NamedTuple):
@@ -131,8 +135,8 @@ def output(x: State, u: Input, p: Parameters) -> Output:
 
 
 def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
-    """Both flanks of the gap, and wheels at rest (where the brake bristles turn round)."""
-    return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2)
+    """Both flanks of the gap; wheels at rest (the bristles turn round); the kinks of the tyre's rate."""
+    return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2, p.r * x.omega_2 / p.i - x.v, x.v)
 
 
 BLOCK = Block(

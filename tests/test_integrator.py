@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from fmus.integrator import LOCATION_TOLERANCE, MOST_CROSSINGS, Integrator
 from models import two_mass_driveline as driveline
 from models.block import Block
-from models.operators import maximum, sign
+from models.operators import maximum, where
 
 P = driveline.Parameters(recorded_load=True)
 CONTACT = driveline.start(driveline.Input(), P)._replace(omega_1=3.0, phi=1.0)
@@ -64,7 +64,7 @@ def error_in_contact(steps: int) -> float:
     exact = ExactDriveline(P, CONTACT.omega_1, CONTACT.omega_2, CONTACT.phi, side=1)
     exact.advance(u.T_mot, u.T_load_rec, 0.2)
     assert exact.crossings == 0
-    x = Integrator(replace(driveline.BLOCK, step_size=0.2 / steps)).advance(CONTACT, u, P, 0.2)
+    x = Integrator(replace(driveline.BLOCK, surfaces=None, step_size=0.2 / steps)).advance(CONTACT, u, P, 0.2)
     omega = math.sqrt(P.C * (1.0 / P.J_1 + 1.0 / P.J_2))
     return math.hypot(omega * (x.phi - exact.phi), x.omega_1 - exact.omega_1, x.omega_2 - exact.omega_2)
 
@@ -153,11 +153,20 @@ def evaluations(surfaced: Block, x: Body, duration: float) -> tuple[Body, int]:
 
 
 def test_chatter_about_a_surface_ends_in_bounded_work() -> None:
-    """Drawn to the surface from both sides, the body would cross it 5000 times in this step."""
-    drawn = block(lambda x, u, p: Body(x.v, -10.0 * sign(x.x), 0.0), lambda x: x.x)
-    x, count = evaluations(drawn, Body(1e-30, 1e-9, 0.0), 1e-6)
-    assert abs(x.x) < 1e-11
-    assert 12 * MOST_CROSSINGS < count < 1000 * MOST_CROSSINGS
+    """Pushed to the surface from both sides, the body would cross it without end."""
+    pushed = block(lambda x, u, p: Body(where(x.x > 0.0, -1.0, 0.5), 0.0, 0.0), lambda x: x.x)
+    x, count = evaluations(pushed, Body(0.03, 0.0, 0.0), 0.1)
+    assert abs(x.x) < 0.1
+    assert 12 * MOST_CROSSINGS < count < 50 * 12 * MOST_CROSSINGS
+
+
+@pytest.mark.parametrize("power", [1, 3, 9])
+def test_a_flat_crossing_is_located_in_bounded_work(power: int) -> None:
+    """A surface with a root of high order, as a state coming to rest on it sees."""
+    passing = block(lambda x, u, p: Body(1.0, 0.0, 0.0), lambda x: (x.x - 0.07) ** power)
+    x, count = evaluations(passing, Body(0.0, 0.0, 0.0), 0.1)
+    assert x.x == pytest.approx(0.1, rel=1e-12)
+    assert count < (20 if power == 1 else 150) * 12
 
 
 @pytest.mark.parametrize("side", [-1e-17, 0.0, 1e-17])
