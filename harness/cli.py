@@ -6,11 +6,11 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from .commands import build, check, compare, design, replay, simulate
+from .commands import build, check, compare, coupling, design, replay, simulate
 from .errors import DrivelineError
 from .names import nearest
 
-COMMANDS = {command.NAME: command for command in (build, simulate, compare, replay, check, design)}
+COMMANDS = {command.NAME: command for command in (build, simulate, compare, replay, check, design, coupling)}
 
 DESCRIPTION = """\
 Active damping of drive-train oscillations: the closed loop of FMUs, with and without control.

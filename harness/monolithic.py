@@ -17,8 +17,11 @@ from fmus.integrator import Integrator
 from models import damping_controller, motor_torque_loop, wheel_speed_can
 from models.block import Block
 
+STEP = wheel_speed_can.T_S
+"""Interval in s of the results; the sample times of all blocks are whole multiples of it."""
+
 Signals = Callable[[int], tuple[float, float, float]]
-"""Sample number -> T_driver (N.m), T_brake (N.m) and slope (rad), held until the next sample."""
+"""Number of the interval -> T_driver (N.m), T_brake (N.m) and slope (rad), held over it."""
 
 
 def drive_train(plant: ModuleType) -> Block:
@@ -53,6 +56,26 @@ def drive_train(plant: ModuleType) -> Block:
     )
 
 
+class Ticking:
+    """A sampled block; what a tick computes shows one sample later."""
+
+    def __init__(self, model: ModuleType, u: Any, p: Any) -> None:
+        self.model, self.p = model, p
+        self.intervals = round(model.T_S / STEP)
+        self.x = self.coming = model.start(u, p)
+
+    def output(self, k: int) -> Any:
+        """Output from the instant k * STEP on."""
+        if k % self.intervals == 0:
+            self.x = self.coming
+        return self.model.output(self.x, None, self.p)
+
+    def tick(self, k: int, u: Any) -> None:
+        """Takes the inputs of the instant k * STEP, if there is a tick."""
+        if k % self.intervals == 0:
+            self.coming = self.model.update(self.x, u, self.p)
+
+
 def run(
     plant: ModuleType,
     signals: Signals,
@@ -64,65 +87,57 @@ def run(
 
     Args:
         plant: a model of a plant.
-        signals: T_driver, T_brake and slope at sample k of 1 ms.
+        signals: T_driver, T_brake and slope in each interval.
         duration: in s.
         parameters: values by instance (controller, motor, plant, can) and name.
         enable: whether the damping is on.
 
     Returns:
-        Structured array of duration/1 ms + 1 rows: time and the outputs of all blocks as
-        'instance.variable', besides 'controller.T_driver'.
+        Structured array of duration/STEP + 1 rows: time, controller.T_driver and the outputs of all
+        blocks as 'instance.variable'.
     """
-    given = parameters or {}
-    p_c, p_m, p_s = (
-        model.Parameters(**given.get(name, {}))
-        for name, model in (
-            ("controller", damping_controller),
-            ("motor", motor_torque_loop),
-            ("can", wheel_speed_can),
-        )
-    )
-    p_d = (p_m, plant.Parameters(**given.get("plant", {})))
+    models = instances(plant)
+    p = {name: model.Parameters(**(parameters or {}).get(name, {})) for name, model in models.items()}
+    p_d = (p["motor"], p["plant"])
     block = drive_train(plant)
     integrator = Integrator(block)
-    per_sample = round(damping_controller.BLOCK.sample_time / wheel_speed_can.T_S)
 
-    T_driver, T_brake, slope = signals(0)
-    x = block.start(plant.Input(T_driver, T_brake, slope), p_d)
-    m, y = block.output(x, plant.Input(T_driver, T_brake, slope), p_d)
-    s = wheel_speed_can.start(wheel_speed_can.Input(y.omega_wheel_L, y.omega_wheel_R), p_s)
-    bus = wheel_speed_can.output(s, None, p_s)
-    c = damping_controller.start(
-        damping_controller.Input(T_driver, m.omega_1_meas, m.T_mot_est, *bus, enable), p_c
-    )
+    u = plant.Input(*signals(0))
+    x = block.start(u, p_d)
+    motor, seen = block.output(x, u, p_d)
+    can = Ticking(wheel_speed_can, wheels(seen), p["can"])
+    measured = sensed(u.T_mot, motor, can.output(0), enable)
+    controller = Ticking(damping_controller, measured, p["controller"])
+
     rows = []
-    steps = round(duration / wheel_speed_can.T_S)
-    held = c
-    for k in range(steps + 1):
+    for k in range(round(duration / STEP) + 1):
         T_driver, T_brake, slope = signals(k)
-        if k % per_sample == 0:
-            held = c
-        command = damping_controller.output(held, None, p_c)
+        command, bus = controller.output(k), can.output(k)
         u = plant.Input(command.T_ref, T_brake, slope)
-        m, y = block.output(x, u, p_d)
-        bus = wheel_speed_can.output(s, None, p_s)
-        rows.append((k * wheel_speed_can.T_S, T_driver, *command, *m, *y, *bus))
-        if k % per_sample == 0:
-            c = damping_controller.update(
-                held, damping_controller.Input(T_driver, m.omega_1_meas, m.T_mot_est, *bus, enable), p_c
-            )
-        s = wheel_speed_can.update(s, wheel_speed_can.Input(y.omega_wheel_L, y.omega_wheel_R), p_s)
-        x = integrator.advance(x, u, p_d, wheel_speed_can.T_S)
-    return np.array(rows, dtype=_columns(plant))
+        motor, seen = block.output(x, u, p_d)
+        rows.append((k * STEP, T_driver, *command, *motor, *seen, *bus))
+        controller.tick(k, sensed(T_driver, motor, bus, enable))
+        can.tick(k, wheels(seen))
+        x = integrator.advance(x, u, p_d, STEP)
+    outputs = (f"{name}.{field}" for name, model in models.items() for field in model.Output._fields)
+    return np.array(rows, dtype=[(name, float) for name in ("time", "controller.T_driver", *outputs)])
 
 
-def _columns(plant: ModuleType) -> np.dtype:
-    names = ["time", "controller.T_driver"]
-    for instance, model in (
-        ("controller", damping_controller),
-        ("motor", motor_torque_loop),
-        ("plant", plant),
-        ("can", wheel_speed_can),
-    ):
-        names += [f"{instance}.{field}" for field in model.Output._fields]
-    return np.dtype([(name, float) for name in names])
+def instances(plant: ModuleType) -> dict[str, ModuleType]:
+    """Models of the loop by the names that the wiring gives them."""
+    return {
+        "controller": damping_controller,
+        "motor": motor_torque_loop,
+        "plant": plant,
+        "can": wheel_speed_can,
+    }
+
+
+def wheels(seen: Any) -> wheel_speed_can.Input:
+    return wheel_speed_can.Input(seen.omega_wheel_L, seen.omega_wheel_R)
+
+
+def sensed(T_driver: float, motor: Any, bus: Any, enable: bool) -> damping_controller.Input:
+    return damping_controller.Input(
+        T_driver, motor.omega_1_meas, motor.T_mot_est, bus.omega_2_can, bus.valid, bus.counter, enable
+    )

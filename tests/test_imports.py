@@ -14,6 +14,7 @@ ALLOWED = {"models": {"models"}, "fmus": {"fmus", "models"}, "build_fmus": {"fmu
 HARNESS_ALLOWED = {
     "harness/commands/build.py": {"fmus"},
     "harness/monolithic.py": {"models", "fmus"},
+    "harness/coupling.py": {"models"},
     "harness/controller_design.py": {"models"},
 }
 """Design, analysis and the command that builds; everything else of the harness sees only FMUs."""
