@@ -59,14 +59,14 @@ class Variable(NamedTuple):
     start: Any
 
 
-def variables(record: type) -> tuple[Variable, ...]:
+def variables(record: Any) -> tuple[Variable, ...]:
     """The declared quantities of a NamedTuple class, in the order of its fields.
 
     Raises:
         TypeError: a field carries no declaration.
     """
     hints = get_type_hints(record, include_extras=True)
-    defaults = getattr(record, "_field_defaults")
+    defaults = record._field_defaults
     found = []
     for name, hint in hints.items():
         declared = [m for m in getattr(hint, "__metadata__", ()) if isinstance(m, Declaration)]

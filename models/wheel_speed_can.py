@@ -11,7 +11,7 @@ from . import tooth_wheel
 from .block import Block
 from .declaration import Boolean, Integer, Real
 from .noise import uniform
-from .operators import floor, fmod, logical_and, logical_or, maximum, where
+from .operators import floor, logical_and, logical_or, maximum, where
 from .vehicle import GearRatio, WheelRadius
 
 T_S = 0.001
@@ -60,7 +60,7 @@ class State(NamedTuple):
     flag: Annotated[tuple[float, ...], Real("1", "flags of the messages under way, 1 for valid")]
     omega_2_can: Annotated[float, Real("rad/s", "speed in the message that arrived last")]
     valid: Annotated[bool, Boolean("flag of the message that arrived last")]
-    counter: Annotated[float, Real("1", "messages that have arrived")]
+    counter: Annotated[Any, Real("1", "messages that have arrived")]
 
 
 class Output(NamedTuple):
