@@ -40,6 +40,7 @@ bench: $(READY) ## cost per communication step, side by side
 	$(BIN)/python -m benchmarks.step_cost
 
 docs: $(READY) ## the tables of the documentation that are computed
+	$(BIN)/python -m fmus.blocks_page
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs/coupling.md
 

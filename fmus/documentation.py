@@ -1,9 +1,10 @@
 """documentation/index.html of an FMU: what the block is, its equations and its variables."""
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterator
 from html import escape
 
+from models.block import Block
 from models.declaration import Enumeration
 
 from .fmu import Fmu
@@ -38,9 +39,7 @@ libpython with its symbols visible (on Linux: LD_PRELOAD).</p>
 </html>
 """
 
-CONTINUOUS = (
-    "The differential equations are integrated with steps of at most {step:g} ms, at any communication step."
-)
+CONTINUOUS = "The differential equations are integrated with steps of at most {step:g} ms, at any communication step."
 
 SAMPLED = (
     "The block computes every {step:g} ms from the start time on, whatever the communication step, with the "
@@ -51,19 +50,28 @@ SAMPLED = (
 def page(fmu: Fmu) -> str:
     """The whole page as HTML."""
     block = fmu.block
-    timing = SAMPLED if block.update else CONTINUOUS
-    tables = (
-        _table(title, [v for v in interface(block) if v.causality == causality])
-        for title, causality in (("Inputs", "input"), ("Outputs", "output"), ("Parameters", "parameter"))
-    )
     return PAGE.format(
         name=escape(block.name),
         description=escape(block.description),
         equations=_prose(fmu.equations),
-        tables="\n".join(tables),
-        timing=timing.format(step=1000.0 * (block.sample_time or block.step_size)),
+        tables="\n".join(_table(title, rows) for title, rows in tables(block)),
+        timing=timing(block),
         tolerance=" (inputs excepted: this block copes with any)" if block.tolerates_bad_input else "",
     )
+
+
+def timing(block: Block) -> str:
+    """When the block computes, in a sentence."""
+    sentence = SAMPLED if block.update else CONTINUOUS
+    return sentence.format(step=1000.0 * (block.sample_time or block.step_size))
+
+
+def tables(block: Block) -> Iterator[tuple[str, list[tuple[str, ...]]]]:
+    """Title and rows of the table of inputs, of outputs and of parameters; the first row is the heading."""
+    for causality in ("input", "output", "parameter"):
+        heading = ("Name", "Unit", "Meaning", "Start", "Allowed")
+        rows = [_cells(v) for v in interface(block) if v.causality == causality]
+        yield f"{causality.capitalize()}s", [heading[: len(rows[0])], *rows]
 
 
 def _prose(docstring: str) -> str:
@@ -76,15 +84,11 @@ def _prose(docstring: str) -> str:
     )
 
 
-def _table(title: str, of_kind: Iterable[Variable]) -> str:
-    """A table of variables under a heading."""
-    head = (
-        ("Name", "Unit", "Meaning") if title == "Outputs" else ("Name", "Unit", "Meaning", "Start", "Allowed")
-    )
-    rows = ["".join(f"<th>{name}</th>" for name in head)]
-    for variable in of_kind:
-        rows.append("".join(f"<td>{escape(cell)}</td>" for cell in _cells(variable)))
-    body = "\n".join(f"<tr>{row}</tr>" for row in rows)
+def _table(title: str, rows: list[tuple[str, ...]]) -> str:
+    """A table under a heading."""
+    kinds = ["th"] + ["td"] * (len(rows) - 1)
+    lines = ("".join(f"<{kind}>{escape(cell)}</{kind}>" for cell in row) for kind, row in zip(kinds, rows, strict=True))
+    body = "\n".join(f"<tr>{line}</tr>" for line in lines)
     return f"<h2>{title}</h2>\n<table>\n{body}\n</table>"
 
 
