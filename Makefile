@@ -29,7 +29,7 @@ test: $(READY) ## all tests
 lint: $(READY) ## format, lint and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/pyright
+	$(BIN)/basedpyright
 
 check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline build

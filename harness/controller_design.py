@@ -9,6 +9,7 @@ and wheels, which leaves the motion of the vehicle alone.
 from dataclasses import dataclass
 from math import sqrt
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
@@ -59,7 +60,7 @@ class Weights:
 WEIGHTS = Weights()
 
 
-def transition(p: SimpleNamespace) -> np.ndarray:
+def transition(p: Any) -> np.ndarray:
     """Matrix (4, 4) of one sample of the estimator's model in contact, deviations from a state there."""
     contact = Estimate(0.0, 0.0, 2.0 * p.phi_B, 0.0)
     base = np.array(predict(contact, 0.0, T_S, p))
