@@ -35,6 +35,12 @@ STYLE = {
 # colours of Okabe and Ito, which the colour-blind can tell apart
 BLACK, BLUE, VERMILION, GREEN, GREY = "black", "#0072B2", "#D55E00", "#009E73", "0.6"
 
+METADATA = {
+    ".png": {"Software": None},
+    ".pdf": {"CreationDate": None, "Producer": None, "Creator": None},
+}
+"""What matplotlib would say of date and origin, by the kind of file: nothing."""
+
 TITLES = ("without oscillation control", "with oscillation control")
 
 
@@ -145,18 +151,14 @@ def plot_replay(
         speed.set(ylabel="speed in m/s", xlim=(t[0], t[-1]))
         for axes, window in ((torque, (t[0], t[-1])), (close, _roughest(runs[0]))):
             shown = (t >= window[0]) & (t <= window[1])
-            for run, color, label in zip(
-                runs, (VERMILION, BLUE), ("without control", "with control"), strict=True
-            ):
+            for run, color, label in zip(runs, (VERMILION, BLUE), ("without control", "with control"), strict=True):
                 axes.plot(t[shown], run["plant.T_gear"][shown], color=color, label=label, rasterized=True)
             axes.set(ylabel="gear torque in N·m", xlim=window)
         shown = (t >= close.get_xlim()[0]) & (t <= close.get_xlim()[1])
-        close.plot(
-            t[shown], runs[0]["controller.T_driver"][shown], color=BLACK, ls="--", lw=0.8, label="demand"
-        )
+        close.plot(t[shown], runs[0]["controller.T_driver"][shown], color=BLACK, ls="--", lw=0.8, label="demand")
         close.set_xlabel("time in s")
         for axes in (speed, torque, close):
-            _legend(axes)
+            legend(axes)
         return _write(figure, stem)
 
 
@@ -182,17 +184,9 @@ def _compare(
             row[0].set_ylabel(panel.label)
             for axes, run in zip(row, runs, strict=True):
                 shown = (run["time"] >= window[0] - 1e-9) & (run["time"] <= window[1] + 1e-9)
-                for line in panel.lines:
-                    axes.plot(
-                        run["time"][shown],
-                        _signal(run, line.column)[shown],
-                        color=line.color,
-                        ls=line.style,
-                        lw=line.width,
-                        label=line.label,
-                    )
+                draw(axes, panel, run, shown)
             if len(panel.lines) > 1:
-                _legend(row[0])
+                legend(row[0])
         for axes, heading in zip(grid[0], TITLES, strict=True):
             axes.set_title(heading, pad=20 if len(panels[0].lines) > 1 else 6)
             axes.set_xlim(*window)
@@ -200,6 +194,19 @@ def _compare(
         for axes in grid[-1]:
             axes.set_xlabel("time in s")
         return _write(figure, stem)
+
+
+def draw(axes: Axes, panel: Panel, run: np.ndarray, shown: np.ndarray) -> None:
+    """The lines of a panel, at the instants that are shown."""
+    for line in panel.lines:
+        axes.plot(
+            run["time"][shown],
+            _signal(run, line.column)[shown],
+            color=line.color,
+            ls=line.style,
+            lw=line.width,
+            label=line.label,
+        )
 
 
 def _signal(run: np.ndarray, column: str) -> np.ndarray:
@@ -214,15 +221,20 @@ def _gear_ratio(run: np.ndarray) -> float:
     return float(np.dot(run["plant.omega_2"], wheel) / np.dot(wheel, wheel))
 
 
-def _legend(axes: Axes) -> None:
+def legend(axes: Axes) -> None:
     """A legend above the axes, where it covers no curve."""
-    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0)
-    legend.set_in_layout(False)  # it may reach over the next column
+    made = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0)
+    made.set_in_layout(False)  # it may reach over the next column
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes a figure as PNG or PDF, by the ending of the path, without a date."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=200, metadata=METADATA[path.suffix])
 
 
 def _write(figure: Figure, stem: Path) -> list[Path]:
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    png, pdf = stem.with_suffix(".png"), stem.with_suffix(".pdf")
-    figure.savefig(png, dpi=200, metadata={"Software": None})
-    figure.savefig(pdf, dpi=200, metadata={"CreationDate": None, "Producer": None, "Creator": None})
-    return [png, pdf]
+    files = [stem.with_suffix(suffix) for suffix in METADATA]
+    for file in files:
+        save(figure, file)
+    return files

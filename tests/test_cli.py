@@ -42,6 +42,7 @@ def test_every_command_teaches(capsys, command):
         (["simulate", "--plnt", "x"], "did you mean --plant"),
         (["simulate", "--set", "plant.J_1"], "plant.J_1=0.06"),
         (["simulate", "--scheme", "gaus"], "gauss-seidel"),
+        (["simulate", "--plot", "run.jpeg"], "does not end in .png or .pdf"),
         (["build", "TwoMass"], "did you mean TwoMassDriveline"),
         (["check", "nothing.fmu"], "there is no FMU nothing.fmu"),
         (["compare", "--manoeuvre", "launc"], "did you mean launch"),
@@ -85,6 +86,14 @@ def test_simulate_writes_what_was_asked_for(simulate, plant):
     assert not signals["controller.enable"].any()
     # undisturbed, the resolver shows the speed of the plant one step earlier
     assert (signals["motor.omega_1_meas"][1:] == signals["plant.omega_1"][:-1]).all()
+
+
+def test_simulate_draws_the_run(simulate, tmp_path):
+    figure = tmp_path / "figures" / "run.png"
+    (code, out, err), _ = simulate("--step", "0.002", "--plot", str(figure))
+    assert (code, err) == (0, "")
+    assert str(figure) in out
+    assert figure.read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_refused_parameter_is_named_with_exit_code_1(simulate):

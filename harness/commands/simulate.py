@@ -8,7 +8,9 @@ from ..errors import DrivelineError
 from ..manoeuvres import MANOEUVRES
 from ..master import Scheme
 from ..names import nearest
+from ..plots import METADATA
 from ..results import write_csv
+from ..run_plot import plot_run
 from ..simulate import simulate
 from ..wiring import PLANTS, plant_file
 
@@ -30,6 +32,7 @@ examples:
   driveline simulate --plant my_vehicle.fmu --output results/mine.csv
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
   driveline simulate --step 0.0005 --scheme jacobi
+  driveline simulate --manoeuvre launch --plot results/launch.png
 
 manoeuvres:
 """
@@ -50,9 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--manoeuvre", default="tipin15", metavar="NAME", help="one of those below (default: %(default)s)"
     )
-    parser.add_argument(
-        "--control", choices=("on", "off"), default="on", help="active damping (default: %(default)s)"
-    )
+    parser.add_argument("--control", choices=("on", "off"), default="on", help="active damping (default: %(default)s)")
     parser.add_argument(
         "--set",
         action="append",
@@ -74,14 +75,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--scheme",
         choices=[scheme.value for scheme in Scheme],
         default=Scheme.GAUSS_SEIDEL.value,
-        help="one FMU after the other, or all with the outputs of the beginning of the step "
-        "(default: %(default)s)",
+        help="one FMU after the other, or all with the outputs of the beginning of the step (default: %(default)s)",
     )
     parser.add_argument(
         "--output",
         type=Path,
         metavar="FILE.csv",
         help="for the signals (default: results/PLANT_MANOEUVRE_CONTROL.csv)",
+    )
+    parser.add_argument(
+        "--plot",
+        type=figure_file,
+        metavar="FILE.png",
+        help="draws speeds, torques and the motion of the body (.png or .pdf)",
     )
 
 
@@ -97,6 +103,18 @@ def assignment(text: str) -> tuple[str, float]:
     if not (instance and dot and parameter) or number is None:
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form plant.J_1=0.06")
     return f"{instance}.{parameter}", number
+
+
+def figure_file(text: str) -> Path:
+    """The path of a figure.
+
+    Raises:
+        argparse.ArgumentTypeError: its ending is not that of a figure we write.
+    """
+    path = Path(text)
+    if path.suffix not in METADATA:
+        raise argparse.ArgumentTypeError(f"{text!r} does not end in {' or '.join(METADATA)}")
+    return path
 
 
 def run(args: argparse.Namespace) -> int:
@@ -121,4 +139,7 @@ def run(args: argparse.Namespace) -> int:
         f"{manoeuvre.name} on {plant}, damping {args.control}: {manoeuvre.duration:g} s in {took:.1f} s\n"
         f"signals: {output} ({len(results)} instants, {len(results.dtype.names or ())} columns)"
     )
+    if args.plot:
+        plot_run(results, f"{plant}, {manoeuvre.description}, damping {args.control}", args.plot)
+        print(f"figure:  {args.plot}")
     return 0
