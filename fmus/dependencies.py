@@ -21,7 +21,8 @@ class Symbol:
         raise TypeError("a model function branches on data; it must call `where` of models.operators")
 
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = _joined
-    __truediv__ = __rtruediv__ = __pow__ = __rpow__ = fmod = _joined
+    __truediv__ = __rtruediv__ = __pow__ = __rpow__ = _joined
+    __mod__ = __rmod__ = _joined
     __lt__ = __le__ = __gt__ = __ge__ = _joined
     __eq__ = __ne__ = _joined  # pyright: ignore[reportAssignmentType]
     where = logical_and = logical_or = logical_not = _joined

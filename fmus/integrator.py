@@ -21,19 +21,26 @@ MOST_CROSSINGS = 16
 """Crossings located in one step; what rests on a surface may cross it without end."""
 
 
-def stepper(block: Any) -> Callable[[Any, Any, Any, Any, float], Any]:
+Tableau = tuple[tuple[dict[int, float], ...], dict[int, float]]
+"""Explicit Runge-Kutta method: weights of the earlier stages in each stage, of the stages in the step."""
+
+EULER: Tableau = (({},), {0: 1.0})
+
+
+def stepper(block: Any, tableau: Tableau) -> Callable[[Any, Any, Any, Any, float], Any]:
     """Function (x, dx, u, p, h) -> x after one step of length h, dx being the derivative at x.
 
     It is written out for the fields of the block's State (as NamedTuple writes its methods), which
     is ten times faster than looping over them.
     """
     fields = block.State._fields
-    lines = [f"def step(x, dx, u, p, h, f=f, State=State):\n    {_targets('x', fields)} = x"]
+    stages, step = tableau
+    lines = [f"def step(x, dx, u, p, h, f=f, new=new, State=State):\n    {_targets('x', fields)} = x"]
     lines.append(f"    {_targets('k0_', fields)} = dx")
-    for stage, weights in enumerate(A[1:], start=1):
+    for stage, weights in enumerate(stages[1:], start=1):
         lines.append(f"    {_targets(f'k{stage}_', fields)} = f({_advanced(weights, fields)}, u, p)")
-    lines.append(f"    return {_advanced(B, fields)}")
-    scope: dict[str, Any] = {"f": block.derivative, "State": block.State}
+    lines.append(f"    return {_advanced(step, fields)}")
+    scope: dict[str, Any] = {"f": block.derivative, "new": tuple.__new__, "State": block.State}
     exec("\n".join(lines), scope)
     return scope["step"]
 
@@ -45,7 +52,7 @@ def _targets(prefix: str, fields: tuple[str, ...]) -> str:
 def _advanced(weights: dict[int, float], fields: tuple[str, ...]) -> str:
     """Source of the state advanced by h times the weighted stages."""
     sums = (" + ".join(f"{a!r} * k{j}_{n}" for j, a in weights.items()) for n in range(len(fields)))
-    return "State(" + ", ".join(f"x{n} + h * ({total})" for n, total in enumerate(sums)) + ")"
+    return "new(State, (" + ", ".join(f"x{n} + h * ({total})" for n, total in enumerate(sums)) + ",))"
 
 
 class Start(NamedTuple):
@@ -64,7 +71,8 @@ class Integrator:
         self.derivative = block.derivative
         self.surfaces = block.surfaces or (lambda x, u, p: ())
         self.step_size = block.step_size
-        self.step = stepper(block)
+        self.step = stepper(block, (A, B))
+        self.tangent = stepper(block, EULER)
 
     def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
         """The state `duration` s later, with the inputs u held.
@@ -74,7 +82,7 @@ class Integrator:
             duration: any time >= 0 in s, divided into equal steps no longer than block.step_size.
         """
         steps = max(1, math.ceil(duration / self.step_size - 1e-9))
-        sides = [g > 0.0 for g in self.surfaces(x, u, p)]
+        sides = self._sides(x, u, p)
         for _ in range(steps):
             x = self._advance_through(x, u, p, duration / steps, sides)
         return x
@@ -99,47 +107,52 @@ class Integrator:
                 return x
         return self.step(x, self.derivative(x, u, p), u, p, h)
 
+    def _sides(self, x: Any, u: Any, p: Any) -> list[bool]:
+        return [g > 0.0 for g in self.surfaces(x, u, p)]
+
     def _crossings(self, start: Start, h: float, x_end: Any, sides: list[bool]) -> list[tuple[float, int]]:
         """Each crossing within a step of length h: length of the step to it, number of the surface."""
-        values = self.surfaces(start.x, start.u, start.p)
-        slopes = self._slopes(start, values)
+        end = self._sides(x_end, start.u, start.p)
+        straight = self._sides(self.tangent(*start, h), start.u, start.p)
+        if end == sides == straight:
+            return []
         found = []
-        for n, g_end in enumerate(self.surfaces(x_end, start.u, start.p)):
-            beyond = h if (g_end > 0.0) != sides[n] else None
-            if beyond is None and abs(values[n]) < (-slopes[n] if sides[n] else slopes[n]) * h:
-                beyond = self._excursion(n, start, h, x_end, slopes[n], sides[n])
+        for n, side in enumerate(sides):
+            beyond = h if end[n] != side else None
+            if beyond is None and straight[n] != side:
+                beyond = self._excursion(n, start, h, x_end, side)
             if beyond is not None:
-                found.append((self._locate(n, start, beyond, values[n], sides[n]), n))
+                found.append((self._locate(n, start, beyond, side), n))
         return found
 
-    def _slopes(self, start: Start, values: tuple[float, ...]) -> list[float]:
-        """Time derivatives of the surfaces, whose values at the start are given."""
-        x = type(start.x)(*(a + PROBE * b for a, b in zip(start.x, start.dx, strict=True)))
-        probe = self.surfaces(x, start.u, start.p)
-        return [(later - now) / PROBE for now, later in zip(values, probe, strict=True)]
+    def _surface(self, n: int, x: Any, start: Start) -> float:
+        return self.surfaces(x, start.u, start.p)[n]
 
     def _value(self, n: int, start: Start, length: float) -> float:
-        return self.surfaces(self.step(*start, length), start.u, start.p)[n]
+        return self._surface(n, self.step(*start, length), start)
 
-    def _excursion(
-        self, n: int, start: Start, h: float, x_end: Any, slope: float, side: bool
-    ) -> float | None:
+    def _slope(self, n: int, start: Start) -> float:
+        """Time derivative of surface n."""
+        probe = self.tangent(*start, PROBE)
+        return (self._surface(n, probe, start) - self._surface(n, start.x, start)) / PROBE
+
+    def _excursion(self, n: int, start: Start, h: float, x_end: Any, side: bool) -> float | None:
         """Length of a step to beyond surface n, if the state goes there and is back before h."""
-        end = Start(x_end, self.derivative(x_end, start.u, start.p), start.u, start.p)
-        slope_end = self._slopes(end, self.surfaces(x_end, start.u, start.p))[n]
+        dx_end = self.derivative(x_end, start.u, start.p)
+        slope, slope_end = self._slope(n, start), self._slope(n, start._replace(x=x_end, dx=dx_end))
         if slope_end * slope >= 0.0:
             return None
         turn = h * slope / (slope - slope_end)
         return turn if (self._value(n, start, turn) > 0.0) != side else None
 
-    def _locate(self, n: int, start: Start, far: float, g_near: float, side: bool) -> float:
+    def _locate(self, n: int, start: Start, far: float, side: bool) -> float:
         """Shortest step (to LOCATION_TOLERANCE) that ends beyond surface n; one of length `far` does.
 
         Regula falsi as modified by Illinois: when the same end moves twice, the value at the other
         counts half. Three steps without halving the bracket (a surface that a block at rest lies on
         is flat there) are followed by a bisection.
         """
-        near, g_far = 0.0, self._value(n, start, far)
+        near, g_near, g_far = 0.0, self._surface(n, start.x, start), self._value(n, start, far)
         if (g_near > 0.0) != side:
             g_near = 0.0
         moved, slow = "", 0

@@ -1,7 +1,7 @@
 """A block of the control loop: its declared records and its pure functions.
 
 x is the state, u the input, p the parameters; all are named tuples of floats (booleans are bool,
-whole numbers int; a field of a state may itself be a tuple of floats of fixed length).
+whole numbers int; a field of a state may itself be a tuple, of fixed shape).
 
 A *continuous* block has `derivative`; between the surfaces g_k(x, u, p) = 0 its equations are
 smooth, at them they have kinks (no jumps). A *sampled* block has `update`:

@@ -10,7 +10,7 @@ spring T_brake/z_br with a damper. omega_sat only limits the rate of z, not the 
 from typing import Annotated, Any
 
 from .declaration import Real
-from .operators import maximum, minimum
+from .operators import clip
 
 BristleDeflection = Annotated[float, Real("rad", "twist of the brake bristles at sliding", 1e-4, 0.1)]
 BristleDamping = Annotated[float, Real("s", "damping time of the brake bristles", 1e-4, 0.1)]
@@ -19,7 +19,7 @@ BristleSpeedLimit = Annotated[float, Real("rad/s", "wheel speed that limits the 
 
 def bristle_rate(omega: Any, z: Any, p: Any) -> Any:
     """dz/dt in rad/s for a wheel speed omega (rad/s) and a bristle twist z (rad)."""
-    w_s = minimum(maximum(omega, -p.omega_sat), p.omega_sat)
+    w_s = clip(omega, -p.omega_sat, p.omega_sat)
     return w_s - abs(w_s) * z / p.z_br
 
 

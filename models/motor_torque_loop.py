@@ -10,11 +10,11 @@ from typing import Annotated, NamedTuple
 
 from .block import Block
 from .declaration import Integer, Real
-from .noise import normal
+from .noise import normals
 from .operators import clip, floor, maximum, where
 
 SQRT_2 = 2.0**0.5
-NOISE_OMEGA, NOISE_TORQUE = 0.0, 2.0
+NOISE = 0.0
 
 
 class Parameters(NamedTuple):
@@ -62,11 +62,12 @@ def derivative(x: State, u: Input, p: Parameters) -> State:
 
 def output(x: State, u: Input, p: Parameters) -> Output:
     k = floor(x.sample + 1e-6)
-    omega_1 = u.omega_1 + p.sigma_omega * normal(p.seed, NOISE_OMEGA, k)
+    noise_omega, noise_T = normals(p.seed, NOISE, k)
+    omega_1 = u.omega_1 + p.sigma_omega * noise_omega
     steps = floor(omega_1 / maximum(p.q_omega, 1e-9) + 0.5)
     return Output(
         T_mot=x.T_mot,
-        T_mot_est=p.g_T * x.T_mot + p.o_T + p.sigma_T * normal(p.seed, NOISE_TORQUE, k),
+        T_mot_est=p.g_T * x.T_mot + p.o_T + p.sigma_T * noise_T,
         omega_1_meas=where(p.q_omega > 0.0, steps * p.q_omega, omega_1),
     )
 

@@ -7,26 +7,30 @@ result is exact in double precision and the same on every machine.
 
 from typing import Any
 
-from .operators import cos, fmod, log, sqrt
+from .operators import cos, log, sin, sqrt
 
 M = 67108859.0
 
 
 def _scramble(x: Any, c: float) -> Any:
-    return fmod(fmod(x * x, M) * x + c, M)
+    return (x * x % M * x + c) % M
 
 
 def uniform(seed: Any, stream: float, index: Any) -> Any:
     """A number in (0, 1), for whole seed and index from 0 to 2^26 and stream from 0 to 60."""
-    x = _scramble(fmod(seed * 40692.0 + 7368787.0, M), 19088743.0)
+    x = _scramble((seed * 40692.0 + 7368787.0) % M, 19088743.0)
     x = _scramble(x, 1013904.0 * stream + 40014.0)
-    x = _scramble(fmod(x + index, M), 40503.0)
+    x = _scramble((x + index) % M, 40503.0)
     x = _scramble(x, 29282417.0)
     x = _scramble(x, 52711.0)
     return (x + 0.5) / M
 
 
-def normal(seed: Any, stream: float, index: Any) -> Any:
-    """A number from N(0, 1), by Box and Muller; uses the streams `stream` and `stream + 1`."""
+def normals(seed: Any, stream: float, index: Any) -> tuple[Any, Any]:
+    """Two independent numbers from N(0, 1), at most 6.2, from the streams `stream` and `stream + 1`.
+
+    G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates", 1958.
+    """
     radius = sqrt(-2.0 * log(uniform(seed, stream, index)))
-    return radius * cos(6.283185307179586 * uniform(seed, stream + 1.0, index))
+    angle = 6.283185307179586 * uniform(seed, stream + 1.0, index)
+    return radius * cos(angle), radius * sin(angle)

@@ -4,11 +4,12 @@ A model never branches on data with `if`: it calls `where`, `maximum` or `minimu
 same function can be called with symbols and traced. A symbol is any object with the arithmetic and
 comparison operators, a method of the same name for each function below (`x.sin()`), and
 `condition.where(value, otherwise)`, `condition.logical_and(other)` and so on for the result of a
-comparison. Both values of `where` are always computed, so neither may raise.
+comparison; `x % y` is Python's, with the sign of y. Both values of `where` are always computed, so
+neither may raise.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 
@@ -21,12 +22,37 @@ def where(condition: Any, value: Any, otherwise: Any) -> Any:
     return condition.where(value, otherwise)
 
 
+def branch(condition: Any, value: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
+    """`value()` where the condition holds, else `otherwise()`: for what is costly and rarely needed.
+
+    Both return tuples of the same shape, nested or named. With truth values only one of them is called;
+    with symbols both are, as with `where`.
+    """
+    if condition is True:
+        return value()
+    if condition is False:
+        return otherwise()
+    return _joined(condition, value(), otherwise())
+
+
+def _joined(condition: Any, value: Any, otherwise: Any) -> Any:
+    if not isinstance(value, tuple):
+        return where(condition, value, otherwise)
+    make = getattr(type(value), "_make", tuple)
+    return make([_joined(condition, a, b) for a, b in zip(value, otherwise, strict=True)])
+
+
+# maximum, minimum and clip are the hot spots of every model: they save themselves the call of `where`
+
+
 def maximum(a: Any, b: Any) -> Any:
-    return where(a >= b, a, b)
+    above = a >= b
+    return a if above is True else b if above is False else above.where(a, b)
 
 
 def minimum(a: Any, b: Any) -> Any:
-    return where(a <= b, a, b)
+    below = a <= b
+    return a if below is True else b if below is False else below.where(a, b)
 
 
 def clip(x: Any, lower: Any, upper: Any) -> Any:
@@ -106,14 +132,6 @@ def floor(x: Any) -> Any:
         return float(math.floor(x))
     except TypeError:
         return x.floor()
-
-
-def fmod(x: Any, y: Any) -> Any:
-    """Remainder of x/y with the sign of x, exact in floating point."""
-    try:
-        return math.fmod(x, y)
-    except TypeError:
-        return x.fmod(y)
 
 
 def interpolate(values: Sequence[Any], position: Any) -> Any:

@@ -11,7 +11,8 @@ from . import tooth_wheel
 from .block import Block
 from .declaration import Boolean, Integer, Real
 from .noise import uniform
-from .operators import floor, logical_and, logical_or, maximum, where
+from .operators import branch, floor, logical_and, logical_or, maximum, minimum, where
+from .tooth_wheel import ToothWheel
 from .vehicle import GearRatio, WheelRadius
 
 T_S = 0.001
@@ -20,8 +21,8 @@ T_S = 0.001
 SLOTS = 6
 """Messages that can be under way: the longest delay over the shortest cycle, and one."""
 
-NEVER = 1e9
-"""Time to arrival in s of a message that does not exist."""
+NEVER = 1e12
+"""Arrival in s of a message that does not exist or is lost."""
 
 LEAST_SPACING = 1e-4
 """Shortest time in s between two arrivals."""
@@ -29,11 +30,19 @@ LEAST_SPACING = 1e-4
 TOOTH_L, TOOTH_R, PHASE, DELAY, LOSS = 10.0, 20.0, 30.0, 31.0, 32.0
 
 
+class Message(NamedTuple):
+    """What is under way on the bus."""
+
+    arrival: Annotated[float, Real("s", "time of its arrival")]
+    speed: Annotated[float, Real("rad/s", "mean speed of the driven wheels, motor side")]
+    valid: Annotated[bool, Boolean("flag")]
+
+
 class Parameters(NamedTuple):
     i: GearRatio = 9.0
     r: WheelRadius = 0.29
     g_w2: Annotated[float, Real("1", "gain error of the speed, from the wheel radius", 0.8, 1.25)] = 1.0
-    sigma_tooth: Annotated[float, Real("1", "standard deviation of the edges, in teeth", 0.0, 0.1)] = 0.005
+    sigma_tooth: Annotated[float, Real("1", "standard deviation of the edges, in teeth", 0.0, 0.05)] = 0.005
     T_cyc: Annotated[float, Real("s", "cycle of the messages, rounded to whole milliseconds", 0.01, 0.5)] = 0.02
     q_v: Annotated[float, Real("m/s", "resolution of the speed on the bus", 0.0, 1.0)] = 0.0625 / 3.6
     v_on: Annotated[float, Real("m/s", "speed above which the message becomes valid", 0.0, 20.0)] = 5.0 / 3.6
@@ -50,17 +59,18 @@ class Input(NamedTuple):
 
 
 class State(NamedTuple):
-    tick: Annotated[float, Real("1", "samples until the next call of the ABS unit")]
+    sample: Annotated[float, Real("1", "number of the sample")]
+    next_call: Annotated[float, Real("1", "sample of the next call of the ABS unit")]
     message: Annotated[float, Real("1", "number of the next message")]
     wheel_L: Annotated[tuple[float, ...], Real("1", "left ToothWheel")]
     wheel_R: Annotated[tuple[float, ...], Real("1", "right ToothWheel")]
     sent_valid: Annotated[bool, Boolean("flag of the message sent last")]
-    arrival: Annotated[tuple[float, ...], Real("s", "time to arrival of the messages under way")]
-    speed: Annotated[tuple[float, ...], Real("rad/s", "speeds in the messages under way")]
-    flag: Annotated[tuple[float, ...], Real("1", "flags of the messages under way, 1 for valid")]
+    last_arrival: Annotated[float, Real("s", "arrival of the last message that is not lost")]
+    next_arrival: Annotated[float, Real("s", "arrival of the next message")]
+    under_way: Annotated[tuple[tuple[float, ...], ...], Real("1", "Messages under way, newest first")]
     omega_2_can: Annotated[float, Real("rad/s", "speed in the message that arrived last")]
     valid: Annotated[bool, Boolean("flag of the message that arrived last")]
-    counter: Annotated[Any, Real("1", "messages that have arrived")]
+    counter: Annotated[int, Integer("messages that have arrived", 0)]
 
 
 class Output(NamedTuple):
@@ -82,68 +92,74 @@ def cycle(p: Parameters) -> Any:
 def start(u: Input, p: Parameters) -> State:
     """The speed known at t = 0, no message under way, the first call after a random phase."""
     v = bus_speed(abs(u.omega_wheel_L), abs(u.omega_wheel_R), p)
+    omega_2 = p.g_w2 * v * p.i / p.r
     return State(
-        tick=floor(uniform(p.seed, PHASE, 0.0) * cycle(p)),
+        sample=0.0,
+        next_call=floor(uniform(p.seed, PHASE, 0.0) * cycle(p)),
         message=0.0,
         wheel_L=tooth_wheel.start(u.omega_wheel_L, TOOTH_L, p),
         wheel_R=tooth_wheel.start(u.omega_wheel_R, TOOTH_R, p),
         sent_valid=v > p.v_on,
-        arrival=(NEVER,) * SLOTS,
-        speed=(0.0,) * SLOTS,
-        flag=(0.0,) * SLOTS,
-        omega_2_can=p.g_w2 * v * p.i / p.r,
+        last_arrival=0.0,
+        next_arrival=NEVER,
+        under_way=(Message(NEVER, 0.0, False),) * SLOTS,
+        omega_2_can=omega_2,
         valid=v > p.v_on,
-        counter=0.0,
+        counter=0,
     )
 
 
 def update(x: State, u: Input, p: Parameters) -> State:
-    call = x.tick <= 0.0
-    turned_L = tooth_wheel.turn(tooth_wheel.ToothWheel(*x.wheel_L), u.omega_wheel_L, T_S, TOOTH_L, p)
-    turned_R = tooth_wheel.turn(tooth_wheel.ToothWheel(*x.wheel_R), u.omega_wheel_R, T_S, TOOTH_R, p)
-    called_L, called_R = tooth_wheel.call(turned_L), tooth_wheel.call(turned_R)
+    now = (x.sample + 1.0) * T_S
+    turned = x._replace(
+        sample=x.sample + 1.0,
+        wheel_L=tooth_wheel.turn(ToothWheel._make(x.wheel_L), u.omega_wheel_L, now, T_S, TOOTH_L, p),
+        wheel_R=tooth_wheel.turn(ToothWheel._make(x.wheel_R), u.omega_wheel_R, now, T_S, TOOTH_R, p),
+    )
+    sent = branch(x.sample >= x.next_call, lambda: call(turned, now, p), lambda: turned)
+    return branch(sent.next_arrival <= now + 1e-9, lambda: deliver(sent, now + 1e-9), lambda: sent)
 
-    v = bus_speed(called_L.speed, called_R.speed, p)
+
+def call(x: State, now: Any, p: Parameters) -> State:
+    """After a call of the ABS unit, with its message on the bus."""
+    wheel_L = tooth_wheel.call(ToothWheel._make(x.wheel_L), now)
+    wheel_R = tooth_wheel.call(ToothWheel._make(x.wheel_R), now)
+    v = bus_speed(wheel_L.speed, wheel_R.speed, p)
     valid = logical_or(v > p.v_on, logical_and(v >= p.v_off, x.sent_valid))
-    return deliver(
-        send(x, call, p.g_w2 * v * p.i / p.r, where(valid, 1.0, 0.0), p)._replace(
-            tick=where(call, cycle(p), x.tick) - 1.0,
-            message=where(call, x.message + 1.0, x.message),
-            wheel_L=tuple(where(call, a, b) for a, b in zip(called_L, turned_L, strict=True)),
-            wheel_R=tuple(where(call, a, b) for a, b in zip(called_R, turned_R, strict=True)),
-            sent_valid=where(call, valid, x.sent_valid),
-        )
-    )
-
-
-def send(x: State, call: Any, omega: Any, flag: Any, p: Parameters) -> State:
-    """The bus with a new message on it, if there is a call; slot 0 holds the newest message."""
     delay = p.d_min + maximum(p.d_max - p.d_min, 0.0) * uniform(p.seed, DELAY, x.message)
-    last = 0.0
-    for arrival in x.arrival:
-        last = maximum(last, where(arrival < NEVER, arrival + LEAST_SPACING, 0.0))
+    arrival = maximum(now - T_S + delay, x.last_arrival + LEAST_SPACING)
     lost = uniform(p.seed, LOSS, x.message) < p.loss
-    arrival = where(lost, NEVER, maximum(delay, last))
-
-    def shifted(new: Any, slots: tuple[Any, ...]) -> tuple[Any, ...]:
-        return tuple(where(call, a, b) for a, b in zip((new, *slots[:-1]), slots, strict=True))
-
+    sent = Message(where(lost, NEVER, arrival), p.g_w2 * v * p.i / p.r, valid)
     return x._replace(
-        arrival=shifted(arrival, x.arrival), speed=shifted(omega, x.speed), flag=shifted(flag, x.flag)
+        next_call=x.next_call + cycle(p),
+        message=x.message + 1.0,
+        wheel_L=wheel_L,
+        wheel_R=wheel_R,
+        sent_valid=valid,
+        last_arrival=where(lost, x.last_arrival, arrival),
+        next_arrival=minimum(x.next_arrival, sent.arrival),
+        under_way=(sent, *x.under_way[:-1]),
     )
 
 
-def deliver(x: State) -> State:
-    """T_S later: what has arrived by then is taken off the bus, and the newest of it is kept."""
-    omega, flag, counter = x.omega_2_can, where(x.valid, 1.0, 0.0), x.counter
+def deliver(x: State, now: Any) -> State:
+    """What has arrived by now is taken off the bus, and the newest of it is kept."""
+    omega, valid, counter, following = x.omega_2_can, x.valid, x.counter, NEVER
     left = []
-    for k in reversed(range(SLOTS)):
-        arrived = x.arrival[k] <= T_S + 1e-9
-        omega = where(arrived, x.speed[k], omega)
-        flag = where(arrived, x.flag[k], flag)
-        counter = where(arrived, counter + 1.0, counter)
-        left.append(where(arrived, NEVER, where(x.arrival[k] < NEVER, x.arrival[k] - T_S, NEVER)))
-    return x._replace(arrival=tuple(reversed(left)), omega_2_can=omega, valid=flag > 0.5, counter=counter)
+    for message in map(Message._make, reversed(x.under_way)):
+        arrived = message.arrival <= now
+        omega = where(arrived, message.speed, omega)
+        valid = where(arrived, message.valid, valid)
+        counter = where(arrived, counter + 1, counter)
+        left.append(message._replace(arrival=where(arrived, NEVER, message.arrival)))
+        following = minimum(following, left[-1].arrival)
+    return x._replace(
+        next_arrival=following,
+        under_way=tuple(reversed(left)),
+        omega_2_can=omega,
+        valid=valid,
+        counter=counter,
+    )
 
 
 def output(x: State, u: Input, p: Parameters) -> Output:
