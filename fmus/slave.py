@@ -147,9 +147,7 @@ class BlockSlave:
     def _check_step(self, current_time: float, step_size: float) -> None:
         self._require(Mode.STEPPING, "fmi2DoStep")
         if not 0.0 < step_size < math.inf:
-            raise Refused(
-                f"communicationStepSize = {step_size!r} s is refused; allowed is any finite number above 0"
-            )
+            raise Refused(f"communicationStepSize = {step_size!r} s is refused; allowed is any finite number above 0")
         if not abs(current_time - self.time) <= TIME_TOLERANCE:
             raise Refused(
                 f"currentCommunicationPoint = {current_time!r} s is refused; "

@@ -81,9 +81,7 @@ def _dead_times(found: Mapping[tuple[Scheme, float], Mapping[str, float]]) -> st
     columns = list(found.values())
     heads = [f"{scheme.value}, h = {1e3 * step:g} ms" for scheme, step in found]
     # adding zero turns a rounded -0 into 0
-    rows = [
-        [name, *(f"{round(1e3 * column[name], 2) + 0.0:.2f}" for column in columns)] for name in columns[0]
-    ]
+    rows = [[name, *(f"{round(1e3 * column[name], 2) + 0.0:.2f}" for column in columns)] for name in columns[0]]
     return _table(["connection", *heads], rows, labels=1)
 
 

@@ -51,9 +51,7 @@ def drive_train(plant: ModuleType) -> Block:
         _, _, x_plant, u_plant = parts(x, u)
         return plant.surfaces(x_plant, u_plant, p[1])
 
-    return replace(
-        plant.BLOCK, State=State, start=start, derivative=derivative, output=output, surfaces=surfaces
-    )
+    return replace(plant.BLOCK, State=State, start=start, derivative=derivative, output=output, surfaces=surfaces)
 
 
 class Ticking:

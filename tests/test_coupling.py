@@ -26,9 +26,7 @@ def test_the_error_falls_with_the_first_power_of_the_step(built, plant, scheme):
 def test_the_limit_of_small_steps_is_the_monolithic_solution(built, scheme):
     plant = "TwoMassDriveline"
     exact = reference(plant, IN_CONTACT, NOISELESS)
-    coarse, fine = (
-        cosimulated(plant, IN_CONTACT, NOISELESS, step, scheme, built) for step in (2.5e-4, 1.25e-4)
-    )
+    coarse, fine = (cosimulated(plant, IN_CONTACT, NOISELESS, step, scheme, built) for step in (2.5e-4, 1.25e-4))
     for signal in SIGNALS:
         limit = 2.0 * fine[signal] - coarse[signal]
         # the part that falls with the step is taken out; what remains falls with its square
@@ -58,9 +56,7 @@ def test_lateness_of_a_signal_that_is_late():
 
 
 def test_the_page_says_what_was_measured():
-    deviations = {
-        step: dict.fromkeys(SIGNALS, coupling.Deviation(30.0 * step, 10.0 * step)) for step in (1e-3, 5e-4)
-    }
+    deviations = {step: dict.fromkeys(SIGNALS, coupling.Deviation(30.0 * step, 10.0 * step)) for step in (1e-3, 5e-4)}
     comparison = coupling.Comparison("TwoMassDriveline", IN_CONTACT, Scheme.JACOBI, deviations)
     assert comparison.order("plant.T_gear") == pytest.approx(1.0)
     text = page([comparison], {(Scheme.JACOBI, 1e-3): {"T_mot to the plant": 5e-4}}, ["motor", "plant"], 1e-3)

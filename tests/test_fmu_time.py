@@ -125,9 +125,7 @@ def test_a_sampled_block_does_not_depend_on_the_communication_step(built, tmp_pa
 def test_outputs_are_right_at_the_start_and_parameters_in_effect(built, tmp_path, name):
     block = FMUS[name].block
     u, p = block.Input(), block.Parameters()
-    change = {
-        n: value for n, value in (("v_0", 10.0), ("T_0", 40.0), ("o_T", 2.0), ("i", 8.0)) if hasattr(p, n)
-    }
+    change = {n: value for n, value in (("v_0", 10.0), ("T_0", 40.0), ("o_T", 2.0), ("i", 8.0)) if hasattr(p, n)}
     first = block.Input._fields[0]
     with opened(built / f"{name}.fmu", tmp_path) as host:
         host.set(**change)
