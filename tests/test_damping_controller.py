@@ -213,15 +213,21 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
     assert y.T_gear_hat == P.C * dead_zone(ahead.phi, P.phi_B)
 
 
-def test_a_message_as_old_as_assumed_from_a_perfect_model_corrects_nothing() -> None:
-    """The innovation compares a message with the estimate of its own age, also between two samples."""
-    p = P._replace(T_age=0.023)
-    past = tuple(150.0 - 0.3 * (k + 1) for k in range(estimator.HISTORY))
-    e = estimator.Estimate(151.0, 150.0, 0.3, 0.0)
-    measured = 150.0 - 0.3 * p.T_age / T_S
-    assert estimator.correct_by_wheel_speed(e, measured, past, p.T_age / T_S, 1.0, p) == pytest.approx(e, abs=1e-12)
-    faster = estimator.correct_by_wheel_speed(e, measured + 1.0, past, p.T_age / T_S, 1.0, p)
-    assert faster.omega_2 == pytest.approx(e.omega_2 + p.H_omega_2)
+@pytest.mark.parametrize("late", [0, 1])
+def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: int) -> None:
+    """The innovation is that of the message's own age, 11.5 samples; a sample more shows."""
+    p, x = P._replace(T_age=0.023), controller.start(ROLLING, P)
+    true = [estimator.Estimate(x.omega_1, x.omega_2, x.phi, x.T_l)]
+    for k in range(1, 400):
+        true.append(estimator.predict(true[-1], 50.0, T_S, p))
+        u = ROLLING._replace(omega_1_meas=true[k].omega_1)
+        if k > 40:
+            message = 0.5 * (true[k - 11 - late].omega_2 + true[k - 12 - late].omega_2)
+            u = u._replace(omega_2_can=message, counter=k // 10)
+        x = controller.update(x, u, p)
+    assert x.status == controller.WITH_WHEEL_SPEED
+    error = max(abs(x.omega_2 - true[-1].omega_2), abs(x.phi - true[-1].phi))
+    assert error > 1e-6 if late else error < 1e-9
 
 
 LITERAL = P._replace(
