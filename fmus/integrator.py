@@ -112,6 +112,8 @@ class Integrator:
 
     def _crossings(self, start: Start, h: float, x_end: Any, sides: list[bool]) -> list[tuple[float, int]]:
         """Each crossing within a step of length h: length of the step to it, number of the surface."""
+        if not sides:
+            return []
         end = self._sides(x_end, start.u, start.p)
         straight = self._sides(self.tangent(*start, h), start.u, start.p)
         if end == sides == straight:

@@ -135,13 +135,14 @@ class BlockSlave:
         except Refused as refusal:
             self.log(str(refusal), FMI_DISCARD, "logStatusDiscard")
             return False
-        end = current_time + step_size
+        end, before = current_time + step_size, self.x
         if self.block.derivative:
             self.x = self.integrator.advance(self.x, self.values.u, self.values.p, step_size)
         else:
             self._tick(end)
         self.time = end
-        self.values.up_to_date = False
+        if self.x is not before:
+            self.values.up_to_date = False
         return True
 
     def _check_step(self, current_time: float, step_size: float) -> None:

@@ -17,6 +17,7 @@ class Values:
 
     Attributes:
         u, p: inputs and parameters as the records of the block.
+        up_to_date: whether the outputs are those of the state; inputs do not change them in a sampled block.
     """
 
     def __init__(self, block: Any) -> None:
@@ -29,6 +30,7 @@ class Values:
             for fmi_type in ("Real", "Integer", "Boolean", "String")
         }
         self._all: list[Any] = [v.start for v in self.variables]
+        self.up_to_date = False
         self.allow("input", "parameter")
         self._renew()
 
@@ -41,7 +43,8 @@ class Values:
         self.u = self.block.Input._make(self._all[: self.first_output])
         if self._tuning:
             self.p = self.block.Parameters._make(self._all[self.first_parameter :])
-        self.up_to_date = False
+        if self._tuning or not self.block.update:
+            self.up_to_date = False
 
     def get(self, fmi_type: str, references: list[int], x: Any) -> list[Any]:
         """Values of variables of one type, the outputs being those of state x (None: of the start).
