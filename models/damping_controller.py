@@ -102,6 +102,7 @@ class State(NamedTuple):
     washout: Annotated[float, Real("N.m", "stationary part of the damping law")]
     landing: Annotated[float, Real("s", "time spent in the gap")]
     quiet: Annotated[float, Real("s", "time without demand and motion")]
+    added: Annotated[float, Real("N.m", "what full damping adds; held while signals are bad")]
     T_ref: Annotated[float, Real("N.m", "torque reference")]
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
     ahead: Annotated[tuple[float, ...], Real("1", "estimate for the instant at which T_ref appears")]
@@ -151,6 +152,7 @@ def start(u: Input, p: Parameters) -> State:
         washout=law.motion(e, p),
         landing=0.0,
         quiet=where(law.is_still(T_driver, omega_1, p), p.t_rest + p.t_fade, 0.0),
+        added=0.0,
         T_ref=T_driver,
         T_damp=0.0,
         ahead=tuple(e),
@@ -210,8 +212,9 @@ def update(x: State, u: Input, p: Parameters) -> State:
     landing = where(law.in_gap(e, p), minimum(x.landing + T_S, p.t_land + T_S), 0.0)
     softened = law.soft_landing(T_driver, landing, p) - T_driver
     damping = clip(x.washout - motion, -p.T_damp_max, p.T_damp_max)
+    added = where(trusted, softened + damping, x.added)
     level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), p)
-    T_ref = clip(T_driver + level * (1.0 - rest) * (softened + damping), -p.T_max, p.T_max)
+    T_ref = clip(T_driver + level * (1.0 - rest) * added, -p.T_max, p.T_max)
 
     silence = where(usable, 0.0, minimum(x.silence + T_S, p.t_stale))
     wheel = logical_and(logical_and(u.valid, silence < p.t_stale), trusted)
@@ -231,6 +234,7 @@ def update(x: State, u: Input, p: Parameters) -> State:
         washout=law.washed_out(x.washout, motion, T_S, p),
         landing=landing,
         quiet=quiet,
+        added=added,
         T_ref=T_ref,
         T_damp=T_ref - T_driver,
         ahead=tuple(estimator.predict(e, motor.T_mot, T_S, p)),

@@ -2,7 +2,7 @@
 
 A speed is bad when it is not finite, out of range, far from the estimate, or frozen (unchanged for
 t_frozen while the motor turns); a torque when it is not finite, out of range, or frozen (unchanged for
-t_frozen, yet not what is demanded).
+t_frozen, yet not what is demanded; it then stays frozen until it changes).
 """
 
 from typing import Any, NamedTuple
@@ -17,7 +17,8 @@ OBEYED = 10.0
 
 
 class MotorSignals(NamedTuple):
-    """Speed (rad/s) and torque (N.m) to be used, whether both are good, times unchanged (s)."""
+    """Speed (rad/s) and torque (N.m) to be used, whether both are good, and for how long (s) the
+    received ones have not changed (2 t_frozen for a torque that has been found frozen)."""
 
     omega_1: Any
     T_mot: Any
@@ -54,7 +55,8 @@ def judged(x: Any, u: Any, omega_1_hat: Any, T_s: float, p: Any) -> MotorSignals
     omega_1_unchanged = where(u.omega_1_meas == x.omega_1_last, x.omega_1_unchanged + T_s, 0.0)
     T_mot_unchanged = where(u.T_mot_est == x.T_mot_last, x.T_mot_unchanged + T_s, 0.0)
     omega_1_frozen = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
-    T_mot_frozen = logical_and(T_mot_unchanged >= p.t_frozen, abs(T_mot - x.T_ref) > OBEYED)
+    disobeyed = logical_or(abs(T_mot - x.T_ref) > OBEYED, T_mot_unchanged > 1.5 * p.t_frozen)
+    T_mot_frozen = logical_and(T_mot_unchanged >= p.t_frozen, disobeyed)
     in_range = logical_and(plausible(u.omega_1_meas, p.omega_max), plausible(u.T_mot_est, 2.0 * p.T_max))
     alive = logical_not(logical_or(omega_1_frozen, T_mot_frozen))
     return MotorSignals(
@@ -62,5 +64,5 @@ def judged(x: Any, u: Any, omega_1_hat: Any, T_s: float, p: Any) -> MotorSignals
         T_mot=T_mot,
         good=logical_and(logical_and(in_range, near), alive),
         omega_1_unchanged=minimum(omega_1_unchanged, p.t_frozen),
-        T_mot_unchanged=minimum(T_mot_unchanged, p.t_frozen),
+        T_mot_unchanged=where(T_mot_frozen, 2.0 * p.t_frozen, minimum(T_mot_unchanged, p.t_frozen)),
     )

@@ -18,7 +18,7 @@ NOISE = 0.0
 
 
 class Parameters(NamedTuple):
-    tau: Annotated[float, Real("s", "time constant of the torque loop", 5e-4, 0.1)] = 0.003
+    tau: Annotated[float, Real("s", "time constant of the torque loop", 1e-3, 0.1)] = 0.003
     T_max: Annotated[float, Real("N.m", "largest torque of the motor, either sign", 1.0, 2000.0)] = 180.0
     g_T: Annotated[float, Real("1", "gain of the torque estimate", 0.5, 2.0)] = 1.0
     o_T: Annotated[float, Real("N.m", "offset of the torque estimate", -50.0, 50.0)] = 0.0

@@ -168,7 +168,7 @@ def test_bad_motor_signals_lead_to_the_demand_of_the_driver_and_back(fault: dict
     assert {(x.T_ref, x.status) for x in states[latest : end + 1]} == {(50.0, controller.FALLBACK)}
     assert max(abs(x.T_damp) for x in states[-500:]) > 5.0, "damping again"
     assert states[-1].status == controller.WITH_WHEEL_SPEED
-    assert bump(states[onset:]) < 20.0
+    assert bump(states[onset:]) < 3.0
 
 
 def test_a_single_bad_sample_changes_nothing_much() -> None:
