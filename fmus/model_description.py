@@ -78,9 +78,7 @@ def _add_units(root: Element, all_variables: Iterable[Variable]) -> None:
 
 
 def _add_enumerations(root: Element, all_variables: Iterable[Variable]) -> None:
-    used = {
-        v.declaration.name: v.declaration for v in all_variables if isinstance(v.declaration, Enumeration)
-    }
+    used = {v.declaration.name: v.declaration for v in all_variables if isinstance(v.declaration, Enumeration)}
     definitions = SubElement(root, "TypeDefinitions") if used else root
     for name, declaration in used.items():
         items = SubElement(SubElement(definitions, "SimpleType", name=name), "Enumeration")

@@ -31,9 +31,7 @@ def picture(block: Block) -> bytes:
         for row, name in enumerate(names):
             y = height - ROW * (row + 2.0)
             tail = x - ARROW if side == "left" else x
-            axes.annotate(
-                "", (tail + ARROW, y), (tail, y), arrowprops={"arrowstyle": "->", "color": "#1f4e79"}
-            )
+            axes.annotate("", (tail + ARROW, y), (tail, y), arrowprops={"arrowstyle": "->", "color": "#1f4e79"})
             axes.text(x + (0.06 if side == "left" else -0.06), y, name, ha=side, va="center", fontsize=8)
     FigureCanvasAgg(figure)
     stream = io.BytesIO()

@@ -8,7 +8,7 @@ from typing import Any
 from . import snapshot
 from .integrator import Integrator
 from .values import Refused, Values
-from .wrapper import fmi_call
+from .wrapper import dismiss_guard, fmi_call
 
 FMI_DISCARD = 2
 
@@ -55,6 +55,7 @@ class BlockSlave:
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        dismiss_guard(kwargs["resources"], self.block.name)
         self.values = Values(self.block)
         if self.block.derivative:
             self.integrator = Integrator(self.block)

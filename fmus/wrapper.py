@@ -3,14 +3,18 @@
 - When an exception leaves an instance, the binary gives up its references to the instance, its class
   and its log queue, and gives them up once more when the host frees the instance. `fmi_call` takes
   them back beforehand, so that the host can go on or free the instance.
+- At the exit of the process the binary destroys a static object twice: a use after free, which now and
+  then ends in an abort. `dismiss_guard` has it destroyed in time, while that is harmless.
 - Every instantiation gives up a reference to the globals of the main script that it does not own, and
   leaves the resources folder at the head of the host's sys.path. `undo_loading` mends both.
 """
 
 import ctypes
 import functools
+import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 
@@ -43,3 +47,15 @@ def undo_loading(script_globals: dict[str, Any], script_locals: Any) -> None:
     if script_locals is not script_globals:
         del sys.path[0]
         _hold(script_globals)
+
+
+def dismiss_guard(resources: str, model_identifier: str) -> None:
+    """To be called while an instance is made, in a host that is Python.
+
+    The guard is made anew for every instance; it is there to finalize an interpreter that the binary
+    itself has initialized, which a host that is Python (it has a command line) never needs. In any
+    other host it stays.
+    """
+    binary = Path(resources).parent / "binaries" / "linux64" / f"{model_identifier}.so"
+    if sys.platform == "linux" and sys.orig_argv and binary.exists():
+        ctypes.CDLL(str(binary), mode=os.RTLD_NOLOAD | os.RTLD_NOW).finalizePythonInterpreter()

@@ -33,9 +33,7 @@ def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout
     """
     calls = []
     for kind, (ctype, code, _) in KINDS.items():
-        fed = [
-            v for v in instance.interface.of_causality("input") if v.name in sources and type_of(v) == kind
-        ]
+        fed = [v for v in instance.interface.of_causality("input") if v.name in sources and type_of(v) == kind]
         if fed:
             view: Any = memoryview(row).cast(code)
             places = [layout.offset(sources[v.name]) // view.itemsize for v in fed]
@@ -46,9 +44,7 @@ def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout
     return calls
 
 
-def _sender(
-    set_values: Callable[[], int], view: Any, places: Sequence[int], buffer: Any
-) -> Callable[[], int]:
+def _sender(set_values: Callable[[], int], view: Any, places: Sequence[int], buffer: Any) -> Callable[[], int]:
     pick = itemgetter(*places) if len(places) > 1 else lambda view: (view[places[0]],)
     sent = None
 

@@ -54,10 +54,7 @@ class Outcome(NamedTuple):
 def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     """All combinations, the runs without and with damping next to each other."""
     return [
-        Case(plant, manoeuvre, control)
-        for plant in plants
-        for manoeuvre in manoeuvres
-        for control in (False, True)
+        Case(plant, manoeuvre, control) for plant in plants for manoeuvre in manoeuvres for control in (False, True)
     ]
 
 

@@ -106,13 +106,11 @@ def _check_connection(connection: Connection, interfaces: Mapping[str, Interface
         return
     if type_of(source) != type_of(target):
         yield (
-            f"{connection.source} is {type_of(source)}, but {connection.target}, which it feeds, is "
-            f"{type_of(target)}"
+            f"{connection.source} is {type_of(source)}, but {connection.target}, which it feeds, is {type_of(target)}"
         )
     elif unit_of(source) != unit_of(target):
         yield (
-            f"{connection.source} is in {_unit(source)}, but {connection.target}, which it feeds, is in "
-            f"{_unit(target)}"
+            f"{connection.source} is in {_unit(source)}, but {connection.target}, which it feeds, is in {_unit(target)}"
         )
 
 
@@ -131,9 +129,7 @@ def _unit(variable: ModelVariable) -> str:
     return unit_of(variable) or "no unit"
 
 
-def find(
-    name: str, causality: str, interfaces: Mapping[str, Interface]
-) -> tuple[ModelVariable | None, list[str]]:
+def find(name: str, causality: str, interfaces: Mapping[str, Interface]) -> tuple[ModelVariable | None, list[str]]:
     """The variable `instance.variable` of that causality; if there is none, what to say about it."""
     instance, _, variable_name = name.partition(".")
     if instance not in interfaces:
@@ -145,7 +141,5 @@ def find(
         known = [v.name for v in interface.of_causality(causality)]
         return None, [f"{name}: {file} has no {causality} {variable_name}; {nearest(variable_name, known)}"]
     if variable.causality != causality:
-        return None, [
-            f"{name}: in {file} {variable_name} is of causality {variable.causality}; it must be {causality}"
-        ]
+        return None, [f"{name}: in {file} {variable_name} is of causality {variable.causality}; it must be {causality}"]
     return variable, []

@@ -87,9 +87,7 @@ class Manoeuvre:
         return float(self.T_driver(0.0))
 
 
-def step(
-    name: str, description: str, v_0: float, before: float, after: float, rise: float = 0.0
-) -> Manoeuvre:
+def step(name: str, description: str, v_0: float, before: float, after: float, rise: float = 0.0) -> Manoeuvre:
     """The demand goes from one torque (N.m) to another at 1 s, in a jump or within `rise` seconds."""
     demand = lines((0.0, before), (1.0, before), (1.0 + rise, after))
     return Manoeuvre(name, description, 6.0, v_0, demand, t_0=1.0, dT=after - before)

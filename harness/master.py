@@ -169,9 +169,7 @@ class Loop:
                 data[: len(self.row)] = self.row
                 return
             before = bytes(self.row)
-        raise SimulationError(
-            "the outputs at the start do not settle: the connections form an algebraic loop"
-        )
+        raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
 
     def run(self, scheme: Scheme, label: str) -> None:
         """Makes all steps and fills the table.

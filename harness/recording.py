@@ -73,9 +73,7 @@ def read_recording(path: Path) -> Recording:
         for row in rows:
             if any(cell.strip() for cell in row):
                 lines.append(rows.line_num)
-                table.append(
-                    [_number(path, rows.line_num, header, row, place) for place, _ in places.values()]
-                )
+                table.append([_number(path, rows.line_num, header, row, place) for place, _ in places.values()])
     if len(table) < 2:
         raise RecordingError(f"{path}: {len(table)} samples; a drive needs at least two")
     factors = [factor for _, factor in places.values()]
@@ -131,9 +129,7 @@ def _check_time(path: Path, time: np.ndarray, lines: list[int]) -> None:
     backward = np.flatnonzero(steps <= 0.0)
     if len(backward):
         k = backward[0]
-        raise RecordingError(
-            f"{path}, line {lines[k + 1]}: time {time[k + 1]:g} s does not come after {time[k]:g} s"
-        )
+        raise RecordingError(f"{path}, line {lines[k + 1]}: time {time[k + 1]:g} s does not come after {time[k]:g} s")
     limit = GAP_LIMIT * float(np.median(steps))
     gaps = np.flatnonzero(steps > limit)
     if len(gaps):

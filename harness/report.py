@@ -80,9 +80,7 @@ def terminal_table(rows: Sequence[Row]) -> Table:
     table.add_column("manoeuvre", no_wrap=True)
     table.add_column("", min_width=3)
     for shown in SHOWN:
-        table.add_column(
-            f"{shown.heading}\n{shown.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold"
-        )
+        table.add_column(f"{shown.heading}\n{shown.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold")
     for k, row in enumerate(rows):
         if k == 0 or row.plant != rows[k - 1].plant:
             table.add_section()

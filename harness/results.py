@@ -18,8 +18,7 @@ def write_csv(results: np.ndarray, path: Path) -> None:
     """
     names = results.dtype.names or ()
     columns = [
-        (results[name].astype(int) if results[name].dtype == np.bool_ else results[name]).tolist()
-        for name in names
+        (results[name].astype(int) if results[name].dtype == np.bool_ else results[name]).tolist() for name in names
     ]
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")

@@ -5,9 +5,7 @@ import numpy as np
 DRIVE_TRAIN = (5.0, 50.0)
 
 
-def band_rms(
-    x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN, derivative: bool = False
-) -> float:
+def band_rms(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN, derivative: bool = False) -> float:
     """The rms of the part of x (N samples, T_s apart) within a band in Hz, both ends included.
 
     The straight line from the first to the last sample is subtracted, so that a drift does not leak

@@ -93,11 +93,12 @@ def loop(plant: str | Path = PLANTS[0], folder: Path = BUILD) -> System:
         WiringError: there is no such plant.
     """
     return System(
+        # of all orders this one comes nearest to the loop as one system: see docs/coupling.md
         instances={
-            "controller": folder / "DampingController.fmu",
             "motor": folder / "MotorTorqueLoop.fmu",
-            "plant": plant_file(plant, folder),
+            "controller": folder / "DampingController.fmu",
             "can": folder / "WheelSpeedCan.fmu",
+            "plant": plant_file(plant, folder),
         },
         connections=CONNECTIONS,
         inputs=INPUTS,
@@ -117,6 +118,4 @@ def plant_file(plant: str | Path, folder: Path = BUILD) -> Path:
     path = Path(plant)
     if path.suffix == ".fmu":
         return path
-    raise WiringError(
-        f"unknown plant {plant}; {nearest(str(plant), PLANTS)} (or give the path of a .fmu file)"
-    )
+    raise WiringError(f"unknown plant {plant}; {nearest(str(plant), PLANTS)} (or give the path of a .fmu file)")

@@ -22,7 +22,7 @@ from . import torque_estimator as estimator
 from .block import Block
 from .declaration import Boolean, Enumeration, Integer, Real
 from .motor_signals import MotorSignals, plausible
-from .operators import clip, is_finite, logical_and, minimum, where
+from .operators import branch, clip, is_finite, logical_and, minimum, where
 from .torque_estimator import HISTORY, Estimate
 from .vehicle import HalfGap, MotorInertia
 
@@ -176,10 +176,6 @@ def toward(value: Any, target: Any, p: Parameters) -> Any:
     return value + clip(target - value, -step, step)
 
 
-def either(condition: Any, e: Estimate, otherwise: Estimate) -> Estimate:
-    return Estimate(*(where(condition, a, b) for a, b in zip(e, otherwise, strict=True)))
-
-
 def estimate(x: State, u: Input, p: Parameters) -> tuple[Estimate, MotorSignals, Any]:
     """The corrected estimate, the motor signals it used, whether a wheel speed was usable."""
     T_mot = motor_signals.torque(u.T_mot_est, x.T_mot, p)
@@ -191,8 +187,12 @@ def estimate(x: State, u: Input, p: Parameters) -> tuple[Estimate, MotorSignals,
     omega_2_can = where(is_finite(u.omega_2_can), u.omega_2_can, 0.0)
     new = logical_and(u.counter != x.counter, logical_and(u.valid, plausible(u.omega_2_can, p.omega_max)))
     usable = logical_and(new, abs(omega_2_can - e.omega_2) <= p.e_max)
-    corrected = estimator.correct_by_wheel_speed(e, omega_2_can, x.past, p.T_age / T_S, x.share, p)
-    return estimator.bounded(either(usable, corrected, e), p), motor, usable
+    corrected = branch(
+        usable,
+        lambda: estimator.correct_by_wheel_speed(e, omega_2_can, x.past, p.T_age / T_S, x.share, p),
+        lambda: e,
+    )
+    return estimator.bounded(corrected, p), motor, usable
 
 
 def update(x: State, u: Input, p: Parameters) -> State:
@@ -200,13 +200,13 @@ def update(x: State, u: Input, p: Parameters) -> State:
     bad = where(motor.good, 0.0, minimum(x.bad + T_S, p.t_bad + T_S))
     trusted = bad <= p.t_bad
     omega_1 = motor_signals.speed(u.omega_1_meas, e.omega_1, p)
-    e = either(trusted, e, estimator.at_rest_with(omega_1, motor.T_mot, p))
+    e = branch(trusted, lambda: e, lambda: estimator.at_rest_with(omega_1, motor.T_mot, p))
 
     T_driver = demand(u, p)
     still = law.is_still(T_driver, motor.omega_1, p)
     quiet = where(still, minimum(x.quiet + T_S, p.t_rest + p.t_fade), 0.0)
     rest = law.resting(quiet, p)
-    e = either(rest >= 1.0, Estimate(0.0, 0.0, 0.0, 0.0), e)
+    e = branch(rest >= 1.0, lambda: Estimate(0.0, 0.0, 0.0, 0.0), lambda: e)
 
     motion = law.motion(estimator.predict(e, motor.T_mot, p.T_pred, p), p)
     landing = where(law.in_gap(e, p), minimum(x.landing + T_S, p.t_land + T_S), 0.0)

@@ -28,9 +28,7 @@ from .plant import Input, Output
 
 class Parameters(NamedTuple):
     J_1: vehicle.MotorInertia = 0.055
-    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = (
-        0.30
-    )
+    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = 0.30
     C: Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)] = 117.4
     phi_B: vehicle.HalfGap = 0.157
     i: vehicle.GearRatio = 9.0
@@ -49,9 +47,7 @@ class Parameters(NamedTuple):
     omega_sat: brake.BristleSpeedLimit = 20.0
     v_0: vehicle.StartSpeed = 0.0
     T_0: vehicle.StartTorque = 0.0
-    recorded_load: Annotated[bool, Boolean("leave the vehicle out and take T_load_rec as load torque")] = (
-        False
-    )
+    recorded_load: Annotated[bool, Boolean("leave the vehicle out and take T_load_rec as load torque")] = False
 
 
 class State(NamedTuple):

@@ -44,9 +44,7 @@ class Parameters(NamedTuple):
     k_g: Annotated[float, Real("N.m/rad", "stiffness of the gear stage", 1e4, 5e5)] = 120000.0
     d_g: Annotated[float, Real("N.m.s/rad", "impact damping of the gear stage", 0.0, 100.0)] = 12.0
     y_g: Annotated[float, Real("rad", "penetration at which the impact damping is full", 1e-4, 0.1)] = 0.002
-    J_d: Annotated[float, Real("kg.m2", "inertia of the difference motion of the side gears", 0.01, 1.0)] = (
-        0.03
-    )
+    J_d: Annotated[float, Real("kg.m2", "inertia of the difference motion of the side gears", 0.01, 1.0)] = 0.03
     d_d: Annotated[float, Real("N.m.s/rad", "damping of the difference motion", 0.0, 50.0)] = 5.0
     J_p: Annotated[float, Real("kg.m2", "inertia of the powertrain block on its mounts", 0.5, 50.0)] = 6.0
     k_p: Annotated[float, Real("N.m/rad", "stiffness of the mounts", 1e3, 1e6)] = 70000.0
@@ -68,9 +66,7 @@ class Parameters(NamedTuple):
     c_fm: Annotated[float, Real("N.m", "friction of the rotor", 0.0, 20.0)] = 0.6
     omega_fm: Annotated[float, Real("rad/s", "speed at which the rotor friction sets in", 0.1, 100.0)] = 5.0
     c_fg: Annotated[float, Real("N.m", "friction of the carrier, wheel side", 0.0, 100.0)] = 5.0
-    omega_fg: Annotated[float, Real("rad/s", "speed at which the carrier friction sets in", 0.05, 100.0)] = (
-        0.5
-    )
+    omega_fg: Annotated[float, Real("rad/s", "speed at which the carrier friction sets in", 0.05, 100.0)] = 0.5
     v_fg: Annotated[float, Real("N.m.s/rad", "viscous friction of the carrier", 0.0, 20.0)] = 0.2
     pp: Annotated[float, Real("1", "pole pairs of the motor", 1.0, 20.0)] = 2.0
     r_6a: Annotated[float, Real("N.m", "sixth-order torque ripple without load", 0.0, 20.0)] = 0.4

@@ -27,9 +27,7 @@ def test_the_validator_finds_nothing(built, name):
 
 @every_fmu
 def test_value_references_count_inputs_outputs_and_parameters(description):
-    assert [v.valueReference for v in description.modelVariables] == list(
-        range(len(description.modelVariables))
-    )
+    assert [v.valueReference for v in description.modelVariables] == list(range(len(description.modelVariables)))
     assert [v.causality for v in description.modelVariables] == sorted(
         (v.causality for v in description.modelVariables), key=["input", "output", "parameter"].index
     )
@@ -113,9 +111,7 @@ def test_an_output_changes_only_with_what_it_is_said_to_depend_on(name):
         if variable.causality == "output":
             continue
         change = {variable.name: other_value(variable)}
-        new_u, new_p = (
-            (u._replace(**change), p) if variable.causality == "input" else (u, p._replace(**change))
-        )
+        new_u, new_p = (u._replace(**change), p) if variable.causality == "input" else (u, p._replace(**change))
         started = block.output(block.start(new_u, new_p), new_u, new_p)._asdict()
         assert all(variable.name in at_start[y] for y in before if started[y] != before[y])
         if variable.causality == "input":

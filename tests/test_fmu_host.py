@@ -149,3 +149,8 @@ run(30)
 print(run(30), [name for name in sys.modules if name.split(".")[0] in ("models", "fmus", "pythonfmu")])
 """
     assert ends_in_order(run_host(program, tmp_path)) == "0 []\n"
+
+
+def test_the_binary_still_has_the_guard_that_is_dismissed(built, tmp_path):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path / "unpacked") as host:
+        assert host.fmu.dll["finalizePythonInterpreter"], "wrapper.dismiss_guard relies on it"

@@ -99,9 +99,7 @@ def test_the_archive_holds_what_runs_and_nothing_else(built, name):
     assert {info.date_time for info in infos} == {(1980, 1, 1, 0, 0, 0)}
     assert {info.compress_type for info in infos} == {zipfile.ZIP_DEFLATED}
     assert {f"binaries/{where}" for where in (f"linux64/{name}.so", f"win64/{name}.dll")} <= set(names)
-    assert not [
-        n for n in names if "builder" in n or "deploy" in n or "__pycache__" in n or n.endswith(".pyc")
-    ]
+    assert not [n for n in names if "builder" in n or "deploy" in n or "__pycache__" in n or n.endswith(".pyc")]
     carried = {Path(n).stem for n in names if "/models/" in n}
     blocks = {fmu.module.split(".")[1] for fmu in FMUS.values()}
     assert carried & blocks == {FMUS[name].module.split(".")[1]}

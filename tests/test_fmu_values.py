@@ -14,11 +14,7 @@ SETTABLE = [
     for variable in interface(fmu.block)
     if variable.causality != "output" and variable.fmi_type != "Boolean"
 ]
-STRICT = [
-    (name, v)
-    for name, v in SETTABLE
-    if v.causality == "parameter" or not FMUS[name].block.tolerates_bad_input
-]
+STRICT = [(name, v) for name, v in SETTABLE if v.causality == "parameter" or not FMUS[name].block.tolerates_bad_input]
 
 
 @pytest.fixture(scope="module")

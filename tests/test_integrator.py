@@ -35,9 +35,7 @@ class Nothing(NamedTuple):
     pass
 
 
-def block(
-    derivative: Callable[..., Body], *surfaces: Callable[[Body], float], step_size: float = 0.1
-) -> Block:
+def block(derivative: Callable[..., Body], *surfaces: Callable[[Body], float], step_size: float = 0.1) -> Block:
     return Block(
         name="Body",
         description="a body and surfaces",

@@ -53,9 +53,7 @@ def test_jacobi_delays_each_connection_by_one_step(chain):
 def test_every_type_is_passed_on(relay):
     system = System({"a": relay, "b": relay}, (Connection("a.n_out", "b.n"), Connection("a.b_out", "b.b")))
     flags = np.arange(11) % 3 == 0
-    results = run(
-        system, 0.01, inputs={"a.n": np.arange(11), "a.b": flags}, parameters={"b.count": 5, "b.flag": True}
-    )
+    results = run(system, 0.01, inputs={"a.n": np.arange(11), "a.b": flags}, parameters={"b.count": 5, "b.flag": True})
     np.testing.assert_array_equal(results["b.n_out"][1:], np.arange(10) + 5)
     np.testing.assert_array_equal(results["b.b_out"][1:], ~flags[:-1])
     assert results.dtype["b.n_out"] == np.int32
@@ -88,9 +86,7 @@ def test_a_run_ends_with_its_last_whole_step():
 
 
 def test_a_refusal_names_instance_function_time_and_reason(chain):
-    with pytest.raises(
-        SimulationError, match=r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.003 s"
-    ) as refusal:
+    with pytest.raises(SimulationError, match=r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.003 s") as refusal:
         run(chain, 0.01, inputs={"a.u": ramp}, parameters={"b.limit": 2.5})
     assert "u = 3.0 is beyond the limit of 2.5" in str(refusal.value)
 
@@ -105,9 +101,7 @@ def test_an_error_leaves_no_files_behind(chain, tmp_path, monkeypatch):
 
 def test_outputs_that_feed_back_at_the_start_are_refused(built):
     """omega_1_meas is a direct function of omega_1: fed back with its noise, it has no value."""
-    system = System(
-        {"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.omega_1_meas", "motor.omega_1"),)
-    )
+    system = System({"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.omega_1_meas", "motor.omega_1"),))
     with pytest.raises(SimulationError, match="algebraic loop"):
         run(system, 0.01, parameters={"motor.sigma_omega": 5.0})
 
@@ -121,9 +115,7 @@ def test_the_loop_starts_consistently(built):
 
 @pytest.mark.parametrize("plant", PLANTS)
 def test_runs_are_reproducible_and_seeds_matter(built, plant):
-    first, second, other = (
-        simulate(SHORT, plant, step_size=2e-3, seed=seed, folder=built) for seed in (1, 1, 2)
-    )
+    first, second, other = (simulate(SHORT, plant, step_size=2e-3, seed=seed, folder=built) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, second)
     assert (first["motor.omega_1_meas"] != other["motor.omega_1_meas"]).any()
 

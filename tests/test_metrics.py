@@ -171,9 +171,7 @@ def test_only_samples_of_the_controller_count():
     T_gear, _ = decaying(0.08)
     coarse = evaluate(run(T_gear=T_gear, interval=2e-3), MANOEUVRES["tipin15"])
     fine = evaluate(run(T_gear=T_gear, interval=5e-4), MANOEUVRES["tipin15"])
-    assert (fine.ts, fine.OS, fine.bTg, fine.zeta) == pytest.approx(
-        (coarse.ts, coarse.OS, coarse.bTg, coarse.zeta)
-    )
+    assert (fine.ts, fine.OS, fine.bTg, fine.zeta) == pytest.approx((coarse.ts, coarse.OS, coarse.bTg, coarse.zeta))
 
 
 def test_results_too_coarse_for_the_controller_are_refused():

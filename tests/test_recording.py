@@ -28,9 +28,7 @@ def rows(count):
 
 
 def test_columns_are_found_by_name_and_turned_into_si_units(write):
-    path = write(
-        "0,10,1,x,0.02", "200,11,2,x,0.03", header="t [ms],SPEED [m/s],Altitude [km],Note, Torque [kNm]"
-    )
+    path = write("0,10,1,x,0.02", "200,11,2,x,0.03", header="t [ms],SPEED [m/s],Altitude [km],Note, Torque [kNm]")
     recording = read_recording(path)
     assert recording.time.tolist() == [0.0, 0.2]
     assert recording.v.tolist() == [10.0, 11.0]

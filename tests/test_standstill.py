@@ -9,9 +9,7 @@ import pytest
 from fmus.integrator import Integrator
 from models import two_mass_driveline, validation_vehicle
 
-PLANTS = pytest.mark.parametrize(
-    "plant", [two_mass_driveline, validation_vehicle], ids=lambda m: m.BLOCK.name
-)
+PLANTS = pytest.mark.parametrize("plant", [two_mass_driveline, validation_vehicle], ids=lambda m: m.BLOCK.name)
 
 
 def drive(plant: ModuleType, duration: float, u_of_t: Any, h: float = 2e-3, **start: float) -> list[Any]:

@@ -56,9 +56,7 @@ def test_a_plant_from_elsewhere_runs_in_the_loop(built, tmp_path):
     ],
 )
 def test_a_misnamed_variable_is_named(built, tmp_path, old, new, complaint):
-    plant = tampered(
-        built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(old, new, 1)
-    )
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(old, new, 1))
     with pytest.raises(WiringError, match=complaint):
         simulate(MANOEUVRES["tipin15"], plant, folder=built)
 

@@ -24,9 +24,7 @@ class Relay(Fmi2Slave):
                 )
             )
         for name, kind in {"gain": Real, "limit": Real, "count": Integer, "flag": Boolean}.items():
-            self.register_variable(
-                kind(name, causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed)
-            )
+            self.register_variable(kind(name, causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed))
 
     def _pass_on(self):
         self.y, self.n_out, self.b_out = self.gain * self.u, self.n + self.count, self.b != self.flag
