@@ -1,9 +1,14 @@
 """What several tests share."""
 
 import pytest
+from hypothesis import settings
 
 from fmus.catalogue import FMUS
 from fmus.packaging import build
+
+# the same examples in every run, and nothing timed
+settings.register_profile("driveline", deadline=None, derandomize=True)
+settings.load_profile("driveline")
 
 
 @pytest.fixture(scope="session")

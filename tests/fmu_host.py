@@ -25,6 +25,7 @@ class Host:
         self._callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
         self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        assert self.description.coSimulation
         self.fmu = FMU2Slave(
             guid=self.description.guid,
             unzipDirectory=str(unpacked),

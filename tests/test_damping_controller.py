@@ -66,7 +66,7 @@ def bump(states: list[controller.State]) -> float:
 
 
 @given(inputs=st.lists(any_input, min_size=1, max_size=40), T_max=st.floats(1.0, 500.0))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_the_torque_is_finite_and_limited_whatever_comes_in(inputs: list[controller.Input], T_max: float) -> None:
     p = P._replace(T_max=T_max)
     for x in run(inputs, p):
@@ -77,7 +77,7 @@ def test_the_torque_is_finite_and_limited_whatever_comes_in(inputs: list[control
 
 
 @given(inputs=st.lists(any_input, min_size=1, max_size=20))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_it_recovers_from_whatever_came_in(inputs: list[controller.Input]) -> None:
     """Within a second all states are those of a controller that never saw it."""
     states = run([*inputs, *driven(1.5)])
@@ -86,7 +86,7 @@ def test_it_recovers_from_whatever_came_in(inputs: list[controller.Input]) -> No
 
 
 @given(T=st.floats(-120.0, 120.0), omega=st.floats(10.0, 900.0))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_a_stationary_torque_is_unchanged(T: float, omega: float) -> None:
     """The signals change in their last digits only, so that they are not frozen."""
     u = ROLLING._replace(T_driver=T, T_mot_est=T, omega_1_meas=omega, omega_2_can=omega)

@@ -87,7 +87,6 @@ def test_a_crossing_is_located_within_the_tolerance() -> None:
     assert above - below <= 1.1 * LOCATION_TOLERANCE * speed
 
 
-@settings(deadline=None)
 @given(t=st.floats(0.011, 0.049), share=st.floats(1e-4, 0.99))
 def test_an_excursion_within_one_step_is_found(t: float, share: float) -> None:
     """A body thrown up at t = 0 is highest at t; it is above the surface for 2 share t."""
@@ -104,7 +103,7 @@ def test_an_excursion_within_one_step_is_found(t: float, share: float) -> None:
     T_mot=st.floats(-100.0, 100.0),
     T_load=st.floats(-100.0, 100.0),
 )
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_one_long_advance_is_its_parts(steps: list[int], T_mot: float, T_load: float) -> None:
     """Bit by bit, where the parts are whole steps; flanks are crossed on the way."""
     integrator = Integrator(replace(driveline.BLOCK, step_size=BINARY_STEP))
@@ -115,7 +114,7 @@ def test_one_long_advance_is_its_parts(steps: list[int], T_mot: float, T_load: f
 
 
 @given(parts=st.lists(st.floats(1e-5, 0.02), min_size=1, max_size=8))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_any_duration_can_be_split_anywhere(parts: list[float]) -> None:
     """Motor, wheels and twist, whose only kinks are the flanks; the unused vehicle has others."""
     integrator, u, x = Integrator(driveline.BLOCK), driveline.Input(T_mot=20.0), LIVELY

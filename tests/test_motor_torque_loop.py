@@ -33,7 +33,7 @@ def step_response(t: float, tau: float) -> float:
 
 
 @given(T=st.floats(-180.0, 180.0), tau=st.floats(5e-4, 0.1))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_the_step_response_is_that_of_the_paper(T: float, tau: float) -> None:
     """In steps of a third of tau, which is the default step at the default tau."""
     block = replace(motor.BLOCK, step_size=min(motor.BLOCK.step_size, tau / 3.0))

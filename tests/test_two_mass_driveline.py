@@ -69,7 +69,7 @@ def test_gear_torque_is_continuous_odd_and_rises_with_the_stiffness(phi: float, 
     assert driveline.gear_torque(x._replace(phi=-phi), p) == -driveline.gear_torque(x, p)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(T=st.floats(-150.0, 150.0), v_0=st.floats(1.0, 30.0))
 def test_a_rolling_start_is_stationary(T: float, v_0: float) -> None:
     p = driveline.Parameters(v_0=v_0, T_0=T)

@@ -115,7 +115,7 @@ def dissipation(x: vehicle.State, u: vehicle.Input) -> tuple[float, float]:
 
 
 @given(x=states, u=inputs)
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 def test_dissipation_is_never_negative(x: vehicle.State, u: vehicle.Input) -> None:
     dissipated, rounding = dissipation(x, u)
     assert dissipated >= -rounding
@@ -149,7 +149,7 @@ def test_gear_torque_is_continuous_at_the_flanks(x: vehicle.State, flank: float,
     assert abs(vehicle.gear_torque(touching, P)) <= 1.001 * (P.k_g + P.d_g * speed / P.y_g) * depth + 1e-9
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(centre=st.floats(-2.0, 2.0), swing=st.floats(0.01, 4.0), omega=st.floats(0.1, 300.0))
 def test_the_gear_never_creates_energy(centre: float, swing: float, omega: float) -> None:
     """Work put into the gear over a closed cycle of its twist; that of the design model is zero."""
