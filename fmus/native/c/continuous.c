@@ -1,0 +1,143 @@
+/* A continuous block: its steps, and its rates of change. */
+#include "instance.h"
+#include "integrator.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+void advance(Memory *memory, double end, double duration)
+{
+    Values *values = &memory->values;
+    const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p};
+    (void)end;
+    integrate(&problem, duration, &memory->x);
+    if (memory->moving) {
+        Input room;
+        values->u = *inputs_at(&problem, duration, &room);
+        memset(&memory->du, 0, sizeof memory->du);
+        memory->moving = 0;
+    }
+}
+
+/* An input's place in a record of rates of the inputs. */
+static real *rate_of_input(Input *du, const Variable *variable)
+{
+    return (real *)(void *)((char *)du + (variable->offset - offsetof(Values, u)));
+}
+
+fmi2Status check_moving_inputs(Instance *instance, double duration)
+{
+    Memory *memory = &instance->memory;
+    for (unsigned k = 0; memory->moving && k < variable_count && variables[k].causality == INPUT; k++) {
+        const Variable *variable = &variables[k];
+        const double end = *place_of(&memory->values, variable) + duration * *rate_of_input(&memory->du, variable);
+        char text[NUMBER_LENGTH];
+        if (!(end >= variable->minimum && end <= variable->maximum))
+            return refuse(
+                instance,
+                "%s = %s%s%s at the end of the step is refused; allowed is %s",
+                variable->name,
+                write_number(text, end),
+                *variable->unit ? " " : "",
+                variable->unit,
+                variable->allowed);
+    }
+    return fmi2OK;
+}
+
+fmi2Status set_input_rates(
+    Instance *instance, const fmi2ValueReference references[], size_t count, const fmi2Real rates[])
+{
+    for (size_t k = 0; k < count; k++) {
+        const Variable *variable = variable_of(instance, references[k], REAL);
+        char text[NUMBER_LENGTH];
+        if (!variable)
+            return fmi2Error;
+        if (variable->causality != INPUT)
+            return refuse(instance, "%s is not an input and has no input derivative", variable->name);
+        if (!isfinite(rates[k]))
+            return refuse(
+                instance,
+                "%s is refused as derivative of %s; allowed is any finite number",
+                write_number(text, rates[k]),
+                variable->name);
+    }
+    for (size_t k = 0; k < count; k++)
+        *rate_of_input(&instance->memory.du, &variables[references[k]]) = rates[k];
+    instance->memory.moving = instance->memory.moving || count > 0;
+    return fmi2OK;
+}
+
+fmi2Status get_output_rates(
+    Instance *instance, const fmi2ValueReference references[], size_t count, fmi2Real rates[])
+{
+    const Memory *memory = &instance->memory;
+    const Values *values = &memory->values;
+    Values changes;
+    State dx;
+    for (size_t k = 0; k < count; k++) {
+        const Variable *variable = variable_of(instance, references[k], REAL);
+        if (!variable)
+            return fmi2Error;
+        if (variable->causality != OUTPUT)
+            return refuse(instance, "%s is not an output and has no output derivative", variable->name);
+    }
+    derivative(&memory->x, &values->u, &values->p, &dx);
+    output_rate(&memory->x, &values->u, &values->p, &dx, &memory->du, &changes.y);
+    for (size_t k = 0; k < count; k++)
+        rates[k] = *place_of(&changes, &variables[references[k]]);
+    return fmi2OK;
+}
+
+/* Whether a variable can take part in a directional derivative as unknown (an output) or as known (an input, and
+until initialization mode is left a parameter); else it is refused. */
+static int is_differentiable(const Instance *instance, fmi2ValueReference reference, int unknown)
+{
+    const Variable *variable = variable_of(instance, reference, REAL);
+    if (!variable)
+        return 0;
+    const Causality causality = variable->causality;
+    const int tuning = instance->memory.mode == INITIALIZATION;
+    if (unknown ? causality == OUTPUT : causality == INPUT || (causality == PARAMETER && tuning))
+        return 1;
+    refuse(
+        instance,
+        "%s cannot be %s of a directional derivative; allowed is any %s",
+        variable->name,
+        unknown ? "the unknown" : "a known",
+        unknown ? "output" : tuning ? "input or parameter" : "input");
+    return 0;
+}
+
+fmi2Status get_directional_derivative(
+    Instance *instance,
+    const fmi2ValueReference unknown[],
+    size_t unknowns,
+    const fmi2ValueReference known[],
+    size_t knowns,
+    const fmi2Real change[],
+    fmi2Real result[])
+{
+    const Memory *memory = &instance->memory;
+    const Values *values = &memory->values;
+    Values changes;
+    State dx;
+    memset(&changes, 0, sizeof changes);
+    memset(&dx, 0, sizeof dx);
+    for (size_t k = 0; k < unknowns; k++)
+        if (!is_differentiable(instance, unknown[k], 1))
+            return fmi2Error;
+    for (size_t k = 0; k < knowns; k++) {
+        if (!is_differentiable(instance, known[k], 0))
+            return fmi2Error;
+        *place_of(&changes, &variables[known[k]]) += change[k];
+    }
+    if (memory->mode == INITIALIZATION)
+        start_rate(&values->u, &values->p, &changes.u, &changes.p, &changes.y);
+    else
+        output_rate(&memory->x, &values->u, &values->p, &dx, &changes.u, &changes.y);
+    for (size_t k = 0; k < unknowns; k++)
+        result[k] = *place_of(&changes, &variables[unknown[k]]);
+    return fmi2OK;
+}

@@ -1,0 +1,28 @@
+/* Integrating a continuous block. */
+#ifndef INTEGRATOR_H
+#define INTEGRATOR_H
+
+#include "block.h"
+
+/* What is integrated: the block with its parameters, and inputs that move at the rates du (NULL if held). */
+typedef struct {
+    const Input *u;
+    const Input *du;
+    const Parameters *p;
+} Problem;
+
+#if defined __GNUC__
+#pragma GCC visibility push(hidden)
+#endif
+
+/* Takes the state x to `duration` s later, in equal steps no longer than LONGEST_STEP. */
+void integrate(const Problem *problem, double duration, State *x);
+
+/* The inputs t s after the start of the communication step; `room` is for them if they move. */
+const Input *inputs_at(const Problem *problem, double t, Input *room);
+
+#if defined __GNUC__
+#pragma GCC visibility pop
+#endif
+
+#endif

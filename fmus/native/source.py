@@ -1,0 +1,151 @@
+"""The C source of a block: block.h and block.c, and variables.c with what the FMI functions know of it."""
+
+import re
+from typing import Any
+
+from ..fmu import Fmu
+from ..interface import Variable, interface
+from .arithmetic import Graph
+from .records import paths, structs
+from .statements import DOUBLE, Precision, Statements
+from .trace import Traced, trace
+
+RECORDS = {"x": "State", "u": "Input", "p": "Parameters", "y": "Output", "next": "State"}
+"""Type of the argument or result of each name; a rate of change has that of what changes."""
+
+MEANINGS = {
+    "start": "The state at the start, with the inputs of that instant.",
+    "output": "The outputs.",
+    "derivative": "The rate of change of the state.",
+    "surfaces": "Values that are zero where the equations have a kink.",
+    "update": "The state at the next sample.",
+    "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
+    "start_rate": "The rate of change of the outputs at the start when inputs and parameters change at du and dp.",
+}
+
+HEADER = """/* {name}: {description}.
+
+Written by build_fmus.py from {module}, which is its documentation:
+
+{equations}
+*/
+#ifndef BLOCK_H
+#define BLOCK_H
+
+typedef {precision.real} real;
+
+{structs}
+
+{constants}
+
+{prototypes}
+
+#endif
+"""
+
+SOURCE = """/* {name}: arithmetic, written by build_fmus.py from {module}. */
+#include "block.h"
+#include "operators.h"
+
+{functions}
+"""
+
+
+def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
+    """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI."""
+    block = fmu.block
+    u, p = block.Input(), block.Parameters()
+    x = block.start(u, p)
+    records = {"x": x, "u": u, "p": p, "y": block.output(x, u, p), "next": x}
+    traced = trace(block)
+    about = {"name": fmu.name, "description": block.description, "module": fmu.module}
+    header = HEADER.format(
+        **about,
+        equations=fmu.equations.replace("*/", "* /").strip(),
+        precision=precision,
+        structs="\n\n".join(text for record in "upyx" for text in structs(records[record])),
+        constants="\n".join(_constants(fmu, traced)),
+        prototypes="\n".join(f"/* {MEANINGS[each.name]} */\n{_head(each)};" for each in traced),
+    )
+    functions = "\n\n".join(_function(each, records, precision) for each in traced)
+    return {"block.h": header, "block.c": SOURCE.format(**about, functions=functions)}
+
+
+def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
+    """What else there is to know of the block."""
+    if fmu.block.update:
+        return [f"#define SAMPLE_TIME {fmu.block.sample_time!r} /* s */"]
+    surfaces = [each.function.size1_out(0) for each in traced if each.name == "surfaces"]
+    return [
+        f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
+        f"#define SURFACES {sum(surfaces)}",
+    ]
+
+
+def _record(name: str) -> str:
+    return RECORDS[name if name in RECORDS else name.removeprefix("d")]
+
+
+def _head(each: Traced) -> str:
+    arguments = [f"const {_record(name)} *{name}" for name in each.arguments]
+    result = "real g[]" if each.result == "g" else f"{_record(each.result)} *{each.result}"
+    return f"void {each.name}({', '.join([*arguments, result])})"
+
+
+def _function(each: Traced, records: dict[str, Any], precision: Precision) -> str:
+    inputs = [_lvalues(name, records) for name in each.arguments]
+    size = each.function.size1_out(0)
+    outputs = [f"g[{k}]" for k in range(size)] if each.result == "g" else _lvalues(each.result, records)
+    lines = Statements(Graph(each.function), inputs, outputs, precision).lines
+    text = "\n".join(lines)
+    unused = [f"    (void){name};" for name in each.arguments if not re.search(rf"\b{name}->", text)]
+    return "\n".join([_head(each), "{", *unused, *lines, "}"])
+
+
+def _lvalues(name: str, records: dict[str, Any]) -> list[str]:
+    record = records[name if name in records else name.removeprefix("d")]
+    return [path.replace(f"{name}.", f"{name}->", 1) for path in paths(name, record)]
+
+
+VARIABLES = """/* {name}: its variables as FMI shows them, written by build_fmus.py from {module}. */
+#include "variables.h"
+
+#include <stddef.h>
+
+const char *const model_name = "{name}";
+const char *const model_guid = "{guid}";
+const int copes_with_bad_input = {copes};
+const unsigned variable_count = {count};
+
+const Variable variables[{count}] = {{
+{rows}
+}};
+"""
+
+FIELD = {"input": "u", "output": "y", "parameter": "p"}
+
+
+def variables_source(fmu: Fmu, guid: str) -> str:
+    """variables.c: name, unit, place, bounds and start value of every variable, by value reference."""
+    listed = interface(fmu.block)
+    return VARIABLES.format(
+        name=fmu.name,
+        module=fmu.module,
+        guid=guid,
+        copes=int(fmu.block.tolerates_bad_input),
+        count=len(listed),
+        rows="\n".join(map(_row, listed)),
+    )
+
+
+def _row(variable: Variable) -> str:
+    low, high = variable.bounds()
+    start = 0.0 if variable.start is None else variable.start
+    numbers = ", ".join(_number(value) for value in (low, high, start))
+    place = f"offsetof(Values, {FIELD[variable.causality]}.{variable.name})"
+    kinds = f"{variable.fmi_type.upper()}, {variable.causality.upper()}"
+    return f'    {{"{variable.name}", "{variable.unit}", "{variable.allowed()}", {kinds}, {place}, {numbers}}},'
+
+
+def _number(value: Any) -> str:
+    return repr(float(value))

@@ -1,0 +1,218 @@
+"""C statements for a traced function."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from .arithmetic import TRUTH_VALUES, Graph, Guard, Node
+
+
+class Precision(NamedTuple):
+    """How C writes a real number: its type, the endings of constants and of the functions of math.h."""
+
+    real: str
+    constant: str
+    function: str
+
+
+DOUBLE = Precision("double", "", "")
+
+LONGEST = 80
+"""Characters of an expression; longer ones are given a name."""
+
+SUM, PRODUCT, SIGN, ATOM = 5, 6, 7, 8
+CHOICE, OR, AND, COMPARISON = 1, 2, 3, 4
+INFIX = {
+    "ADD": ("+", SUM),
+    "SUB": ("-", SUM),
+    "MUL": ("*", PRODUCT),
+    "DIV": ("/", PRODUCT),
+    "LT": ("<", COMPARISON),
+    "LE": ("<=", COMPARISON),
+    "EQ": ("==", COMPARISON),
+    "NE": ("!=", COMPARISON),
+    "AND": ("&&", AND),
+    "OR": ("||", OR),
+}
+CALLED = {"FABS": "fabs", "FMIN": "fmin", "FMAX": "fmax", "CONSTPOW": "pow"}
+"""C functions whose names are not those of the operations."""
+
+
+class Text(NamedTuple):
+    """An expression in C and how strongly it holds together."""
+
+    text: str
+    strength: int = ATOM
+
+    def within(self, strength: int) -> str:
+        """Itself, in parentheses where an operator of that strength would tear it apart."""
+        return self.text if self.strength >= strength else f"({self.text})"
+
+
+class Statements:
+    """Writes the operations of a graph in the order in which the outputs need them.
+
+    Args:
+        inputs: for every input of the function and each of its elements what C calls it.
+        outputs: for each element of the output what is assigned to.
+    """
+
+    def __init__(
+        self, graph: Graph, inputs: Sequence[Sequence[str]], outputs: Sequence[str], precision: Precision = DOUBLE
+    ) -> None:
+        self._graph = graph
+        self._inputs = inputs
+        self._precision = precision
+        self._guards = graph.guards()
+        self._uses = Counter(graph.outputs.values())
+        self._uses.update({k: len(users) for k, users in graph.users().items()})
+        self._conditions = {condition for guards in self._guards.values() for condition, _ in guards}
+        self._named = 0
+        self._indent = "    "
+        self._texts: dict[int, Text] = {}
+        self.lines: list[str] = []
+        for element, k in sorted(graph.outputs.items()):
+            self._need(k, frozenset())
+            self._line(f"{outputs[element]} = {self._number(k).text};")
+
+    def _line(self, text: str) -> None:
+        self.lines.append(self._indent + text)
+
+    def _need(self, k: int, context: frozenset[Guard]) -> None:
+        """Makes the text of a node available, and with it those of the nodes that it needs."""
+        if k in self._texts:
+            return
+        node = self._graph.nodes[k]
+        if node.operation == "CHOICE" and node.operands[0] in self._conditions:
+            self._branch(k, context)
+            return
+        for operand in node.operands:
+            self._need(operand, context)
+        text = self._expression(node)
+        if node.operands and (self._uses[k] > 1 or len(text.text) > LONGEST):
+            text = self._name(text, "int" if node.operation in TRUTH_VALUES else self._precision.real)
+        self._texts[k] = text
+
+    def _name(self, text: Text, kind: str) -> Text:
+        self._named += 1
+        self._line(f"const {kind} a{self._named} = {text.text};")
+        return Text(f"a{self._named}")
+
+    def _branch(self, k: int, context: frozenset[Guard]) -> None:
+        """An `if` for a choice, and for all others with the same condition that can be made there."""
+        condition = self._graph.nodes[k].operands[0]
+        self._need(condition, context)
+        chosen: list[int] = []
+        for choice in [k, *self._alike(k)]:
+            around = self._around(choice, context)
+            if choice not in self._texts and not self._depends(around, chosen):
+                for operand in around:
+                    self._need(operand, context)
+                chosen.append(choice)
+        names = [f"a{self._named + n}" for n in range(1, len(chosen) + 1)]
+        self._named += len(chosen)
+        self._line(f"{self._precision.real} {', '.join(names)};")
+        for opening, place in ((f"if ({self._truth(condition).text}) {{", 1), ("} else {", 2)):
+            self._line(opening)
+            self._side(condition, place, chosen, names, context)
+        self._line("}")
+        self._texts |= {choice: Text(name) for choice, name in zip(chosen, names, strict=True)}
+
+    def _side(self, condition: int, place: int, chosen: list[int], names: list[str], context: frozenset[Guard]) -> None:
+        """The statements of one side; what is named there is unknown elsewhere."""
+        texts, indent = dict(self._texts), self._indent
+        self._indent += "    "
+        for choice, name in zip(chosen, names, strict=True):
+            value = self._graph.nodes[choice].operands[place]
+            self._need(value, context | {(condition, place == 1)})
+            self._line(f"{name} = {self._number(value).text};")
+        self._texts, self._indent = texts, indent
+
+    def _alike(self, k: int) -> Iterable[int]:
+        """Other choices with the condition of choice k that are needed where it is, and not made yet."""
+        condition, guards = self._graph.nodes[k].operands[0], self._guards[k]
+        for other, node in enumerate(self._graph.nodes):
+            if node.operation == "CHOICE" and node.operands[0] == condition and other != k:
+                if self._guards.get(other) == guards:
+                    yield other
+
+    def _around(self, choice: int, context: frozenset[Guard]) -> list[int]:
+        """Nodes outside both sides of a choice that are needed inside."""
+        node, found, seen = self._graph.nodes[choice], [], set()
+        for place in (1, 2):
+            inside = context | {(node.operands[0], place == 1)}
+            waiting = [node.operands[place]]
+            while waiting:
+                k = waiting.pop()
+                if k in seen:
+                    continue
+                seen.add(k)
+                if self._guards[k] >= inside:
+                    waiting += self._graph.nodes[k].operands
+                else:
+                    found.append(k)
+        return sorted(found)
+
+    def _depends(self, nodes: Iterable[int], on: list[int]) -> bool:
+        """Whether one of the nodes, as far as they are not available, needs a node of `on`."""
+        waiting, seen = list(nodes), set()
+        while waiting and on:
+            k = waiting.pop()
+            if k in on:
+                return True
+            if k not in seen and k not in self._texts:
+                seen.add(k)
+                waiting += self._graph.nodes[k].operands
+        return False
+
+    def _number(self, k: int) -> Text:
+        text = self._texts[k]
+        if self._graph.nodes[k].operation not in TRUTH_VALUES:
+            return text
+        return Text(f"{text.within(OR)} ? {self._constant(1.0)} : {self._constant(0.0)}", CHOICE)
+
+    def _truth(self, k: int) -> Text:
+        text = self._texts[k]
+        if self._graph.nodes[k].operation in TRUTH_VALUES:
+            return text
+        return Text(f"{text.within(SUM)} != {self._constant(0.0)}", COMPARISON)
+
+    def _constant(self, value: float) -> str:
+        return repr(value) + self._precision.constant
+
+    def _expression(self, node: Node) -> Text:
+        operation, operands = node.operation, node.operands
+        match operation:
+            case "INPUT":
+                vector, element = node.value  # pyright: ignore[reportGeneralTypeIssues]
+                return Text(self._inputs[vector][element])
+            case "CONSTANT":
+                return Text(self._constant(node.value), SIGN if node.value < 0.0 else ATOM)  # pyright: ignore
+            case "CHOICE":
+                condition, value, otherwise = self._truth(operands[0]), *map(self._number, operands[1:])
+                return Text(f"{condition.within(OR)} ? {value.within(OR)} : {otherwise.within(OR)}", CHOICE)
+            case "NOT":
+                return Text(f"!{self._truth(operands[0]).within(ATOM)}", SIGN)
+            case "AND" | "OR":
+                sign, strength = INFIX[operation]
+                return Text(f" {sign} ".join(self._truth(k).within(COMPARISON) for k in operands), strength)
+        numbers = [self._number(k) for k in operands]
+        if operation in INFIX:
+            sign, strength = INFIX[operation]
+            left, right = (text.within(strength + place) for place, text in enumerate(numbers))
+            return Text(f"{left} {sign} {right}", strength)
+        match operation:
+            case "NEG":
+                return Text(f"-{numbers[0].within(ATOM)}", SIGN)
+            case "SQ":
+                return Text(f"square({numbers[0].text})")
+            case "TWICE":
+                return Text(f"{self._constant(2.0)} * {numbers[0].within(SIGN)}", PRODUCT)
+            case "INV":
+                return Text(f"{self._constant(1.0)} / {numbers[0].within(SIGN)}", PRODUCT)
+            case "FMOD":
+                return Text(f"modulo({', '.join(text.text for text in numbers)})")
+            case "SIGN":
+                return Text(f"sign_of({numbers[0].text})")
+        name = CALLED.get(operation, operation.lower()) + self._precision.function
+        return Text(f"{name}({', '.join(text.text for text in numbers)})")

@@ -1,0 +1,104 @@
+"""The functions of a block as CasADi functions, found by calling them with symbols.
+
+While a block is called CasADi does not simplify, so that the expressions hold the operations of the
+Python functions in their order and round as they do. Only derivatives, which Python does not have,
+are simplified.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import casadi
+
+from models.block import Block
+
+from .symbol import Symbol, expression
+
+
+class Traced(NamedTuple):
+    """One function of a block.
+
+    Attributes:
+        function: its inputs are the flattened records `arguments`, its output the flattened `result`.
+        arguments: of x, u, p, and dx, du, dp for rates of change of these.
+        result: x, dx, y, dy or, for the surfaces, g.
+    """
+
+    name: str
+    function: casadi.Function
+    arguments: tuple[str, ...]
+    result: str
+
+
+def trace(block: Block) -> tuple[Traced, ...]:
+    """All functions of a block; for a continuous one also the rates of change of its outputs.
+
+    `output_rate` is that after initialization, for given rates of x and u; `start_rate` that of the outputs
+    of the start, for given rates of u and p.
+
+    Raises:
+        TypeError: a function branches on data, or does what symbols cannot.
+    """
+    x0 = block.start(block.Input(), block.Parameters())
+    symbols = {"x": _symbols("x", x0), "u": _symbols("u", block.Input()), "p": _symbols("p", block.Parameters())}
+    x, u, p = symbols.values()
+    with _exact():
+        results = {"start": ("up", "x", block.start(u, p)), "output": ("xup", "y", block.output(x, u, p))}
+        if block.derivative:
+            results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
+            if block.surfaces:
+                results["surfaces"] = ("xup", "g", block.surfaces(x, u, p))
+        if block.update:
+            results["update"] = ("xup", "next", block.update(x, u, p))
+        started = block.output(block.start(u, p), u, p)
+    vectors = {name: _vector(record) for name, record in symbols.items()}
+    traced = [
+        _traced(name, {argument: vectors[argument] for argument in arguments}, result, _vector(values))
+        for name, (arguments, result, values) in results.items()
+    ]
+    if block.derivative:
+        traced.append(_rate("output_rate", _vector(results["output"][2]), vectors, ("x", "u")))
+        del vectors["x"]
+        traced.append(_rate("start_rate", _vector(started), vectors, ("u", "p")))
+    return tuple(traced)
+
+
+@contextmanager
+def _exact() -> Iterator[None]:
+    """While it lasts CasADi keeps every operation as it is written."""
+    before = casadi.GlobalOptions.getSimplificationOnTheFly()
+    casadi.GlobalOptions.setSimplificationOnTheFly(False)
+    try:
+        yield
+    finally:
+        casadi.GlobalOptions.setSimplificationOnTheFly(before)
+
+
+def leaves(value: Any) -> list[Any]:
+    """The numbers in nested tuples, in their order."""
+    return [leaf for item in value for leaf in leaves(item)] if isinstance(value, tuple) else [value]
+
+
+def _symbols(name: str, template: Any) -> Any:
+    """A symbol in the place of every number."""
+    if not isinstance(template, tuple):
+        return Symbol(casadi.SX.sym(name))
+    make = getattr(type(template), "_make", tuple)
+    return make([_symbols(name, item) for item in template])
+
+
+def _vector(record: Any) -> casadi.SX:
+    return casadi.vertcat(*map(expression, leaves(record)))
+
+
+def _traced(name: str, arguments: dict[str, casadi.SX], result: str, value: casadi.SX) -> Traced:
+    return Traced(name, casadi.Function(name, list(arguments.values()), [value]), tuple(arguments), result)
+
+
+def _rate(name: str, y: casadi.SX, vectors: dict[str, casadi.SX], moving: tuple[str, ...]) -> Traced:
+    """The rate of change of y while the vectors `moving` change at given rates."""
+    rates = {f"d{of}": casadi.SX.sym(f"d{of}", vectors[of].numel()) for of in moving}
+    at = casadi.vertcat(*(vectors[of] for of in moving))
+    dy = casadi.densify(casadi.jtimes(y, at, casadi.vertcat(*rates.values())))
+    return _traced(name, vectors | rates, "dy", dy)
