@@ -39,10 +39,14 @@ bench: $(READY) ## cost per communication step, side by side
 	$(BIN)/driveline build
 	$(BIN)/python -m benchmarks.step_cost
 
-docs: $(READY) ## the tables of the documentation that are computed
-	$(BIN)/python -m fmus.blocks_page
+docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs/coupling.md
+	$(BIN)/python -m fmus.blocks_page
+	$(BIN)/driveline compare
+	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
+		cat results/compare/table.md; } > docs/results.md
+	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
 
 clean: ## everything that was made
 	rm -rf $(VENV) build results *.egg-info

@@ -3,12 +3,17 @@
 import textwrap
 from collections.abc import Iterator
 from html import escape
+from pathlib import Path
 
 from models.block import Block
 from models.declaration import Enumeration
 
+from .build_kind import BuildKind
 from .fmu import Fmu
 from .interface import Variable, interface
+from .picture import picture
+
+LICENSE = Path(__file__).parent.parent / "LICENSE"
 
 PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -29,12 +34,10 @@ th, td {{ text-align: left; padding: .25em 1em .25em 0; border-bottom: 1px solid
 {equations}
 {tables}
 <h2>How it runs</h2>
-<p>{timing} Inputs are held over a communication step. A parameter may be changed until initialization
+<p>{timing} {inputs} A parameter may be changed until initialization
 mode is left, and outputs are right from then on. A value that is not allowed is refused with a
 message to the logger, and everything stays as it was before the call{tolerance}.</p>
-<p>FMI 2.0 Co-Simulation, all quantities in SI units. The model is Python code inside this file, on the
-standard library alone. The host process must be a Python of version 3.11 or later, or have loaded
-libpython with its symbols visible (on Linux: LD_PRELOAD).</p>
+<p>FMI 2.0 Co-Simulation, all quantities in SI units. {needs}</p>
 </body>
 </html>
 """
@@ -47,7 +50,15 @@ SAMPLED = (
 )
 
 
-def page(fmu: Fmu) -> str:
+def documentation(fmu: Fmu, kind: BuildKind) -> dict[str, bytes]:
+    """Page, picture and licence by their names in the FMU."""
+    files = {"documentation/index.html": page(fmu, kind).encode(), "model.png": picture(fmu.block)}
+    if LICENSE.exists():
+        files["documentation/licenses/license.txt"] = LICENSE.read_bytes()
+    return files
+
+
+def page(fmu: Fmu, kind: BuildKind) -> str:
     """The whole page as HTML."""
     block = fmu.block
     return PAGE.format(
@@ -56,6 +67,8 @@ def page(fmu: Fmu) -> str:
         equations=_prose(fmu.equations),
         tables="\n".join(_table(title, rows) for title, rows in tables(block)),
         timing=timing(block),
+        inputs=kind.inputs,
+        needs=kind.needs,
         tolerance=" (inputs excepted: this block copes with any)" if block.tolerates_bad_input else "",
     )
 

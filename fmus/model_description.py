@@ -1,13 +1,13 @@
 """modelDescription.xml of an FMU, written from the declarations of its block."""
 
 from collections.abc import Iterable
-from importlib.metadata import version
 from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from models.declaration import Boolean, Enumeration, Integer, Real
 
+from .build_kind import BuildKind
 from .dependencies import initial_dependencies, output_dependencies
 from .fmu import Fmu
 from .interface import Variable, interface
@@ -17,23 +17,17 @@ CAPABILITIES = {
     # The model is in the FMU and runs in the process of the host; no tool is started or talked to.
     "needsExecutionTool": "false",
     "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "false",
-    "maxOutputDerivativeOrder": "0",
     "canRunAsynchronuously": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
-    "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
-    "providesDirectionalDerivative": "false",
 }
-
-LOG_CATEGORIES = {"logStatusDiscard": "a step that was refused, and why; nothing has changed"}
 
 DATE = "1980-01-01T00:00:00Z"
 """Fixed, so that the same content gives the same bytes; it is the first that a zip file can hold."""
 
 
-def model_description(fmu: Fmu, guid: str) -> bytes:
+def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     """The XML with that GUID."""
     all_variables = interface(fmu.block)
     root = Element(
@@ -42,15 +36,15 @@ def model_description(fmu: Fmu, guid: str) -> bytes:
         modelName=fmu.name,
         guid=guid,
         description=fmu.block.description,
-        generationTool=f"PythonFMU {version('pythonfmu')}",
+        generationTool=kind.tool,
         generationDateAndTime=DATE,
         variableNamingConvention="flat",
     )
-    SubElement(root, "CoSimulation", {"modelIdentifier": fmu.name} | CAPABILITIES)
+    _add_co_simulation(root, fmu, kind)
     _add_units(root, all_variables)
     _add_enumerations(root, all_variables)
     categories = SubElement(root, "LogCategories")
-    for name, description in LOG_CATEGORIES.items():
+    for name, description in kind.log_categories.items():
         SubElement(categories, "Category", {"name": name, "description": description})
     experiment = {"startTime": "0", "stopTime": _text(fmu.stop_time), "stepSize": _text(fmu.step_size)}
     SubElement(root, "DefaultExperiment", experiment)
@@ -60,6 +54,15 @@ def model_description(fmu: Fmu, guid: str) -> bytes:
     _add_structure(root, fmu, all_variables)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def _add_co_simulation(root: Element, fmu: Fmu, kind: BuildKind) -> None:
+    attributes = {"modelIdentifier": fmu.name} | CAPABILITIES | kind.capabilities
+    co_simulation = SubElement(root, "CoSimulation", attributes)
+    if kind.source_files:
+        sources = SubElement(co_simulation, "SourceFiles")
+        for name in kind.source_files:
+            SubElement(sources, "File", name=name)
 
 
 def _text(value: Any) -> str:

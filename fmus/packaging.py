@@ -1,13 +1,7 @@
-"""Building an FMU: PythonFMU packs block and slave, then the archive is put in its final form.
+"""Building an FMU with PythonFMU, which packs block and slave; then the archive is put in its final form."""
 
-The same content gives the same bytes: sorted names, fixed dates, a GUID made of the content.
-"""
-
-import hashlib
-import os
 import sys
 import tempfile
-import uuid
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,33 +11,26 @@ from types import ModuleType
 
 from pythonfmu.builder import FmuBuilder
 
+from .archive import guid_of, write_archive
+from .build_kind import python_kind
 from .bundle import bundle, package_name, package_text, script_text
-from .documentation import page
+from .documentation import documentation
 from .fmu import Fmu
 from .model_description import model_description
-from .picture import picture
-
-LICENSE = Path(__file__).parent.parent / "LICENSE"
 
 SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
 """Modules of PythonFMU that an FMU needs when it runs."""
 
-ZIP_DATE = (1980, 1, 1, 0, 0, 0)
-
 
 def build(fmu: Fmu, folder: Path) -> Path:
     """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path."""
-    files = _resources_and_binaries(fmu) | _documentation(fmu)
-    files["model.png"] = picture(fmu.block)
-    files["modelDescription.xml"] = model_description(fmu, _guid(fmu, files))
-    folder.mkdir(parents=True, exist_ok=True)
+    kind = python_kind()
+    files = _resources_and_binaries(fmu)
+    guid = guid_of(model_description(fmu, kind, ""), files)
+    files |= documentation(fmu, kind) | _license_of_pythonfmu()
+    files["modelDescription.xml"] = model_description(fmu, kind, guid)
     target = folder / f"{fmu.name}.fmu"
-    unfinished = target.with_suffix(f".{os.getpid()}.part")
-    try:
-        _write(files, unfinished)
-        os.replace(unfinished, target)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    write_archive(files, target)
     return target
 
 
@@ -104,31 +91,9 @@ def _taken_out(package: str) -> dict[str, ModuleType]:
     return {name: sys.modules.pop(name) for name in list(sys.modules) if name.startswith(package)}
 
 
-def _documentation(fmu: Fmu) -> dict[str, bytes]:
-    """The page and the licences, of the project and of PythonFMU."""
-    files = {"documentation/index.html": page(fmu).encode()}
-    if LICENSE.exists():
-        files["documentation/licenses/license.txt"] = LICENSE.read_bytes()
-    for file in distribution("pythonfmu").files or ():
-        if file.name == "LICENSE":
-            files["documentation/licenses/pythonfmu.txt"] = Path(file.locate()).read_bytes()
-    return files
-
-
-def _guid(fmu: Fmu, files: dict[str, bytes]) -> str:
-    """A GUID that changes with the code, the binaries and the description."""
-    digest = hashlib.sha256(model_description(fmu, ""))
-    for name in sorted(files):
-        if name.startswith(("resources/", "binaries/")):
-            digest.update(hashlib.sha256(name.encode()).digest() + hashlib.sha256(files[name]).digest())
-    return f"{{{uuid.UUID(bytes=digest.digest()[:16])}}}"
-
-
-def _write(files: dict[str, bytes], target: Path) -> None:
-    """Writes a zip archive whose bytes depend on the files alone."""
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name in sorted(files):
-            entry = zipfile.ZipInfo(name, ZIP_DATE)
-            entry.create_system, entry.external_attr = 3, 0o100644 << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, files[name])
+def _license_of_pythonfmu() -> dict[str, bytes]:
+    return {
+        "documentation/licenses/pythonfmu.txt": Path(file.locate()).read_bytes()
+        for file in distribution("pythonfmu").files or ()
+        if file.name == "LICENSE"
+    }

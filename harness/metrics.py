@@ -36,7 +36,8 @@ class Metrics:
         J: rms of the jerk of the body up to 50 Hz in W, m/s3.
         effR: rms of what the control adds to the driver's torque in W, N.m.
         effP: its largest magnitude in W, N.m.
-        dT_stat: its mean over the last 0.6 s, N.m: the stationary change of the torque.
+        dT_stat: its mean over the last 0.6 s, N.m: the stationary change of the torque; NaN if the
+            demand is not constant there.
         loss: torque impulse withheld from the driver in the 2 s after t_0 over the height of the step,
             in s: as if the vehicle lagged by that time.
         imp: impact speed of the teeth in rad/s, motor side, see `impact_speed`.
@@ -92,11 +93,17 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         J=band_rms(sampled["plant.a_body"][window], T_s, (0.0, 50.0), derivative=True),
         effR=float(np.sqrt(np.mean(e[window] ** 2))),
         effP=float(np.abs(e[window]).max()),
-        dT_stat=float(e[-round(0.6 / T_s) :].mean()),
+        dT_stat=stationary_change(sampled["controller.T_driver"], e, T_s),
         loss=loss,
         imp=impact_speed(results, t_0),
         hold=hold(t, T_gear, manoeuvre.plateau_ends),
     )
+
+
+def stationary_change(T_driver: Signal, e: Signal, T_s: float) -> float:
+    """Mean of e in N.m over the last 0.6 s, NaN if the demand T_driver is not constant there."""
+    last = -round(0.6 / T_s)
+    return float(e[last:].mean()) if np.ptp(T_driver[last - 1 :]) == 0.0 else nan
 
 
 def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:

@@ -38,7 +38,7 @@ def test_the_limit_of_small_steps_is_the_monolithic_solution(built, scheme):
 @pytest.mark.parametrize(
     ("scheme", "steps"),
     [
-        (Scheme.GAUSS_SEIDEL, (-1.0, -0.5, 1.0, -1.0, 0.0, -0.5, 0.0, -1.0, 0.0, -2.5)),
+        (Scheme.GAUSS_SEIDEL, (0.0, -0.5, 1.0, 0.0, -1.0, -0.5, -1.0, -1.0, 0.0, -0.5)),
         (Scheme.JACOBI, (0.0, 0.5, 1.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.5)),
     ],
 )

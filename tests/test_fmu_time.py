@@ -65,7 +65,7 @@ class CounterSlave(BlockSlave, Fmi2Slave):  # pyright: ignore[reportIncompatible
 
 @pytest.fixture
 def counter():
-    slave = CounterSlave(instance_name="counter")
+    slave = CounterSlave(instance_name="counter", resources="")
     slave.setup_experiment(0.0, None, None)
     slave.enter_initialization_mode()
     slave.exit_initialization_mode()

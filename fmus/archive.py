@@ -1,0 +1,38 @@
+"""The file of an FMU: the same content gives the same bytes, with sorted names and fixed dates."""
+
+import hashlib
+import os
+import uuid
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+ZIP_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def write_archive(files: Mapping[str, bytes], target: Path) -> None:
+    """Writes the zip archive; one that is there is replaced when the new one is complete."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = target.with_suffix(f".{os.getpid()}.part")
+    try:
+        _write(files, unfinished)
+        os.replace(unfinished, target)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def _write(files: Mapping[str, bytes], target: Path) -> None:
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, ZIP_DATE)
+            entry.create_system, entry.external_attr = 3, 0o100644 << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, files[name])
+
+
+def guid_of(description: bytes, files: Mapping[str, bytes]) -> str:
+    """A GUID that changes with the model description and with the files."""
+    digest = hashlib.sha256(description)
+    for name in sorted(files):
+        digest.update(hashlib.sha256(name.encode()).digest() + hashlib.sha256(files[name]).digest())
+    return f"{{{uuid.UUID(bytes=digest.digest()[:16])}}}"
