@@ -4,8 +4,8 @@ import argparse
 from difflib import get_close_matches
 from pathlib import Path
 
+from fmus.builds import BUILDS, PLATFORMS, NotPossible, builders
 from fmus.catalogue import FMUS
-from fmus.packaging import build
 
 DESCRIPTION = "Build the FMI 2.0 co-simulation FMUs of the damping loop."
 
@@ -15,6 +15,11 @@ examples:
   python build_fmus.py                          all of them, into build/
   python build_fmus.py TwoMassDriveline         only that one
   python build_fmus.py --output /srv/fmus       somewhere else
+  python build_fmus.py --build native           only the native ones, into build/native/
+  python build_fmus.py --platform all           native ones for Linux, Windows and macOS (extra `cross`)
+
+The native build needs the extra `native` and a C compiler; where one of them is missing, it is left out
+unless it is asked for.
 
 The same sources give the same files, byte by byte.
 """
@@ -39,10 +44,17 @@ def main() -> None:
     )
     parser.add_argument("names", nargs="*", type=known, metavar="FMU", help="which to build (default: all)")
     parser.add_argument("--output", type=Path, default=Path("build"), help="folder (default: build)")
+    parser.add_argument("--build", choices=BUILDS, help="which build (default: each that is possible here)")
+    parser.add_argument("--platform", choices=PLATFORMS, default="host", help="of the native build (default: host)")
     arguments = parser.parse_args()
+    try:
+        chosen = builders(arguments.build, arguments.platform)
+    except NotPossible as reason:
+        parser.error(str(reason))
     for name in dict.fromkeys(arguments.names or FMUS):
-        path = build(FMUS[name], arguments.output)
-        print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
+        for build in chosen:
+            path = build(FMUS[name], arguments.output)
+            print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
 
 
 if __name__ == "__main__":

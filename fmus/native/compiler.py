@@ -1,0 +1,113 @@
+"""Compiling the C of an FMU: for this machine with its own compiler, for all platforms with that of Zig."""
+
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import fmpy
+
+FLAGS = (
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"),
+    # each operation rounds on its own, as in Python; errno is not looked at
+    *("-ffp-contract=off", "-fno-math-errno"),
+    *("-O2", "-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden"),
+)
+
+LINUX, WINDOWS, MAC_INTEL, MAC_ARM = (
+    "x86_64-linux-gnu.2.17",
+    "x86_64-windows-gnu",
+    "x86_64-macos",
+    "aarch64-macos",
+)
+"""Targets as Zig names them."""
+
+MAC_PROCESSORS = {MAC_INTEL: (0x01000007, 3), MAC_ARM: (0x0100000C, 0)}
+"""Type and subtype of the processor in a Mach-O file."""
+
+UNIVERSAL_MAGIC, PAGE_BITS = 0xCAFEBABE, 14
+
+
+class CompilerError(Exception):
+    """There is no compiler, or it refuses the source; the text says why."""
+
+
+def host_binaries(name: str, sources: Mapping[str, bytes]) -> dict[str, bytes]:
+    """The binary for this machine, by its path in the FMU.
+
+    Raises:
+        CompilerError: see there.
+    """
+    path = f"binaries/{fmpy.platform}/{name}{fmpy.sharedLibraryExtension}"
+    return {path: _compiled([host_compiler()], name + fmpy.sharedLibraryExtension, sources)}
+
+
+def all_binaries(name: str, sources: Mapping[str, bytes]) -> dict[str, bytes]:
+    """The binaries for Linux, Windows and macOS (one file for both processors), by their paths in the FMU.
+
+    Raises:
+        CompilerError: see there.
+    """
+    zig = zig_compiler()
+    on_mac = {target: _compiled([*zig, "-target", target], f"{name}.dylib", sources) for target in MAC_PROCESSORS}
+    return {
+        f"binaries/linux64/{name}.so": _compiled([*zig, "-target", LINUX], f"{name}.so", sources),
+        f"binaries/win64/{name}.dll": _compiled([*zig, "-target", WINDOWS], f"{name}.dll", sources),
+        f"binaries/darwin64/{name}.dylib": universal(on_mac),
+    }
+
+
+def host_compiler() -> str:
+    """The C compiler of this machine.
+
+    Raises:
+        CompilerError: there is none.
+    """
+    name = os.environ.get("CC", "cc")
+    if shutil.which(name) is None:
+        raise CompilerError(f"there is no C compiler {name!r} (the environment variable CC can name another)")
+    return name
+
+
+def zig_compiler() -> list[str]:
+    """The command of Zig's C compiler.
+
+    Raises:
+        CompilerError: it is not installed.
+    """
+    if find_spec("ziglang") is None:
+        raise CompilerError("to compile for all platforms, install the extra `cross` (pip install '.[native,cross]')")
+    return [sys.executable, "-m", "ziglang", "cc"]
+
+
+def _compiled(compiler: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        for name, content in sources.items():
+            (folder / name).write_bytes(content)
+        files = sorted(name for name in sources if name.endswith(".c"))
+        command = [*compiler, *FLAGS, *files, "-o", binary, "-lm"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+        return (folder / binary).read_bytes()
+
+
+def universal(binaries: Mapping[str, bytes]) -> bytes:
+    """One Mach-O file for several processors: a table of where each one's part lies, and the parts.
+
+    Args:
+        binaries: keys are those of MAC_PROCESSORS.
+    """
+    page = 1 << PAGE_BITS
+    header, parts = struct.pack(">II", UNIVERSAL_MAGIC, len(binaries)), b""
+    for target, content in binaries.items():
+        offset = page + len(parts)
+        header += struct.pack(">IIIII", *MAC_PROCESSORS[target], offset, len(content), PAGE_BITS)
+        parts += content + b"\0" * (-len(content) % page)
+    return header.ljust(page, b"\0") + parts

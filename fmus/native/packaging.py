@@ -1,0 +1,80 @@
+"""Building a native FMU: C source, its binaries, description and documentation in one archive."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import casadi
+import fmpy
+
+from ..archive import guid_of, write_archive
+from ..build_kind import DISCARDED, BuildKind
+from ..documentation import documentation
+from ..fmu import Fmu
+from ..model_description import model_description
+from .compiler import host_binaries
+from .source import block_sources, variables_source
+from .tableau import step_header
+
+C_FILES = Path(__file__).parent / "c"
+FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+
+FOR_ALL = ("fmi2.c", "messages.c", "state.c", "values.c", "instance.h", "operators.h", "state.h", "variables.h")
+FOR_CONTINUOUS = ("continuous.c", "integrator.c", "integrator.h")
+FOR_SAMPLED = ("sampled.c",)
+
+NEEDS = "The model is compiled code in this file and needs nothing else; its C source is in the folder <code>sources</code>."
+
+MOVING = """An input is held over a communication step, or moves at the rate that fmi2SetRealInputDerivatives
+gave it for that step."""
+
+
+def build_native(
+    fmu: Fmu, folder: Path, binaries: Callable[[str, Mapping[str, bytes]], dict[str, bytes]] = host_binaries
+) -> Path:
+    """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path.
+
+    Args:
+        binaries: compiles; `host_binaries` or `all_binaries` of .compiler.
+
+    Raises:
+        CompilerError: there is no compiler, or it refuses the source.
+    """
+    sources = c_sources(fmu)
+    kind = native_kind(fmu, sources)
+    guid = guid_of(model_description(fmu, kind, ""), sources)
+    sources["variables.c"] = variables_source(fmu, guid).encode()
+    files = {f"sources/{name}": content for name, content in sources.items()}
+    files |= binaries(fmu.name, sources) | documentation(fmu, kind)
+    files["modelDescription.xml"] = model_description(fmu, kind, guid)
+    target = folder / f"{fmu.name}.fmu"
+    write_archive(files, target)
+    return target
+
+
+def c_sources(fmu: Fmu) -> dict[str, bytes]:
+    """All C files of an FMU by name, with an empty GUID."""
+    names = FOR_ALL + (FOR_SAMPLED if fmu.block.update else FOR_CONTINUOUS)
+    sources = {name: (C_FILES / name).read_bytes() for name in names}
+    sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob("fmi2*.h")}
+    generated = block_sources(fmu) | {"variables.c": variables_source(fmu, "")}
+    if fmu.block.derivative:
+        generated["dop853.h"] = step_header()
+    return sources | {name: text.encode() for name, text in generated.items()}
+
+
+def native_kind(fmu: Fmu, sources: Mapping[str, bytes]) -> BuildKind:
+    """What the native build of an FMU says of itself; rates of change are known of continuous blocks."""
+    continuous = fmu.block.derivative is not None
+    return BuildKind(
+        tool=f"CasADi {casadi.__version__}",
+        capabilities={
+            "canInterpolateInputs": "true" if continuous else "false",
+            "maxOutputDerivativeOrder": "1" if continuous else "0",
+            "canNotUseMemoryManagementFunctions": "false",
+            "providesDirectionalDerivative": "true" if continuous else "false",
+        },
+        log_categories={"logStatusError": "a call that was refused, and why; nothing has changed"} | DISCARDED,
+        needs=NEEDS,
+        source_files=tuple(sorted(name for name in sources if name.endswith(".c"))),
+        **({"inputs": MOVING} if continuous else {}),
+    )
