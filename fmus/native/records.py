@@ -1,16 +1,27 @@
 """The records of a block as C structs."""
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from models.declaration import Real, Variable, variables
 
 
-def c_type(value: Any) -> str:
+class Names(NamedTuple):
+    """The type of a real number, and what goes before the names of structs and of functions."""
+
+    real: str = "real"
+    struct: str = ""
+    function: str = ""
+
+
+IN_FMU = Names()
+
+
+def c_type(value: Any, names: Names) -> str:
     """Type of an element of a state: a struct of its own for a named tuple, else a number."""
     if not isinstance(value, tuple):
-        return "real"
-    return type(value).__name__ if hasattr(value, "_fields") else c_type(value[0])
+        return names.real
+    return names.struct + type(value).__name__ if hasattr(value, "_fields") else c_type(value[0], names)
 
 
 def extent(value: Any) -> str:
@@ -31,16 +42,18 @@ def paths(name: str, value: Any) -> Iterator[str]:
             yield from paths(f"{name}[{k}]", item)
 
 
-def structs(record: tuple[Any, ...]) -> Iterator[str]:
+def structs(record: tuple[Any, ...], names: Names = IN_FMU) -> Iterator[str]:
     """The struct of a record, after those of the records in it."""
     inner = {type(value): value for item in record for value in _records(item)}
     for value in inner.values():
-        yield from structs(value)
+        yield from structs(value, names)
     declared = zip(variables(type(record)), record, strict=True)
-    fields = [(f"{c_type(value)} {variable.name}{extent(value)};", _comment(variable)) for variable, value in declared]
+    fields = [
+        (f"{c_type(value, names)} {variable.name}{extent(value)};", _comment(variable)) for variable, value in declared
+    ]
     width = max(len(field) for field, _ in fields)
     lines = "\n".join(f"    {field:{width}}  /* {comment} */" for field, comment in fields)
-    yield f"typedef struct {{\n{lines}\n}} {type(record).__name__};"
+    yield f"typedef struct {{\n{lines}\n}} {names.struct}{type(record).__name__};"
 
 
 def _records(value: Any) -> Iterator[Any]:

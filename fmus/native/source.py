@@ -6,7 +6,7 @@ from typing import Any
 from ..fmu import Fmu
 from ..interface import Variable, interface
 from .arithmetic import Graph
-from .records import paths, structs
+from .records import IN_FMU, Names, paths, structs
 from .statements import DOUBLE, Precision, Statements
 from .trace import Traced, trace
 
@@ -65,9 +65,9 @@ def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
         precision=precision,
         structs="\n\n".join(text for record in "upyx" for text in structs(records[record])),
         constants="\n".join(_constants(fmu, traced)),
-        prototypes="\n".join(f"/* {MEANINGS[each.name]} */\n{_head(each)};" for each in traced),
+        prototypes="\n".join(f"/* {MEANINGS[each.name]} */\n{head(each)};" for each in traced),
     )
-    functions = "\n\n".join(_function(each, records, precision) for each in traced)
+    functions = "\n\n".join(function(each, records, precision) for each in traced)
     return {"block.h": header, "block.c": SOURCE.format(**about, functions=functions)}
 
 
@@ -86,20 +86,27 @@ def _record(name: str) -> str:
     return RECORDS[name if name in RECORDS else name.removeprefix("d")]
 
 
-def _head(each: Traced) -> str:
-    arguments = [f"const {_record(name)} *{name}" for name in each.arguments]
-    result = "real g[]" if each.result == "g" else f"{_record(each.result)} *{each.result}"
-    return f"void {each.name}({', '.join([*arguments, result])})"
+WIDTH = 118
+"""Of a line of C."""
 
 
-def _function(each: Traced, records: dict[str, Any], precision: Precision) -> str:
+def head(each: Traced, names: Names = IN_FMU) -> str:
+    """The head of a function in C."""
+    arguments = [f"const {names.struct}{_record(name)} *{name}" for name in each.arguments]
+    result = f"{names.real} g[]" if each.result == "g" else f"{names.struct}{_record(each.result)} *{each.result}"
+    line = f"void {names.function}{each.name}({', '.join([*arguments, result])})"
+    return line if len(line) <= WIDTH else line.replace("(", "(\n    ").replace(", ", ",\n    ")
+
+
+def function(each: Traced, records: dict[str, Any], precision: Precision, names: Names = IN_FMU) -> str:
+    """A function in C; `records` holds one of each record that it reads or writes, by their names in RECORDS."""
     inputs = [_lvalues(name, records) for name in each.arguments]
     size = each.function.size1_out(0)
     outputs = [f"g[{k}]" for k in range(size)] if each.result == "g" else _lvalues(each.result, records)
     lines = Statements(Graph(each.function), inputs, outputs, precision).lines
     text = "\n".join(lines)
     unused = [f"    (void){name};" for name in each.arguments if not re.search(rf"\b{name}->", text)]
-    return "\n".join([_head(each), "{", *unused, *lines, "}"])
+    return "\n".join([head(each, names), "{", *unused, *lines, "}"])
 
 
 def _lvalues(name: str, records: dict[str, Any]) -> list[str]:

@@ -1,5 +1,6 @@
 """C statements for a traced function."""
 
+import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -8,14 +9,23 @@ from .arithmetic import TRUTH_VALUES, Graph, Guard, Node
 
 
 class Precision(NamedTuple):
-    """How C writes a real number: its type, the endings of constants and of the functions of math.h."""
+    """How C writes a real number: its type, the endings of constants and of the functions of math.h, the
+    largest finite number (larger constants become it, so that a test for finite numbers stays one)."""
 
     real: str
     constant: str
     function: str
+    largest: float
 
 
-DOUBLE = Precision("double", "", "")
+DOUBLE = Precision("double", "", "", sys.float_info.max)
+SINGLE = Precision("float", "f", "f", (2.0 - 2.0**-23) * 2.0**127)
+
+
+def constant(value: float, precision: Precision) -> str:
+    """A number as C writes it."""
+    return repr(min(max(value, -precision.largest), precision.largest)) + precision.constant
+
 
 LONGEST = 80
 """Characters of an expression; longer ones are given a name."""
@@ -178,7 +188,7 @@ class Statements:
         return Text(f"{text.within(SUM)} != {self._constant(0.0)}", COMPARISON)
 
     def _constant(self, value: float) -> str:
-        return repr(value) + self._precision.constant
+        return constant(value, self._precision)
 
     def _expression(self, node: Node) -> Text:
         operation, operands = node.operation, node.operands
