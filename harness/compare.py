@@ -58,25 +58,28 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(case: Case, seed: int, folder: Path, fmus: Path = BUILD) -> Outcome:
+def run_case(case: Case, seed: int, folder: Path, fmus: Path = BUILD, build: str | None = None) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to `folder` and evaluates it."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
-    results = simulate(manoeuvre, plant=case.plant, control=case.control, seed=seed, folder=fmus)
+    results = simulate(manoeuvre, plant=case.plant, control=case.control, seed=seed, folder=fmus, build=build)
     write_csv(at_samples(results), folder / f"{case.file_name}.csv")
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
-def run_cases(todo: Sequence[Case], seed: int, folder: Path, fmus: Path = BUILD) -> Iterator[Outcome]:
+def run_cases(
+    todo: Sequence[Case], seed: int, folder: Path, fmus: Path = BUILD, build: str | None = None
+) -> Iterator[Outcome]:
     """Runs the cases in parallel; yields their outcomes in the order of the cases.
 
     Args:
         seed: of the noise of all runs.
         folder: for the CSV files, made if absent.
         fmus: folder of the built FMUs.
+        build: "native" or "python"; None: see `harness.wiring.chosen_build`.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with workers() as pool:
-        yield from pool.map(run_case, todo, repeat(seed), repeat(folder), repeat(fmus))
+        yield from pool.map(run_case, todo, repeat(seed), repeat(folder), repeat(fmus), repeat(build))
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

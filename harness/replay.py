@@ -65,9 +65,10 @@ def ride(
     control: bool,
     seed: int = 1,
     fmus: Path = BUILD,
+    build: str | None = None,
 ) -> Ride:
     """Simulates the manoeuvre of a recording and evaluates it against the recording."""
-    results = simulate(manoeuvre, plant=plant, control=control, seed=seed, folder=fmus)
+    results = simulate(manoeuvre, plant=plant, control=control, seed=seed, folder=fmus, build=build)
     signals = repack_fields(at_samples(results)[KEPT])
     metrics = evaluate(signals, manoeuvre)
     recorded = np.interp(signals["time"], recording.time - recording.time[0], recording.v)
@@ -81,7 +82,12 @@ def ride(
 
 
 def replay(
-    manoeuvre: Manoeuvre, recording: Recording, plant: str, seed: int = 1, fmus: Path = BUILD
+    manoeuvre: Manoeuvre,
+    recording: Recording,
+    plant: str,
+    seed: int = 1,
+    fmus: Path = BUILD,
+    build: str | None = None,
 ) -> tuple[Ride, Ride]:
     """The rides without and with damping, at the same time on two cores.
 
@@ -92,8 +98,8 @@ def replay(
     """
     require_counting()
     with workers(1) as pool:
-        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed, fmus)
-        undamped = ride(manoeuvre, recording, plant, False, seed, fmus)
+        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed, fmus, build)
+        undamped = ride(manoeuvre, recording, plant, False, seed, fmus, build)
         return undamped, damped.result()
 
 

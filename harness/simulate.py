@@ -19,6 +19,7 @@ def simulate(
     scheme: Scheme = Scheme.GAUSS_SEIDEL,
     seed: int = 1,
     folder: Path = BUILD,
+    build: str | None = None,
 ) -> np.ndarray:
     """Drives the closed loop through a manoeuvre.
 
@@ -29,6 +30,7 @@ def simulate(
         step_size: communication step in s.
         seed: of all noise and jitter.
         folder: of the built FMUs.
+        build: "native" or "python"; None: see `harness.wiring.chosen_build`.
 
     Returns:
         Structured array, see `harness.master.run`.
@@ -38,7 +40,7 @@ def simulate(
         SimulationError: an FMU refused a call.
     """
     return run(
-        loop(plant, folder),
+        loop(plant, folder, build),
         duration=manoeuvre.duration,
         step_size=step_size,
         inputs=signals(manoeuvre, control),

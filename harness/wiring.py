@@ -11,6 +11,14 @@ from .names import nearest
 BUILD = Path(__file__).resolve().parent.parent / "build"
 """Where `driveline build` puts the FMUs."""
 
+NATIVE = "native"
+"""Folder of the native builds, in that of the others."""
+
+BUILDS = ("python", NATIVE)
+
+BUILD_HELP = "native FMUs or those that run Python (default: native where all FMUs of the loop have that build)"
+"""Of the option --build."""
+
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
 
@@ -82,24 +90,19 @@ OUTPUTS = (
 )
 
 
-def loop(plant: str | Path = PLANTS[0], folder: Path = BUILD) -> System:
+def loop(plant: str | Path = PLANTS[0], folder: Path = BUILD, build: str | None = None) -> System:
     """The closed loop: controller, motor, the given plant and the wheel speeds over CAN.
 
     Args:
         plant: one of PLANTS, or the path of an FMU with the same interface.
         folder: of the built FMUs.
+        build: one of BUILDS; None: see `chosen_build`.
 
     Raises:
-        WiringError: there is no such plant.
+        WiringError: there is no such plant or build.
     """
     return System(
-        # of all orders this one comes nearest to the loop as one system: see docs/coupling.md
-        instances={
-            "motor": folder / "MotorTorqueLoop.fmu",
-            "controller": folder / "DampingController.fmu",
-            "can": folder / "WheelSpeedCan.fmu",
-            "plant": plant_file(plant, folder),
-        },
+        instances=_files(plant, folder, build or chosen_build(plant, folder)),
         connections=CONNECTIONS,
         inputs=INPUTS,
         parameters=PARAMETERS,
@@ -107,12 +110,31 @@ def loop(plant: str | Path = PLANTS[0], folder: Path = BUILD) -> System:
     )
 
 
-def plant_file(plant: str | Path, folder: Path = BUILD) -> Path:
-    """The file of a plant given by name or path.
+def chosen_build(plant: str | Path = PLANTS[0], folder: Path = BUILD) -> str:
+    """The build that runs if none is asked for: native where all FMUs of the loop have that build.
 
     Raises:
-        WiringError: it is neither a known name nor the name of an FMU file.
+        WiringError: there is no such plant.
     """
+    native = _files(plant, folder, NATIVE)
+    return NATIVE if all(path.is_file() for path in native.values()) else "python"
+
+
+def _files(plant: str | Path, folder: Path, build: str) -> dict[str, Path]:
+    if build not in BUILDS:
+        raise WiringError(f"unknown build {build}; {nearest(build, BUILDS)}")
+    if build == NATIVE:
+        folder = folder / NATIVE
+    # of all orders this one comes nearest to the loop as one system: see docs/coupling.md
+    return {
+        "motor": folder / "MotorTorqueLoop.fmu",
+        "controller": folder / "DampingController.fmu",
+        "can": folder / "WheelSpeedCan.fmu",
+        "plant": _plant_file(plant, folder),
+    }
+
+
+def _plant_file(plant: str | Path, folder: Path) -> Path:
     if plant in PLANTS:
         return folder / f"{plant}.fmu"
     path = Path(plant)

@@ -57,8 +57,10 @@ def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
 
 
 def test_the_module_builds_the_named_fmu(tmp_path):
-    command = [sys.executable, "-m", "harness", "build", "MotorTorqueLoop", "--output", str(tmp_path)]
-    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True)
+    command = [sys.executable, "-m", "harness", "build", "MotorTorqueLoop", "--build", "python"]
+    done = subprocess.run(
+        [*command, "--output", str(tmp_path)], cwd=Path(__file__).parents[1], capture_output=True, text=True
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert [path.name for path in tmp_path.iterdir()] == ["MotorTorqueLoop.fmu"]
     assert "MotorTorqueLoop.fmu" in done.stdout
@@ -67,7 +69,7 @@ def test_the_module_builds_the_named_fmu(tmp_path):
 @pytest.fixture
 def simulate(capsys, built, tmp_path, monkeypatch):
     """Runs `driveline simulate` on the freshly built FMUs; gives its answer and the file."""
-    monkeypatch.setattr("harness.simulate.loop", lambda plant, _: loop(plant, built))
+    monkeypatch.setattr("harness.simulate.loop", lambda plant, *_: loop(plant, built))
 
     def run(*arguments):
         path = tmp_path / "signals.csv"

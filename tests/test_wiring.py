@@ -11,7 +11,7 @@ from harness.interface import Interface, unit_of
 from harness.manoeuvres import MANOEUVRES
 from harness.master import run
 from harness.simulate import simulate
-from harness.wiring import PLANTS, Connection, System, loop
+from harness.wiring import PLANTS, Connection, System, chosen_build, loop
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)
 
@@ -36,6 +36,25 @@ def test_both_plants_have_one_interface(built):
     design, validation = (face(built / f"{plant}.fmu") for plant in PLANTS)
     assert design == validation
     assert len(design) > 10
+
+
+def test_native_builds_run_where_the_whole_loop_has_them(tmp_path):
+    folder = tmp_path / "native"
+    folder.mkdir()
+    for name in ("MotorTorqueLoop", "DampingController", "WheelSpeedCan", PLANTS[0]):
+        assert chosen_build(PLANTS[0], tmp_path) == "python"
+        (folder / f"{name}.fmu").touch()
+    for plant, build, parent in (
+        (PLANTS[0], None, folder),
+        (PLANTS[1], None, tmp_path),
+        (PLANTS[0], "python", tmp_path),
+        (PLANTS[1], "native", folder),
+    ):
+        assert {path.parent for path in loop(plant, tmp_path, build).instances.values()} == {parent}
+    theirs = folder / f"{PLANTS[0]}.fmu"
+    assert loop(theirs, tmp_path).instances["plant"] == theirs
+    with pytest.raises(WiringError, match="unknown build nativ; did you mean native"):
+        loop(PLANTS[0], tmp_path, "nativ")
 
 
 def test_a_plant_from_elsewhere_runs_in_the_loop(built, tmp_path):

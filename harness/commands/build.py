@@ -3,6 +3,9 @@
 import argparse
 from pathlib import Path
 
+from fmus.builds import BUILDS, PLATFORMS, NotPossible, builders
+from fmus.catalogue import FMUS
+
 from ..errors import DrivelineError
 from ..names import nearest
 from ..wiring import BUILD
@@ -13,6 +16,9 @@ HELP = "build the FMUs"
 DESCRIPTION = """\
 Builds the FMI 2.0 co-simulation FMUs of the loop, which the other commands run. The same sources give
 the same files, byte by byte.
+
+The native builds go into the folder native/ in that of the others. They need the extra `native` and a
+C compiler; where one of them is missing, they are left out unless they are asked for.
 """
 
 EXAMPLES = """\
@@ -20,6 +26,8 @@ examples:
   driveline build                          all FMUs
   driveline build TwoMassDriveline         only that one
   driveline build --output /srv/fmus       somewhere else
+  driveline build --build python           only those that run Python
+  driveline build --platform all           native ones for Linux, Windows and macOS (extra `cross`)
 """
 
 
@@ -28,17 +36,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = DESCRIPTION, EXAMPLES
     parser.add_argument("names", nargs="*", metavar="FMU", help="which to build (default: all)")
     parser.add_argument("--output", type=Path, default=BUILD, metavar="FOLDER", help="(default: %(default)s)")
+    parser.add_argument("--build", choices=BUILDS, help="which build (default: each that is possible here)")
+    parser.add_argument(
+        "--platform", choices=PLATFORMS, default="host", help="of the native build (default: %(default)s)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
-    # here and not above: only building needs the models and pythonfmu
-    from fmus.catalogue import FMUS
-    from fmus.packaging import build
-
     for name in args.names:
         if name not in FMUS:
             raise DrivelineError(f"unknown FMU {name}; {nearest(name, FMUS)}")
+    try:
+        chosen = builders(args.build, args.platform)
+    except NotPossible as reason:
+        raise DrivelineError(str(reason)) from reason
     for name in dict.fromkeys(args.names or FMUS):
-        path = build(FMUS[name], args.output)
-        print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
+        for build in chosen:
+            path = build(FMUS[name], args.output)
+            print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
     return 0

@@ -10,7 +10,7 @@ from ..errors import DrivelineError
 from ..manoeuvres import COMPARED, MANOEUVRES
 from ..names import nearest
 from ..report import terminal_table, wide_console
-from ..wiring import PLANTS, plant_file
+from ..wiring import BUILD_HELP, BUILDS, PLANTS, chosen_build
 
 NAME = "compare"
 HELP = "run the manoeuvres without and with damping and compare"
@@ -52,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help=f"only this manoeuvre (repeatable); default: {', '.join(COMPARED)}",
     )
+    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     parser.add_argument("--seed", type=int, default=1, help="of the sensor noise (default: %(default)s)")
     parser.add_argument(
         "--output",
@@ -64,8 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     plants = args.plant or PLANTS
-    for plant in plants:
-        plant_file(plant)
+    builds = {plant: args.build or chosen_build(plant) for plant in plants}
     manoeuvres = args.manoeuvre or COMPARED
     for name in manoeuvres:
         if name not in MANOEUVRES:
@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     console = wide_console()
     outcomes = list(
         track(
-            run_cases(todo, args.seed, args.output / "runs"),
+            run_cases(todo, args.seed, args.output / "runs", build=args.build),
             description="simulating",
             total=len(todo),
             console=console,
@@ -83,6 +83,7 @@ def run(args: argparse.Namespace) -> int:
         )
     )
     console.print(terminal_table([outcome.row for outcome in outcomes]))
+    console.print(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
     tables = write_tables(outcomes, args.output)
     figures = write_figures(outcomes, args.output)
     console.print(f"tables:  {' '.join(str(path) for path in tables)}", soft_wrap=True)

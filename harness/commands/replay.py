@@ -8,7 +8,7 @@ from ..recording import COLUMNS, read_recording
 from ..replay import replay, terminal_table, write
 from ..report import wide_console
 from ..road import RoadLoad, road
-from ..wiring import PLANTS, plant_file
+from ..wiring import BUILD_HELP, BUILDS, PLANTS, chosen_build, loop
 
 NAME = "replay"
 HELP = "drive a recorded torque demand and road without and with damping"
@@ -47,6 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
     )
+    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     parser.add_argument("--seed", type=int, default=1, help="of the sensor noise (default: %(default)s)")
     parser.add_argument(
         "--output",
@@ -63,11 +64,14 @@ def run(args: argparse.Namespace) -> int:
     if not args.recording.is_file():
         raise DrivelineError(f"there is no recording {args.recording}")
     recording = read_recording(args.recording)
-    path = plant_file(args.plant)
+    build = args.build or chosen_build(args.plant)
+    path = loop(args.plant, build=build).instances["plant"]
     manoeuvre = road(recording, RoadLoad.of_fmu(path), args.held)
     console = wide_console()
-    console.print(f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, without and with damping")
-    rides = replay(manoeuvre, recording, args.plant, args.seed)
+    console.print(
+        f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, {build} FMUs, without and with damping"
+    )
+    rides = replay(manoeuvre, recording, args.plant, args.seed, build=build)
     console.print(terminal_table(rides, f"{path.stem} on {recording.name}"))
     for file in write(rides, recording, path.stem, args.output):
         console.print(f"written: {file}", soft_wrap=True)

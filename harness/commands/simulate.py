@@ -12,7 +12,7 @@ from ..plots import METADATA
 from ..results import write_csv
 from ..run_plot import plot_run
 from ..simulate import simulate
-from ..wiring import PLANTS, plant_file
+from ..wiring import BUILD_HELP, BUILDS, PLANTS, chosen_build
 
 NAME = "simulate"
 HELP = "drive the loop through one manoeuvre and write its signals"
@@ -63,6 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="INSTANCE.PARAMETER=VALUE",
         help="sets a parameter, in SI units (repeatable)",
     )
+    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     parser.add_argument("--seed", type=int, default=1, help="of the sensor noise (default: %(default)s)")
     parser.add_argument(
         "--step",
@@ -121,7 +122,8 @@ def run(args: argparse.Namespace) -> int:
     if args.manoeuvre not in MANOEUVRES:
         raise DrivelineError(f"unknown manoeuvre {args.manoeuvre}; {nearest(args.manoeuvre, MANOEUVRES)}")
     manoeuvre = MANOEUVRES[args.manoeuvre]
-    plant = plant_file(args.plant).stem
+    build = args.build or chosen_build(args.plant)
+    plant = Path(args.plant).stem
     began = perf_counter()
     results = simulate(
         manoeuvre,
@@ -131,12 +133,13 @@ def run(args: argparse.Namespace) -> int:
         step_size=args.step,
         scheme=Scheme(args.scheme),
         seed=args.seed,
+        build=build,
     )
     took = perf_counter() - began
     output = args.output or Path("results") / f"{plant}_{manoeuvre.name}_{args.control}.csv"
     write_csv(results, output)
     print(
-        f"{manoeuvre.name} on {plant}, damping {args.control}: {manoeuvre.duration:g} s in {took:.1f} s\n"
+        f"{manoeuvre.name} on {plant}, {build} FMUs, damping {args.control}: {manoeuvre.duration:g} s in {took:.2f} s\n"
         f"signals: {output} ({len(results)} instants, {len(results.dtype.names or ())} columns)"
     )
     if args.plot:
