@@ -38,5 +38,8 @@ def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
 
 
 def resting(quiet: Any, p: Any) -> Any:
-    """From 0 to 1 as the damping fades out at rest, `quiet` s after the last demand or motion."""
-    return clip((quiet - p.t_rest) / p.t_fade, 0.0, 1.0)
+    """From 0 to 1 as the damping fades out at rest, `quiet` s after the last demand or motion.
+
+    Written so that it is exactly 1 when quiet is t_rest + t_fade, whatever the rounding.
+    """
+    return clip(1.0 - (p.t_rest + p.t_fade - quiet) / p.t_fade, 0.0, 1.0)

@@ -198,6 +198,14 @@ def test_a_stale_wheel_speed_only_ends_its_mode() -> None:
     assert states[-1].status == controller.WITHOUT_WHEEL_SPEED
 
 
+@pytest.mark.parametrize(("t_rest", "t_fade"), [(0.3, 0.1), (0.7, 0.1), (0.1, 0.7), (0.0, 0.3)])
+def test_at_rest_the_estimator_is_held_whatever_the_times(t_rest: float, t_fade: float) -> None:
+    p = P._replace(t_rest=t_rest, t_fade=t_fade)
+    at_rest = controller.Input(T_mot_est=1.0, enable=True)
+    states = run([at_rest] * round((t_rest + t_fade) / T_S + 2), p)
+    assert states[-1][:4] == (0.0, 0.0, 0.0, 0.0)
+
+
 def test_a_change_of_input_appears_one_sample_later() -> None:
     """What is computed from the inputs at k T_s appears at (k+1) T_s, not before."""
     states = run(driven(0.2, enable=False))
