@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 help: ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
 
-$(READY): pyproject.toml constraints.txt
+$(READY): pyproject.toml constraints.txt harness/steps.c
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
@@ -42,6 +42,7 @@ bench: $(READY) ## cost per communication step, side by side
 docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs/coupling.md
+	$(BIN)/driveline back-to-back --output docs/back_to_back.md
 	$(BIN)/python -m fmus.blocks_page
 	$(BIN)/driveline compare
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \

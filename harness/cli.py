@@ -6,11 +6,13 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from .commands import build, check, compare, coupling, design, replay, simulate
+from .commands import back_to_back, build, check, compare, coupling, design, replay, simulate
 from .errors import DrivelineError
 from .names import nearest
 
-COMMANDS = {command.NAME: command for command in (build, simulate, compare, replay, check, design, coupling)}
+_MODULES = (build, simulate, compare, replay, check, design, coupling, back_to_back)
+
+COMMANDS = {command.NAME: command for command in _MODULES}
 
 DESCRIPTION = """\
 Active damping of drive-train oscillations: the closed loop of FMUs, with and without control.

@@ -15,6 +15,8 @@ HARNESS_ALLOWED = {
     "harness/commands/build.py": {"fmus"},
     "harness/monolithic.py": {"models", "fmus"},
     "harness/coupling.py": {"models"},
+    "harness/back_to_back.py": {"models", "fmus"},
+    "harness/commands/back_to_back.py": {"fmus"},
     "harness/controller_design.py": {"models"},
 }
 """Design, analysis and the command that builds; everything else of the harness sees only FMUs."""
