@@ -84,7 +84,9 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
     )
     source = SOURCE.format(
         **about,
-        parameters="\n".join(f"    .{name} = {constant(float(value), precision)}," for name, value in p._asdict().items()),
+        parameters="\n".join(
+            f"    .{name} = {constant(float(value), precision)}," for name, value in p._asdict().items()
+        ),
         functions="\n\n".join(function(each, records, precision, names) for each in traced),
     )
     return {f"{file}.h": header, f"{file}.c": source}
