@@ -1,11 +1,11 @@
-"""The FMI calls of the loop, bound to their arguments once: each is a function without arguments.
+"""The FMI calls of the loop, bound to their arguments once.
 
 A row of the run is the only memory: an FMU's outputs are read straight into it, its inputs are
 gathered from it. Every call returns its FMI status.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from ctypes import byref, c_double, c_int, c_size_t, c_uint
+from ctypes import c_double, c_int, c_size_t, c_uint
 from functools import partial
 from operator import itemgetter
 from typing import Any, NamedTuple
@@ -18,11 +18,19 @@ from .layout import KINDS, Layout
 
 
 class Call(NamedTuple):
-    """A bound call, and what an error message says of it."""
+    """A bound call, what it is made of, and what an error message says of it.
+
+    Attributes:
+        run: makes the call.
+        arguments: of the FMI function after the component, as ctypes objects.
+        sources: of the values that are set, in bytes from the beginning of the row.
+    """
 
     instance: Instance
     function: str
     run: Callable[[], int]
+    arguments: tuple[Any, ...]
+    sources: Sequence[int] = ()
 
 
 def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout: Layout) -> list[Call]:
@@ -36,11 +44,11 @@ def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout
         fed = [v for v in instance.interface.of_causality("input") if v.name in sources and type_of(v) == kind]
         if fed:
             view: Any = memoryview(row).cast(code)
-            places = [layout.offset(sources[v.name]) // view.itemsize for v in fed]
+            offsets = [layout.offset(sources[v.name]) for v in fed]
             buffer = (ctype * len(fed))()
-            function = f"fmi2Set{kind}"
-            set_values = _bound(instance, function, [v.valueReference for v in fed], byref(buffer))
-            calls.append(Call(instance, function, _sender(set_values, view, places, buffer)))
+            call = _bound(instance, f"fmi2Set{kind}", *_values([v.valueReference for v in fed], buffer))
+            send = _sender(call.run, view, [offset // view.itemsize for offset in offsets], buffer)
+            calls.append(call._replace(run=send, sources=offsets))
     return calls
 
 
@@ -68,25 +76,18 @@ def receives(instance: Instance, row: bytearray, layout: Layout) -> list[Call]:
         if outputs:
             first = layout.offset(f"{instance.name}.{outputs[0].name}")
             place = (ctype * len(outputs)).from_buffer(row, first)
-            function = f"fmi2Get{kind}"
-            run = _bound(instance, function, [v.valueReference for v in outputs], byref(place))
-            calls.append(Call(instance, function, run))
+            calls.append(_bound(instance, f"fmi2Get{kind}", *_values([v.valueReference for v in outputs], place)))
     return calls
 
 
-def _bound(instance: Instance, function: str, references: Sequence[int], values: Any) -> Callable[[], int]:
-    count = len(references)
-    return partial(
-        instance.function(function),
-        instance.component,
-        byref((c_uint * count)(*references)),
-        c_size_t(count),
-        values,
-    )
+def _values(references: Sequence[int], place: Any) -> tuple[Any, ...]:
+    return (c_uint * len(references))(*references), c_size_t(len(references)), place
 
 
 def advance(instance: Instance, row: bytearray, step_size: float) -> Call:
     """The call that makes one communication step from the time in the row."""
-    time = c_double.from_buffer(row)
-    run = partial(instance.function("fmi2DoStep"), instance.component, time, c_double(step_size), c_int(1))
-    return Call(instance, "fmi2DoStep", run)
+    return _bound(instance, "fmi2DoStep", c_double.from_buffer(row), c_double(step_size), c_int(1))
+
+
+def _bound(instance: Instance, function: str, *arguments: Any) -> Call:
+    return Call(instance, function, partial(instance.function(function), instance.component, *arguments), arguments)

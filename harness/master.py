@@ -15,11 +15,13 @@ from fmpy.fmi2 import fmi2Warning
 from numpy.typing import ArrayLike, NDArray
 
 from .calls import Call, advance, receives, sends
+from .compiled import LIBRARY, CompiledSteps
 from .errors import SimulationError, WiringError
 from .instance import Instance, instantiated
 from .interface import Interface, check_interfaces
 from .layout import Layout
 from .progress import chunks
+from .steps import Memory, Steps, interpreted
 from .wiring import System
 
 Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
@@ -171,8 +173,16 @@ class Loop:
             before = bytes(self.row)
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
 
-    def run(self, scheme: Scheme, label: str) -> None:
+    def run(
+        self,
+        scheme: Scheme,
+        label: str,
+        make: Callable[[Sequence[Call], Memory], Steps] = CompiledSteps if LIBRARY else interpreted,
+    ) -> None:
         """Makes all steps and fills the table.
+
+        Args:
+            make: CompiledSteps or interpreted; the results are the same.
 
         Raises:
             SimulationError: an FMU refused a call.
@@ -182,19 +192,11 @@ class Loop:
             calls = _flat(phase for instance in zip(*phases, strict=True) for phase in instance)
         else:
             calls = _flat(instance for phase in phases for instance in phase)
-        runs = [call.run for call in calls]
-        data, row = self.table.view(np.uint8).data, memoryview(self.row)
-        size, known = len(row), self.known
-        computed = row[known:]
+        steps = make(calls, Memory(self.row, self.known, self.table))
         for chunk in chunks(len(self.table) - 1, label):
-            for k in chunk:
-                start = k * size
-                row[:known] = data[start : start + known]
-                for run in runs:
-                    status = run()
-                    if status > fmi2Warning:
-                        _check(calls[runs.index(run)], status, f"at {self.table['time'][k]:g} s")
-                data[start + size + known : start + size + size] = computed
+            refusal = steps(chunk)
+            if refusal:
+                _check(refusal.call, refusal.status, f"at {self.table['time'][refusal.step]:g} s")
 
 
 def _flat(groups) -> list[Call]:

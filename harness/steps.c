@@ -1,0 +1,83 @@
+/* The steps of the master: the same calls in the same order as in steps.py. The library is loaded
+ * and given the addresses of the FMI functions and of their arguments by compiled.py. */
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+
+enum { FMI2_OK, FMI2_WARNING };
+
+/* struct CompiledCall in compiled.py */
+typedef struct {
+    int32_t (*access)(void *component, const uint32_t *references, size_t count, void *values);
+    int32_t (*do_step)(void *component, double time, double step_size, int32_t no_set_before);
+    void *component;
+    const uint32_t *references;
+    size_t count;
+    void *values;             /* that are set or got */
+    const uint32_t *sources;  /* of what is set: bytes from the beginning of the row; null: nothing is set */
+    int32_t real;             /* the values are double, else int32_t */
+    double step_size;
+} Call;
+
+/* Whether the values of the row that feed the inputs have changed; then they are taken over. */
+static int changed(const Call *call, const unsigned char *row)
+{
+    int different = 0;
+    for (size_t i = 0; i < call->count; i++) {
+        const unsigned char *source = row + call->sources[i];
+        if (call->real) {
+            double value;
+            memcpy(&value, source, sizeof value);
+            double *sent = (double *)call->values + i;
+            different |= !(value == *sent);
+            *sent = value;
+        } else {
+            int32_t value;
+            memcpy(&value, source, sizeof value);
+            int32_t *sent = (int32_t *)call->values + i;
+            different |= value != *sent;
+            *sent = value;
+        }
+    }
+    return different;
+}
+
+static int32_t made(const Call *call, const unsigned char *row)
+{
+    if (call->do_step) {
+        double time;
+        memcpy(&time, row, sizeof time);
+        return call->do_step(call->component, time, call->step_size, 1);
+    }
+    if (call->sources && !changed(call, row)) {
+        return FMI2_OK;
+    }
+    return call->access(call->component, call->references, call->count, call->values);
+}
+
+/* Makes the steps that begin with the rows first ... last - 1 of the table, and fills the rows after them.
+ * Returns the number of the step that was not finished, or last; then refused and status tell the call. */
+EXPORT size_t make_steps(const Call *calls, size_t number, unsigned char *row, unsigned char *table, size_t size,
+                         size_t known, size_t first, size_t last, size_t *refused, int32_t *status)
+{
+    for (size_t k = first; k < last; k++) {
+        unsigned char *now = table + k * size;
+        memcpy(row, now, known);
+        for (size_t i = 0; i < number; i++) {
+            *status = made(&calls[i], row);
+            if (*status > FMI2_WARNING) {
+                *refused = i;
+                return k;
+            }
+        }
+        memcpy(now + size + known, row + known, size - known);
+    }
+    return last;
+}
