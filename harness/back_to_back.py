@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fmus.builds import NATIVE_FOLDER
 from fmus.catalogue import FMUS
 from fmus.integrator import Integrator
 from models.block import Block
@@ -21,7 +20,7 @@ from models.declaration import Boolean, Integer, Real, variables
 from .manoeuvres import KMH, Manoeuvre
 from .master import Scheme, Source, run
 from .simulate import signals, start
-from .wiring import System, loop
+from .wiring import NATIVE, System, loop
 
 STEP = 1e-3
 """Communication step in s."""
@@ -136,20 +135,20 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
 
 def compare_block(name: str, given: Given, folder: Path) -> Differences:
     """A block of FMUS alone; the native FMUs are in the folder `native` of the folder."""
-    native = by_fmu(folder / NATIVE_FOLDER / f"{name}.fmu", given)
+    native = by_fmu(folder / NATIVE / f"{name}.fmu", given)
     functions = by_functions(FMUS[name].block, given)
     return Differences(difference(functions, native), difference(by_fmu(folder / f"{name}.fmu", given), native))
 
 
 def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Differences]:
     """All blocks in the loop, by the name of the instance; folder as for `compare_block`."""
-    native = loop(plant, folder / NATIVE_FOLDER)
+    native, python = loop(plant, folder, NATIVE), loop(plant, folder, "python")
     reference = drive(native, manoeuvre)
     found = {}
     for instance, path in native.instances.items():
         block, given = FMUS[path.stem].block, fed(instance, native, reference, manoeuvre)
         own = outputs(instance, block, reference)
-        other = folder / path.name
+        other = python.instances[instance]
         exchanged = drive(replace(native, instances={**native.instances, instance: other}), manoeuvre)
         found[instance] = Differences(
             difference(by_functions(block, given), own),

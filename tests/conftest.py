@@ -1,8 +1,11 @@
 """What several tests share."""
 
+from shutil import copytree
+
 import pytest
 from hypothesis import settings
 
+from fmus.builds import NotPossible, builders
 from fmus.catalogue import FMUS
 from fmus.packaging import build
 
@@ -17,4 +20,18 @@ def built(tmp_path_factory):
     folder = tmp_path_factory.mktemp("fmus")
     for fmu in FMUS.values():
         build(fmu, folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def both_built(built, tmp_path_factory):
+    """Folder of the FMUs that run Python, with the native builds in its folder native."""
+    try:
+        (builder,) = builders("native")
+    except NotPossible as reason:
+        pytest.skip(str(reason))
+    folder = tmp_path_factory.mktemp("both") / "fmus"
+    copytree(built, folder)
+    for fmu in FMUS.values():
+        builder(fmu, folder)
     return folder

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fmus.builds import NotPossible, builders
 from fmus.catalogue import FMUS
 from harness.back_to_back import Differences, by_functions, compare_block, compare_loop, difference, random_inputs
 from harness.back_to_back_page import LoopRow, page
@@ -20,18 +19,6 @@ AFTER_FLANKS = 1e-9
 """Within 10 s: each crossing is located anew and moves what rounding has made of it."""
 
 STEPS = 2000
-
-
-@pytest.fixture(scope="module")
-def both_built(built):
-    """Folder of the FMUs that run Python, with the native ones in its folder native."""
-    try:
-        (builder,) = builders("native")
-    except NotPossible as reason:
-        pytest.skip(str(reason))
-    for fmu in FMUS.values():
-        builder(fmu, built)
-    return built
 
 
 def short(name: str) -> Manoeuvre:
