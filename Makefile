@@ -13,7 +13,7 @@ $(READY): pyproject.toml constraints.txt harness/steps.c
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[replay,dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[replay,native,dev]'
 	@touch $@
 
 setup: $(READY) ## the virtual environment alone
@@ -33,7 +33,7 @@ lint: $(READY) ## format, lint and types
 
 check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline build
-	$(BIN)/driveline check build/*.fmu
+	$(BIN)/driveline check build/*.fmu build/native/*.fmu
 
 bench: $(READY) ## cost per communication step, side by side
 	$(BIN)/driveline build
