@@ -35,9 +35,10 @@ check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline build
 	$(BIN)/driveline check build/*.fmu build/native/*.fmu
 
-bench: $(READY) ## cost per communication step, side by side
+bench: $(READY) ## cost per communication step, side by side and in other hosts
 	$(BIN)/driveline build
 	$(BIN)/python -m benchmarks.step_cost
+	$(BIN)/python -m benchmarks.hosts
 
 docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build

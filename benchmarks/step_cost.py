@@ -1,8 +1,9 @@
 """What a communication step of the loop costs: under our master, call by call with fmpy, in each block.
 
 Against whatever else the machine does, the contenders take turns, their time is that of the processor,
-and the least of all turns is shown. What the master adds to the FMU calls and what each of these takes is
-seen in further runs with a clock around every call: the median of their shares, the least of their times.
+and the least of all turns is shown. What the master adds to the FMU calls if it makes its steps in Python,
+and what each of these takes, is seen in further runs with a clock around every call: the median of their
+shares, the least of their times.
 """
 
 import argparse
@@ -23,7 +24,8 @@ from harness.interface import type_of
 from harness.manoeuvres import MANOEUVRES
 from harness.master import Loop, Scheme, prepared
 from harness.simulate import signals, start
-from harness.wiring import CONNECTIONS, PLANTS, System, loop
+from harness.steps import interpreted
+from harness.wiring import BUILD_HELP, BUILDS, CONNECTIONS, PLANTS, System, chosen_build, loop
 
 STEP_SIZE = 1e-3
 MICRO = 1e6
@@ -32,6 +34,7 @@ EXAMPLES = """\
 examples:
   python -m benchmarks.step_cost
   python -m benchmarks.step_cost --plant TwoMassDriveline --repetitions 15
+  python -m benchmarks.step_cost --build python
   python -m benchmarks.step_cost --plant my_vehicle.fmu --duration 5
 """
 
@@ -42,12 +45,14 @@ class Costs:
 
     Attributes:
         master: under our master.
+        in_python: under our master with its steps in Python.
         fmpy: call by call, one variable each.
-        added: what the master adds to the FMU calls, as a share of these.
+        added: what the master in Python adds to the FMU calls, as a share of these.
         calls: inside the calls, by instance and function.
     """
 
     master: list[float] = field(default_factory=list)
+    in_python: list[float] = field(default_factory=list)
     fmpy: list[float] = field(default_factory=list)
     added: list[float] = field(default_factory=list)
     calls: dict[tuple[str, str], list[float]] = field(default_factory=lambda: defaultdict(list))
@@ -101,6 +106,10 @@ def step_with_master(loop: Loop) -> None:
     loop.run(Scheme.GAUSS_SEIDEL, "benchmark")
 
 
+def step_in_python(loop: Loop) -> None:
+    loop.run(Scheme.GAUSS_SEIDEL, "benchmark", interpreted)
+
+
 def step_with_fmpy(loop: Loop) -> None:
     """The same steps with one call of FMU2Slave a variable."""
     sources = {target: source for source, target in CONNECTIONS}
@@ -142,16 +151,17 @@ def timed(
         return (clock() - began) / (len(loop.table) - 1) * MICRO
 
 
-def measure(plant: str, duration: float, repetitions: int) -> Costs:
+def measure(plant: str, build: str, duration: float, repetitions: int) -> Costs:
     """Lets the contenders take turns."""
-    system, costs = loop(plant), Costs()
+    system, costs = loop(plant, build=build), Costs()
     steps = round(duration / STEP_SIZE)
     for _ in range(repetitions):
         costs.master.append(timed(system, duration, step_with_master))
+        costs.in_python.append(timed(system, duration, step_in_python))
         costs.fmpy.append(timed(system, duration, step_with_fmpy))
         watch = Stopwatch()
         with patch.object(Instance, "function", partialmethod(_watched, watch)):
-            total = timed(system, duration, step_with_master, perf_counter) - watch.cost / steps * MICRO
+            total = timed(system, duration, step_in_python, perf_counter) - watch.cost / steps * MICRO
         spent = {key: seconds / steps * MICRO for key, seconds in watch.spent().items()}
         costs.added.append(total / sum(spent.values()) - 1.0)
         for key, value in spent.items():
@@ -163,16 +173,19 @@ def _watched(instance: Instance, watch: Stopwatch, name: str) -> Callable[..., i
     return watch.function(instance, name)
 
 
-def contenders(plant: str, costs: Costs) -> Table:
-    table = Table("", "µs a step", "times real time", "our master = 1", title=f"the loop with {plant} at 1 ms")
-    master, added = min(costs.master), median(costs.added)
+def contenders(plant: str, build: str, costs: Costs) -> Table:
+    table = Table(
+        "", "µs a step", "times real time", "our master = 1", title=f"the loop with {plant} at 1 ms, {build} FMUs"
+    )
+    master, in_python, added = min(costs.master), min(costs.in_python), median(costs.added)
     for name, cost in (
         ("our master", master),
-        ("of it the FMU calls", master / (1.0 + added)),
+        ("its steps in Python", in_python),
+        ("of it the FMU calls", in_python / (1.0 + added)),
         ("fmpy, one variable a call", min(costs.fmpy)),
     ):
         table.add_row(name, f"{cost:.1f}", f"{STEP_SIZE * MICRO / cost:.1f}", f"{cost / master:.2f}")
-    table.caption = f"the master adds {100.0 * added:.1f} % to the FMU calls"
+    table.caption = f"in Python the master adds {100.0 * added:.1f} % to the FMU calls"
     return table
 
 
@@ -194,13 +207,15 @@ def main() -> None:
         description=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--plant", action="append", metavar="NAME|FILE", help="only this one (repeatable)")
+    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     parser.add_argument("--duration", type=float, default=2.0, help="of a run in s (default: %(default)s)")
     parser.add_argument("--repetitions", type=int, default=7, help="turns of each (default: %(default)s)")
     args = parser.parse_args()
     console = Console()
     for plant in args.plant or PLANTS:
-        costs = measure(plant, args.duration, args.repetitions)
-        console.print(contenders(plant, costs), blocks(plant, costs))
+        build = args.build or chosen_build(plant)
+        costs = measure(plant, build, args.duration, args.repetitions)
+        console.print(contenders(plant, build, costs), blocks(plant, costs))
 
 
 if __name__ == "__main__":
