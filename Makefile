@@ -51,4 +51,4 @@ docs: $(READY) ## the pages of the documentation that are computed
 	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
 
 clean: ## everything that was made
-	rm -rf $(VENV) build results *.egg-info
+	rm -rf $(VENV) build results *.egg-info harness/_steps.*

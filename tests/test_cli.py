@@ -79,10 +79,11 @@ def simulate(capsys, built, tmp_path, monkeypatch):
 
 
 def test_simulate_writes_what_was_asked_for(simulate, plant):
-    arguments = ("--plant", plant, "--manoeuvre", "launch", "--control", "off", "--step", "0.002")
+    arguments = ("--plant", plant, "--manoeuvre", "launch", "--control", "off", "--step", "0.002", "--build", "python")
     (code, out, err), path = simulate(*arguments, "--set", "motor.sigma_omega=0", "--set", "motor.q_omega=0")
     assert (code, err) == (0, "")
     assert str(path) in out
+    assert "python FMUs" in out
     signals = read_csv(path)
     assert len(signals) == 3001
     assert not signals["controller.enable"].any()
