@@ -45,6 +45,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline coupling --output docs/coupling.md
 	$(BIN)/driveline back-to-back --output docs/back_to_back.md
 	$(BIN)/python -m fmus.blocks_page
+	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline compare
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
 		cat results/compare/table.md; } > docs/results.md
