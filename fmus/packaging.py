@@ -92,8 +92,5 @@ def _taken_out(package: str) -> dict[str, ModuleType]:
 
 
 def _license_of_pythonfmu() -> dict[str, bytes]:
-    return {
-        "documentation/licenses/pythonfmu.txt": Path(file.locate()).read_bytes()
-        for file in distribution("pythonfmu").files or ()
-        if file.name == "LICENSE"
-    }
+    license_of = next(file for file in distribution("pythonfmu").files or () if file.name == "LICENSE")
+    return {"documentation/licenses/pythonfmu.txt": Path(license_of.locate()).read_bytes()}

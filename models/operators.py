@@ -140,8 +140,9 @@ def interpolate(values: Sequence[Any], position: Any) -> Any:
     if position.__class__ is float:
         left = min(int(position), len(values) - 2)
         return values[left] + (position - left) * (values[left + 1] - values[left])
-    result = values[0]
-    for k in range(len(values) - 1):
-        share = clip(position - k, 0.0, 1.0)
-        result = result + share * (values[k + 1] - values[k])
-    return result
+    start, left, right = 0.0, values[0], values[1]
+    for k in range(1, len(values) - 1):
+        beyond = position >= float(k)
+        start = where(beyond, float(k), start)
+        left, right = where(beyond, values[k], left), where(beyond, values[k + 1], right)
+    return left + (position - start) * (right - left)

@@ -24,6 +24,24 @@ def built(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def native_builder():
+    """Builds an FMU natively for this machine; skips where that is not possible."""
+    try:
+        (builder,) = builders("native")
+    except NotPossible as reason:
+        pytest.skip(str(reason))
+    return builder
+
+
+@pytest.fixture(scope="session")
+def native(native_builder, tmp_path_factory):
+    """Folder with the native builds of all FMUs."""
+    folder = tmp_path_factory.mktemp("native")
+    paths = [native_builder(fmu, folder) for fmu in FMUS.values()]
+    return paths[0].parent
+
+
+@pytest.fixture(scope="session")
 def both_built(built, tmp_path_factory):
     """Folder of the FMUs that run Python, with the native builds in its folder native."""
     try:

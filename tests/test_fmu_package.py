@@ -42,14 +42,14 @@ def copied_project(tmp_path):
 
 
 def test_a_rebuild_elsewhere_gives_the_same_bytes(built, copied_project):
-    code, said = run(["build_fmus.py", "--output", "out"], copied_project, PYTHONHASHSEED="7")
+    code, said = run(["build_fmus.py", "--build", "python", "--output", "out"], copied_project, PYTHONHASHSEED="7")
     assert code == 0, said
     for name in FMUS:
         assert (copied_project / "out" / f"{name}.fmu").read_bytes() == (built / f"{name}.fmu").read_bytes()
 
 
 def test_only_what_is_named_is_built_and_said_in_a_line(copied_project):
-    code, said = run(["build_fmus.py", "WheelSpeedCan", "MotorTorqueLoop"], copied_project)
+    code, said = run(["build_fmus.py", "--build", "python", "WheelSpeedCan", "MotorTorqueLoop"], copied_project)
     assert code == 0
     assert [line.split()[0] for line in said.splitlines()] == [
         os.path.join("build", "WheelSpeedCan.fmu"),

@@ -10,18 +10,20 @@ from typing import NamedTuple
 
 import casadi
 
+ARITHMETIC = ("ADD", "SUB", "MUL", "DIV", "NEG", "SQ", "TWICE", "INV", "FABS", "SIGN", "FLOOR", "CEIL", "SQRT")
+
+TRANSCENDENTAL = ("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SINH", "COSH", "TANH", "EXP", "LOG")
+
+COSTLY = ("FMOD", "POW", "CONSTPOW", *TRANSCENDENTAL)
+"""Operations worth a branch."""
+
+TRUTH_VALUES = ("LT", "LE", "EQ", "NE", "NOT", "AND", "OR")
+
 OPERATIONS = {
     getattr(casadi, f"OP_{name}"): name
-    for name in (
-        "ADD SUB MUL DIV NEG SQ TWICE INV FMOD FABS SIGN FLOOR CEIL SQRT SIN COS TAN ASIN ACOS ATAN ATAN2 "
-        "SINH COSH TANH EXP LOG POW CONSTPOW FMIN FMAX COPYSIGN LT LE EQ NE NOT AND OR IF_ELSE_ZERO"
-    ).split()
+    for name in (*ARITHMETIC, *COSTLY, *TRUTH_VALUES, "FMIN", "FMAX", "COPYSIGN", "IF_ELSE_ZERO")
 }
-
-TRUTH_VALUES = frozenset("LT LE EQ NE NOT AND OR".split())
-
-COSTLY = frozenset("FMOD SIN COS TAN ASIN ACOS ATAN ATAN2 SINH COSH TANH EXP LOG POW CONSTPOW".split())
-"""Operations worth a branch."""
+"""Names of CasADi's operations by their numbers."""
 
 
 class Node(NamedTuple):

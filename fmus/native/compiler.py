@@ -16,7 +16,8 @@ FLAGS = (
     *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"),
     # each operation rounds on its own, as in Python; errno is not looked at
     *("-ffp-contract=off", "-fno-math-errno"),
-    *("-O2", "-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden"),
+    *("-O2", "-fno-unroll-loops", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables"),
+    *("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-DOLD_GLIBC"),
 )
 
 LINUX, WINDOWS, MAC_INTEL, MAC_ARM = (

@@ -1,10 +1,10 @@
 """Building a native FMU: C source, its binaries, description and documentation in one archive."""
 
 from collections.abc import Callable, Mapping
+from importlib.resources import files
 from pathlib import Path
 
 import casadi
-import fmpy
 
 from ..archive import guid_of, write_archive
 from ..build_kind import DISCARDED, BuildKind
@@ -16,13 +16,14 @@ from .source import block_sources, variables_source
 from .tableau import step_header
 
 C_FILES = Path(__file__).parent / "c"
-FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 
 FOR_ALL = ("fmi2.c", "messages.c", "state.c", "values.c", "instance.h", "operators.h", "state.h", "variables.h")
 FOR_CONTINUOUS = ("continuous.c", "integrator.c", "integrator.h")
 FOR_SAMPLED = ("sampled.c",)
 
-NEEDS = "The model is compiled code in this file and needs nothing else; its C source is in the folder <code>sources</code>."
+NEEDS = """The model is compiled code in this file and needs nothing else; its C source is in the
+folder <code>sources</code>."""
 
 MOVING = """An input is held over a communication step, or moves at the rate that fmi2SetRealInputDerivatives
 gave it for that step."""
@@ -43,11 +44,11 @@ def build_native(
     kind = native_kind(fmu, sources)
     guid = guid_of(model_description(fmu, kind, ""), sources)
     sources["variables.c"] = variables_source(fmu, guid).encode()
-    files = {f"sources/{name}": content for name, content in sources.items()}
-    files |= binaries(fmu.name, sources) | documentation(fmu, kind)
-    files["modelDescription.xml"] = model_description(fmu, kind, guid)
+    packed = {f"sources/{name}": content for name, content in sources.items()}
+    packed |= binaries(fmu.name, sources) | documentation(fmu, kind)
+    packed["modelDescription.xml"] = model_description(fmu, kind, guid)
     target = folder / f"{fmu.name}.fmu"
-    write_archive(files, target)
+    write_archive(packed, target)
     return target
 
 

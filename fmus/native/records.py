@@ -34,8 +34,8 @@ def paths(name: str, value: Any) -> Iterator[str]:
     """What C calls each number in nested tuples, in their order."""
     if not isinstance(value, tuple):
         yield name
-    elif hasattr(value, "_fields"):
-        for field, item in zip(type(value)._fields, value, strict=True):
+    elif fields := getattr(value, "_fields", ()):
+        for field, item in zip(fields, value, strict=True):
             yield from paths(f"{name}.{field}", item)
     else:
         for k, item in enumerate(value):

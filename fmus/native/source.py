@@ -38,7 +38,15 @@ typedef {precision.real} real;
 
 {constants}
 
+#if defined __GNUC__
+#pragma GCC visibility push(hidden)
+#endif
+
 {prototypes}
+
+#if defined __GNUC__
+#pragma GCC visibility pop
+#endif
 
 #endif
 """

@@ -142,9 +142,9 @@ class Statements:
         """Other choices with the condition of choice k that are needed where it is, and not made yet."""
         condition, guards = self._graph.nodes[k].operands[0], self._guards[k]
         for other, node in enumerate(self._graph.nodes):
-            if node.operation == "CHOICE" and node.operands[0] == condition and other != k:
-                if self._guards.get(other) == guards:
-                    yield other
+            alike = node.operation == "CHOICE" and node.operands[0] == condition
+            if alike and other != k and self._guards.get(other) == guards:
+                yield other
 
     def _around(self, choice: int, context: frozenset[Guard]) -> list[int]:
         """Nodes outside both sides of a choice that are needed inside."""

@@ -4,7 +4,7 @@ import math
 
 from ..dop853 import A, B
 
-HEADER = """/* One step of the Runge-Kutta method of order 8 by Dormand and Prince, written by build_fmus.py from dop853.py. */
+HEADER = """/* The Runge-Kutta method of order 8 by Dormand and Prince, written by build_fmus.py from dop853.py. */
 
 /* The state `end` a step of length h after x, where its derivative is k0. */
 static void step(const Problem *problem, double t, const Vector x, const Vector k0, double h, Vector end)

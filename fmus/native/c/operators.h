@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-#if defined __x86_64__ && defined __gnu_linux__
-/* The first versions: those with the same name since glibc 2.29 (log, pow, exp) and 2.38 (fmod) differ in errno
-   alone, and would keep the binary from loading with an older glibc. */
+#if defined OLD_GLIBC && defined __x86_64__ && defined __gnu_linux__
+/* The first versions of these functions: the later ones, of glibc 2.29 and 2.38, differ in errno alone, and would
+   keep the binary from loading with an older glibc. Only where libm is linked, which not every tool does. */
 __asm__(".symver exp, exp@GLIBC_2.2.5");
 __asm__(".symver log, log@GLIBC_2.2.5");
 __asm__(".symver pow, pow@GLIBC_2.2.5");

@@ -13,23 +13,17 @@ fmi2Status get_state(const Instance *instance, fmi2FMUstate *state)
     return fmi2OK;
 }
 
-/* CRC-32 of IEEE 802.3. */
-static uint32_t checksum_of(const unsigned char *bytes, size_t count)
+/* CRC-32 of IEEE 802.3 over all but the checksum itself. */
+static uint32_t checksum_of(const SavedState *saved)
 {
+    const unsigned char *byte = (const unsigned char *)saved->guid, *end = (const unsigned char *)(saved + 1);
     uint32_t sum = 0xFFFFFFFFU;
-    for (size_t k = 0; k < count; k++) {
-        sum ^= bytes[k];
+    for (; byte < end; byte++) {
+        sum ^= *byte;
         for (int bit = 0; bit < 8; bit++)
             sum = (sum >> 1) ^ (0xEDB88320U & (0U - (sum & 1U)));
     }
     return ~sum;
-}
-
-static void seal(SavedState *saved)
-{
-    memset(saved->guid, 0, sizeof saved->guid);
-    strncpy(saved->guid, model_guid, sizeof saved->guid - 1);
-    saved->checksum = checksum_of((const unsigned char *)&saved->memory, sizeof saved->memory);
 }
 
 fmi2Status serialize_state(const Instance *instance, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
@@ -39,15 +33,16 @@ fmi2Status serialize_state(const Instance *instance, fmi2FMUstate state, fmi2Byt
         return refuse(
             instance, "size = %lu is refused; a state takes %lu bytes", (unsigned long)size, (unsigned long)sizeof saved);
     memset(&saved, 0, sizeof saved);
+    strncpy(saved.guid, model_guid, sizeof saved.guid - 1);
     memcpy(&saved.memory, state, sizeof saved.memory);
-    seal(&saved);
+    saved.checksum = checksum_of(&saved);
     memcpy(bytes, &saved, sizeof saved);
     return fmi2OK;
 }
 
 fmi2Status deserialize_state(const Instance *instance, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
 {
-    SavedState saved, check;
+    SavedState saved;
     if (size != sizeof saved)
         return refuse(
             instance,
@@ -55,16 +50,12 @@ fmi2Status deserialize_state(const Instance *instance, const fmi2Byte bytes[], s
             (unsigned long)size,
             (unsigned long)sizeof saved);
     memcpy(&saved, bytes, sizeof saved);
-    check = saved;
-    seal(&check);
-    if (memcmp(saved.guid, check.guid, sizeof saved.guid) != 0) {
-        saved.guid[sizeof saved.guid - 1] = '\0';
-        return refuse(instance, "the FMU state is refused: it was saved by %s, this is %s", saved.guid, model_guid);
-    }
     const int64_t mode = saved.memory.mode;
     const int known = mode == INSTANTIATED || mode == INITIALIZATION || mode == STEPPING || mode == TERMINATED;
-    if (saved.checksum != check.checksum || !known)
+    if (saved.checksum != checksum_of(&saved) || !known)
         return refuse(instance, "the FMU state is refused: its bytes are damaged");
+    if (strncmp(saved.guid, model_guid, sizeof saved.guid) != 0)
+        return refuse(instance, "the FMU state is refused: it was saved by another build than %s", model_guid);
     if (!*state)
         *state = instance->callbacks.allocateMemory(1, sizeof(Memory));
     if (!*state)

@@ -3,11 +3,10 @@
 
 #include "instance.h"
 
-/* A state as bytes: which build it is of, whether it is whole, and what it holds. */
+/* A state as bytes: whether it is whole, which build it is of, and what it holds. No gaps between the fields. */
 typedef struct {
-    char guid[40];
     uint32_t checksum;
-    uint32_t unused;
+    char guid[44];
     Memory memory;
 } SavedState;
 

@@ -1,0 +1,37 @@
+"""The functions of a block, compiled from block.c alone and called with flat lists of numbers."""
+
+import ctypes
+import subprocess
+
+from fmus.native.compiler import host_compiler
+from fmus.native.packaging import C_FILES
+from fmus.native.source import block_sources
+from fmus.native.trace import trace
+
+EXPORTED = """
+__attribute__((visibility("default"))) void *address_of_{name}(void);
+void *address_of_{name}(void) {{ return (void *)(size_t)&{name}; }}
+"""
+
+
+class Functions:
+    """Calls `derivative`, `output` and so on by name, as C computes them."""
+
+    def __init__(self, fmu, folder):
+        sources = block_sources(fmu) | {"operators.h": (C_FILES / "operators.h").read_text()}
+        self._sizes = {each.name: each.function.size1_out(0) for each in trace(fmu.block)}
+        exported = "".join(EXPORTED.format(name=name) for name in self._sizes)
+        sources["exported.c"] = f'#include "block.h"\n#include <stddef.h>\n{exported}'
+        for name, text in sources.items():
+            (folder / name).write_text(text)
+        command = [host_compiler(), "-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC", "-o", "block.so"]
+        subprocess.run([*command, "block.c", "exported.c", "-lm"], cwd=folder, check=True)
+        self._library = ctypes.CDLL(str(folder / "block.so"))
+
+    def __call__(self, name, *arguments):
+        address = self._library[f"address_of_{name}"]
+        address.restype = ctypes.c_void_p
+        function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * (len(arguments) + 1))(address())
+        result = (ctypes.c_double * self._sizes[name])()
+        function(*((ctypes.c_double * len(a))(*map(float, a)) for a in arguments), result)
+        return list(result)
