@@ -76,13 +76,16 @@ function, so its floating-point unit does everything.
 
 ## Single against double precision
 
-Both fed with what the controller was fed with in the loop, on all {manoeuvres} manoeuvres; the largest distance:
+Both fed with what the controller was fed with in the loop; the largest distance during each manoeuvre:
 
-| signal | distance | largest value |
-|---|---|---|
+| manoeuvre | `T_ref` (N·m) | `T_gear_hat` (N·m) | largest `T_ref` (N·m) |
+|---|---|---|---|
 """
 
-UNITS = {"T_ref": "N·m", "T_damp": "N·m", "T_gear_hat": "N·m", "phi_hat": "rad", "omega_2_hat": "rad/s"}
+TAIL = """
+Single precision rounds the estimated speeds, and the twist inside the gap is the integral of their difference, which no
+measurement corrects there. In `launch_brake` the teeth float in the gap for seconds under the brakes and graze a flank.
+"""
 
 
 def sections(path: Path) -> dict[str, int]:
@@ -146,12 +149,13 @@ def costs(precision: str, folder: Path, inputs: np.ndarray) -> str:
 
 def distances(single: Path, double: Path, fmus: Path) -> str:
     """Rows of the second table."""
-    runs = [[outputs(path, u) for path in (single, double)] for u in (recorded(m, fmus) for m in MANOEUVRES.values())]
     rows = []
-    for name, unit in UNITS.items():
-        distance = max(np.max(np.abs(one[name] - other[name])) for one, other in runs)
-        largest = max(np.max(np.abs(other[name])) for _, other in runs)
-        rows.append(f"| `{name}` | {distance:.2g} {unit} | {largest:.3g} {unit} |\n")
+    for manoeuvre in MANOEUVRES.values():
+        inputs = recorded(manoeuvre, fmus)
+        one, other = outputs(single, inputs), outputs(double, inputs)
+        of_T_ref, of_T_gear_hat = (np.max(np.abs(one[name] - other[name])) for name in ("T_ref", "T_gear_hat"))
+        largest = np.max(np.abs(other["T_ref"]))
+        rows.append(f"| {manoeuvre.name} | {of_T_ref:.1g} | {of_T_gear_hat:.1g} | {largest:.0f} |\n")
     return "".join(rows)
 
 
@@ -165,8 +169,8 @@ def page(fmus: Path) -> str:
         for precision, folder in folders.items():
             folder.mkdir()
             text += costs(precision, folder, inputs)
-        text += DISTANCES.format(counted=len(inputs), manoeuvre=COUNTED.name, manoeuvres=len(MANOEUVRES))
-        return text + distances(folders["float"] / "run", folders["double"] / "run", fmus)
+        text += DISTANCES.format(counted=len(inputs), manoeuvre=COUNTED.name)
+        return text + distances(folders["float"] / "run", folders["double"] / "run", fmus) + TAIL
 
 
 if __name__ == "__main__":

@@ -26,6 +26,11 @@ DOUBLE_INSTRUCTION = re.compile(r"v?(cvt\w*sd\w*|(add|sub|mul|div|sqrt|min|max|c
 """Arithmetic in double precision, conversions, and the old floating-point unit, as x86-64 disassembles."""
 
 
+LONG_IN_THE_GAP = ("launch_brake",)
+"""There the twist is the integral of a difference of speeds, each of them rounded; a flank that is only grazed
+magnifies what that adds up to."""
+
+
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {precision: program(precision, tmp_path_factory.mktemp(precision)) for precision in ("float", "double")}
@@ -35,8 +40,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 def test_single_precision_demands_the_same_torque(name: str, programs: dict[str, Path], both_built: Path) -> None:
     inputs = recorded(MANOEUVRES[name], both_built / NATIVE)
     single, double = (outputs(programs[precision], inputs)["T_ref"] for precision in ("float", "double"))
-    # in the gap the estimate of the twist rests on differences of speeds, of which single precision rounds each
-    assert np.max(np.abs(single - double)) <= 1e-3 + 1e-4 * np.max(np.abs(double))
+    scale = np.max(np.abs(double)) if name in LONG_IN_THE_GAP else np.abs(double)
+    assert np.all(np.abs(single - double) <= 1e-3 + 1e-4 * scale)
     assert np.ptp(double) > 10.0
 
 
