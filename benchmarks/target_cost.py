@@ -85,6 +85,7 @@ Both fed with what the controller was fed with in the loop; the largest distance
 TAIL = """
 Single precision rounds the estimated speeds, and the twist inside the gap is the integral of their difference, which no
 measurement corrects there. In `launch_brake` the teeth float in the gap for seconds under the brakes and graze a flank.
+A fault may be recognised one sample earlier or later than in double precision, as times are added up sample by sample.
 """
 
 

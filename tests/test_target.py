@@ -1,5 +1,6 @@
 """The controller as plain C for a processor: single precision throughout, and the same torque as in double."""
 
+import math
 import re
 import shutil
 import subprocess
@@ -43,6 +44,30 @@ def test_single_precision_demands_the_same_torque(name: str, programs: dict[str,
     scale = np.max(np.abs(double)) if name in LONG_IN_THE_GAP else np.abs(double)
     assert np.all(np.abs(single - double) <= 1e-3 + 1e-4 * scale)
     assert np.ptp(double) > 10.0
+
+
+FAULTS = {
+    "motor speed lost": ("omega_1_meas", math.nan),
+    "motor speed frozen": ("omega_1_meas", None),
+    "torque frozen": ("T_mot_est", None),
+    "wheel speed invalid": ("valid", 0.0),
+    "no messages": ("counter", None),
+    "wheel speed absurd": ("omega_2_can", math.inf),
+}
+"""Input, and what takes its place; None: what it was when the fault began."""
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_single_precision_recognises_a_fault_within_a_sample(
+    fault: str, programs: dict[str, Path], both_built: Path
+) -> None:
+    inputs = recorded(MANOEUVRES["drive"], both_built / NATIVE)
+    name, value = FAULTS[fault]
+    column = controller.Input._fields.index(name)
+    inputs[1000:1200, column] = inputs[1000, column] if value is None else value
+    single, double = (outputs(programs[precision], inputs)["status"] for precision in ("float", "double"))
+    assert len(set(double)) > 1
+    assert np.count_nonzero(single != double) <= 2, "one sample at its beginning, one at its end"
 
 
 def test_in_double_precision_it_is_the_model(programs: dict[str, Path], both_built: Path) -> None:
