@@ -5,11 +5,15 @@ import io
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
+from PIL import Image
 
 from models.block import Block
 
 ROW = 0.26
 """Height of one port in inches."""
+
+COLOURS = 32
+"""Enough for two colours and their edges; a fifth of the bytes of a full-colour picture."""
 
 WIDTH, MARGIN, ARROW = 4.2, 0.2, 0.3
 
@@ -34,6 +38,7 @@ def picture(block: Block) -> bytes:
             axes.annotate("", (tail + ARROW, y), (tail, y), arrowprops={"arrowstyle": "->", "color": "#1f4e79"})
             axes.text(x + (0.06 if side == "left" else -0.06), y, name, ha=side, va="center", fontsize=8)
     FigureCanvasAgg(figure)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", metadata={"Software": None})
-    return stream.getvalue()
+    drawn, stored = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format="png", metadata={"Software": None})
+    Image.open(drawn).convert("RGB").quantize(COLOURS).save(stored, "PNG", optimize=True)
+    return stored.getvalue()

@@ -6,7 +6,8 @@ import struct
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -14,11 +15,22 @@ import fmpy
 
 FLAGS = (
     *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"),
-    # each operation rounds on its own, as in Python; errno is not looked at
-    *("-ffp-contract=off", "-fno-math-errno"),
-    *("-O2", "-fno-unroll-loops", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables"),
-    *("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-DOLD_GLIBC"),
+    # each operation rounds on its own, as in Python
+    *("-ffp-contract=off", "-O2", "-fno-unroll-loops", "-g0", "-fvisibility=hidden"),
 )
+
+LIBRARY_FLAGS = (
+    *("-shared", "-fPIC", "-s", "-DOLD_GLIBC"),
+    # nothing looks at errno, nothing is thrown
+    *("-fno-math-errno", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables"),
+)
+
+WINDOWS_LIBRARIES = tuple(
+    f"-lapi-ms-win-crt-{part}-l1-1-0" for part in ("math", "stdio", "string", "convert", "private")
+)
+"""The C library that is part of Windows."""
+
+WINDOWS_SOURCE = Path(__file__).parent / "windows.c"
 
 LINUX, WINDOWS, MAC_INTEL, MAC_ARM = (
     "x86_64-linux-gnu.2.17",
@@ -30,6 +42,9 @@ LINUX, WINDOWS, MAC_INTEL, MAC_ARM = (
 
 MAC_PROCESSORS = {MAC_INTEL: (0x01000007, 3), MAC_ARM: (0x0100000C, 0)}
 """Type and subtype of the processor in a Mach-O file."""
+
+WHERE_HEADER = 0x3C
+"""Where a library for Windows tells where its header is."""
 
 UNIVERSAL_MAGIC, PAGE_BITS = 0xCAFEBABE, 14
 
@@ -58,7 +73,7 @@ def all_binaries(name: str, sources: Mapping[str, bytes]) -> dict[str, bytes]:
     on_mac = {target: _compiled([*zig, "-target", target], f"{name}.dylib", sources) for target in MAC_PROCESSORS}
     return {
         f"binaries/linux64/{name}.so": _compiled([*zig, "-target", LINUX], f"{name}.so", sources),
-        f"binaries/win64/{name}.dll": _compiled([*zig, "-target", WINDOWS], f"{name}.dll", sources),
+        f"binaries/win64/{name}.dll": _compiled_for_windows(zig, f"{name}.dll", sources),
         f"binaries/darwin64/{name}.dylib": universal(on_mac),
     }
 
@@ -87,16 +102,46 @@ def zig_compiler() -> list[str]:
 
 
 def _compiled(compiler: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
+    with _folder_of(sources) as folder:
+        _run([*compiler, *FLAGS, *LIBRARY_FLAGS, *_c_files(folder), "-o", binary, "-lm"], folder)
+        return (folder / binary).read_bytes()
+
+
+def _compiled_for_windows(zig: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
+    """Linked without Zig's runtime, which would be larger than the FMU."""
+    with _folder_of({**sources, WINDOWS_SOURCE.name: WINDOWS_SOURCE.read_bytes()}) as folder:
+        compiler = [*zig, "-target", WINDOWS]
+        objects = []
+        for file in _c_files(folder):
+            objects.append(file.replace(".c", ".o"))
+            _run([*compiler, *FLAGS, "-c", file, "-o", objects[-1]], folder)
+        _run([*compiler, "-nostdlib", "-shared", "-s", *objects, *WINDOWS_LIBRARIES, "-o", binary], folder)
+        return _undated((folder / binary).read_bytes())
+
+
+def _undated(dll: bytes) -> bytes:
+    """The library without the time at which it was linked, so that a rebuild gives the same bytes."""
+    (header,) = struct.unpack_from("<I", dll, WHERE_HEADER)
+    return dll[: header + 8] + bytes(4) + dll[header + 12 :]
+
+
+@contextmanager
+def _folder_of(sources: Mapping[str, bytes]) -> Iterator[Path]:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         for name, content in sources.items():
             (folder / name).write_bytes(content)
-        files = sorted(name for name in sources if name.endswith(".c"))
-        command = [*compiler, *FLAGS, *files, "-o", binary, "-lm"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
-        return (folder / binary).read_bytes()
+        yield folder
+
+
+def _c_files(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("*.c"))
+
+
+def _run(command: Sequence[str], folder: Path) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
 
 
 def universal(binaries: Mapping[str, bytes]) -> bytes:

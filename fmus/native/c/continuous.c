@@ -56,7 +56,7 @@ fmi2Status set_input_rates(
             return fmi2Error;
         if (variable->causality != INPUT)
             return refuse(instance, "%s is not an input and has no input derivative", variable->name);
-        if (!isfinite(rates[k]))
+        if (!(fabs(rates[k]) <= DBL_MAX))
             return refuse(
                 instance,
                 "%s is refused as derivative of %s; allowed is any finite number",

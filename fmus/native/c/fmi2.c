@@ -2,6 +2,7 @@
 #include "instance.h"
 #include "state.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -140,7 +141,7 @@ fmi2Status fmi2SetupExperiment(
     char text[NUMBER_LENGTH];
     if (!instance)
         return fmi2Error;
-    if (!isfinite(startTime))
+    if (!(fabs(startTime) <= DBL_MAX))
         return refuse(
             instance, "startTime = %s s is refused; allowed is any finite number", write_number(text, startTime));
     instance->memory.start_time = instance->memory.time = startTime;
@@ -359,7 +360,7 @@ fmi2Status fmi2GetRealOutputDerivatives(
 static fmi2Status check_step(Instance *instance, double time, double step_size)
 {
     char text[NUMBER_LENGTH], reached[NUMBER_LENGTH];
-    if (!(step_size > 0.0 && isfinite(step_size)))
+    if (!(step_size > 0.0 && step_size <= DBL_MAX))
         return discard(
             instance,
             "communicationStepSize = %s s is refused; allowed is any finite number above 0",

@@ -1,6 +1,7 @@
 /* What the FMU tells its host, through the logger of the host alone. */
 #include "instance.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -116,22 +117,23 @@ static int shortest_digits(char digits[DIGITS + 1], double value)
 char *write_number(char text[NUMBER_LENGTH], double value)
 {
     char digits[DIGITS + 1], *at = text;
-    if (isnan(value))
+    if (value != value)
         return strcpy(text, "nan");
-    if (signbit(value))
+    if (copysign(1.0, value) < 0.0)
         *at++ = '-';
-    if (isinf(value)) {
+    if (fabs(value) > DBL_MAX) {
         strcpy(at, "inf");
         return text;
     }
     const int power = shortest_digits(digits, fabs(value)), count = (int)strlen(digits);
+    const size_t room = NUMBER_LENGTH - 1;
     if (power < -4 || power >= 16)
-        sprintf(at, "%c%s%se%+03d", digits[0], count > 1 ? "." : "", digits + 1, power);
+        snprintf(at, room, "%c%s%se%+03d", digits[0], count > 1 ? "." : "", digits + 1, power);
     else if (power < 0)
-        sprintf(at, "0.%.*s%s", -power - 1, "000", digits);
+        snprintf(at, room, "0.%.*s%s", -power - 1, "000", digits);
     else if (count <= power + 1)
-        sprintf(at, "%s%.*s.0", digits, power + 1 - count, "0000000000000000");
+        snprintf(at, room, "%s%.*s.0", digits, power + 1 - count, "0000000000000000");
     else
-        sprintf(at, "%.*s.%s", power + 1, digits, digits + power + 1);
+        snprintf(at, room, "%.*s.%s", power + 1, digits, digits + power + 1);
     return text;
 }

@@ -1,0 +1,44 @@
+"""Binaries for all platforms, where the extra `cross` is installed; and the universal file for macOS."""
+
+import struct
+import zipfile
+
+import pytest
+
+pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+from fmus.builds import NotPossible, builders
+from fmus.catalogue import FMUS
+from fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
+
+LARGEST = 150 * 1024
+
+
+@pytest.fixture(scope="module")
+def builder():
+    try:
+        (made,) = builders("native", "all")
+    except NotPossible as reason:
+        pytest.skip(str(reason))
+    return made
+
+
+@pytest.mark.parametrize("name", ["ValidationVehicle", "WheelSpeedCan"])
+def test_one_small_file_holds_all_platforms_and_a_rebuild_gives_the_same_bytes(builder, tmp_path, name):
+    path = builder(FMUS[name], tmp_path / "once")
+    assert path.stat().st_size < LARGEST
+    with zipfile.ZipFile(path) as archive:
+        names = set(archive.namelist())
+    assert {f"binaries/linux64/{name}.so", f"binaries/win64/{name}.dll", f"binaries/darwin64/{name}.dylib"} <= names
+    assert builder(FMUS[name], tmp_path / "twice").read_bytes() == path.read_bytes()
+
+
+def test_a_universal_file_tells_where_the_part_of_each_processor_is():
+    parts = {MAC_INTEL: b"intel", MAC_ARM: b"arm" * 10_000}
+    file = universal(parts)
+    magic, count = struct.unpack_from(">II", file)
+    assert (magic, count) == (0xCAFEBABE, 2)
+    for place, content in zip((8, 28), parts.values(), strict=True):
+        _, _, offset, size, alignment = struct.unpack_from(">IIIII", file, place)
+        assert file[offset : offset + size] == content
+        assert offset % (1 << alignment) == 0
