@@ -120,7 +120,7 @@ def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, said):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         binary = ctypes.CDLL(host.fmu.dll._name)
         binary.fmi2Instantiate.restype = ctypes.c_void_p
-        right = {"name": b"instance", "kind": 1, "guid": host.description.guid.encode()}
+        right = {"name": b"instance", "kind": 1, "guid": str(host.description.guid).encode()}
         given = right | what
         made = binary.fmi2Instantiate(
             given["name"], given["kind"], given["guid"], None, ctypes.byref(host._callbacks), 0, 1

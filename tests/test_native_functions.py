@@ -87,6 +87,7 @@ def test_what_moves_the_state_is_equal(functions, name):
 @pytest.mark.parametrize("signal", ["T_driver", "omega_1_meas", "T_mot_est", "omega_2_can"])
 def test_the_controller_copes_with_the_same_bad_signals(functions, signal, value):
     block = FMUS["DampingController"].block
+    assert block.update
     u, p = block.Input(), block.Parameters()
     x = block.start(u, p)
     for k in range(100):

@@ -140,6 +140,7 @@ def test_after_initialization_only_inputs_can_be_known(native, tmp_path):
 def test_sampled_blocks_claim_no_rates_and_refuse_them(native, tmp_path, name):
     with opened(native / f"{name}.fmu", tmp_path) as host:
         claims = host.description.coSimulation
+        assert claims
         assert not claims.canInterpolateInputs
         assert not claims.providesDirectionalDerivative
         assert claims.maxOutputDerivativeOrder == 0

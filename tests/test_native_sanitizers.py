@@ -20,12 +20,16 @@ def test_random_calls_find_no_fault_and_leave_no_memory(native, tmp_path, name):
     fmpy.extract(str(native / f"{name}.fmu"), str(tmp_path))
     sources = tmp_path / "sources"
     files = [HOST, *sorted(sources.glob("*.c"))]
-    command = [host_compiler(), *WARNINGS, *SANITIZERS, f"-I{sources}", *files, "-o", tmp_path / "host", "-lm"]
+    compiler = host_compiler()
+    assert compiler
+    command = [compiler, *WARNINGS, *SANITIZERS, f"-I{sources}", *files, "-o", tmp_path / "host", "-lm"]
     compiled = subprocess.run(command, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         pytest.skip("the compiler has no sanitizers")
     assert compiled.returncode == 0, compiled.stderr
-    guid = fmpy.read_model_description(str(native / f"{name}.fmu")).guid
+    guid = str(fmpy.read_model_description(str(native / f"{name}.fmu")).guid)
     for seed in ("1", "2"):
-        done = subprocess.run([tmp_path / "host", guid, seed, str(CALLS)], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [tmp_path / "host", str(guid), seed, str(CALLS)], capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, done.stdout + done.stderr

@@ -1,10 +1,9 @@
 """Building a native FMU: C source, its binaries, description and documentation in one archive."""
 
 from collections.abc import Callable, Mapping
+from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
-
-import casadi
 
 from ..archive import guid_of, write_archive
 from ..build_kind import DISCARDED, BuildKind
@@ -67,7 +66,7 @@ def native_kind(fmu: Fmu, sources: Mapping[str, bytes]) -> BuildKind:
     """What the native build of an FMU says of itself; rates of change are known of continuous blocks."""
     continuous = fmu.block.derivative is not None
     return BuildKind(
-        tool=f"CasADi {casadi.__version__}",
+        tool=f"CasADi {version('casadi')}",
         capabilities={
             "canInterpolateInputs": "true" if continuous else "false",
             "maxOutputDerivativeOrder": "1" if continuous else "0",
