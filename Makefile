@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup demo test lint check bench docs clean
+.PHONY: help setup demo test lint check cross bench docs clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
@@ -34,6 +34,10 @@ lint: $(READY) ## format, lint and types
 check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline build
 	$(BIN)/driveline check build/*.fmu build/native/*.fmu
+
+cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[cross]'
+	$(BIN)/driveline build --build native --platform all
 
 bench: $(READY) ## cost per communication step, side by side and in other hosts
 	$(BIN)/driveline build
