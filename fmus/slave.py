@@ -21,6 +21,9 @@ Hosts that add up their step sizes instead of counting are off by 1e-8 s after a
 TIME_TOLERANCE = 1e-6
 """In s: how far the host's time may be from the FMU's."""
 
+LONGEST_COMMUNICATION_STEP = 1000.0
+"""In s: a longer communication step is a mistake of the host, and would keep it waiting for ever."""
+
 
 class Mode(IntEnum):
     """Where an instance is in the sequence of calls."""
@@ -148,8 +151,11 @@ class BlockSlave:
 
     def _check_step(self, current_time: float, step_size: float) -> None:
         self._require(Mode.STEPPING, "fmi2DoStep")
-        if not 0.0 < step_size < math.inf:
-            raise Refused(f"communicationStepSize = {step_size!r} s is refused; allowed is any finite number above 0")
+        if not 0.0 < step_size <= LONGEST_COMMUNICATION_STEP:
+            raise Refused(
+                f"communicationStepSize = {step_size!r} s is refused; "
+                f"allowed is above 0 to {LONGEST_COMMUNICATION_STEP:g} s"
+            )
         if not abs(current_time - self.time) <= TIME_TOLERANCE:
             raise Refused(
                 f"currentCommunicationPoint = {current_time!r} s is refused; "

@@ -9,6 +9,9 @@
 /* In s: how far the host's time may be from the FMU's. */
 #define TIME_TOLERANCE 1e-6
 
+/* In s: a longer communication step is a mistake of the host, and would keep it waiting for ever. */
+#define LONGEST_COMMUNICATION_STEP 1000.0
+
 enum { ANY_MODE = INSTANTIATED | INITIALIZATION | STEPPING | TERMINATED };
 
 const char *fmi2GetTypesPlatform(void)
@@ -360,10 +363,10 @@ fmi2Status fmi2GetRealOutputDerivatives(
 static fmi2Status check_step(Instance *instance, double time, double step_size)
 {
     char text[NUMBER_LENGTH], reached[NUMBER_LENGTH];
-    if (!(step_size > 0.0 && step_size <= DBL_MAX))
+    if (!(step_size > 0.0 && step_size <= LONGEST_COMMUNICATION_STEP))
         return discard(
             instance,
-            "communicationStepSize = %s s is refused; allowed is any finite number above 0",
+            "communicationStepSize = %s s is refused; allowed is above 0 to 1000 s",
             write_number(text, step_size));
     if (!(fabs(time - instance->memory.time) <= TIME_TOLERANCE))
         return discard(
