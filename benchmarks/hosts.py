@@ -3,6 +3,7 @@
 Every host makes the same steps (all hand on outputs after the step, as Jacobi): T_gear in the end shows
 it. The hosts take turns, each in a process of its own; what is shown is the least time of all turns, that
 of the processor, without loading and initialization. Our master records all outputs, the others nothing.
+The plain C loop only hands on what is connected: the limit.
 """
 
 import argparse
@@ -11,6 +12,7 @@ import sys
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import which
 from time import process_time
 from typing import NamedTuple
 
@@ -22,6 +24,8 @@ from harness.master import Scheme, prepared
 from harness.steps import interpreted
 from harness.wiring import PLANTS, System, loop
 from harness.workers import workers
+
+from . import plain_loop
 
 STEP_SIZE = 1e-3
 MICRO = 1e6
@@ -116,6 +120,13 @@ def ecos(system: System, steps: int) -> Run:
             return Run(took / steps * MICRO, simulation.get_real("plant::T_gear"))
 
 
+def plain_c(system: System, steps: int) -> Run:
+    """A C program that makes the calls and nothing else."""
+    start = {**START, "controller.T_driver": T_DRIVER}
+    cost, T_gear = plain_loop.run(system, steps, STEP_SIZE, start, "plant.T_gear")
+    return Run(cost * MICRO, T_gear)
+
+
 class Contender(NamedTuple):
     """A host, the build of the FMUs that it runs, and whether it is installed."""
 
@@ -128,6 +139,7 @@ class Contender(NamedTuple):
 CONTENDERS = (
     Contender("our master", "native", compiled, LIBRARY is not None),
     Contender("the same in Python", "native", in_python),
+    Contender("plain C loop", "native", plain_c, os.name == "posix" and which(os.environ.get("CC", "cc")) is not None),
     Contender("libcosim", "native", libcosim, find_spec("libcosimpy") is not None),
     Contender("Ecos", "native", ecos, find_spec("ecospy") is not None),
     Contender("our master", "python", compiled, LIBRARY is not None),
