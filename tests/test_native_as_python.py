@@ -17,7 +17,7 @@ from test_fmu_state import (  # noqa: F401
 from test_fmu_time import (  # noqa: F401
     test_a_sampled_block_does_not_depend_on_the_communication_step,
     test_a_step_from_another_time_is_discarded,
-    test_a_step_that_is_not_positive_and_finite_is_discarded,
+    test_a_step_that_is_not_positive_or_endless_is_discarded,
     test_an_input_that_is_fed_through_shows_before_the_step,
     test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on,
     test_outputs_are_right_at_the_start_and_parameters_in_effect,
