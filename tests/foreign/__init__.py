@@ -1,5 +1,6 @@
 """FMUs that are not ours, and ours after somebody has tampered with them."""
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from zipfile import ZipFile
@@ -13,8 +14,17 @@ RELAY = Path(__file__).with_name("relay.py")
 
 
 def build_relay(folder: Path, script: Path = RELAY) -> Path:
-    """Builds the FMU of relay.py, or of a changed copy, as anybody would with PythonFMU."""
-    return Path(FmuBuilder.build_FMU(script, dest=folder))
+    """Builds the FMU of relay.py, or of a changed copy, as anybody would with PythonFMU.
+
+    The builder imports the script and leaves it there; the FMU of another copy would then run its code.
+    """
+    before = list(sys.path)
+    sys.modules.pop(script.stem, None)
+    try:
+        return Path(FmuBuilder.build_FMU(script, dest=folder))
+    finally:
+        sys.modules.pop(script.stem, None)
+        sys.path[:] = before
 
 
 def tampered(fmu: Path, copy: Path, change: Callable[[str], str], **added: bytes) -> Path:
