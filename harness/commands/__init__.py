@@ -1,1 +1,2 @@
-"""The subcommands of `driveline`: each module has NAME, HELP, add_arguments(parser), run(args) -> int."""
+"""The subcommands of `driveline`: each module has NAME, HELP, DESCRIPTION, EXAMPLES,
+add_arguments(parser) and run(args) -> int."""

@@ -30,8 +30,6 @@ ALLOWED = 1e-9
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.description, parser.epilog = DESCRIPTION, EXAMPLES
     parser.add_argument(
         "--output",
         type=Path,

@@ -32,8 +32,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.description, parser.epilog = DESCRIPTION, EXAMPLES
     parser.add_argument("names", nargs="*", metavar="FMU", help="which to build (default: all)")
     parser.add_argument("--output", type=Path, default=BUILD, metavar="FOLDER", help="(default: %(default)s)")
     parser.add_argument("--build", choices=BUILDS, help="which build (default: each that is possible here)")

@@ -27,8 +27,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.description, parser.epilog = DESCRIPTION, EXAMPLES
     parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
 
 

@@ -28,8 +28,6 @@ DEAD_TIME_STEPS = (STEP, 0.5 * STEP)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.description, parser.epilog = DESCRIPTION, EXAMPLES
     parser.add_argument(
         "--output",
         type=Path,

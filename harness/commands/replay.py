@@ -32,8 +32,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.description, parser.epilog = DESCRIPTION, EXAMPLES
     parser.add_argument("recording", type=Path, metavar="RECORDING.csv", help="the recorded drive")
     parser.add_argument(
         "--plant",

@@ -39,8 +39,6 @@ manoeuvres:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.description = DESCRIPTION
     width = max(map(len, MANOEUVRES))
     listed = (f"  {m.name:{width}}  {m.description} ({m.duration:g} s)" for m in MANOEUVRES.values())
     parser.epilog = EXAMPLES + "\n".join(listed)
