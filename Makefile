@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 help: ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
 
-$(READY): pyproject.toml constraints.txt harness/steps.c
+$(READY): pyproject.toml constraints.txt harness/cosimulation/steps.c
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
@@ -21,7 +21,7 @@ setup: $(READY) ## the virtual environment alone
 demo: $(READY) ## build the FMUs, compare with and without damping, replay a short drive
 	$(BIN)/driveline build
 	$(BIN)/driveline compare
-	$(BIN)/driveline replay harness/data/town_drive.csv
+	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv
 
 test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
@@ -48,7 +48,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs/coupling.md
 	$(BIN)/driveline back-to-back --output docs/back_to_back.md
-	$(BIN)/python -m fmus.blocks_page
+	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline compare
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
@@ -56,4 +56,4 @@ docs: $(READY) ## the pages of the documentation that are computed
 	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
 
 clean: ## everything that was made
-	rm -rf $(VENV) build results *.egg-info harness/_steps.*
+	rm -rf $(VENV) build results *.egg-info harness/cosimulation/_steps.*

@@ -19,10 +19,10 @@ from typing import NamedTuple
 from rich.console import Console
 from rich.table import Table
 
-from harness.compiled import LIBRARY, CompiledSteps
-from harness.master import Scheme, prepared
-from harness.steps import interpreted
-from harness.wiring import PLANTS, System, loop
+from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.master import Scheme, prepared
+from harness.cosimulation.steps import interpreted
+from harness.cosimulation.system import PLANTS, System, loop
 from harness.workers import workers
 
 from . import plain_loop

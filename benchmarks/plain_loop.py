@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 import fmpy
 
 from fmus.native.compiler import host_compiler
-from harness.interface import Interface, type_of
-from harness.wiring import System
+from harness.cosimulation.system import System
+from harness.cosimulation.wiring import Interface, type_of
 
 SOURCE = Path(__file__).parent / "plain_loop.c"
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2")

@@ -19,13 +19,13 @@ from unittest.mock import patch
 from rich.console import Console
 from rich.table import Table
 
-from harness.instance import Instance
-from harness.interface import type_of
-from harness.manoeuvres import MANOEUVRES
-from harness.master import Loop, Scheme, prepared
+from harness.cosimulation.instance import Instance
+from harness.cosimulation.master import Loop, Scheme, prepared
+from harness.cosimulation.steps import interpreted
+from harness.cosimulation.system import BUILD_HELP, BUILDS, CONNECTIONS, PLANTS, System, chosen_build, loop
+from harness.cosimulation.wiring import type_of
+from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
-from harness.steps import interpreted
-from harness.wiring import BUILD_HELP, BUILDS, CONNECTIONS, PLANTS, System, chosen_build, loop
 
 STEP_SIZE = 1e-3
 MICRO = 1e6

@@ -8,10 +8,10 @@ import numpy as np
 from fmus.damping_controller import FMU
 from fmus.native.compiler import host_compiler
 from fmus.native.target import PRECISIONS, target_sources
-from harness.manoeuvres import Manoeuvre
+from harness.cosimulation.system import CONNECTIONS
+from harness.manoeuvres.catalogue import Manoeuvre
 from harness.simulate import signals, simulate
-from harness.wiring import CONNECTIONS
-from models.declaration import variables
+from models.block.declaration import variables
 
 STEP_SIZE = 1e-3
 """Communication step of the loop in s."""

@@ -12,14 +12,15 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from benchmarks.target import FLAGS, as_text, compiled, outputs, program, recorded
 from fmus.builds import NATIVE_FOLDER
 from fmus.damping_controller import FMU
 from fmus.native.compiler import CompilerError, zig_compiler
 from fmus.native.target import PRECISIONS
 from fmus.native.trace import leaves
-from harness.manoeuvres import MANOEUVRES
-from harness.wiring import BUILD
+from harness.cosimulation.system import BUILD
+from harness.manoeuvres.catalogue import MANOEUVRES
+
+from .target import FLAGS, as_text, compiled, outputs, program, recorded
 
 PAGE = Path(__file__).parent.parent / "docs" / "target.md"
 

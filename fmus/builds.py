@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from .fmu import Fmu
-from .packaging import build
+from .python.packaging import build
 
 BUILDS = ("python", "native", "both")
 PLATFORMS = ("host", "all")

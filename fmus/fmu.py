@@ -3,7 +3,7 @@
 import sys
 from dataclasses import dataclass
 
-from models.block import Block
+from models.block.types import Block
 
 
 @dataclass(frozen=True)

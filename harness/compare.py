@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .manoeuvres import MANOEUVRES
-from .metrics import Metrics, at_samples, evaluate
-from .plots import plot_drive, plot_step
-from .report import Row, write_markdown, write_metrics
-from .results import write_csv
+from .cosimulation.system import BUILD
+from .manoeuvres.catalogue import MANOEUVRES
+from .metrics.evaluate import Metrics, at_samples, evaluate
+from .reports.csv_file import write_csv
+from .reports.figures import plot_drive, plot_step
+from .reports.table import Row, write_markdown, write_metrics
 from .simulate import simulate
-from .wiring import BUILD
 from .workers import workers
 
 CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
@@ -75,7 +75,7 @@ def run_cases(
         seed: of the noise of all runs.
         folder: for the CSV files, made if absent.
         fmus: folder of the built FMUs.
-        build: "native" or "python"; None: see `harness.wiring.chosen_build`.
+        build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with workers() as pool:

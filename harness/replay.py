@@ -11,14 +11,14 @@ from numpy.lib.recfunctions import repack_fields
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from .damage import damage, require_counting
-from .manoeuvres import Manoeuvre
-from .metrics import at_samples, evaluate
-from .plots import plot_replay
-from .recording import Recording
-from .results import write_csv
+from .cosimulation.system import BUILD
+from .manoeuvres.catalogue import Manoeuvre
+from .manoeuvres.recording import Recording
+from .metrics.damage import damage, require_counting
+from .metrics.evaluate import at_samples, evaluate
+from .reports.csv_file import write_csv
+from .reports.figures import plot_replay
 from .simulate import simulate
-from .wiring import BUILD
 from .workers import workers
 
 KEPT = [
@@ -41,11 +41,11 @@ CSV_STRIDE = 5
 
 @dataclass(frozen=True, eq=False)
 class Ride:
-    """A recorded drive that was simulated; SI units, see `harness.metrics.Metrics`.
+    """A recorded drive that was simulated; SI units, see `harness.metrics.evaluate.Metrics`.
 
     Attributes:
         bTg: 5-50 Hz rms of the gear torque over the trip, N.m.
-        damage: of the gear by rainflow counting, (N.m)^5, see `harness.damage`.
+        damage: of the gear by rainflow counting, (N.m)^5, see `harness.metrics.damage`.
         bJ: 5-50 Hz rms of the jerk of the body over the trip, m/s3.
         speed_error: rms of simulated less recorded speed, m/s.
         signals: the columns KEPT at the samples of the controller.

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .manoeuvres import Manoeuvre
-from .master import Scheme, Source, run
-from .wiring import BUILD, PLANTS, loop
+from .cosimulation.master import Scheme, Source, run
+from .cosimulation.system import BUILD, PLANTS, loop
+from .manoeuvres.catalogue import Manoeuvre
 
 
 def simulate(
@@ -30,10 +30,10 @@ def simulate(
         step_size: communication step in s.
         seed: of all noise and jitter.
         folder: of the built FMUs.
-        build: "native" or "python"; None: see `harness.wiring.chosen_build`.
+        build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
 
     Returns:
-        Structured array, see `harness.master.run`.
+        Structured array, see `harness.cosimulation.master.run`.
 
     Raises:
         WiringError: the plant or a parameter does not fit.

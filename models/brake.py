@@ -9,8 +9,8 @@ spring T_brake/z_br with a damper. omega_sat only limits the rate of z, not the 
 
 from typing import Annotated, Any
 
-from .declaration import Real
-from .operators import clip
+from .block.declaration import Real
+from .block.operators import clip
 
 BristleDeflection = Annotated[float, Real("rad", "twist of the brake bristles at sliding", 1e-4, 0.1)]
 BristleDamping = Annotated[float, Real("s", "damping time of the brake bristles", 1e-4, 0.1)]

@@ -15,15 +15,15 @@ damping fades out and the estimator is held, until there is one or the other.
 
 from typing import Annotated, Any, NamedTuple
 
-from . import damping_design as design
-from . import damping_law as law
-from . import motor_signals
-from . import torque_estimator as estimator
-from .block import Block
-from .declaration import Boolean, Enumeration, Integer, Real
-from .motor_signals import MotorSignals, plausible
-from .operators import branch, clip, is_finite, logical_and, minimum, where
-from .torque_estimator import HISTORY, Estimate
+from .block.declaration import Boolean, Enumeration, Integer, Real
+from .block.operators import branch, clip, is_finite, logical_and, minimum, where
+from .block.types import Block
+from .controller import damping_law as law
+from .controller import gains as design
+from .controller import signal_monitor as motor_signals
+from .controller import torque_estimator as estimator
+from .controller.signal_monitor import MotorSignals, plausible
+from .controller.torque_estimator import HISTORY, Estimate
 from .vehicle import HalfGap, MotorInertia
 
 T_S = 0.002

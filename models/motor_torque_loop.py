@@ -8,10 +8,10 @@ gives it. The noise is held for T_s; sample k of it is a pure function of the se
 
 from typing import Annotated, NamedTuple
 
-from .block import Block
-from .declaration import Integer, Real
-from .noise import normals
-from .operators import clip, floor, maximum, where
+from .block.declaration import Integer, Real
+from .block.noise import normals
+from .block.operators import clip, floor, maximum, where
+from .block.types import Block
 
 SQRT_2 = 2.0**0.5
 NOISE = 0.0

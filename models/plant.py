@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from .declaration import Real
+from .block.declaration import Real
 
 
 class Input(NamedTuple):

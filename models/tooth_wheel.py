@@ -8,9 +8,9 @@ over the time since the last edge. The sensor cannot tell the direction.
 
 from typing import Annotated, Any, NamedTuple
 
-from .declaration import Real
-from .noise import normals, uniform
-from .operators import branch, floor, logical_or, minimum, where
+from .block.declaration import Real
+from .block.noise import normals, uniform
+from .block.operators import branch, floor, logical_or, minimum, where
 
 TEETH = 48.0
 PITCH = 6.283185307179586 / TEETH

@@ -19,10 +19,10 @@ they would show then follows omega_2 without slip.
 from typing import Annotated, Any, NamedTuple
 
 from . import brake, vehicle
-from .block import Block
-from .declaration import Boolean, Real
-from .gear_play import dead_zone
-from .operators import maximum, sign, where
+from .backlash import dead_zone
+from .block.declaration import Boolean, Real
+from .block.operators import maximum, sign, where
+from .block.types import Block
 from .plant import Input, Output
 
 

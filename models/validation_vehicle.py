@@ -23,10 +23,10 @@ is half an axle's Magic Formula (Pacejka, without curvature term) on the deflect
 from typing import Annotated, Any, NamedTuple
 
 from . import brake, vehicle
-from .block import Block
-from .declaration import Real
-from .gear_play import dead_zone
-from .operators import atan, maximum, minimum, sign, sin, tanh, where
+from .backlash import dead_zone
+from .block.declaration import Real
+from .block.operators import atan, maximum, minimum, sign, sin, tanh, where
+from .block.types import Block
 from .plant import Input, Output
 
 

@@ -8,10 +8,10 @@ The message arrives after a random transport delay, never overtaking another, un
 from typing import Annotated, Any, NamedTuple
 
 from . import tooth_wheel
-from .block import Block
-from .declaration import Boolean, Integer, Real
-from .noise import uniform
-from .operators import branch, floor, logical_and, logical_or, maximum, minimum, where
+from .block.declaration import Boolean, Integer, Real
+from .block.noise import uniform
+from .block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
+from .block.types import Block
 from .tooth_wheel import ToothWheel
 from .vehicle import GearRatio, WheelRadius
 

@@ -7,7 +7,7 @@ from hypothesis import settings
 
 from fmus.builds import NotPossible, builders
 from fmus.catalogue import FMUS
-from fmus.packaging import build
+from fmus.python.packaging import build
 
 # the same examples in every run, and nothing timed
 settings.register_profile("driveline", deadline=None, derandomize=True)

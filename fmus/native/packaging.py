@@ -6,10 +6,10 @@ from importlib.resources import files
 from pathlib import Path
 
 from ..archive import guid_of, write_archive
-from ..build_kind import DISCARDED, BuildKind
-from ..documentation import documentation
+from ..description.build_kind import DISCARDED, BuildKind
+from ..description.documentation import documentation
+from ..description.model_description import model_description
 from ..fmu import Fmu
-from ..model_description import model_description
 from .compiler import host_binaries
 from .source import block_sources, variables_source
 from .tableau import step_header

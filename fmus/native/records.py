@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from models.declaration import Real, Variable, variables
+from models.block.declaration import Real, Variable, variables
 
 
 class Names(NamedTuple):

@@ -3,8 +3,8 @@
 import re
 from typing import Any
 
+from ..description.variables import Variable, interface
 from ..fmu import Fmu
-from ..interface import Variable, interface
 from .arithmetic import Graph
 from .records import IN_FMU, Names, paths, structs
 from .statements import DOUBLE, Precision, Statements

@@ -24,7 +24,7 @@ def _reflected(operation: Callable[[Any, Any], Any]) -> Callable[[Any, Any], "Sy
 
 
 class Symbol:
-    """A real number or a truth value (0 or 1); follows the protocol of `models.operators`."""
+    """A real number or a truth value (0 or 1); follows the protocol of `models.block.operators`."""
 
     __slots__ = ("expression",)
 
@@ -32,7 +32,7 @@ class Symbol:
         self.expression = expression
 
     def __bool__(self) -> bool:
-        raise TypeError("a model function branches on data; it must call `where` of models.operators")
+        raise TypeError("a model function branches on data; it must call `where` of models.block.operators")
 
     __add__, __radd__ = _binary(casadi.plus), _reflected(casadi.plus)
     __sub__, __rsub__ = _binary(casadi.minus), _reflected(casadi.minus)

@@ -2,7 +2,7 @@
 
 import math
 
-from ..dop853 import A, B
+from models.block.dop853 import A, B
 
 HEADER = """/* The Runge-Kutta method of order 8 by Dormand and Prince, written by build_fmus.py from dop853.py. */
 

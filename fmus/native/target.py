@@ -7,7 +7,7 @@ arithmetic as in the FMU, but with names that stand alone in a project, and in s
 import argparse
 from pathlib import Path
 
-from models.declaration import Enumeration, variables
+from models.block.declaration import Enumeration, variables
 
 from ..damping_controller import FMU
 from ..fmu import Fmu

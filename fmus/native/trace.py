@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import casadi
 
-from models.block import Block
+from models.block.types import Block
 
 from .symbol import Symbol, expression
 

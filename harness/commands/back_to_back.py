@@ -4,8 +4,8 @@ import argparse
 from itertools import product, repeat
 from pathlib import Path
 
-from ..manoeuvres import MANOEUVRES
-from ..wiring import BUILD, PLANTS
+from ..cosimulation.system import BUILD, PLANTS
+from ..manoeuvres.catalogue import MANOEUVRES
 from ..workers import workers
 
 NAME = "back-to-back"
@@ -50,8 +50,8 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: only this measurement needs the models
     from fmus.catalogue import FMUS
 
-    from ..back_to_back import compare_block, compare_loop, random_inputs
-    from ..back_to_back_page import LoopRow, page
+    from ..analysis.back_to_back import compare_block, compare_loop, random_inputs
+    from ..analysis.back_to_back_page import LoopRow, page
 
     random = {
         name: compare_block(name, random_inputs(fmu.block, RANDOM_STEPS), args.fmus) for name, fmu in FMUS.items()

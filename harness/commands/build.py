@@ -6,9 +6,9 @@ from pathlib import Path
 from fmus.builds import BUILDS, PLATFORMS, NotPossible, builders
 from fmus.catalogue import FMUS
 
+from ..cosimulation.system import BUILD
 from ..errors import DrivelineError
 from ..names import nearest
-from ..wiring import BUILD
 
 NAME = "build"
 HELP = "build the FMUs"

@@ -6,7 +6,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from ..check import check
+from ..compliance.check import check
 
 NAME = "check"
 HELP = "check FMUs for compliance"

@@ -6,11 +6,11 @@ from pathlib import Path
 from rich.progress import track
 
 from ..compare import cases, run_cases, write_figures, write_tables
+from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build
 from ..errors import DrivelineError
-from ..manoeuvres import COMPARED, MANOEUVRES
+from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..names import nearest
-from ..report import terminal_table, wide_console
-from ..wiring import BUILD_HELP, BUILDS, PLANTS, chosen_build
+from ..reports.table import terminal_table, wide_console
 
 NAME = "compare"
 HELP = "run the manoeuvres without and with damping and compare"

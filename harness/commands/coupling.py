@@ -4,7 +4,7 @@ import argparse
 from itertools import product
 from pathlib import Path
 
-from ..wiring import BUILD, loop
+from ..cosimulation.system import BUILD, loop
 
 NAME = "coupling"
 HELP = "measure coupling error and dead time of the master"
@@ -42,9 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: only this measurement needs the models
-    from ..coupling import MANOEUVRES, PLANTS, Scheme, compare
-    from ..coupling_page import page
-    from ..dead_time import dead_times
+    from ..analysis.coupling import MANOEUVRES, PLANTS, Scheme, compare
+    from ..analysis.coupling_page import page
+    from ..analysis.dead_time import dead_times
 
     cases = product(PLANTS, MANOEUVRES, Scheme)
     text = page(

@@ -7,11 +7,11 @@ from pathlib import Path
 NAME = "design"
 HELP = "compute the gains of the controller"
 
-STORED = Path("models/damping_design.py")
+STORED = Path("models/controller/gains.py")
 
 DESCRIPTION = """\
 Solves the Riccati equations of the estimator and of the damping law for the weights stated in
-harness/controller_design.py and writes the result to models/damping_design.py, from where the
+harness/analysis/design.py and writes the result to models/controller/gains.py, from where the
 DampingController takes its default parameters. Run it in the root of the repository after a change of
 the weights or of the design model, then `driveline build`.
 """
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: only the design needs the models
-    from ..controller_design import design, module
+    from ..analysis.design import design, module
 
     text = module(design())
     if args.show:

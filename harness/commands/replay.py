@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
+from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build, loop
 from ..errors import DrivelineError
-from ..recording import COLUMNS, read_recording
+from ..manoeuvres.recording import COLUMNS, read_recording
+from ..manoeuvres.road import RoadLoad, road
 from ..replay import replay, terminal_table, write
-from ..report import wide_console
-from ..road import RoadLoad, road
-from ..wiring import BUILD_HELP, BUILDS, PLANTS, chosen_build, loop
+from ..reports.table import wide_console
 
 NAME = "replay"
 HELP = "drive a recorded torque demand and road without and with damping"
@@ -26,7 +26,7 @@ not forced on the simulated car; how far it strays from the recorded one is repo
 
 EXAMPLES = """\
 examples:
-  driveline replay harness/data/town_drive.csv
+  driveline replay harness/manoeuvres/data/town_drive.csv
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
 """
 

@@ -4,15 +4,15 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
+from ..cosimulation.master import Scheme
+from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build
 from ..errors import DrivelineError
-from ..manoeuvres import MANOEUVRES
-from ..master import Scheme
+from ..manoeuvres.catalogue import MANOEUVRES
 from ..names import nearest
-from ..plots import METADATA
-from ..results import write_csv
-from ..run_plot import plot_run
+from ..reports.csv_file import write_csv
+from ..reports.figures import METADATA
+from ..reports.run_figure import plot_run
 from ..simulate import simulate
-from ..wiring import BUILD_HELP, BUILDS, PLANTS, chosen_build
 
 NAME = "simulate"
 HELP = "drive the loop through one manoeuvre and write its signals"

@@ -1,0 +1,1 @@
+"""What an FMU says of itself: variables, units, dependencies, description, page, picture."""

@@ -1,0 +1,117 @@
+"""documentation/index.html of an FMU: what the block is, its equations and its variables."""
+
+import textwrap
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+
+from models.block.declaration import Enumeration
+from models.block.types import Block
+
+from ..fmu import Fmu
+from .build_kind import BuildKind
+from .picture import picture
+from .variables import Variable, interface
+
+LICENSE = Path(__file__).parents[2] / "LICENSE"
+
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<title>{name}</title>
+<style>
+body {{ font: 16px/1.5 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; color: #222 }}
+pre {{ background: #f4f4f4; padding: 1em; overflow-x: auto; line-height: 1.35 }}
+table {{ border-collapse: collapse; margin: 1em 0 }}
+th, td {{ text-align: left; padding: .25em 1em .25em 0; border-bottom: 1px solid #ddd; vertical-align: top }}
+</style>
+</head>
+<body>
+<h1>{name}</h1>
+<p>{description}.</p>
+<p><img src="../model.png" alt="inputs and outputs of {name}"></p>
+{equations}
+{tables}
+<h2>How it runs</h2>
+<p>{timing} {inputs} A parameter may be changed until initialization
+mode is left, and outputs are right from then on. A value that is not allowed is refused with a
+message to the logger, and everything stays as it was before the call{tolerance}.</p>
+<p>FMI 2.0 Co-Simulation, all quantities in SI units. {needs}</p>
+</body>
+</html>
+"""
+
+CONTINUOUS = "The differential equations are integrated with steps of at most {step:g} ms, at any communication step."
+
+SAMPLED = (
+    "The block computes every {step:g} ms from the start time on, whatever the communication step, with the "
+    "inputs of the step that begins there; the result appears {step:g} ms later."
+)
+
+
+def documentation(fmu: Fmu, kind: BuildKind) -> dict[str, bytes]:
+    """Page, picture and licence by their names in the FMU."""
+    files = {"documentation/index.html": page(fmu, kind).encode(), "model.png": picture(fmu.block)}
+    if LICENSE.exists():
+        files["documentation/licenses/license.txt"] = LICENSE.read_bytes()
+    return files
+
+
+def page(fmu: Fmu, kind: BuildKind) -> str:
+    """The whole page as HTML."""
+    block = fmu.block
+    return PAGE.format(
+        name=escape(block.name),
+        description=escape(block.description),
+        equations=_prose(fmu.equations),
+        tables="\n".join(_table(title, rows) for title, rows in tables(block)),
+        timing=timing(block),
+        inputs=kind.inputs,
+        needs=kind.needs,
+        tolerance=" (inputs excepted: this block copes with any)" if block.tolerates_bad_input else "",
+    )
+
+
+def timing(block: Block) -> str:
+    """When the block computes, in a sentence."""
+    sentence = SAMPLED if block.update else CONTINUOUS
+    return sentence.format(step=1000.0 * (block.sample_time or block.step_size))
+
+
+def tables(block: Block) -> Iterator[tuple[str, list[tuple[str, ...]]]]:
+    """Title and rows of the table of inputs, of outputs and of parameters; the first row is the heading."""
+    for causality in ("input", "output", "parameter"):
+        heading = ("Name", "Unit", "Meaning", "Start", "Allowed")
+        rows = [_cells(v) for v in interface(block) if v.causality == causality]
+        yield f"{causality.capitalize()}s", [heading[: len(rows[0])], *rows]
+
+
+def _prose(docstring: str) -> str:
+    """Paragraphs of a docstring; an indented one is a formula."""
+    first, _, rest = docstring.partition("\n")
+    paragraphs = "\n".join((first, textwrap.dedent(rest))).strip("\n").split("\n\n")
+    return "\n".join(
+        f"<pre>{escape(textwrap.dedent(text))}</pre>" if text.startswith(" ") else f"<p>{escape(text)}</p>"
+        for text in paragraphs
+    )
+
+
+def _table(title: str, rows: list[tuple[str, ...]]) -> str:
+    """A table under a heading."""
+    kinds = ["th"] + ["td"] * (len(rows) - 1)
+    lines = ("".join(f"<{kind}>{escape(cell)}</{kind}>" for cell in row) for kind, row in zip(kinds, rows, strict=True))
+    body = "\n".join(f"<tr>{line}</tr>" for line in lines)
+    return f"<h2>{title}</h2>\n<table>\n{body}\n</table>"
+
+
+def _cells(variable: Variable) -> tuple[str, ...]:
+    meaning = variable.declaration.description
+    if isinstance(variable.declaration, Enumeration):
+        items = (f"{k}: {what}" for k, (_, what) in enumerate(variable.declaration.items, start=1))
+        meaning = f"{meaning} ({'; '.join(items)})"
+    cells = (variable.name, variable.unit or "–", meaning)
+    if variable.causality == "output":
+        return cells
+    start = variable.start
+    return (*cells, f"{start:g}" if isinstance(start, float) else str(start).lower(), variable.allowed())

@@ -1,0 +1,154 @@
+"""modelDescription.xml of an FMU, written from the declarations of its block."""
+
+from collections.abc import Iterable
+from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from models.block.declaration import Boolean, Enumeration, Integer, Real
+
+from ..fmu import Fmu
+from .build_kind import BuildKind
+from .dependencies import initial_dependencies, output_dependencies
+from .units import base_exponents
+from .variables import Variable, interface
+
+CAPABILITIES = {
+    # The model is in the FMU and runs in the process of the host; no tool is started or talked to.
+    "needsExecutionTool": "false",
+    "canHandleVariableCommunicationStepSize": "true",
+    "canRunAsynchronuously": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+}
+
+DATE = "1980-01-01T00:00:00Z"
+"""Fixed, so that the same content gives the same bytes; it is the first that a zip file can hold."""
+
+
+def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
+    """The XML with that GUID."""
+    all_variables = interface(fmu.block)
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=fmu.name,
+        guid=guid,
+        description=fmu.block.description,
+        generationTool=kind.tool,
+        generationDateAndTime=DATE,
+        variableNamingConvention="flat",
+    )
+    _add_co_simulation(root, fmu, kind)
+    _add_units(root, all_variables)
+    _add_enumerations(root, all_variables)
+    categories = SubElement(root, "LogCategories")
+    for name, description in kind.log_categories.items():
+        SubElement(categories, "Category", {"name": name, "description": description})
+    experiment = {"startTime": "0", "stopTime": _text(fmu.stop_time), "stepSize": _text(fmu.step_size)}
+    SubElement(root, "DefaultExperiment", experiment)
+    listed = SubElement(root, "ModelVariables")
+    for variable in all_variables:
+        _add_variable(listed, variable, sampled=fmu.block.update is not None)
+    _add_structure(root, fmu, all_variables)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def _add_co_simulation(root: Element, fmu: Fmu, kind: BuildKind) -> None:
+    attributes = {"modelIdentifier": fmu.name} | CAPABILITIES | kind.capabilities
+    co_simulation = SubElement(root, "CoSimulation", attributes)
+    if kind.source_files:
+        sources = SubElement(co_simulation, "SourceFiles")
+        for name in kind.source_files:
+            SubElement(sources, "File", name=name)
+
+
+def _text(value: Any) -> str:
+    """A number or truth value as XML writes it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value)
+
+
+def _add_units(root: Element, all_variables: Iterable[Variable]) -> None:
+    units = sorted({v.declaration.unit for v in all_variables if isinstance(v.declaration, Real)})
+    definitions = SubElement(root, "UnitDefinitions") if units else root
+    for unit in units:
+        exponents = {base: str(exponent) for base, exponent in base_exponents(unit).items()}
+        SubElement(SubElement(definitions, "Unit", name=unit), "BaseUnit", exponents)
+
+
+def _add_enumerations(root: Element, all_variables: Iterable[Variable]) -> None:
+    used = {v.declaration.name: v.declaration for v in all_variables if isinstance(v.declaration, Enumeration)}
+    definitions = SubElement(root, "TypeDefinitions") if used else root
+    for name, declaration in used.items():
+        items = SubElement(SubElement(definitions, "SimpleType", name=name), "Enumeration")
+        for value, (item, meaning) in enumerate(declaration.items, start=1):
+            SubElement(items, "Item", name=item, value=str(value), description=meaning)
+
+
+def _add_variable(listed: Element, variable: Variable, sampled: bool) -> None:
+    declaration = variable.declaration
+    attributes = {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "description": declaration.description,
+        "causality": variable.causality,
+    }
+    if variable.causality == "parameter":
+        attributes |= {"variability": "fixed", "initial": "exact"}
+    else:
+        # what feeds a sampled block may change at any time; what leaves it may not
+        discrete = not isinstance(declaration, Real) or (sampled and variable.causality == "output")
+        attributes["variability"] = "discrete" if discrete else "continuous"
+        if variable.causality == "output":
+            attributes["initial"] = "calculated"
+    start = {} if variable.start is None else {"start": _text(variable.start)}
+    scalar = SubElement(listed, "ScalarVariable", attributes)
+    tag, attributes = _type(declaration)
+    SubElement(scalar, tag, attributes | start)
+
+
+def _type(declaration: Any) -> tuple[str, dict[str, str]]:
+    """XML element of a type and its attributes."""
+    match declaration:
+        case Boolean():
+            return "Boolean", {}
+        case Enumeration():
+            return "Enumeration", {"declaredType": declaration.name}
+        case Integer():
+            return "Integer", _limits(declaration, Integer(""))
+    limits = _limits(declaration, Real("1", ""))
+    nominal = {} if declaration.nominal is None else {"nominal": _text(declaration.nominal)}
+    return "Real", {"unit": declaration.unit, **limits, **nominal}
+
+
+def _limits(declaration: Any, unlimited: Any) -> dict[str, str]:
+    """The bounds that say more than those of an unlimited declaration."""
+    limits = {}
+    if declaration.minimum != unlimited.minimum:
+        limits["min"] = _text(declaration.minimum)
+    if declaration.maximum != unlimited.maximum:
+        limits["max"] = _text(declaration.maximum)
+    return limits
+
+
+def _add_structure(root: Element, fmu: Fmu, all_variables: tuple[Variable, ...]) -> None:
+    index = {v.name: v.reference + 1 for v in all_variables}
+    structure = SubElement(root, "ModelStructure")
+    for section, dependencies in (
+        ("Outputs", output_dependencies(fmu.block)),
+        ("InitialUnknowns", initial_dependencies(fmu.block)),
+    ):
+        unknowns = SubElement(structure, section)
+        for output, on in dependencies.items():
+            known = sorted(index[name] for name in on)
+            SubElement(
+                unknowns,
+                "Unknown",
+                index=str(index[output]),
+                dependencies=" ".join(map(str, known)),
+                dependenciesKind=" ".join("dependent" for _ in known),
+            )

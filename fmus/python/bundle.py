@@ -1,0 +1,130 @@
+"""The Python modules that an FMU carries: its model, the slave, and what these import.
+
+They go into one package whose name comes from their content, so that neither another FMU nor a
+`models` package of the host's program can be taken for ours.
+"""
+
+import ast
+import hashlib
+import importlib.util
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..fmu import Fmu
+
+PACKAGES = ("models", "fmus")
+
+PACKAGE_TEXT = '''"""The FMU {name}: the block run as a slave of PythonFMU."""
+
+from {pythonfmu}.fmi2slave import Fmi2Slave
+
+from .fmus.python.slave import BlockSlave
+from .{module} import BLOCK
+
+
+class {name}(BlockSlave, Fmi2Slave):
+    block = BLOCK
+'''
+
+SCRIPT_TEXT = '''"""Main script of the FMU {name}; its text is run once for every instance."""
+
+from {package} import {name}
+from {package}.fmus.python.repairs import undo_loading
+
+undo_loading(globals(), locals())
+'''
+
+
+def bundle(fmu: Fmu) -> dict[str, bytes]:
+    """Files of the FMU's package by their paths in it, without the package's own `__init__.py`.
+
+    A module's data, a file of its name beside it, comes along.
+    """
+    modules: set[str] = set()
+    waiting = {"fmus.python.slave", fmu.module}
+    while waiting:
+        module = waiting.pop()
+        modules.add(module)
+        waiting |= {*imported(module), *packages_of(module)} - modules
+    files = {}
+    for module in modules:
+        path = source_path(module)
+        files[_place(path)] = relocated(module)
+        files |= {_place(data): data.read_bytes() for data in path.parent.glob(f"{path.stem}.toml")}
+    return dict(sorted(files.items()))
+
+
+def _root() -> Path:
+    """Folder that holds the packages `models` and `fmus`."""
+    return Path(__file__).parents[2]
+
+
+def _place(path: Path) -> str:
+    """Path of a file in the FMU's package."""
+    return path.relative_to(_root()).as_posix()
+
+
+def source_path(module: str) -> Path:
+    """File of a module or package of ours."""
+    path = _root().joinpath(*module.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def imported(module: str) -> Iterator[str]:
+    """Names of our own modules that a module imports."""
+    package = module if source_path(module).name == "__init__.py" else module.rpartition(".")[0]
+    for node in ast.walk(ast.parse(source_path(module).read_bytes())):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            names = [base, *(f"{base}.{alias.name}" for alias in node.names)]
+        else:
+            continue
+        yield from (name for name in names if _is_ours(name) and source_path(name).is_file())
+
+
+def packages_of(module: str) -> Iterator[str]:
+    """The packages that a module lies in, the outermost last."""
+    while module := module.rpartition(".")[0]:
+        yield module
+
+
+def relocated(module: str) -> bytes:
+    """Text of a module as it stands in the package of an FMU: what it imports of ours is named relative to itself.
+
+    Raises:
+        ValueError: it has a statement `import a.b` of ours, which has no relative form.
+    """
+    path = source_path(module)
+    text = path.read_bytes()
+    lines = text.splitlines(keepends=True)
+    upwards = b"." * len(path.relative_to(_root()).parts)
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import) and any(_is_ours(alias.name) for alias in node.names):
+            raise ValueError(f"{path}, line {node.lineno}: write `from a import b` to import modules of the project")
+        if isinstance(node, ast.ImportFrom) and not node.level and _is_ours(node.module or ""):
+            line, place = lines[node.lineno - 1], node.col_offset + len("from ")
+            lines[node.lineno - 1] = line[:place] + upwards + line[place:]
+    return b"".join(lines)
+
+
+def _is_ours(module: str) -> bool:
+    return module.split(".")[0] in PACKAGES
+
+
+def package_name(fmu: Fmu, files: dict[str, bytes]) -> str:
+    """Name of the package, unique to the content of its files."""
+    digest = hashlib.sha256(fmu.name.encode())
+    for path, content in sorted(files.items()):
+        digest.update(f"\0{path}\0{len(content)}\0".encode() + content)
+    return f"driveline_{fmu.module.rpartition('.')[2]}_{digest.hexdigest()[:16]}"
+
+
+def package_text(fmu: Fmu, pythonfmu: str) -> bytes:
+    """`__init__.py` of the package, which takes its base class from the package `pythonfmu`."""
+    return PACKAGE_TEXT.format(name=fmu.name, module=fmu.module, pythonfmu=pythonfmu).encode()
+
+
+def script_text(fmu: Fmu, package: str) -> bytes:
+    return SCRIPT_TEXT.format(name=fmu.name, package=package).encode()

@@ -1,0 +1,96 @@
+"""Building an FMU with PythonFMU, which packs block and slave; then the archive is put in its final form."""
+
+import sys
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import distribution
+from pathlib import Path, PurePosixPath
+from types import ModuleType
+
+from pythonfmu.builder import FmuBuilder
+
+from ..archive import guid_of, write_archive
+from ..description.build_kind import python_kind
+from ..description.documentation import documentation
+from ..description.model_description import model_description
+from ..fmu import Fmu
+from .bundle import bundle, package_name, package_text, script_text
+
+SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
+"""Modules of PythonFMU that an FMU needs when it runs."""
+
+
+def build(fmu: Fmu, folder: Path) -> Path:
+    """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path."""
+    kind = python_kind()
+    files = _resources_and_binaries(fmu)
+    guid = guid_of(model_description(fmu, kind, ""), files)
+    files |= documentation(fmu, kind) | _license_of_pythonfmu()
+    files["modelDescription.xml"] = model_description(fmu, kind, guid)
+    target = folder / f"{fmu.name}.fmu"
+    write_archive(files, target)
+    return target
+
+
+def _resources_and_binaries(fmu: Fmu) -> dict[str, bytes]:
+    """What PythonFMU packs, with its own modules inside the FMU's package."""
+    files = bundle(fmu)
+    package = package_name(fmu, files)
+    packed = _packed_by_pythonfmu(fmu, package, files)
+    moved = {}
+    for name, content in packed.items():
+        path = PurePosixPath(name)
+        if path.parent == PurePosixPath("resources/pythonfmu"):
+            if path.stem in SLAVE_MODULES:
+                moved[f"resources/{package}/pythonfmu/{path.name}"] = content
+        elif path.parts[0] in ("resources", "binaries"):
+            moved[name] = content
+    moved[f"resources/{package}/pythonfmu/__init__.py"] = b""
+    moved[f"resources/{package}/__init__.py"] = package_text(fmu, ".pythonfmu")
+    return moved
+
+
+def _packed_by_pythonfmu(fmu: Fmu, package: str, files: dict[str, bytes]) -> dict[str, bytes]:
+    """Files of the archive that PythonFMU makes of the package, by name."""
+    with tempfile.TemporaryDirectory() as temporary, _no_traces(package):
+        folder = Path(temporary)
+        for path, content in (files | {"__init__.py": package_text(fmu, "pythonfmu")}).items():
+            file = folder / package / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        script = folder / f"{package}_main.py"
+        script.write_bytes(script_text(fmu, package))
+        archive = folder / f"{fmu.name}.fmu"
+        FmuBuilder.build_FMU(script, dest=archive, project_files=[folder / package])
+        with zipfile.ZipFile(archive) as packed:
+            names = (name for name in packed.namelist() if "__pycache__" not in name)
+            return {name: packed.read(name) for name in names}
+
+
+@contextmanager
+def _no_traces(package: str) -> Iterator[None]:
+    """Takes back what PythonFMU's builder leaves in sys.path and sys.modules.
+
+    It imports the package, so one of that name that belongs to a loaded FMU is set aside meanwhile.
+    """
+    path, write_bytecode = list(sys.path), sys.dont_write_bytecode
+    loaded = _taken_out(package)
+    sys.dont_write_bytecode = True
+    try:
+        yield
+    finally:
+        sys.path[:], sys.dont_write_bytecode = path, write_bytecode
+        _taken_out(package)
+        sys.modules.update(loaded)
+
+
+def _taken_out(package: str) -> dict[str, ModuleType]:
+    """Modules whose names begin so, which sys.modules then has no more."""
+    return {name: sys.modules.pop(name) for name in list(sys.modules) if name.startswith(package)}
+
+
+def _license_of_pythonfmu() -> dict[str, bytes]:
+    license_of = next(file for file in distribution("pythonfmu").files or () if file.name == "LICENSE")
+    return {"documentation/licenses/pythonfmu.txt": Path(license_of.locate()).read_bytes()}

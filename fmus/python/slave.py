@@ -1,0 +1,201 @@
+"""Any block as an FMI 2.0 co-simulation slave; runs inside the FMU, on the standard library alone."""
+
+import math
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any
+
+from models.block.integrator import Integrator
+
+from . import snapshot
+from .repairs import dismiss_guard, fmi_call
+from .values import Refused, Values
+
+FMI_DISCARD = 2
+
+TICK_TOLERANCE = 1e-3
+"""In sample times: a tick this close to a communication point is at it.
+
+Hosts that add up their step sizes instead of counting are off by 1e-8 s after a quarter of an hour.
+"""
+
+TIME_TOLERANCE = 1e-6
+"""In s: how far the host's time may be from the FMU's."""
+
+LONGEST_COMMUNICATION_STEP = 1000.0
+"""In s: a longer communication step is a mistake of the host, and would keep it waiting for ever."""
+
+
+class Mode(IntEnum):
+    """Where an instance is in the sequence of calls."""
+
+    INSTANTIATED = 0
+    INITIALIZATION = 1
+    STEPPING = 2
+    TERMINATED = 3
+
+
+MODE_NAMES = (
+    "before initialization mode",
+    "in initialization mode",
+    "after initialization",
+    "after fmi2Terminate",
+)
+
+SETTABLE = (("input", "parameter"), ("input", "parameter"), ("input",), ())
+"""Causalities that can be set in each mode."""
+
+
+class BlockSlave:
+    """Mixed into PythonFMU's Fmi2Slave with the class attribute `block`.
+
+    Before initialization mode is left there is no state x: the outputs then are those of the state that
+    the present inputs and parameters would start from. What the last tick of a sampled block computed
+    is `coming`, and becomes its state x at the next tick.
+    """
+
+    block: Any
+    log: Callable[..., None]
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        dismiss_guard(kwargs["resources"], self.block.name)
+        self.values = Values(self.block)
+        if self.block.derivative:
+            self.integrator = Integrator(self.block)
+        self.mode = Mode.INSTANTIATED
+        self.start_time = self.time = 0.0
+        self.ticks = 0
+        self.x: Any = None
+        self.coming: Any = None
+
+    @fmi_call
+    def get_real(self, vrs: list[int]) -> list[float]:
+        return self.values.get("Real", vrs, self.x)
+
+    @fmi_call
+    def get_integer(self, vrs: list[int]) -> list[int]:
+        return [int(value) for value in self.values.get("Integer", vrs, self.x)]
+
+    @fmi_call
+    def get_boolean(self, vrs: list[int]) -> list[bool]:
+        return self.values.get("Boolean", vrs, self.x)
+
+    @fmi_call
+    def get_string(self, vrs: list[int]) -> list[str]:
+        return self.values.get("String", vrs, self.x)
+
+    @fmi_call
+    def set_real(self, vrs: list[int], values: list[float]) -> None:
+        self.values.set("Real", vrs, values)
+
+    @fmi_call
+    def set_integer(self, vrs: list[int], values: list[int]) -> None:
+        self.values.set("Integer", vrs, values)
+
+    @fmi_call
+    def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
+        self.values.set("Boolean", vrs, values)
+
+    @fmi_call
+    def set_string(self, vrs: list[int], values: list[str]) -> None:
+        self.values.set("String", vrs, values)
+
+    def _require(self, mode: Mode, function: str) -> None:
+        if self.mode != mode:
+            raise Refused(f"{function} is refused {MODE_NAMES[self.mode]}; its place is {MODE_NAMES[mode]}")
+
+    def _enter(self, mode: Mode) -> None:
+        self.mode = mode
+        self.values.allow(*SETTABLE[mode])
+
+    @fmi_call
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        self._require(Mode.INSTANTIATED, "fmi2SetupExperiment")
+        if not math.isfinite(start_time):
+            raise Refused(f"startTime = {start_time!r} s is refused; allowed is any finite number")
+        self.start_time = self.time = start_time
+
+    @fmi_call
+    def enter_initialization_mode(self) -> None:
+        self._require(Mode.INSTANTIATED, "fmi2EnterInitializationMode")
+        self._enter(Mode.INITIALIZATION)
+
+    @fmi_call
+    def exit_initialization_mode(self) -> None:
+        self._require(Mode.INITIALIZATION, "fmi2ExitInitializationMode")
+        self.x = self.coming = self.block.start(self.values.u, self.values.p)
+        self._enter(Mode.STEPPING)
+
+    @fmi_call
+    def terminate(self) -> None:
+        self._require(Mode.STEPPING, "fmi2Terminate")
+        self._enter(Mode.TERMINATED)
+
+    @fmi_call
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Advances the block; a step that makes no sense is logged and discarded."""
+        try:
+            self._check_step(current_time, step_size)
+        except Refused as refusal:
+            self.log(str(refusal), FMI_DISCARD, "logStatusDiscard")
+            return False
+        end, before = current_time + step_size, self.x
+        if self.block.derivative:
+            self.x = self.integrator.advance(self.x, self.values.u, self.values.p, step_size)
+        else:
+            self._tick(end)
+        self.time = end
+        if self.x is not before:
+            self.values.up_to_date = False
+        return True
+
+    def _check_step(self, current_time: float, step_size: float) -> None:
+        self._require(Mode.STEPPING, "fmi2DoStep")
+        if not 0.0 < step_size <= LONGEST_COMMUNICATION_STEP:
+            raise Refused(
+                f"communicationStepSize = {step_size!r} s is refused; "
+                f"allowed is above 0 to {LONGEST_COMMUNICATION_STEP:g} s"
+            )
+        if not abs(current_time - self.time) <= TIME_TOLERANCE:
+            raise Refused(
+                f"currentCommunicationPoint = {current_time!r} s is refused; "
+                f"{self.block.name} has been computed up to {self.time!r} s"
+            )
+
+    def _tick(self, end: float) -> None:
+        """All ticks before `end` that have not been made; tick k is due at start_time + k T_s."""
+        samples = (end - self.start_time) / self.block.sample_time
+        due = math.ceil(samples - TICK_TOLERANCE)
+        x, coming = self.x, self.coming
+        for _ in range(self.ticks, due):
+            x, coming = coming, self.block.update(coming, self.values.u, self.values.p)
+        self.x = coming if due - samples <= TICK_TOLERANCE else x
+        self.coming, self.ticks = coming, max(self.ticks, due)
+
+    @fmi_call
+    def _get_fmu_state(self) -> bytes:
+        """The saved state, which is its own serialised form."""
+        times = (self.start_time, self.time, self.ticks)
+        content = (self.mode, times, self.x, self.coming, self.values.u, self.values.p)
+        return snapshot.pack(type(self).__module__, content)
+
+    @fmi_call
+    def _set_fmu_state(self, state: bytes) -> None:
+        try:
+            mode, times, x, coming, u, p = snapshot.unpack(type(self).__module__, state)
+        except ValueError as error:
+            raise Refused(f"the FMU state is refused: {error}") from error
+        self.values.restore(u, p)
+        self.x, self.coming = (state and self.block.State._make(state) for state in (x, coming))
+        self.start_time, self.time, self.ticks = times
+        self._enter(Mode(mode))
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: bytes) -> bytes:
+        return state
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> bytes:
+        """Unchecked: an exception here could not be mended by `fmi_call`, so fmi2SetFMUstate checks."""
+        return state

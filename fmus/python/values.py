@@ -1,0 +1,109 @@
+"""The values of an FMU's variables, checked when they are set and computed when they are asked for."""
+
+from typing import Any
+
+from ..description.variables import Variable, interface
+
+
+class Refused(Exception):
+    """A call that changes nothing; the text is what the host logs (the binary takes the repr)."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+class Values:
+    """All values of one instance, numbered by value reference: inputs, outputs, parameters.
+
+    Attributes:
+        u, p: inputs and parameters as the records of the block.
+        up_to_date: whether the outputs are those of the state; inputs do not change them in a sampled block.
+    """
+
+    def __init__(self, block: Any) -> None:
+        self.block = block
+        self.variables = interface(block)
+        self.first_output = len(block.Input._fields)
+        self.first_parameter = self.first_output + len(block.Output._fields)
+        self.of_type = {
+            fmi_type: frozenset(v.reference for v in self.variables if v.fmi_type == fmi_type)
+            for fmi_type in ("Real", "Integer", "Boolean", "String")
+        }
+        self._all: list[Any] = [v.start for v in self.variables]
+        self.up_to_date = False
+        self.allow("input", "parameter")
+        self._renew()
+
+    def allow(self, *causalities: str) -> None:
+        """Says which variables can be set from now on."""
+        self._tuning = "parameter" in causalities
+        self._bounds = {v.reference: v.bounds() for v in self.variables if v.causality in causalities}
+
+    def _renew(self) -> None:
+        self.u = self.block.Input._make(self._all[: self.first_output])
+        if self._tuning:
+            self.p = self.block.Parameters._make(self._all[self.first_parameter :])
+        if self._tuning or not self.block.update:
+            self.up_to_date = False
+
+    def get(self, fmi_type: str, references: list[int], x: Any) -> list[Any]:
+        """Values of variables of one type, the outputs being those of state x (None: of the start).
+
+        Raises:
+            Refused: a variable is of another type.
+        """
+        if not self.of_type[fmi_type].issuperset(references):
+            self._refuse_type(fmi_type, references)
+        if not self.up_to_date:
+            x = self.block.start(self.u, self.p) if x is None else x
+            self._all[self.first_output : self.first_parameter] = self.block.output(x, self.u, self.p)
+            self.up_to_date = True
+        values = self._all
+        return [values[reference] for reference in references]
+
+    def set(self, fmi_type: str, references: list[int], new: list[Any]) -> None:
+        """Sets variables of one type; all of them or, when one is refused, none.
+
+        Raises:
+            Refused: a variable is of another type or cannot be set, or its value is not allowed.
+        """
+        if not self.of_type[fmi_type].issuperset(references):
+            self._refuse_type(fmi_type, references)
+        bounds = self._bounds
+        for reference, value in zip(references, new, strict=True):
+            low, high = bounds.get(reference, (1, 0))
+            if not low <= value <= high:
+                self._judge(self.variables[reference], value)
+        for reference, value in zip(references, new, strict=True):
+            self._all[reference] = value
+        self._renew()
+
+    def restore(self, u: tuple[Any, ...], p: tuple[Any, ...]) -> None:
+        """Puts back inputs and parameters as they were in `u` and `p`."""
+        self._all[: self.first_output], self._all[self.first_parameter :] = u, p
+        self.allow("input", "parameter")
+        self._renew()
+
+    def _refuse_type(self, fmi_type: str, references: list[int]) -> None:
+        """Raises Refused for the first reference that is of another type."""
+        wrong = next(r for r in references if r not in self.of_type[fmi_type])
+        last = len(self.variables) - 1
+        if not 0 <= wrong <= last:
+            raise Refused(f"value reference {wrong} is unknown; {self.block.name} has 0 to {last}")
+        variable = self.variables[wrong]
+        raise Refused(f"{variable.name} is of type {variable.fmi_type}, not {fmi_type}")
+
+    def _judge(self, variable: Variable, value: Any) -> None:
+        """Raises Refused, unless the variable is an input of a block that copes with any value."""
+        name = variable.name
+        if variable.causality == "output":
+            raise Refused(f"{name} is an output and cannot be set")
+        if variable.reference not in self._bounds:
+            raise Refused(
+                f"{name} = {value!r} is refused; a parameter can be set until initialization mode is left, "
+                "an input until fmi2Terminate, and both again after fmi2Reset"
+            )
+        if variable.causality == "input" and self.block.tolerates_bad_input:
+            return
+        unit = f" {variable.unit}" if variable.unit else ""
+        raise Refused(f"{name} = {value!r}{unit} is refused; allowed is {variable.allowed()}")

@@ -1,0 +1,1 @@
+"""Design and analysis with the models themselves; nothing else in the harness imports them."""

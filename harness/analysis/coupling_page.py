@@ -1,0 +1,126 @@
+"""The documentation page that `driveline coupling` writes."""
+
+from collections.abc import Mapping, Sequence
+
+from ..cosimulation.master import Scheme
+from .coupling import SIGNALS, Comparison
+
+PAGE = """\
+# Coupling error and dead time of the master
+
+Made by `driveline coupling`; do not edit.
+
+The master steps FMUs that know of each other only at the communication points. What that does to the
+loop is measured here against its monolithic solution (`harness/analysis/monolithic.py`): motor and plant
+integrated as one system, the sampled blocks ticking with the values of exactly that instant. Noise and
+rounding are off; delays and losses on the bus are the same in all runs.
+
+**Gauss-Seidel** (the default) steps one after the other and hands each the newest outputs: over a step
+from t to t + h, an FMU gets from those before it the values of t + h, from those after it the values
+of t. The order is {order}. **Jacobi** gives all of them the values of t.
+
+- A continuous FMU holds what it gets over the step, so the value of t is late by h/2 on average and that
+  of t + h early by h/2.
+- A sampled FMU ticks at t, with what it gets for the step: the value of t is exact there, that of t + h
+  early by h. What it computed before changes at its tick: the value of t is exact, that of t + h early
+  by h.
+- `motor.omega_1_meas` follows from `plant.omega_1`, which the motor has held since the beginning of its
+  last step: late by h, unless the plant comes before the motor.
+
+## Dead time
+
+In ms, measured with a sine in the open loop as a shift in time against the monolithic solution
+(`harness/analysis/dead_time.py`); negative where a signal comes too early. The delay of the controller (one
+sample) and of the bus are part of the loop and not counted.
+
+{dead_times}
+
+## Error at a communication step of {step:g} ms
+
+The largest and the rms distance from the monolithic solution, in % of the range of the signal, over
+{duration:g} s of a tip-in with damping. Through the backlash, some decisions of the controller (teeth in the
+gap or not) fall one sample earlier or later, and single samples of `T_ref` differ by as much as these
+change it.
+
+{errors}
+
+## Order
+
+The rms error of `T_gear` in % of its range by the communication step in ms, and the power of the step
+with which it falls. Through the backlash that power is blurred: a decision that falls one sample off
+makes the same difference at any step, until at a small enough one it falls in time.
+
+{orders}
+"""
+
+
+def page(
+    comparisons: Sequence[Comparison],
+    dead_times: Mapping[tuple[Scheme, float], Mapping[str, float]],
+    order: Sequence[str],
+    step_size: float,
+) -> str:
+    """The page as Markdown.
+
+    Args:
+        comparisons: each with a deviation at `step_size` (s).
+        dead_times: by scheme and communication step, then by section of the loop, in s.
+        order: of the instances under Gauss-Seidel.
+    """
+    return PAGE.format(
+        order=", ".join(f"`{name}`" for name in order),
+        step=1e3 * step_size,
+        duration=comparisons[0].manoeuvre.duration,
+        dead_times=_dead_times(dead_times),
+        errors=_errors(comparisons, step_size),
+        orders=_orders(comparisons),
+    )
+
+
+def _dead_times(found: Mapping[tuple[Scheme, float], Mapping[str, float]]) -> str:
+    columns = list(found.values())
+    heads = [f"{scheme.value}, h = {1e3 * step:g} ms" for scheme, step in found]
+    # adding zero turns a rounded -0 into 0
+    rows = [[name, *(f"{round(1e3 * column[name], 2) + 0.0:.2f}" for column in columns)] for name in columns[0]]
+    return _table(["connection", *heads], rows, labels=1)
+
+
+def _errors(comparisons: Sequence[Comparison], step_size: float) -> str:
+    rows = [
+        [
+            *_case(c),
+            *(f"{_percent(d.largest)} / {_percent(d.rms)}" for d in c.deviations[step_size].values()),
+        ]
+        for c in comparisons
+    ]
+    return _table([*CASE, *(f"`{name}`" for name in SIGNALS)], rows, labels=3)
+
+
+def _orders(comparisons: Sequence[Comparison]) -> str:
+    steps = list(comparisons[0].deviations)
+    rows = [
+        [
+            *_case(c),
+            *(_percent(c.deviations[step]["plant.T_gear"].rms) for step in steps),
+            f"{c.order('plant.T_gear'):.1f}",
+        ]
+        for c in comparisons
+    ]
+    return _table([*CASE, *(f"{1e3 * step:g}" for step in steps), "order"], rows, labels=3)
+
+
+CASE = ("plant", "tip-in", "scheme")
+
+
+def _case(c: Comparison) -> tuple[str, str, str]:
+    return c.plant, c.manoeuvre.description, c.scheme.value
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g}"
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]], labels: int) -> str:
+    """A Markdown table whose first columns are labels, the others numbers."""
+    ruler = ["---"] * labels + ["---:"] * (len(heads) - labels)
+    return "\n".join(f"| {' | '.join(row)} |" for row in (heads, ruler, *rows))

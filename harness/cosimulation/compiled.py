@@ -1,0 +1,80 @@
+"""The steps of the master as compiled code, steps.c: what is left beside the FMUs is next to nothing.
+
+The shared library is made when the project is installed, where there is a C compiler. Without it the
+loop runs in Python, with the same results.
+"""
+
+from collections.abc import Sequence
+from ctypes import CDLL, Structure, addressof, byref, c_char, c_double, c_int32, c_size_t, c_uint32, c_void_p, cast
+from importlib.util import find_spec
+from typing import Any
+
+from .calls import Call
+from .steps import Memory, Refusal
+
+
+def _library() -> CDLL | None:
+    spec = find_spec(f"{__package__}._steps")
+    return CDLL(spec.origin) if spec and spec.origin else None
+
+
+LIBRARY = _library()
+
+
+class CompiledCall(Structure):
+    """`Call` in steps.c."""
+
+    _fields_ = (
+        ("access", c_void_p),
+        ("do_step", c_void_p),
+        ("component", c_void_p),
+        ("references", c_void_p),
+        ("count", c_size_t),
+        ("values", c_void_p),
+        ("sources", c_void_p),
+        ("real", c_int32),
+        ("step_size", c_double),
+    )
+
+
+class CompiledSteps:
+    """The same as `harness.cosimulation.steps.interpreted`; only where there is a LIBRARY."""
+
+    def __init__(self, calls: Sequence[Call], memory: Memory) -> None:
+        assert LIBRARY is not None
+        self._make_steps = LIBRARY.make_steps
+        self._make_steps.restype = c_size_t
+        self._calls = calls
+        # the records hold bare addresses: of these, and of what the calls and the memory keep
+        self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
+        self._memory = memory
+        row = (c_char * len(memory.row)).from_buffer(memory.row)
+        self._arguments = (
+            (CompiledCall * len(calls))(*map(_record, calls, self._sources)),
+            c_size_t(len(calls)),
+            row,
+            c_void_p(memory.table.ctypes.data),
+            c_size_t(len(row)),
+            c_size_t(memory.known),
+        )
+
+    def __call__(self, numbers: range) -> Refusal | None:
+        refused, status = c_size_t(), c_int32()
+        step = self._make_steps(
+            *self._arguments, c_size_t(numbers.start), c_size_t(numbers.stop), byref(refused), byref(status)
+        )
+        return None if step == numbers.stop else Refusal(self._calls[refused.value], status.value, step)
+
+
+def _record(call: Call, sources: Any) -> CompiledCall:
+    record = CompiledCall(component=call.instance.component)
+    function = cast(call.instance.slave.dll[call.function], c_void_p)
+    if call.function == "fmi2DoStep":
+        record.do_step, record.step_size = function, call.arguments[1]
+        return record
+    references, count, values = call.arguments
+    record.access, record.count = function, count
+    record.references, record.values = addressof(references), addressof(values)
+    record.real = values._type_ is c_double
+    record.sources = addressof(sources) if call.sources else None
+    return record

@@ -1,0 +1,168 @@
+"""An FMU at work: unpacked, loaded, instantiated, and afterwards gone without a trace."""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from ctypes import byref, c_void_p
+from itertools import count
+from tempfile import TemporaryDirectory
+from typing import Any, cast
+
+import fmpy
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2Fatal,
+    fmi2Warning,
+)
+from fmpy.logging import addLoggerProxy
+
+from ..errors import SimulationError, WiringError
+from .wiring import Interface, type_of
+
+STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
+
+MESSAGES_KEPT = 20
+_logs: dict[int, deque[tuple[int, str]]] = {}
+_keys = count(1)
+
+
+def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes | None) -> None:
+    if environment in _logs and message:
+        _logs[environment].append((status, " ".join(message.decode("utf-8", "replace").split())))
+
+
+# one callback for all, never freed: fmpy's proxy, which fills in the arguments of the message, knows one
+_logger = fmi2CallbackLoggerTYPE(_log)
+_allocate = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+_free = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+
+
+def _callbacks(key: int) -> fmi2CallbackFunctions:
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger, callbacks.allocateMemory, callbacks.freeMemory = _logger, _allocate, _free
+    callbacks.componentEnvironment = key
+    addLoggerProxy(byref(callbacks))
+    return callbacks
+
+
+class Instance:
+    """An instantiated FMU.
+
+    Attributes:
+        name: of the instance.
+        interface: of its FMU.
+        slave: what fmpy made of it.
+        status: the worst so far.
+    """
+
+    def __init__(self, name: str, interface: Interface, slave: FMU2Slave, key: int) -> None:
+        self.name = name
+        self.interface = interface
+        self.slave = slave
+        self.status = 0
+        self._log = _logs[key]
+
+    def call(self, function: str, *arguments: Any, **named: Any) -> Any:
+        """Calls a method of FMU2Slave outside the loop.
+
+        Raises:
+            SimulationError: the FMU refused.
+        """
+        try:
+            return getattr(self.slave, function)(*arguments, **named)
+        except FMICallException as error:
+            raise self.failure(error.function, error.status) from error
+
+    def function(self, name: str) -> Callable[..., int]:
+        """The bare function of the shared library: its arguments must be ctypes objects."""
+        return self.slave.dll[name]
+
+    @property
+    def component(self) -> c_void_p:
+        return c_void_p(cast(int, self.slave.component))
+
+    def failure(self, function: str, status: int, when: str = "") -> SimulationError:
+        """The exception for a refused call, with what the FMU logged about it; `when` as in "at 1 s"."""
+        self.status = max(self.status, status)
+        logged = [message for level, message in self._log if level > fmi2Warning] or [
+            message for _, message in self._log
+        ]
+        return SimulationError(
+            f"{self.name} ({self.interface.path.name}) answered {f'{function} {when}'.strip()} with "
+            f"{STATUS[status] if status < len(STATUS) else status}: {'; '.join(logged) or 'no message'}"
+        )
+
+    def set_parameters(self, values: Mapping[str, float]) -> None:
+        """Sets parameters, one call each, so that a refusal names the one.
+
+        Raises:
+            SimulationError: the FMU refused a value.
+            WiringError: the value does not suit the type of the parameter.
+        """
+        for name, value in values.items():
+            variable = self.interface.variables[name]
+            kind = type_of(variable)
+            self.call(f"set{kind}", [variable.valueReference], [_converted(self.name, name, kind, value)])
+
+
+def _converted(instance: str, name: str, kind: str, value: float) -> float:
+    whole = {"Real": False, "Integer": True, "Boolean": True}
+    if kind not in whole:
+        raise WiringError(f"{instance}.{name} is a {kind}; only numbers and truth values can be set")
+    if kind == "Boolean" and value not in (0, 1):
+        raise WiringError(f"{instance}.{name} = {value:g}: it must be true (1) or false (0)")
+    if whole[kind] and value != int(value):
+        raise WiringError(f"{instance}.{name} = {value:g}: it must be a whole number")
+    return int(value) if whole[kind] else float(value)
+
+
+@contextmanager
+def instantiated(name: str, interface: Interface) -> Iterator[Instance]:
+    """The FMU as an instance of that name, terminated and freed at the end; its unpacked files vanish.
+
+    Raises:
+        SimulationError: it cannot be loaded or instantiated.
+    """
+    key = next(_keys)
+    _logs[key] = deque(maxlen=MESSAGES_KEPT)
+    with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
+        try:
+            instance = _instantiate(name, interface, folder, key)
+            try:
+                yield instance
+                if instance.status <= fmi2Warning:
+                    instance.call("terminate")
+            finally:
+                # FMI forbids every further call after fmi2Fatal, fmi2FreeInstance too
+                if instance.status < fmi2Fatal:
+                    instance.slave.freeInstance()
+        finally:
+            del _logs[key]
+
+
+def _instantiate(name: str, interface: Interface, folder: str, key: int) -> Instance:
+    path = interface.path
+    if not folder.isascii():
+        raise SimulationError(f"{path.name} cannot be unpacked to {folder}: FMUs need a plain ASCII folder")
+    fmpy.extract(str(path), unzipdir=folder)
+    platforms = fmpy.supported_platforms(folder)
+    if fmpy.platform not in platforms:
+        has = ", ".join(platforms) or "none"
+        raise SimulationError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
+    try:
+        slave = FMU2Slave(
+            guid=interface.description.guid,
+            unzipDirectory=folder,
+            modelIdentifier=interface.identifier,
+            instanceName=name,
+        )
+        slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
+    except Exception as error:  # fmpy raises bare exceptions
+        logged = "; ".join(message for _, message in _logs[key])
+        raise SimulationError(f"{path.name} cannot be instantiated: {logged or error}") from error
+    return Instance(name, interface, slave, key)

@@ -1,0 +1,1 @@
+"""What the driver, the brakes and the road do: manoeuvres and recorded drives."""

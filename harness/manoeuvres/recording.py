@@ -1,0 +1,140 @@
+"""Recorded drives: CSV files whose columns carry their unit in brackets, as in `Velocity [km/h]`."""
+
+import csv
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import DrivelineError
+from ..names import nearest
+
+GAP_LIMIT = 3.0
+"""Longest step of time that is still no gap, in median steps."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A quantity that a recording must contain: the names and units it may have in the file."""
+
+    names: tuple[str, ...]
+    units: dict[str, float]
+
+    @property
+    def example(self) -> str:
+        return f"{self.names[0]} [{next(iter(self.units))}]"
+
+
+COLUMNS = {
+    "time": Column(("Time", "t"), {"s": 1.0, "ms": 1e-3, "min": 60.0}),
+    "v": Column(("Velocity", "Speed", "Vehicle Speed"), {"km/h": 1 / 3.6, "m/s": 1.0, "mph": 0.44704}),
+    "elevation": Column(("Elevation", "Altitude", "Height"), {"m": 1.0, "km": 1e3, "ft": 0.3048}),
+    "T_mot": Column(("Motor Torque", "Torque"), {"Nm": 1.0, "N.m": 1.0, "kNm": 1e3}),
+}
+
+
+class RecordingError(DrivelineError):
+    """A recording that cannot be used; the message says where and why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """A recorded drive in SI units, one element a sample.
+
+    Attributes:
+        name: of the file, without its ending.
+        time: in s, as recorded, strictly increasing.
+        v: speed of the vehicle in m/s.
+        elevation: of the road in m.
+        T_mot: motor torque in N.m, motor side.
+    """
+
+    name: str
+    time: np.ndarray
+    v: np.ndarray
+    elevation: np.ndarray
+    T_mot: np.ndarray
+
+
+def read_recording(path: Path) -> Recording:
+    """Reads a recorded drive. Columns are found by name and converted by unit; others are ignored.
+
+    Raises:
+        RecordingError: a column is missing, doubled or of an unknown unit; a cell is not a finite
+            number; time does not increase or has a gap (naming the line).
+    """
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        rows = csv.reader(file)
+        header = next(rows, [])
+        places = {quantity: _find(path, header, column) for quantity, column in COLUMNS.items()}
+        lines, table = [], []
+        for row in rows:
+            if any(cell.strip() for cell in row):
+                lines.append(rows.line_num)
+                table.append([_number(path, rows.line_num, header, row, place) for place, _ in places.values()])
+    if len(table) < 2:
+        raise RecordingError(f"{path}: {len(table)} samples; a drive needs at least two")
+    factors = [factor for _, factor in places.values()]
+    signals = dict(zip(places, (np.array(table) * factors).T, strict=True))
+    _check_time(path, signals["time"], lines)
+    return Recording(path.stem, **signals)
+
+
+def _find(path: Path, header: list[str], column: Column) -> tuple[int, float]:
+    """Where a quantity stands in the rows, and the factor that turns it into SI units."""
+    allowed = {name.casefold() for name in column.names}
+    found = [(k, unit) for k, (name, unit) in enumerate(_named(header)) if name.casefold() in allowed]
+    if not found:
+        present = [name for name, _ in _named(header)]
+        raise RecordingError(
+            f"{path}, line 1: no column {column.example} (also {' or '.join(column.names[1:])}, "
+            f"in {' or '.join(column.units)}); in the file: {nearest(column.names[0], present)}"
+        )
+    if len(found) > 1:
+        cells = ", ".join(header[k].strip() for k, _ in found)
+        raise RecordingError(f"{path}, line 1: {cells} all name {column.names[0]}; keep one of them")
+    place, unit = found[0]
+    if unit not in column.units:
+        raise RecordingError(
+            f"{path}, line 1: {header[place].strip()} has the unit {unit or '(none)'}; "
+            f"allowed are {', '.join(column.units)}, written as in {column.example}"
+        )
+    return place, column.units[unit]
+
+
+def _named(header: list[str]) -> Iterator[tuple[str, str]]:
+    """Name and unit of each column."""
+    for cell in header:
+        name, _, unit = cell.partition("[")
+        yield name.strip(), unit.strip().rstrip("]").strip()
+
+
+def _number(path: Path, line: int, header: list[str], row: list[str], place: int) -> float:
+    cell = row[place].strip() if place < len(row) else ""
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise RecordingError(
+            f"{path}, line {line}, column {header[place].strip()}: {cell or 'nothing'} is not a finite number"
+        )
+    return value
+
+
+def _check_time(path: Path, time: np.ndarray, lines: list[int]) -> None:
+    steps = np.diff(time)
+    backward = np.flatnonzero(steps <= 0.0)
+    if len(backward):
+        k = backward[0]
+        raise RecordingError(f"{path}, line {lines[k + 1]}: time {time[k + 1]:g} s does not come after {time[k]:g} s")
+    limit = GAP_LIMIT * float(np.median(steps))
+    gaps = np.flatnonzero(steps > limit)
+    if len(gaps):
+        k = gaps[0]
+        raise RecordingError(
+            f"{path}, line {lines[k + 1]}: gap of {steps[k]:g} s after {time[k]:g} s; at most {limit:g} s "
+            f"({GAP_LIMIT:g} times the median step) is allowed, so cut the file there"
+        )

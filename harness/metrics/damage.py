@@ -1,0 +1,42 @@
+"""Fatigue of the gear by counting the cycles of its torque."""
+
+from importlib import import_module
+from types import ModuleType
+
+import numpy as np
+
+from ..errors import DrivelineError
+
+EXPONENT = 5.0
+"""Slope of the assumed fatigue line."""
+
+
+class MissingExtra(DrivelineError):
+    """A package of an optional extra is not installed; the message names the extra."""
+
+
+def require_counting() -> ModuleType:
+    """The package rainflow.
+
+    Raises:
+        MissingExtra: it is not installed.
+    """
+    try:
+        return import_module("rainflow")
+    except ImportError as error:
+        raise MissingExtra(
+            "counting load cycles needs the package rainflow: "
+            "install the extra `replay`, as in pip install 'driveline-damping[replay]'"
+        ) from error
+
+
+def damage(T_gear: np.ndarray) -> float:
+    """Sum of count * range^5 over the rainflow cycles of T_gear (ASTM E1049; half cycles count 0.5).
+
+    In (N.m)^5, of use only relative to another run.
+
+    Raises:
+        MissingExtra: the package rainflow is not installed.
+    """
+    cycles = require_counting().count_cycles(T_gear)
+    return float(sum(count * swing**EXPONENT for swing, count in cycles))

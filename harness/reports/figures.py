@@ -1,0 +1,240 @@
+"""Figures of the runs: without control on the left, with control on the right, on the same axes.
+
+Every figure is written as PNG and PDF; the same runs give the same bytes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import MaxNLocator
+
+from ..manoeuvres.catalogue import Manoeuvre
+from ..metrics.oscillation import amplitude
+
+STYLE = {
+    "font.size": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.labelsize": 9.0,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "axes.grid": True,
+    "grid.color": "0.88",
+    "grid.linewidth": 0.5,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "lines.linewidth": 1.0,
+    "mathtext.fontset": "dejavuserif",
+}
+# colours of Okabe and Ito, which the colour-blind can tell apart
+BLACK, BLUE, VERMILION, GREEN, GREY = "black", "#0072B2", "#D55E00", "#009E73", "0.6"
+
+METADATA = {
+    ".png": {"Software": None},
+    ".pdf": {"CreationDate": None, "Producer": None, "Creator": None},
+}
+"""What matplotlib would say of date and origin, by the kind of file: nothing."""
+
+TITLES = ("without oscillation control", "with oscillation control")
+
+
+@dataclass(frozen=True)
+class Line:
+    """How one column of the results is drawn."""
+
+    column: str
+    label: str
+    color: str
+    style: str = "-"
+    width: float = 1.0
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One row of axes: its label and its lines, the later ones on top."""
+
+    label: str
+    lines: tuple[Line, ...]
+
+
+DRIVE = (
+    Panel(r"motor speed $\omega_1$ in rad/s", (Line("plant.omega_1", r"$\omega_1$", BLACK),)),
+    Panel(r"wheel speed $\omega_2$ in rad/s", (Line("plant.omega_2", r"$\omega_2$", BLACK),)),
+    Panel(
+        "torque in N·m",
+        (
+            Line("rim", r"$T_{rim}/i$, wheel torque", VERMILION),
+            Line("motor.T_mot", r"$T_{mot}$, motor", BLUE),
+            Line("controller.T_driver", r"$T_{driver}$, demand", BLACK, "--", 0.8),
+        ),
+    ),
+)
+STEP = (
+    Panel(
+        "gear torque in N·m",
+        (
+            Line("plant.T_gear", r"$T_{gear}$", VERMILION, "-", 1.4),
+            Line("controller.T_gear_hat", r"$\hat T_{gear}$, estimate", BLUE, "-", 0.8),
+            Line("controller.T_driver", r"$T_{driver}$, demand", BLACK, "--", 0.8),
+        ),
+    ),
+    Panel(
+        "motor torque in N·m",
+        (
+            Line("controller.T_ref", r"$T_{ref}$, to the motor", BLUE),
+            Line("controller.T_damp", r"$T_{damp}$, damping", GREEN),
+            Line("controller.T_driver", r"$T_{driver}$, demand", BLACK, "--", 0.8),
+        ),
+    ),
+    Panel(
+        "speed in rad/s",
+        (
+            Line("plant.omega_1", r"$\omega_1$, motor", BLACK),
+            Line("plant.omega_2", r"$\omega_2$, wheels", GREY, "-", 1.4),
+        ),
+    ),
+)
+
+
+def plot_drive(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path) -> list[Path]:
+    """Speeds and torques over a whole drive, as in Figs. 7 and 8 of the paper.
+
+    Args:
+        runs: results without and with control.
+        manoeuvre: that both ran.
+        plant: its name, for the title.
+        stem: path of the files without their ending.
+
+    Returns:
+        The files written.
+    """
+    return _compare(runs, DRIVE, (0.0, manoeuvre.duration), f"{plant}, {manoeuvre.description}", stem)
+
+
+def plot_step(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path) -> list[Path]:
+    """Close-up of a step: gear torque with its estimate, damping torque and speeds.
+
+    Arguments and result are those of `plot_drive`.
+    """
+    window = (manoeuvre.t_0 - 0.1, manoeuvre.t_0 + 1.4)
+    return _compare(runs, STEP, window, f"{plant}, {manoeuvre.description}", stem)
+
+
+def plot_replay(
+    runs: Sequence[np.ndarray], recorded: tuple[np.ndarray, np.ndarray], title: str, stem: Path
+) -> list[Path]:
+    """A recorded drive: speed against the recorded one, gear torque without and with control, a close-up.
+
+    Args:
+        runs: results without and with control, with `time`, `plant.v`, `plant.T_gear` and
+            `controller.T_driver`.
+        recorded: time in s and speed in m/s of the recording.
+        title: of the figure.
+        stem: path of the files without their ending.
+
+    Returns:
+        The files written.
+    """
+    with style.context(STYLE):
+        figure = Figure(figsize=(7.2, 7.4), layout=ConstrainedLayoutEngine(h_pad=0.11))
+        speed, torque, close = figure.subplots(3, 1)
+        t = runs[0]["time"]
+        speed.plot(*recorded, color=BLACK, label="recorded")
+        speed.plot(t, runs[1]["plant.v"], color=BLUE, label="simulated, with control", rasterized=True)
+        figure.suptitle(title, fontsize=10)
+        speed.set(ylabel="speed in m/s", xlim=(t[0], t[-1]))
+        for axes, window in ((torque, (t[0], t[-1])), (close, _roughest(runs[0]))):
+            shown = (t >= window[0]) & (t <= window[1])
+            for run, color, label in zip(runs, (VERMILION, BLUE), ("without control", "with control"), strict=True):
+                axes.plot(t[shown], run["plant.T_gear"][shown], color=color, label=label, rasterized=True)
+            axes.set(ylabel="gear torque in N·m", xlim=window)
+        shown = (t >= close.get_xlim()[0]) & (t <= close.get_xlim()[1])
+        close.plot(t[shown], runs[0]["controller.T_driver"][shown], color=BLACK, ls="--", lw=0.8, label="demand")
+        close.set_xlabel("time in s")
+        for axes in (speed, torque, close):
+            legend(axes)
+        return _write(figure, stem)
+
+
+def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:
+    """The window of `span` seconds with the largest mean swing of the gear torque about the demand."""
+    t = run["time"]
+    T_s = float(t[1] - t[0])
+    swing = amplitude(run["plant.T_gear"] - run["controller.T_driver"], T_s)
+    length = min(round(span / T_s), len(swing))
+    total = np.concatenate(([0.0], np.cumsum(swing)))
+    first = int(np.argmax(total[length:] - total[:-length]))
+    return float(t[first]), float(t[min(first + length, len(t) - 1)])
+
+
+def _compare(
+    runs: Sequence[np.ndarray], panels: Sequence[Panel], window: tuple[float, float], title: str, stem: Path
+) -> list[Path]:
+    with style.context(STYLE):
+        figure = Figure(figsize=(7.2, 2.0 * len(panels) + 0.7), layout=ConstrainedLayoutEngine(h_pad=0.11))
+        grid = figure.subplots(len(panels), len(runs), sharex=True, sharey="row", squeeze=False)
+        figure.suptitle(title, fontsize=10)
+        for row, panel in zip(grid, panels, strict=True):
+            row[0].set_ylabel(panel.label)
+            for axes, run in zip(row, runs, strict=True):
+                shown = (run["time"] >= window[0] - 1e-9) & (run["time"] <= window[1] + 1e-9)
+                draw(axes, panel, run, shown)
+            if len(panel.lines) > 1:
+                legend(row[0])
+        for axes, heading in zip(grid[0], TITLES, strict=True):
+            axes.set_title(heading, pad=20 if len(panels[0].lines) > 1 else 6)
+            axes.set_xlim(*window)
+            axes.xaxis.set_major_locator(MaxNLocator(5))
+        for axes in grid[-1]:
+            axes.set_xlabel("time in s")
+        return _write(figure, stem)
+
+
+def draw(axes: Axes, panel: Panel, run: np.ndarray, shown: np.ndarray) -> None:
+    """The lines of a panel, at the instants that are shown."""
+    for line in panel.lines:
+        axes.plot(
+            run["time"][shown],
+            _signal(run, line.column)[shown],
+            color=line.color,
+            ls=line.style,
+            lw=line.width,
+            label=line.label,
+        )
+
+
+def _signal(run: np.ndarray, column: str) -> np.ndarray:
+    if column == "rim":
+        return run["plant.T_rim"] / _gear_ratio(run)
+    return run[column]
+
+
+def _gear_ratio(run: np.ndarray) -> float:
+    """Motor speed over wheel speed, from the two measures of the wheel speed."""
+    wheel = 0.5 * (run["plant.omega_wheel_L"] + run["plant.omega_wheel_R"])
+    return float(np.dot(run["plant.omega_2"], wheel) / np.dot(wheel, wheel))
+
+
+def legend(axes: Axes) -> None:
+    """A legend above the axes, where it covers no curve."""
+    made = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0)
+    made.set_in_layout(False)  # it may reach over the next column
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes a figure as PNG or PDF, by the ending of the path, without a date."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=200, metadata=METADATA[path.suffix])
+
+
+def _write(figure: Figure, stem: Path) -> list[Path]:
+    files = [stem.with_suffix(suffix) for suffix in METADATA]
+    for file in files:
+        save(figure, file)
+    return files

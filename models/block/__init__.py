@@ -1,0 +1,1 @@
+"""What a block is and how it runs: types, declarations, operators, integrator, runner."""

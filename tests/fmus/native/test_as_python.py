@@ -1,0 +1,33 @@
+"""The native builds pass the tests of the Python builds: a user cannot tell the two apart."""
+
+import pytest
+
+from tests.fmus.description.test_model_description import (  # noqa: F401
+    description,
+    test_every_quantity_has_unit_and_meaning_and_every_parameter_bounds,
+    test_the_documentation_page_tells_of_every_variable,
+    test_the_plants_have_the_same_inputs_and_outputs,
+    test_the_validator_finds_nothing,
+    test_value_references_count_inputs_outputs_and_parameters,
+)
+from tests.fmus.test_state import (  # noqa: F401
+    test_a_run_goes_on_bit_by_bit_after_set_and_after_deserialise,
+    test_a_state_moves_to_another_instance_and_has_one_serialised_form,
+    test_a_state_saved_before_initialization_restores_that_mode,
+)
+from tests.fmus.test_time import (  # noqa: F401
+    test_a_sampled_block_does_not_depend_on_the_communication_step,
+    test_a_step_from_another_time_is_discarded,
+    test_a_step_that_is_not_positive_or_endless_is_discarded,
+    test_an_input_that_is_fed_through_shows_before_the_step,
+    test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on,
+    test_outputs_are_right_at_the_start_and_parameters_in_effect,
+    test_time_counts_from_the_start_time,
+)
+from tests.fmus.test_values import *  # noqa: F403
+
+
+@pytest.fixture(scope="module")
+def built(native):
+    """What those tests call the folder of the FMUs."""
+    return native

@@ -1,0 +1,214 @@
+"""Right and wrong sequences of calls to native FMUs under the address and undefined-behaviour sanitizers.
+
+Hypothesis draws the calls, a model of the standard's state machine says what each must answer, and the
+program calls.c, compiled together with the sources of the FMU, makes them.
+"""
+
+import math
+import subprocess
+from copy import copy
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import fmpy
+import pytest
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import (
+    RuleBasedStateMachine,
+    initialize,
+    invariant,
+    precondition,
+    rule,
+    run_state_machine_as_test,
+)
+
+from fmus.catalogue import FMUS
+from fmus.description.variables import Variable, interface
+from fmus.native.compiler import host_compiler
+from harness.cosimulation.system import NATIVE
+
+PROGRAM = Path(__file__).parent / "calls.c"
+WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion")
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1", "-ffp-contract=off")
+OK, DISCARD, ERROR = 0, 2, 3
+BEFORE, DURING, AFTER, ENDED = range(4)
+EXAMPLES, CALLS = 60, 40
+
+any_number = st.floats(width=64) | st.sampled_from([0.0, 1.0, -30.0, 30.0])
+
+
+@dataclass
+class Expected:
+    """What an instance must be like: where it is in the sequence of calls, its time, the values that were set."""
+
+    mode: int = BEFORE
+    time: float = 0.0
+    values: dict[int, float] = field(default_factory=dict)
+
+    def copy(self) -> "Expected":
+        return Expected(self.mode, self.time, copy(self.values))
+
+
+class Calls(RuleBasedStateMachine):
+    """One instance of an FMU, run by calls.c."""
+
+    command: tuple[str, ...]
+    reals: tuple[Variable, ...]
+    tolerates_bad_input: bool
+
+    def __init__(self) -> None:
+        super().__init__()
+        PIPE = subprocess.PIPE
+        self.program = subprocess.Popen(self.command, text=True, stdin=PIPE, stdout=PIPE, stderr=PIPE)
+        self.now = Expected()
+        self.saved: Expected | None = None
+        assert self.call("instantiate") == (OK, 0.0)
+
+    def call(self, name: str, reference: int = 0, number: float = 0.0) -> tuple[int, float]:
+        """Status and number that the program answers."""
+        assert self.program.stdin
+        assert self.program.stdout
+        self.program.stdin.write(f"{name} {reference} {number!r}\n")
+        self.program.stdin.flush()
+        answer = self.program.stdout.readline().split()
+        assert answer, self.program.communicate()[1]
+        return int(answer[0]), float(answer[1])
+
+    def expect(self, allowed: bool, name: str, number: float = 0.0) -> None:
+        """Makes a call that must be answered with OK if it is allowed, else with an error."""
+        assert self.call(name, number=number)[0] == (OK if allowed else ERROR)
+
+    @initialize(mode=st.sampled_from((BEFORE, DURING, AFTER, ENDED)))
+    def bring_to(self, mode):
+        """Right calls first, so that every mode is met often."""
+        for call in (self.enter, self.exit, self.terminate)[:mode]:
+            call()
+
+    @rule(start=any_number)
+    def setup(self, start):
+        allowed = self.now.mode == BEFORE and math.isfinite(start)
+        self.expect(allowed, "setup", start)
+        if allowed:
+            self.now.time = start
+
+    @rule()
+    def enter(self):
+        self.expect(self.now.mode == BEFORE, "enter")
+        if self.now.mode == BEFORE:
+            self.now.mode = DURING
+
+    @rule()
+    def exit(self):
+        self.expect(self.now.mode == DURING, "exit")
+        if self.now.mode == DURING:
+            self.now.mode = AFTER
+
+    @precondition(lambda self: self.now.mode == AFTER and abs(self.now.time) < 1e3)
+    @rule()
+    def step(self):
+        self.expect(True, "step")
+        self.now.time += 1e-3
+
+    @rule(number=st.sampled_from([-1.0, math.nan, math.inf]))
+    def step_that_makes_no_sense(self, number):
+        assert self.call("step_of", number=number)[0] == (DISCARD if self.now.mode == AFTER else ERROR)
+
+    @rule()
+    def cancel(self):
+        self.expect(False, "cancel")
+
+    @rule()
+    def terminate(self):
+        self.expect(self.now.mode == AFTER, "terminate")
+        if self.now.mode == AFTER:
+            self.now.mode = ENDED
+
+    @rule()
+    def reset(self):
+        self.expect(True, "reset")
+        self.now = Expected()
+
+    @rule()
+    def free_and_begin_again(self):
+        self.expect(True, "free")
+        self.expect(True, "instantiate")
+        self.now, self.saved = Expected(), None
+
+    @rule(data=st.data())
+    def set(self, data):
+        causality = data.draw(st.sampled_from(("input", "parameter", "output")))
+        variable = data.draw(st.sampled_from([v for v in self.reals if v.causality == causality]))
+        low, high = variable.bounds()
+        value = data.draw(any_number | st.floats(low, high))
+        allowed = {"input": (BEFORE, DURING, AFTER), "parameter": (BEFORE, DURING), "output": ()}[causality]
+        any_value = causality == "input" and self.tolerates_bad_input
+        expected = self.now.mode in allowed and (low <= value <= high or any_value)
+        assert self.call("set", variable.reference, value)[0] == (OK if expected else ERROR), variable.name
+        if expected:
+            self.now.values[variable.reference] = value
+
+    @rule()
+    def save(self):
+        self.expect(True, "save")
+        self.saved = self.now.copy()
+
+    @rule(through_bytes=st.booleans())
+    def restore(self, through_bytes):
+        if through_bytes:
+            self.expect(self.saved is not None, "through_bytes")
+        self.expect(self.saved is not None, "restore")
+        if self.saved:
+            self.now = self.saved.copy()
+
+    @rule()
+    def drop(self):
+        self.expect(True, "drop")
+        self.saved = None
+
+    @invariant()
+    def values_are_those_that_were_set(self):
+        for variable in self.reals:
+            status, value = self.call("get", variable.reference)
+            assert status == OK
+            if variable.causality != "output":
+                expected = self.now.values.get(variable.reference, variable.start)
+                assert value == pytest.approx(expected, rel=0.0, abs=0.0, nan_ok=True)
+            elif not self.now.values:
+                assert math.isfinite(value)
+
+    @invariant()
+    def time_is_that_of_the_last_step(self):
+        known = self.now.mode in (AFTER, ENDED)
+        status, time = self.call("time")
+        assert (status, time) == ((OK, pytest.approx(self.now.time)) if known else (ERROR, 0.0))
+
+    def teardown(self):
+        if self.program.poll() is None:
+            self.call("free")
+        _, said = self.program.communicate()
+        assert (self.program.returncode, said) == (0, "")
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_nothing(both_built, tmp_path, name):
+    path = both_built / NATIVE / f"{name}.fmu"
+    fmpy.extract(str(path), str(tmp_path))
+    sources = tmp_path / "sources"
+    program = tmp_path / "calls"
+    files = [PROGRAM, *sorted(sources.glob("*.c"))]
+    command = [host_compiler(), *WARNINGS, *SANITIZERS, f"-I{sources}", *files, "-o", program, "-lm"]
+    compiled = subprocess.run(command, capture_output=True, text=True, check=False)
+    if "cannot find" in compiled.stderr:
+        pytest.skip("the compiler has no sanitizers")
+    assert compiled.returncode == 0, compiled.stderr
+    block = FMUS[name].block
+
+    class CallsOfThisFmu(Calls):
+        command = (str(program), str(fmpy.read_model_description(str(path)).guid))
+        reals = tuple(v for v in interface(block) if v.fmi_type == "Real")
+        tolerates_bad_input = block.tolerates_bad_input
+
+    run_state_machine_as_test(
+        CallsOfThisFmu, settings=settings(max_examples=EXAMPLES, stateful_step_count=CALLS, deadline=None)
+    )

@@ -1,0 +1,210 @@
+"""Calls out of place, arguments that make no sense, messages: answered with an error, never with a crash."""
+
+import ctypes
+
+import pytest
+from fmpy.fmi1 import FMICallException
+
+from fmus.catalogue import FMUS
+from tests.fmus.host import opened
+
+OK, DISCARD, ERROR = 0, 2, 3
+DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
+
+BEFORE, DURING, AFTER, ENDED = "before", "during", "after", "ended"
+
+ALLOWED = {
+    "fmi2SetupExperiment": {BEFORE},
+    "fmi2EnterInitializationMode": {BEFORE},
+    "fmi2ExitInitializationMode": {DURING},
+    "fmi2DoStep": {AFTER},
+    "fmi2Terminate": {AFTER},
+    "fmi2SetRealInputDerivatives": {BEFORE, DURING, AFTER},
+    "fmi2GetRealOutputDerivatives": {AFTER, ENDED},
+    "fmi2GetDirectionalDerivative": {DURING, AFTER, ENDED},
+    "fmi2GetRealStatus": {AFTER, ENDED},
+    "fmi2Reset": {BEFORE, DURING, AFTER, ENDED},
+    "fmi2CancelStep": set(),
+}
+
+
+def call(host, function, *arguments):
+    """The status that the binary answers; NULL where an argument is None."""
+    binary = ctypes.CDLL(host.fmu.dll._name)
+    return getattr(binary, function)(ctypes.c_void_p(host.fmu.component), *arguments)
+
+
+def arguments_of(function):
+    """Arguments that make sense."""
+    none, nothing = ctypes.c_void_p(), ctypes.c_size_t(0)
+    return {
+        "fmi2SetupExperiment": (0, ctypes.c_double(), ctypes.c_double(), 0, ctypes.c_double()),
+        "fmi2DoStep": (ctypes.c_double(), ctypes.c_double(1e-3), 0),
+        "fmi2SetRealInputDerivatives": (none, nothing, none, none),
+        "fmi2GetRealOutputDerivatives": (none, nothing, none, none),
+        "fmi2GetDirectionalDerivative": (none, nothing, none, nothing, none, none),
+        "fmi2GetRealStatus": (LAST_SUCCESSFUL_TIME, ctypes.byref(ctypes.c_double())),
+    }.get(function, ())
+
+
+def bring(host, mode):
+    """Through the sequence of calls up to a mode."""
+    for reached, step in (
+        (BEFORE, lambda: None),
+        (DURING, host.fmu.enterInitializationMode),
+        (AFTER, host.fmu.exitInitializationMode),
+        (ENDED, host.fmu.terminate),
+    ):
+        step()
+        if reached == mode:
+            return
+
+
+@pytest.mark.parametrize("mode", [BEFORE, DURING, AFTER, ENDED])
+@pytest.mark.parametrize("function", ALLOWED)
+def test_a_function_is_refused_outside_its_place_and_says_where_that_is(native, tmp_path, function, mode):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        bring(host, mode)
+        status = call(host, function, *arguments_of(function))
+        assert status == (OK if mode in ALLOWED[function] else ERROR)
+        if status == ERROR:
+            assert host.message.startswith(f"{function} is refused")
+
+
+@pytest.mark.parametrize("function", ["SetReal", "GetReal", "SetInteger", "GetBoolean", "SetBoolean", "GetString"])
+def test_missing_arrays_are_refused(native, tmp_path, function):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        two = ctypes.c_size_t(2)
+        references = (ctypes.c_uint * 2)(0, 1)
+        values = (ctypes.c_double * 2)()
+        assert call(host, f"fmi2{function}", None, two, values) == ERROR
+        assert call(host, f"fmi2{function}", references, two, None) == ERROR
+        assert "NULL" in host.message
+        assert call(host, f"fmi2{function}", None, ctypes.c_size_t(0), None) == OK
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        *ALLOWED,
+        *("fmi2GetReal", "fmi2SetReal", "fmi2GetString", "fmi2SetString", "fmi2SetDebugLogging"),
+        *("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate", "fmi2SerializedFMUstateSize"),
+        *("fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate", "fmi2GetStatus", "fmi2GetStringStatus"),
+    ],
+)
+def test_without_an_instance_every_function_is_an_error(native, tmp_path, function):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        binary = ctypes.CDLL(host.fmu.dll._name)
+        zeros = (ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0))
+        assert getattr(binary, function)(ctypes.c_void_p(), *(arguments_of(function) or zeros)) == ERROR
+
+
+def test_freeing_nothing_is_no_error(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        binary = ctypes.CDLL(host.fmu.dll._name)
+        binary.fmi2FreeInstance.restype = None
+        binary.fmi2FreeInstance(ctypes.c_void_p())
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [
+        ({"guid": b"{other}"}, "GUID"),
+        ({"guid": None}, "GUID"),
+        ({"name": b""}, "name"),
+        ({"name": None}, "name"),
+        ({"kind": 0}, "co-simulation"),
+    ],
+)
+def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, said):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        binary = ctypes.CDLL(host.fmu.dll._name)
+        binary.fmi2Instantiate.restype = ctypes.c_void_p
+        right = {"name": b"instance", "kind": 1, "guid": str(host.description.guid).encode()}
+        given = right | what
+        made = binary.fmi2Instantiate(
+            given["name"], given["kind"], given["guid"], None, ctypes.byref(host._callbacks), 0, 1
+        )
+        assert made is None
+        assert said in host.message
+        assert binary.fmi2Instantiate(given["name"], 1, given["guid"], None, None, 0, 1) is None
+
+
+def status(host, function, kind, value):
+    return call(host, function, kind, ctypes.byref(value)), value.value
+
+
+def test_the_status_is_that_of_the_last_step(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        host.step(0.0, 0.25)
+        assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, OK)
+        with pytest.raises(FMICallException):
+            host.step(0.0, 0.25)
+        assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, DISCARD)
+        assert status(host, "fmi2GetRealStatus", LAST_SUCCESSFUL_TIME, ctypes.c_double(-1.0)) == (OK, 0.25)
+        assert status(host, "fmi2GetBooleanStatus", TERMINATED, ctypes.c_int(-1)) == (OK, 0)
+        assert status(host, "fmi2GetStringStatus", PENDING_STATUS, ctypes.c_char_p()) == (OK, b"")
+
+
+@pytest.mark.parametrize("function", ["GetStatus", "GetRealStatus", "GetIntegerStatus", "GetBooleanStatus"])
+def test_a_status_that_does_not_exist_is_discarded(native, tmp_path, function):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        assert status(host, f"fmi2{function}", PENDING_STATUS, ctypes.c_double(-1.0)) == (DISCARD, -1.0)
+
+
+def test_messages_are_given_out_by_category(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+
+        def messages():
+            """Which of a discarded step and an unknown reference is told."""
+            told = []
+            for call_wrongly in (lambda: host.step(0.0, -1.0), lambda: host.fmu.getReal([99])):
+                host.message = ""
+                with pytest.raises(FMICallException):
+                    call_wrongly()
+                told.append(bool(host.message))
+            return told
+
+        assert messages() == [True, True]
+        host.fmu.setDebugLogging(False, ["logStatusDiscard"])
+        assert messages() == [False, True]
+        host.fmu.setDebugLogging(False, [])
+        assert messages() == [False, False]
+        host.fmu.setDebugLogging(True, ["logStatusDiscard"])
+        assert messages() == [True, False]
+        host.fmu.setDebugLogging(True, [])
+        assert "there are logStatusError and logStatusDiscard" in host.refuses(
+            host.fmu.setDebugLogging, True, ["logEvents"]
+        )
+        assert messages() == [True, True]
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [(lambda s: s[:-1], "bytes, one of this FMU has"), (lambda s: bytes([s[0] ^ 1]) + s[1:], "damaged")]
+    + [(lambda s, k=k: s[:k] + bytes([s[k] ^ 1]) + s[k + 1 :], "damaged") for k in (10, 100, -8)],
+)
+def test_a_damaged_state_is_refused_and_changes_nothing(native, tmp_path, damage, said):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(T_ref=40.0)
+        host.step(0.0, 0.01)
+        before = host.outputs()
+        state = host.fmu.getFMUstate()
+        saved = bytes(host.fmu.serializeFMUstate(state))
+        host.fmu.freeFMUstate(state)
+        assert said in host.refuses(host.fmu.deSerializeFMUstate, damage(saved))
+        assert host.outputs() == before
+        host.step(0.01, 0.01)
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_a_reset_instance_is_as_new(native, tmp_path, name):
+    with opened(native / f"{name}.fmu", tmp_path) as host:
+        new = host.fmu.serializeFMUstate(host.fmu.getFMUstate())
+        host.initialize(start_time=3.0)
+        host.step(3.0, 0.01)
+        host.fmu.reset()
+        assert host.fmu.serializeFMUstate(host.fmu.getFMUstate()) == new

@@ -1,0 +1,106 @@
+"""Back to back: the functions in Python and the same in C, on random arguments."""
+
+import math
+import random
+import subprocess
+
+import pytest
+
+pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+from fmus.catalogue import FMUS
+from fmus.description.variables import interface
+from fmus.native.compiler import host_compiler
+from fmus.native.packaging import C_FILES
+from fmus.native.trace import leaves
+from tests.fmus.native.functions import Functions
+
+TOLERANCE = 1e-12
+"""Relative. Every operation is the same and rounds the same; on another machine sin, tanh and so on may not."""
+
+TIMES = 1000
+
+every_fmu = pytest.mark.parametrize("name", FMUS)
+
+
+@pytest.fixture(scope="module")
+def functions(native_builder, tmp_path_factory):
+    return {name: Functions(fmu, tmp_path_factory.mktemp(name)) for name, fmu in FMUS.items()}
+
+
+def records(block, draw):
+    """Random inputs and parameters within their bounds."""
+    values = [value(v, draw) for v in interface(block) if v.causality != "output"]
+    inputs = len(block.Input._fields)
+    return block.Input._make(values[:inputs]), block.Parameters._make(values[inputs:])
+
+
+def value(variable, draw):
+    low, high = variable.bounds()
+    if variable.fmi_type == "Boolean":
+        return draw.random() < 0.5
+    if variable.fmi_type == "Integer":
+        return draw.randint(max(low, -1000), min(high, 1000000))
+    if draw.random() < 0.5 and variable.start is not None:
+        return variable.start
+    return draw.uniform(max(low, -1e3), min(high, 1e3))
+
+
+def moved(x, draw):
+    """The state with all its numbers a little or a lot different; truth values and counts stay what they are."""
+    if not isinstance(x, tuple):
+        return x if type(x) is not float else x + draw.choice((0.0, 1e-3, 0.1, 10.0)) * draw.gauss(0.0, 1.0)
+    return getattr(type(x), "_make", tuple)([moved(item, draw) for item in x])
+
+
+def assert_same(computed, expected):
+    expected = [float(number) for number in leaves(tuple(expected))]
+    for c, python in zip(computed, expected, strict=True):
+        assert c == python or math.isclose(c, python, rel_tol=TOLERANCE) or (math.isnan(c) and math.isnan(python))
+
+
+@every_fmu
+def test_start_and_outputs_are_equal(functions, name):
+    block, draw = FMUS[name].block, random.Random(name)
+    for _ in range(TIMES):
+        u, p = records(block, draw)
+        x = block.start(u, p)
+        assert_same(functions[name]("start", u, p), x)
+        x = moved(x, draw)
+        assert_same(functions[name]("output", leaves(x), u, p), block.output(x, u, p))
+
+
+@every_fmu
+def test_what_moves_the_state_is_equal(functions, name):
+    block, draw = FMUS[name].block, random.Random(name)
+    function = "update" if block.update else "derivative"
+    for _ in range(TIMES):
+        u, p = records(block, draw)
+        x = moved(block.start(u, p), draw)
+        assert_same(functions[name](function, leaves(x), u, p), getattr(block, function)(x, u, p))
+        if block.surfaces:
+            assert_same(functions[name]("surfaces", leaves(x), u, p), block.surfaces(x, u, p))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300])
+@pytest.mark.parametrize("signal", ["T_driver", "omega_1_meas", "T_mot_est", "omega_2_can"])
+def test_the_controller_copes_with_the_same_bad_signals(functions, signal, value):
+    block = FMUS["DampingController"].block
+    assert block.update
+    u, p = block.Input(), block.Parameters()
+    x = block.start(u, p)
+    for k in range(100):
+        u = u._replace(valid=True, counter=k // 10, omega_1_meas=100.0)._replace(**{signal: value})
+        assert_same(functions["DampingController"]("update", leaves(x), u, p), block.update(x, u, p))
+        x = block.update(x, u, p)
+
+
+@pytest.mark.parametrize(("x", "y"), [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0)])
+def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
+    program = f'#include "operators.h"\n#include <stdio.h>\nint main(void) {{ printf("%a", modulo({x!r}, {y!r})); }}'
+    (tmp_path / "block.h").write_text("typedef double real;\n")
+    (tmp_path / "operators.h").write_bytes((C_FILES / "operators.h").read_bytes())
+    (tmp_path / "main.c").write_text(program)
+    subprocess.run([host_compiler(), "main.c", "-o", "main", "-lm"], cwd=tmp_path, check=True)
+    said = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout
+    assert float.fromhex(said) == x % y

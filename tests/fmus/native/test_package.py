@@ -1,0 +1,107 @@
+"""What is in a native FMU, and what its binary asks of a machine."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import fmpy
+import pytest
+from fmpy.build import build_platform_binary
+
+from fmus.builds import NotPossible, builders
+from fmus.catalogue import FMUS
+from tests import ROOT
+from tests.fmus.host import opened
+
+LARGEST = 150 * 1024
+every_fmu = pytest.mark.parametrize("name", FMUS)
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into an ELF file")
+
+
+def unpacked(native, tmp_path, name):
+    fmpy.extract(str(native / f"{name}.fmu"), str(tmp_path))
+    return tmp_path
+
+
+def symbols(binary, *options):
+    done = subprocess.run(["nm", "-D", *options, str(binary)], capture_output=True, text=True, check=True)
+    return [line.split()[-1] for line in done.stdout.splitlines()]
+
+
+@every_fmu
+def test_it_is_small(native, name):
+    assert (native / f"{name}.fmu").stat().st_size < LARGEST
+
+
+@on_linux
+@every_fmu
+def test_it_exports_fmi_functions_alone_and_asks_for_an_old_libc(native, tmp_path, name):
+    binary = unpacked(native, tmp_path, name) / "binaries" / fmpy.platform / f"{name}.so"
+    exported = symbols(binary, "--defined-only")
+    assert all(symbol.startswith("fmi2") for symbol in exported)
+    assert {"fmi2Instantiate", "fmi2DoStep", "fmi2GetRealOutputDerivatives", "fmi2GetStringStatus"} <= set(exported)
+    asked = subprocess.run(["objdump", "-p", str(binary)], capture_output=True, text=True, check=True).stdout
+    assert set(re.findall(r"NEEDED\s+(\S+)", asked)) <= {"libc.so.6", "libm.so.6"}
+    versions = {tuple(map(int, v.split("."))) for v in re.findall(r"GLIBC_([\d.]+)", asked)}
+    assert max(versions) <= (2, 17)
+
+
+@every_fmu
+def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
+    assert native_builder(FMUS[name], tmp_path).read_bytes() == (native / f"{name}.fmu").read_bytes()
+
+
+@pytest.mark.skipif(shutil.which("cmake") is None, reason="there is no cmake")
+@pytest.mark.parametrize("name", ["MotorTorqueLoop", "DampingController"])
+def test_its_sources_compile_with_fmpy(native, tmp_path, name):
+    folder = unpacked(native, tmp_path, name)
+    shutil.rmtree(folder / "binaries")
+    build_platform_binary(folder)
+    with opened(native / f"{name}.fmu", folder) as host:
+        host.initialize()
+        host.step(0.0, 0.01)
+        assert all(abs(value) < 1e6 for value in host.outputs().values())
+
+
+def test_the_description_differs_from_that_of_the_python_build_only_where_the_builds_do(native, built):
+    def variables(folder, name):
+        with zipfile.ZipFile(folder / f"{name}.fmu") as archive:
+            text = archive.read("modelDescription.xml").decode()
+        return text[text.index("<UnitDefinitions>") : text.index("<LogCategories>")], text[
+            text.index("<DefaultExperiment") :
+        ]
+
+    for name in FMUS:
+        assert variables(native, name) == variables(built, name)
+
+
+@pytest.mark.parametrize(
+    ("without", "said"), [("casadi", "install the extra `native`"), ("cc", "there is no C compiler")]
+)
+def test_what_is_missing_for_a_native_build_is_said_and_the_other_build_is_made(monkeypatch, without, said):
+    if without == "cc":
+        pytest.importorskip("casadi", reason="the extra `native` is not installed")
+        monkeypatch.setenv("CC", "no-such-compiler")
+    else:
+        monkeypatch.setattr("fmus.builds.find_spec", lambda name: None)
+    with pytest.raises(NotPossible, match=said):
+        builders("native")
+    assert len(builders(None)) == 1
+
+
+def test_both_builds_are_made_where_they_can_be(native_builder, tmp_path):
+    done = subprocess.run(
+        [sys.executable, "build_fmus.py", "MotorTorqueLoop", "--output", str(tmp_path)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    made = [line.split()[0] for line in done.stdout.splitlines()]
+    assert made == [
+        os.path.join(tmp_path, "MotorTorqueLoop.fmu"),
+        os.path.join(tmp_path, "native", "MotorTorqueLoop.fmu"),
+    ]

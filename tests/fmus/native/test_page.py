@@ -1,0 +1,81 @@
+"""The page on native FMUs: its example is built and driven in the loop, its lines for FMPy run."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.cosimulation.system import NATIVE
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.metrics.evaluate import evaluate
+from harness.simulate import simulate
+from tests import ROOT
+
+EXAMPLE, FMPY, *_ = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S)
+
+
+def build(file: Path, folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "build_fmus.py", *options, "--output", str(folder), str(file)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def vehicle(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU of the example."""
+    folder = tmp_path_factory.mktemp("own")
+    file = folder / "my_vehicle.py"
+    file.write_text(EXAMPLE, encoding="utf-8")
+    done = build(file, folder, "--build", "native")
+    assert done.returncode == 0, done.stderr
+    return folder / NATIVE / "MyVehicle.fmu"
+
+
+def test_a_vehicle_of_the_users_own_is_damped_in_the_loop(vehicle: Path, both_built: Path) -> None:
+    tipin = MANOEUVRES["tipin15"]
+    damped, free = (evaluate(simulate(tipin, vehicle, control, folder=both_built), tipin) for control in (True, False))
+    assert free.ts > 1.0
+    assert damped.ts < 0.2
+
+
+def test_it_gains_the_speed_that_its_masses_let_it(vehicle: Path, both_built: Path) -> None:
+    given = {"plant.c_rr": 0.0, "plant.c_wa": 0.0}
+    results = simulate(MANOEUVRES["tipin15"], vehicle, control=False, parameters=given, folder=both_built)
+    i, r, m, J_1 = 9.0, 0.29, 1450.0, 0.055
+    momentum = (m * r / i) * results["plant.v"] + J_1 * results["plant.omega_1"]
+    impulse = np.trapezoid(results["motor.T_mot"], results["time"])
+    # the motor's torque is held over each step of 1 ms, not moved along a line
+    assert momentum[-1] - momentum[0] == pytest.approx(impulse, rel=2e-4)
+
+
+def test_a_file_without_an_fmu_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "nothing.py"
+    file.write_text("BLOCK = None\n", encoding="utf-8")
+    done = build(file, tmp_path, "--build", "native")
+    assert done.returncode == 2
+    assert "has no line `FMU = Fmu(BLOCK, stop_time=10.0)`" in done.stderr
+
+
+def test_a_file_whose_name_is_taken_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "json.py"
+    file.write_text(EXAMPLE, encoding="utf-8")
+    done = build(file, tmp_path, "--build", "native")
+    assert done.returncode == 2
+    assert "a module called json is in use" in done.stderr
+
+
+def test_a_block_of_a_file_is_built_natively_or_not_at_all(tmp_path: Path) -> None:
+    file = tmp_path / "my_vehicle.py"
+    file.write_text(EXAMPLE, encoding="utf-8")
+    done = build(file, tmp_path)
+    assert done.returncode == 2
+    assert "add --build native" in done.stderr
+
+
+def test_the_lines_for_fmpy_run(both_built: Path, tmp_path: Path) -> None:
+    (tmp_path / "build").symlink_to(both_built)
+    done = subprocess.run([sys.executable, "-c", FMPY], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) > 11.0

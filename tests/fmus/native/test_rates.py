@@ -1,0 +1,152 @@
+"""Inputs that move within a step, rates of change of outputs, directional derivatives."""
+
+import math
+
+import pytest
+from fmpy.fmi1 import FMICallException
+
+from fmus.catalogue import FMUS
+from tests.fmus.host import opened
+
+CONTINUOUS = [name for name, fmu in FMUS.items() if fmu.block.derivative]
+every_continuous = pytest.mark.parametrize("name", CONTINUOUS)
+
+
+def references(host, *names):
+    return [host.variables[name].valueReference for name in names]
+
+
+def ramp(host, **rates):
+    host.fmu.setRealInputDerivatives(references(host, *rates), [1] * len(rates), list(rates.values()))
+
+
+def rates_of(host, *names):
+    return host.fmu.getRealOutputDerivatives(references(host, *names), [1] * len(names))
+
+
+def derivative(host, unknown, known):
+    return host.fmu.getDirectionalDerivative(references(host, unknown), references(host, known), [1.0])[0]
+
+
+def real(host, causality):
+    return [n for n in host.names(causality) if host.variables[n].type == "Real"]
+
+
+def test_a_ramp_in_one_step_is_that_of_many_small_stairs(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        ramp(host, T_ref=1000.0)
+        host.step(0.0, 0.02)
+        ramped = host.get("T_mot")
+        assert host.get("T_ref") == pytest.approx(20.0, rel=1e-12), "the input is where the ramp led it"
+        host.fmu.reset()
+        host.initialize()
+        stairs = 2000
+        for k in range(stairs):
+            host.set(T_ref=20.0 * (k + 0.5) / stairs)
+            host.step(k * 0.02 / stairs, 0.02 / stairs)
+        assert ramped == pytest.approx(host.get("T_mot"), rel=1e-5)
+
+
+def test_a_ramp_lasts_for_one_step(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        ramp(host, T_ref=1000.0)
+        host.step(0.0, 0.01)
+        host.step(0.01, 0.01)
+        assert host.get("T_ref") == pytest.approx(10.0)
+        ramp(host, T_ref=1000.0)
+        host.set(T_ref=5.0)
+        host.step(0.02, 0.01)
+        assert host.get("T_ref") == 5.0
+
+
+def test_a_ramp_out_of_the_range_is_refused_and_nothing_moves(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(T_ref=1990.0)
+        ramp(host, T_ref=1000.0)
+        before = host.outputs()
+        message = host.refuses(host.step, 0.0, 0.02)
+        assert message == "T_ref = 2010.0 N.m at the end of the step is refused; allowed is -2000 to 2000 N.m"
+        assert (host.outputs(), host.get("T_ref")) == (before, 1990.0)
+        host.step(0.0, 0.005)
+
+
+@pytest.mark.parametrize("rate", [math.nan, math.inf])
+def test_a_rate_that_is_not_finite_is_refused(native, tmp_path, rate):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        assert "as derivative of T_ref" in host.refuses(ramp, host, T_ref=rate)
+        assert "T_mot is not an input" in host.refuses(ramp, host, T_mot=1.0)
+
+
+def test_only_first_derivatives_exist(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        for call in (host.fmu.setRealInputDerivatives, host.fmu.getRealOutputDerivatives):
+            values = [[0.0]] if call == host.fmu.setRealInputDerivatives else []
+            assert "order 2 is refused" in host.refuses(call, [0], [2], *values)
+
+
+@every_continuous
+def test_rates_of_outputs_are_their_differences_over_a_short_time(native, tmp_path, name):
+    with opened(native / f"{name}.fmu", tmp_path) as host:
+        start = {"v_0": 8.0, "T_0": 20.0} if "v_0" in host.variables else {"T_ref": 50.0, "q_omega": 0.0}
+        host.initialize(**start)
+        host.set(**({"T_mot": 60.0} if "T_mot" in host.names("input") else {"T_ref": 100.0}))
+        host.step(0.0, 0.0053)
+        outputs = real(host, "output")
+        rates, before = rates_of(host, *outputs), host.outputs()
+        h = 1e-7
+        host.step(0.0053, h)
+        after = host.outputs()
+        for output, rate in zip(outputs, rates, strict=True):
+            assert (after[output] - before[output]) / h == pytest.approx(rate, rel=2e-2, abs=1e-3 * (1 + abs(rate)))
+
+
+@every_continuous
+@pytest.mark.parametrize("initializing", [True, False])
+def test_directional_derivatives_are_differences(native, tmp_path, name, initializing):
+    with opened(native / f"{name}.fmu", tmp_path) as host:
+        start = {"v_0": 8.0, "T_0": 20.0} if "v_0" in host.variables else {"T_ref": 50.0, "q_omega": 0.0}
+        host.set(**start)
+        host.fmu.setupExperiment(startTime=0.0)
+        host.fmu.enterInitializationMode()
+        if not initializing:
+            host.fmu.exitInitializationMode()
+            host.step(0.0, 0.0053)
+        for known in real(host, "input") + (real(host, "parameter") if initializing else []):
+            at = host.get(known)
+            h = 1e-6 * max(1.0, abs(at)) if at else 1e-6
+            before = host.outputs()
+            host.set(**{known: at + h})
+            after = host.outputs()
+            host.set(**{known: at})
+            for unknown in real(host, "output"):
+                difference = (after[unknown] - before[unknown]) / h
+                if initializing and known in ("v_0", "z_br", "omega_sat", "q_omega"):
+                    continue  # where the start is not smooth
+                assert derivative(host, unknown, known) == pytest.approx(difference, rel=1e-3, abs=1e-4)
+
+
+def test_after_initialization_only_inputs_can_be_known(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        assert derivative(host, "omega_1_meas", "omega_1") == 0.0, "it is rounded"
+        assert "tau cannot be a known" in host.refuses(derivative, host, "T_mot", "tau")
+        assert "T_ref cannot be the unknown" in host.refuses(derivative, host, "T_ref", "T_ref")
+
+
+@pytest.mark.parametrize("name", [name for name in FMUS if name not in CONTINUOUS])
+def test_sampled_blocks_claim_no_rates_and_refuse_them(native, tmp_path, name):
+    with opened(native / f"{name}.fmu", tmp_path) as host:
+        claims = host.description.coSimulation
+        assert claims
+        assert not claims.canInterpolateInputs
+        assert not claims.providesDirectionalDerivative
+        assert claims.maxOutputDerivativeOrder == 0
+        host.initialize()
+        with pytest.raises(FMICallException):
+            ramp(host, **{real(host, "input")[0]: 1.0})
+        assert "is a sampled block and has no output derivatives" in host.refuses(
+            rates_of, host, real(host, "output")[0]
+        )

@@ -1,0 +1,124 @@
+"""What is in an FMU: the same bytes for the same content, and names that nobody else has."""
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from fmus.catalogue import FMUS
+from fmus.python.bundle import imported, source_path
+from fmus.python.packaging import build
+from tests import ROOT
+from tests.fmus.host import opened
+
+
+def run(arguments, folder, **environment):
+    """Runs Python in that folder; its exit code and what it wrote."""
+    done = subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": "", **environment},
+        capture_output=True,
+        text=True,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.fixture
+def copied_project(tmp_path):
+    """A copy of the sources that build the FMUs, somewhere else."""
+    project = tmp_path / "elsewhere"
+    for package in ("models", "fmus"):
+        shutil.copytree(ROOT / package, project / package, ignore=shutil.ignore_patterns("__pycache__"))
+    for file in ("build_fmus.py", "LICENSE"):
+        if (ROOT / file).exists():
+            shutil.copy(ROOT / file, project / file)
+    return project
+
+
+def test_a_rebuild_elsewhere_gives_the_same_bytes(built, copied_project):
+    code, said = run(["build_fmus.py", "--build", "python", "--output", "out"], copied_project, PYTHONHASHSEED="7")
+    assert code == 0, said
+    for name in FMUS:
+        assert (copied_project / "out" / f"{name}.fmu").read_bytes() == (built / f"{name}.fmu").read_bytes()
+
+
+def test_only_what_is_named_is_built_and_said_in_a_line(copied_project):
+    code, said = run(["build_fmus.py", "--build", "python", "WheelSpeedCan", "MotorTorqueLoop"], copied_project)
+    assert code == 0
+    assert [line.split()[0] for line in said.splitlines()] == [
+        os.path.join("build", "WheelSpeedCan.fmu"),
+        os.path.join("build", "MotorTorqueLoop.fmu"),
+    ]
+    assert {path.name for path in (copied_project / "build").iterdir()} == {
+        "WheelSpeedCan.fmu",
+        "MotorTorqueLoop.fmu",
+    }
+
+
+def test_an_unknown_name_is_answered_with_the_nearest():
+    code, said = run(["build_fmus.py", "TwoMasDriveline"], ROOT)
+    assert code == 2
+    assert "no FMU is called 'TwoMasDriveline'; did you mean TwoMassDriveline?" in said
+
+
+def test_the_builder_leaves_no_trace_even_while_the_fmu_is_loaded(built, tmp_path):
+    def ours():
+        return {name: module for name, module in sys.modules.items() if name.startswith("driveline_")}
+
+    name = "MotorTorqueLoop"
+    with opened(built / f"{name}.fmu", tmp_path / "unpacked") as host:
+        before = list(sys.path), ours()
+        path = build(FMUS[name], tmp_path / "built")
+        assert (list(sys.path), ours()) == before
+        host.initialize(T_ref=50.0)
+        assert host.get("T_mot") == 50.0
+    assert list((tmp_path / "built").iterdir()) == [path]
+
+
+def test_an_fmu_that_has_run_can_be_built_again_in_the_same_process(built, tmp_path):
+    name = "MotorTorqueLoop"
+    with opened(built / f"{name}.fmu", tmp_path / "unpacked") as host:
+        host.initialize()
+        host.step(0.0, 0.001)
+    again = build(FMUS[name], tmp_path / "built")
+    assert again.read_bytes() == (built / f"{name}.fmu").read_bytes()
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_the_archive_holds_what_runs_and_nothing_else(built, name):
+    with zipfile.ZipFile(built / f"{name}.fmu") as archive:
+        infos = archive.infolist()
+    names = [info.filename for info in infos]
+    assert names == sorted(names)
+    assert {info.date_time for info in infos} == {(1980, 1, 1, 0, 0, 0)}
+    assert {info.compress_type for info in infos} == {zipfile.ZIP_DEFLATED}
+    assert {f"binaries/{where}" for where in (f"linux64/{name}.so", f"win64/{name}.dll")} <= set(names)
+    assert not [n for n in names if "builder" in n or "deploy" in n or "__pycache__" in n or n.endswith(".pyc")]
+    carried = {Path(n).stem for n in names if "/models/" in n}
+    blocks = {fmu.module.split(".")[1] for fmu in FMUS.values()}
+    assert carried & blocks == {FMUS[name].module.split(".")[1]}
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_top_level_modules_carry_the_name_of_the_build(built, name):
+    with zipfile.ZipFile(built / f"{name}.fmu") as archive:
+        resources = {n.split("/")[1] for n in archive.namelist() if n.startswith("resources/")}
+    short = FMUS[name].module.split(".")[1]
+    assert all(n == "slavemodule.txt" or n.startswith(f"driveline_{short}_") for n in resources)
+
+
+@pytest.mark.parametrize("module", ["fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
+def test_what_runs_inside_an_fmu_imports_the_standard_library_alone(module):
+    ours, waiting = set(), {module}
+    while waiting:
+        ours.add(current := waiting.pop())
+        waiting |= set(imported(current)) - ours
+    text = "; ".join(f"import {name}" for name in sorted(ours))
+    code, said = run(["-S", "-c", f"import sys; sys.path.insert(0, {str(ROOT)!r}); {text}"], ROOT)
+    assert code == 0, said
+    assert all(source_path(name).is_file() for name in ours)

@@ -1,0 +1,101 @@
+"""A saved state restores everything: the run that follows is the same, bit by bit."""
+
+import math
+
+import pytest
+
+from fmus.catalogue import FMUS
+from fmus.python import snapshot
+from tests.fmus.host import opened
+
+every_fmu = pytest.mark.parametrize("name", FMUS)
+
+
+def drive(host, first, last):
+    """Runs communication steps of 1.3 ms with inputs that move; all outputs of every step."""
+    reals = [n for n in host.names("input") if host.variables[n].type == "Real" and n != "slope"]
+    seen = []
+    for k in range(first, last):
+        host.set(**{n: 30.0 + 25.0 * math.sin(0.05 * k + j) for j, n in enumerate(reals)})
+        host.step(k * 0.0013, 0.0013)
+        seen.append(host.outputs())
+    return seen
+
+
+@every_fmu
+def test_a_run_goes_on_bit_by_bit_after_set_and_after_deserialise(built, tmp_path, name):
+    with opened(built / f"{name}.fmu", tmp_path) as host:
+        changed = host.names("parameter")[0]
+        host.initialize(**{changed: host.get(changed) * 1.01})
+        drive(host, 0, 30)
+        state = host.fmu.getFMUstate()
+        saved = host.fmu.serializeFMUstate(state)
+        expected = drive(host, 30, 60)
+        host.fmu.setFMUstate(state)
+        assert drive(host, 30, 60) == expected
+        host.fmu.setFMUstate(state)
+        host.fmu.freeFMUstate(state)
+        assert drive(host, 30, 60) == expected
+
+        host.fmu.reset()
+        restored = host.fmu.deSerializeFMUstate(saved)
+        host.fmu.setFMUstate(restored)
+        host.fmu.freeFMUstate(restored)
+        assert drive(host, 30, 60) == expected
+
+
+@every_fmu
+def test_a_state_moves_to_another_instance_and_has_one_serialised_form(built, tmp_path, name):
+    with opened(built / f"{name}.fmu", tmp_path, "a") as a, opened(built / f"{name}.fmu", tmp_path, "b") as b:
+        a.initialize()
+        drive(a, 0, 10)
+        saved = a.fmu.serializeFMUstate(a.fmu.getFMUstate())
+        b.fmu.setFMUstate(b.fmu.deSerializeFMUstate(saved))
+        assert b.fmu.serializeFMUstate(b.fmu.getFMUstate()) == saved
+        assert drive(b, 10, 20) == drive(a, 10, 20)
+
+
+def test_a_state_saved_before_initialization_restores_that_mode(built, tmp_path):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.set(T_ref=40.0, tau=0.01)
+        state = host.fmu.getFMUstate()
+        host.initialize(T_ref=10.0)
+        host.step(0.0, 0.01)
+        host.fmu.setFMUstate(state)
+        assert (host.get("T_ref"), host.get("T_mot")) == (40.0, 40.0)
+        host.initialize(tau=0.02)
+
+
+@pytest.mark.parametrize("place", [0, 9, -20])
+def test_a_damaged_state_is_refused_and_changes_nothing(built, tmp_path, place):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(T_ref=40.0)
+        host.step(0.0, 0.01)
+        before = host.outputs()
+        saved = bytearray(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
+        saved[place] ^= 1
+        state = host.fmu.deSerializeFMUstate(bytes(saved))
+        assert "its bytes are damaged" in host.refuses(host.fmu.setFMUstate, state)
+        assert host.outputs() == before
+        host.step(0.01, 0.01)
+
+
+def test_a_state_of_another_fmu_is_refused(built, tmp_path):
+    with (
+        opened(built / "MotorTorqueLoop.fmu", tmp_path / "motor") as motor,
+        opened(built / "WheelSpeedCan.fmu", tmp_path / "can") as can,
+    ):
+        state = motor.fmu.deSerializeFMUstate(can.fmu.serializeFMUstate(can.fmu.getFMUstate()))
+        message = motor.refuses(motor.fmu.setFMUstate, state)
+        assert "saved by driveline_wheel_speed_can" in message
+
+
+@pytest.mark.parametrize("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, math.inf, 3, True])
+def test_numbers_keep_type_and_bits(value):
+    (restored,) = snapshot.unpack("build", snapshot.pack("build", (value,)))
+    assert type(restored) is type(value)
+    assert repr(restored) == repr(value)
+
+
+def test_not_a_number_stays_not_a_number():
+    assert math.isnan(snapshot.unpack("build", snapshot.pack("build", (math.nan,)))[0])

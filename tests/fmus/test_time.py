@@ -1,0 +1,199 @@
+"""The sequence of a run: initialization, communication steps of any length, time."""
+
+import math
+from itertools import cycle, repeat
+from typing import Annotated, NamedTuple
+
+import pytest
+from pythonfmu import Fmi2Slave
+
+from fmus.catalogue import FMUS
+from fmus.python.slave import BlockSlave
+from models.block.declaration import Real
+from models.block.types import Block
+from tests.fmus.host import opened
+
+SAMPLED = [name for name, fmu in FMUS.items() if fmu.block.update]
+T_S = 0.002
+
+COMMUNICATION_STEPS = {
+    "0.1 ms": (0.0001,),
+    "0.5 ms": (0.0005,),
+    "1 ms": (0.001,),
+    "2 ms": (0.002,),
+    "3.3 ms": (0.0033,),
+    "10 ms": (0.01,),
+    "mixed": (0.0001, 0.01, 0.0033, 0.0005, 0.002, 0.001),
+}
+
+
+def steps_to(end, start, sizes):
+    """Communication points and step sizes from start to end, the last step shortened to end there."""
+    time = start
+    for size in sizes:
+        if end - time < 1e-9:
+            return
+        step_size = min(size, end - time)
+        yield time, step_size
+        time += step_size
+
+
+class Number(NamedTuple):
+    n: Annotated[float, Real("1", "a number")] = 0.0
+
+
+class Nothing(NamedTuple):
+    pass
+
+
+class CounterSlave(BlockSlave, Fmi2Slave):  # pyright: ignore[reportIncompatibleMethodOverride]
+    """Adds its input once every tick."""
+
+    block = Block(
+        name="Counter",
+        description="Sum over the ticks",
+        Parameters=Nothing,
+        Input=Number,
+        State=Number,
+        Output=Number,
+        start=lambda u, p: Number(0.0),
+        output=lambda x, u, p: x,
+        update=lambda x, u, p: Number(x.n + u.n),
+        sample_time=T_S,
+    )
+
+
+@pytest.fixture
+def counter():
+    slave = CounterSlave(instance_name="counter", resources="")
+    slave.setup_experiment(0.0, None, None)
+    slave.enter_initialization_mode()
+    slave.exit_initialization_mode()
+    slave.set_real([0], [1.0])
+    return slave
+
+
+def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later(counter):
+    counter.do_step(0.0, 0.001)
+    assert counter.get_real([1]) == [0.0]
+    counter.set_real([0], [10.0])
+    counter.do_step(0.001, 0.001)
+    assert counter.get_real([1]) == [1.0]
+    counter.do_step(0.002, 0.0001)
+    assert counter.get_real([1]) == [1.0]
+    counter.do_step(0.0021, 0.0019)
+    assert counter.get_real([1]) == [11.0]
+
+
+def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter):
+    counter.do_step(0.0, 0.0033)
+    assert counter.get_real([1]) == [1.0]
+    counter.do_step(0.0033, 0.0107)
+    assert counter.get_real([1]) == [7.0]
+
+
+@pytest.mark.parametrize("step_size", [0.001, 0.0033, 0.002 / 3.0, 0.1])
+def test_a_host_that_adds_up_its_time_gets_every_tick_once(counter, step_size):
+    time = 0.0
+    for k in range(1, 20_001):
+        counter.do_step(time, step_size)
+        time += step_size
+        assert counter.ticks == math.ceil(k * step_size / T_S - 1e-3)
+
+
+@pytest.mark.parametrize("name", SAMPLED)
+@pytest.mark.parametrize("sizes", COMMUNICATION_STEPS.values(), ids=COMMUNICATION_STEPS)
+def test_a_sampled_block_does_not_depend_on_the_communication_step(built, tmp_path, name, sizes):
+    block = FMUS[name].block
+    assert block.update
+    inputs = [n for n in block.Input._fields if isinstance(block.Input()._asdict()[n], float)]
+    u, p = block.Input(), block.Parameters()
+    with opened(built / f"{name}.fmu", tmp_path) as host:
+        host.initialize()
+        x = block.start(u, p)
+        for segment in range(4):
+            u = u._replace(**{n: 20.0 + 7.0 * segment + k for k, n in enumerate(inputs)})
+            host.set(**{n: getattr(u, n) for n in inputs})
+            for time, step_size in steps_to(0.03 * (segment + 1), 0.03 * segment, cycle(sizes)):
+                host.step(time, step_size)
+            for _ in range(round(0.03 / block.sample_time)):
+                x = block.update(x, u, p)
+            assert tuple(host.outputs().values()) == tuple(block.output(x, u, p))
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_outputs_are_right_at_the_start_and_parameters_in_effect(built, tmp_path, name):
+    block = FMUS[name].block
+    u, p = block.Input(), block.Parameters()
+    change = {n: value for n, value in (("v_0", 10.0), ("T_0", 40.0), ("o_T", 2.0), ("i", 8.0)) if hasattr(p, n)}
+    first = block.Input._fields[0]
+    with opened(built / f"{name}.fmu", tmp_path) as host:
+        host.set(**change)
+        host.fmu.setupExperiment(startTime=3.0)
+        host.fmu.enterInitializationMode()
+        host.set(**{first: 30.0})
+        u, p = u._replace(**{first: 30.0}), p._replace(**change)
+        expected = tuple(block.output(block.start(u, p), u, p))
+        assert tuple(host.outputs().values()) == expected
+        host.fmu.exitInitializationMode()
+        assert tuple(host.outputs().values()) == expected
+
+
+def test_an_input_that_is_fed_through_shows_before_the_step(built, tmp_path):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(sigma_omega=0.0, q_omega=0.0)
+        host.set(omega_1=123.0)
+        assert host.get("omega_1_meas") == 123.0
+
+
+def test_time_counts_from_the_start_time(built, tmp_path):
+    block = FMUS["WheelSpeedCan"].block
+    assert block.update
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        host.initialize(start_time=5.0, omega_wheel_L=20.0, omega_wheel_R=20.0)
+        u, p = block.Input(20.0, 20.0), block.Parameters()
+        x = block.start(u, p)
+        for time, step_size in steps_to(5.1, 5.0, repeat(0.01)):
+            host.step(time, step_size)
+        for _ in range(100):
+            x = block.update(x, u, p)
+        assert tuple(host.outputs().values()) == tuple(block.output(x, u, p))
+
+
+@pytest.mark.parametrize("step_size", [0.0, -0.001, 1e300, math.nan, math.inf])
+def test_a_step_that_is_not_positive_or_endless_is_discarded(built, tmp_path, step_size):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(T_ref=50.0)
+        before = host.outputs()
+        message = host.refuses(host.step, 0.0, step_size)
+        assert f"communicationStepSize = {step_size!r} s is refused" in message
+        assert host.outputs() == before
+        host.step(0.0, 0.001)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.0011, math.nan])
+def test_a_step_from_another_time_is_discarded(built, tmp_path, time):
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        host.initialize()
+        host.step(0.0, 0.001)
+        assert "has been computed up to 0.001 s" in host.refuses(host.step, time, 0.001)
+        host.step(0.001, 0.001)
+
+
+def test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on(built, tmp_path):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        assert "its place is after initialization" in host.refuses(host.step, 0.0, 0.001)
+        assert "fmi2ExitInitializationMode is refused" in host.refuses(host.fmu.exitInitializationMode)
+        host.fmu.setupExperiment()
+        host.fmu.enterInitializationMode()
+        assert "fmi2EnterInitializationMode is refused" in host.refuses(host.fmu.enterInitializationMode)
+        assert "in initialization mode" in host.refuses(host.step, 0.0, 0.001)
+        host.fmu.exitInitializationMode()
+        assert "fmi2SetupExperiment is refused" in host.refuses(host.fmu.setupExperiment)
+        host.step(0.0, 0.001)
+        host.fmu.terminate()
+        assert "after fmi2Terminate" in host.refuses(host.step, 0.001, 0.001)
+        assert "T_ref = 1.0 is refused; " in host.refuses(host.set, T_ref=1.0)
+        host.fmu.reset()
+        host.initialize()
+        host.step(0.0, 0.001)

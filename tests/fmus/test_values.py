@@ -1,0 +1,118 @@
+"""Setting and getting: what is allowed takes effect, what is not is refused and changes nothing."""
+
+import math
+
+import pytest
+
+from fmus.catalogue import FMUS
+from fmus.description.variables import LARGEST, interface
+from tests.fmus.host import opened
+
+SETTABLE = [
+    (name, variable)
+    for name, fmu in FMUS.items()
+    for variable in interface(fmu.block)
+    if variable.causality != "output" and variable.fmi_type != "Boolean"
+]
+STRICT = [(name, v) for name, v in SETTABLE if v.causality == "parameter" or not FMUS[name].block.tolerates_bad_input]
+
+
+@pytest.fixture(scope="module")
+def hosts(built, tmp_path_factory):
+    """One instance of every FMU, before initialization mode."""
+    opening = [opened(built / f"{name}.fmu", tmp_path_factory.mktemp(name)) for name in FMUS]
+    yield dict(zip(FMUS, [each.__enter__() for each in opening], strict=True))
+    for each in opening:
+        each.__exit__(None, None, None)
+
+
+def outside(variable):
+    """Values that are not allowed."""
+    low, high = variable.bounds()
+    if variable.fmi_type == "Integer":
+        return [value for value in (low - 1, high + 1) if -(2**31) <= value < 2**31]
+    ends = [math.nextafter(low, -math.inf)] if low > -LARGEST else []
+    ends += [math.nextafter(high, math.inf)] if high < LARGEST else []
+    return [*ends, math.nan, math.inf, -math.inf]
+
+
+@pytest.mark.parametrize(("name", "variable"), STRICT, ids=lambda v: getattr(v, "name", v))
+def test_a_value_that_is_not_allowed_is_refused_by_name_and_changes_nothing(hosts, name, variable):
+    host = hosts[name]
+    before = host.outputs(), host.get(variable.name)
+    for value in outside(variable):
+        message = host.refuses(host.set, **{variable.name: value})
+        assert f"{variable.name} = {value!r}" in message
+        assert f"allowed is {variable.allowed()}" in message
+        assert (host.outputs(), host.get(variable.name)) == before
+
+
+@pytest.mark.parametrize(("name", "variable"), SETTABLE, ids=lambda v: getattr(v, "name", v))
+def test_both_ends_of_the_range_are_allowed(hosts, name, variable):
+    host = hosts[name]
+    for value in (*variable.bounds(), variable.start):
+        host.set(**{variable.name: value})
+        assert host.get(variable.name) == value
+
+
+def test_one_bad_value_among_good_ones_keeps_them_all_out(hosts):
+    host = hosts["MotorTorqueLoop"]
+    references = [host.variables[name].valueReference for name in ("T_ref", "omega_1")]
+    host.refuses(host.fmu.setReal, references, [50.0, math.nan])
+    assert host.fmu.getReal(references) == [0.0, 0.0]
+
+
+def test_the_controller_takes_any_measurement_and_stays_finite(built, tmp_path):
+    with opened(built / "DampingController.fmu", tmp_path) as host:
+        host.initialize()
+        for k, value in enumerate((math.nan, math.inf, -math.inf, 1e300, -1e300) * 20):
+            host.set(T_driver=value, omega_1_meas=value, T_mot_est=value, omega_2_can=value, counter=-k)
+            host.step(k * 0.002, 0.002)
+            assert abs(host.get("T_ref")) <= host.get("T_max")
+
+
+def test_an_output_cannot_be_set(hosts):
+    host = hosts["MotorTorqueLoop"]
+    assert "T_mot is an output and cannot be set" in host.refuses(host.set, T_mot=1.0)
+
+
+def test_a_parameter_is_fixed_after_initialization_and_free_after_reset(built, tmp_path):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(tau=0.01)
+        message = host.refuses(host.set, tau=0.02)
+        assert "tau = 0.02 is refused; a parameter can be set until initialization mode is left" in message
+        assert host.get("tau") == 0.01
+        host.fmu.reset()
+        assert host.get("tau") == FMUS["MotorTorqueLoop"].block.Parameters().tau
+        host.initialize(tau=0.02)
+        assert host.get("tau") == 0.02
+
+
+def test_unknown_references_and_wrong_types_are_named(hosts):
+    host = hosts["MotorTorqueLoop"]
+    for reference in (999, 2**32 - 1):
+        assert "is unknown; MotorTorqueLoop has 0 to" in host.refuses(host.fmu.getReal, [reference])
+    assert "seed is of type Integer, not Real" in host.refuses(
+        host.fmu.setReal, [host.variables["seed"].valueReference], [1.0]
+    )
+    assert "T_ref is of type Real, not Boolean" in host.refuses(host.fmu.getBoolean, [0])
+    assert "T_ref is of type Real, not String" in host.refuses(host.fmu.setString, [0], ["1"])
+
+
+def test_an_enumeration_is_read_as_its_number(built, tmp_path):
+    with opened(built / "DampingController.fmu", tmp_path) as host:
+        host.initialize(enable=False)
+        assert host.get("status") == 1
+        assert not host.get("enable")
+
+
+def test_instances_do_not_see_each_other(built, tmp_path):
+    with (
+        opened(built / "MotorTorqueLoop.fmu", tmp_path, "first") as first,
+        opened(built / "MotorTorqueLoop.fmu", tmp_path, "second") as second,
+    ):
+        first.initialize(T_ref=50.0)
+        second.initialize(T_ref=-20.0, tau=0.01)
+        first.step(0.0, 0.01)
+        assert (first.get("T_mot"), second.get("T_mot")) == (50.0, -20.0)
+        assert first.get("tau") != second.get("tau")

@@ -1,0 +1,66 @@
+"""What co-simulation does to the loop: the error vanishes with the step, the dead time is as derived."""
+
+import numpy as np
+import pytest
+
+from harness.analysis import coupling
+from harness.analysis.coupling import MANOEUVRES, NOISELESS, PLANTS, SIGNALS, T_S, compare, cosimulated, reference
+from harness.analysis.coupling_page import page
+from harness.analysis.dead_time import dead_times, lateness
+from harness.cosimulation.master import Scheme
+
+every_scheme = pytest.mark.parametrize("scheme", Scheme)
+IN_CONTACT = MANOEUVRES[0]
+
+
+@every_scheme
+@pytest.mark.parametrize("plant", PLANTS)
+def test_the_error_falls_with_the_first_power_of_the_step(built, plant, scheme):
+    comparison = compare(plant, IN_CONTACT, scheme, (1e-3, 5e-4, 2.5e-4), built)
+    for signal in ("plant.T_gear", "plant.omega_1", "motor.T_mot"):
+        # the next power adds h times a rate of the loop, less than 100/s: a tenth at 1 ms
+        assert comparison.order(signal) == pytest.approx(1.0, abs=0.1)
+
+
+@every_scheme
+def test_the_limit_of_small_steps_is_the_monolithic_solution(built, scheme):
+    plant = "TwoMassDriveline"
+    exact = reference(plant, IN_CONTACT, NOISELESS)
+    coarse, fine = (cosimulated(plant, IN_CONTACT, NOISELESS, step, scheme, built) for step in (2.5e-4, 1.25e-4))
+    for signal in SIGNALS:
+        limit = 2.0 * fine[signal] - coarse[signal]
+        # the part that falls with the step is taken out; what remains falls with its square
+        assert np.ptp(exact[signal]) > 10.0
+        left = coupling.deviation(limit, exact[signal]).rms
+        assert left < 0.15 * coupling.deviation(fine[signal], exact[signal]).rms
+
+
+@pytest.mark.parametrize(
+    ("scheme", "steps"),
+    [
+        (Scheme.GAUSS_SEIDEL, (0.0, -0.5, 1.0, 0.0, -1.0, -0.5, -1.0, -1.0, 0.0, -0.5)),
+        (Scheme.JACOBI, (0.0, 0.5, 1.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.5)),
+    ],
+)
+def test_each_connection_is_late_by_what_the_scheme_makes_of_the_step(built, scheme, steps):
+    """A held value is late by half a step, one of the end of the step early by a half or a whole one."""
+    found = dead_times(scheme, 1e-3, built)
+    # least squares take a shift for a multiple of another: (omega h)^2 of the sine and its harmonics
+    assert [t / 1e-3 for t in found.values()] == pytest.approx(steps, abs=0.05)
+
+
+def test_lateness_of_a_signal_that_is_late():
+    t = np.arange(0.0, 1.0, T_S)
+    exact, late, signal = (np.sin(20.0 * (t - d)) for d in (0.0, T_S, 0.4 * T_S))
+    assert lateness(signal, exact, late) == pytest.approx(0.4 * T_S, rel=0.01)
+
+
+def test_the_page_says_what_was_measured():
+    deviations = {step: dict.fromkeys(SIGNALS, coupling.Deviation(30.0 * step, 10.0 * step)) for step in (1e-3, 5e-4)}
+    comparison = coupling.Comparison("TwoMassDriveline", IN_CONTACT, Scheme.JACOBI, deviations)
+    assert comparison.order("plant.T_gear") == pytest.approx(1.0)
+    text = page([comparison], {(Scheme.JACOBI, 1e-3): {"T_mot to the plant": 5e-4}}, ["motor", "plant"], 1e-3)
+    assert "| T_mot to the plant | 0.50 |" in text
+    assert "| TwoMassDriveline | 20 to 100 N.m, the teeth stay in contact | jacobi | 3 / 1 |" in text
+    assert "| jacobi | 1 | 0.5 | 1.0 |" in text
+    assert "`motor`, `plant`" in text

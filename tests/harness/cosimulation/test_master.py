@@ -1,0 +1,166 @@
+"""The master: when outputs reach inputs, what time it is, what it leaves behind."""
+
+import subprocess
+import sys
+import tempfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fmpy.util import read_csv
+
+from harness.cosimulation.master import Scheme, instants, run
+from harness.cosimulation.system import PLANTS, Connection, System
+from harness.errors import SimulationError, WiringError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.reports.csv_file import write_csv
+from harness.simulate import simulate
+from tests import ROOT
+from tests.fmus.host import opened
+from tests.foreign import build_relay
+
+
+@pytest.fixture(scope="module")
+def relay(tmp_path_factory):
+    return build_relay(tmp_path_factory.mktemp("relay"))
+
+
+@pytest.fixture
+def chain(relay):
+    """Three relays in a row, stepped from the first to the last."""
+    return System({"a": relay, "b": relay, "c": relay}, (Connection("a.y", "b.u"), Connection("b.y", "c.u")))
+
+
+SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)
+
+
+def ramp(t):
+    return 1000.0 * t
+
+
+def test_gauss_seidel_hands_on_within_the_step(chain):
+    results = run(chain, 0.01, inputs={"a.u": ramp}, scheme=Scheme.GAUSS_SEIDEL)
+    for name in ("a.y", "b.y", "c.y"):
+        np.testing.assert_array_equal(results[name][1:], results["a.u"][:-1])
+
+
+def test_jacobi_delays_each_connection_by_one_step(chain):
+    results = run(chain, 0.01, inputs={"a.u": ramp}, scheme=Scheme.JACOBI)
+    for delay, name in enumerate(("a.y", "b.y", "c.y"), start=1):
+        np.testing.assert_array_equal(results[name][delay:], results["a.u"][:-delay])
+
+
+def test_every_type_is_passed_on(relay):
+    system = System({"a": relay, "b": relay}, (Connection("a.n_out", "b.n"), Connection("a.b_out", "b.b")))
+    flags = np.arange(11) % 3 == 0
+    results = run(system, 0.01, inputs={"a.n": np.arange(11), "a.b": flags}, parameters={"b.count": 5, "b.flag": True})
+    np.testing.assert_array_equal(results["b.n_out"][1:], np.arange(10) + 5)
+    np.testing.assert_array_equal(results["b.b_out"][1:], ~flags[:-1])
+    assert results.dtype["b.n_out"] == np.int32
+    assert results.dtype["b.b_out"] == np.bool_
+
+
+def test_inputs_may_be_constants_samples_or_functions(relay):
+    system = System({"a": relay}, ())
+    samples = ramp(instants(0.01, 1e-3))
+    for source in (ramp, samples):
+        np.testing.assert_array_equal(run(system, 0.01, inputs={"a.u": source})["a.u"], samples)
+    np.testing.assert_array_equal(run(system, 0.01, inputs={"a.u": 3})["a.u"], np.full(11, 3.0))
+    with pytest.raises(WiringError, match=r"a\.u has \(10,\) samples; the run has 11 instants"):
+        run(system, 0.01, inputs={"a.u": np.zeros(10)})
+
+
+def test_time_is_counted_in_whole_steps(relay):
+    results = run(System({"a": relay}, ()), 2.0, step_size=1e-3)
+    np.testing.assert_array_equal(results["time"], [k * 1e-3 for k in range(2001)])
+    # what the FMU itself was told: t of the step plus its size
+    np.testing.assert_array_equal(results["a.t"][1:], [k * 1e-3 + 1e-3 for k in range(2000)])
+
+
+def test_a_run_ends_with_its_last_whole_step():
+    assert instants(0.3, 0.1)[-1] == 3 * 0.1
+    assert len(instants(1.0, 0.3)) == 4
+    for step_size in (0.0, -1e-3, float("nan"), 2.0):
+        with pytest.raises(WiringError, match="must be longer than 0 s"):
+            instants(1.0, step_size)
+
+
+def test_a_refusal_names_instance_function_time_and_reason(chain):
+    with pytest.raises(SimulationError, match=r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.003 s") as refusal:
+        run(chain, 0.01, inputs={"a.u": ramp}, parameters={"b.limit": 2.5})
+    assert "u = 3.0 is beyond the limit of 2.5" in str(refusal.value)
+
+
+def test_an_error_leaves_no_files_behind(chain, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    run(chain, 0.01)
+    with pytest.raises(SimulationError):
+        run(chain, 0.01, inputs={"a.u": 1.0}, parameters={"a.limit": 0.5})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_outputs_that_feed_back_at_the_start_are_refused(built):
+    """omega_1_meas is a direct function of omega_1: fed back with its noise, it has no value."""
+    system = System({"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.omega_1_meas", "motor.omega_1"),))
+    with pytest.raises(SimulationError, match="algebraic loop"):
+        run(system, 0.01, parameters={"motor.sigma_omega": 5.0})
+
+
+def test_the_loop_starts_consistently(built):
+    start = simulate(MANOEUVRES["tipin15"], step_size=1.0, folder=built)[0]
+    assert start["controller.T_ref"] == start["motor.T_mot"] == -12.0
+    assert start["can.omega_2_can"] == pytest.approx(start["plant.omega_2"], rel=0.02)
+    assert start["motor.omega_1_meas"] == pytest.approx(start["plant.omega_1"], abs=1.0)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_runs_are_reproducible_and_seeds_matter(built, plant):
+    first, second, other = (simulate(SHORT, plant, step_size=2e-3, seed=seed, folder=built) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first, second)
+    assert (first["motor.omega_1_meas"] != other["motor.omega_1_meas"]).any()
+
+
+def test_stepping_by_hand_gives_the_same(built, tmp_path):
+    """Motor and plant, one call of fmpy a variable, against the bound calls of the master."""
+    files = {"motor": built / "MotorTorqueLoop.fmu", "plant": built / f"{PLANTS[0]}.fmu"}
+    wires = (Connection("motor.T_mot", "plant.T_mot"), Connection("plant.omega_1", "motor.omega_1"))
+    T_ref = np.where(np.arange(201) < 50, 0.0, 60.0)
+    results = run(System(files, wires), 0.2, inputs={"motor.T_ref": T_ref}, parameters={"plant.v_0": 5.0})
+    with (
+        opened(files["motor"], tmp_path / "motor") as motor,
+        opened(files["plant"], tmp_path / "plant") as plant,
+    ):
+        plant.initialize(v_0=5.0)
+        motor.initialize(T_ref=T_ref[0], omega_1=plant.get("omega_1"))
+        for k in range(200):
+            motor.set(T_ref=T_ref[k], omega_1=plant.get("omega_1"))
+            motor.step(k * 1e-3, 1e-3)
+            plant.set(T_mot=motor.get("T_mot"))
+            plant.step(k * 1e-3, 1e-3)
+            for name, host in {"motor": motor, "plant": plant}.items():
+                row = results[k + 1]
+                assert {v: row[f"{name}.{v}"] for v in host.outputs()} == host.outputs()
+
+
+def test_csv_gives_the_same_numbers_back(relay, tmp_path):
+    inputs = {"a.u": lambda t: np.sqrt(t) / 3.0, "a.b": np.arange(11) % 2 == 0}
+    results = run(System({"a": relay}, ()), 0.01, inputs=inputs)
+    path = tmp_path / "new folder" / "results.csv"
+    write_csv(results, path)
+    read = read_csv(path)
+    assert read.dtype.names == results.dtype.names
+    for name in results.dtype.names or ():
+        np.testing.assert_array_equal(read[name], results[name])
+    assert [file.name for file in path.parent.iterdir()] == ["results.csv"]
+
+
+def test_the_host_ends_with_exit_code_0(relay):
+    script = (
+        "from pathlib import Path\n"
+        "from harness.cosimulation.master import run\n"
+        "from harness.cosimulation.system import System\n"
+        f"system = System({{'a': Path({str(relay)!r}), 'b': Path({str(relay)!r})}}, ())\n"
+        "for _ in range(3): run(system, 0.01)\n"
+    )
+    host = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True)
+    assert (host.returncode, host.stdout, host.stderr) == (0, b"", b"")

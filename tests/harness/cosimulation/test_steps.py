@@ -1,0 +1,84 @@
+"""The steps in compiled code and in Python: the same to the last bit, and the same words about a refusal."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.master import Scheme, prepared
+from harness.cosimulation.steps import interpreted
+from harness.cosimulation.system import PLANTS, Connection, System, loop
+from harness.errors import SimulationError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import signals, start
+from tests.foreign import build_relay
+
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
+
+TIPIN = replace(MANOEUVRES["tipin15"], duration=1.0)
+"""Longer than what is done between two updates of the progress display."""
+
+
+def both(system, duration, inputs, parameters=None, scheme=Scheme.GAUSS_SEIDEL, step_size=1e-3):
+    """The tables of the two kinds of steps, as bytes."""
+    tables = []
+    for make in (CompiledSteps, interpreted):
+        with prepared(system, duration, step_size, inputs, parameters or {}) as run:
+            run.run(scheme, "test", make)
+            tables.append(run.table.tobytes())
+    return tables
+
+
+@pytest.fixture(scope="module")
+def relay(tmp_path_factory):
+    return build_relay(tmp_path_factory.mktemp("relay"))
+
+
+@pytest.mark.parametrize("scheme", Scheme)
+@pytest.mark.parametrize("plant", PLANTS)
+def test_native_fmus_make_the_same_steps(native, plant, scheme):
+    system = loop(plant, native.parent, "native")
+    compiled, in_python = both(system, TIPIN.duration, signals(TIPIN), start(TIPIN), scheme)
+    assert compiled == in_python
+
+
+@pytest.mark.parametrize("scheme", Scheme)
+def test_fmus_that_run_python_make_the_same_steps(built, scheme):
+    compiled, in_python = both(loop(PLANTS[0], built, "python"), TIPIN.duration, signals(TIPIN), start(TIPIN), scheme)
+    assert compiled == in_python
+
+
+@pytest.mark.parametrize("scheme", Scheme)
+def test_all_types_and_strange_values_make_the_same_steps(relay, scheme):
+    wires = [("a.y", "b.u"), ("a.n_out", "b.n"), ("a.b_out", "b.b")]
+    system = System({"a": relay, "b": relay}, tuple(Connection(*wire) for wire in wires))
+    u = np.resize([0.0, -0.0, 1.0, 1.0, np.nan, np.nan, -np.inf, 5e-324], 501)
+    inputs = {"a.u": u, "a.n": np.arange(501) // 3 - 50, "a.b": np.arange(501) % 5 == 0}
+    compiled, in_python = both(system, 0.5, inputs, {"b.limit": np.inf, "a.limit": np.inf}, scheme)
+    assert compiled == in_python
+
+
+@pytest.mark.parametrize("make", [CompiledSteps, interpreted])
+def test_a_refusal_names_instance_function_time_and_reason(relay, make):
+    """In the middle of the steps that are made at once, and of the calls of a step."""
+    system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"),))
+    message = r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.303 s with fatal: .*u = 303.0 is beyond the limit of 302.5"
+    with (
+        prepared(system, 0.5, 1e-3, {"a.u": lambda t: 1e3 * t}, {"b.limit": 302.5}) as run,
+        pytest.raises(SimulationError, match=message),
+    ):
+        run.run(Scheme.GAUSS_SEIDEL, "test", make)
+
+
+@pytest.mark.parametrize("make", [CompiledSteps, interpreted])
+def test_a_native_fmu_says_why_it_refuses(native, make):
+    system = System({"motor": native / "MotorTorqueLoop.fmu"})
+    T_ref = np.where(np.arange(501) < 250, 10.0, np.nan)
+    with (
+        prepared(system, 0.5, 1e-3, {"motor.T_ref": T_ref}, {}) as run,
+        pytest.raises(
+            SimulationError, match=r"^motor \(MotorTorqueLoop\.fmu\) answered fmi2SetReal at 0\.25 s .*T_ref"
+        ),
+    ):
+        run.run(Scheme.GAUSS_SEIDEL, "test", make)

@@ -1,0 +1,164 @@
+"""Whether FMUs fit together is known before the run: the two plants do, foreign ones are told why not."""
+
+from dataclasses import replace
+
+import pytest
+
+from harness.cosimulation import instance
+from harness.cosimulation.master import run
+from harness.cosimulation.system import PLANTS, Connection, System, chosen_build, loop
+from harness.cosimulation.wiring import Interface, unit_of
+from harness.errors import WiringError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import simulate
+from tests.foreign import tampered
+
+SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_unpacked(request, monkeypatch):
+    """Whatever is wrong is found before any FMU is unpacked."""
+    if "runs" not in request.node.name:
+        monkeypatch.setattr(instance.fmpy, "extract", lambda *_, **__: pytest.fail("an FMU was unpacked"))
+
+
+def face(path):
+    """Everything that a tool sees of the inputs and outputs of an FMU."""
+    return [
+        (v.name, v.type, unit_of(v), v.causality, v.variability, v.valueReference, v.description)
+        for v in Interface(path).variables.values()
+        if v.causality in ("input", "output")
+    ]
+
+
+def test_both_plants_have_one_interface(built):
+    design, validation = (face(built / f"{plant}.fmu") for plant in PLANTS)
+    assert design == validation
+    assert len(design) > 10
+
+
+def test_native_builds_run_where_the_whole_loop_has_them(tmp_path):
+    folder = tmp_path / "native"
+    folder.mkdir()
+    for name in ("MotorTorqueLoop", "DampingController", "WheelSpeedCan", PLANTS[0]):
+        assert chosen_build(PLANTS[0], tmp_path) == "python"
+        (folder / f"{name}.fmu").touch()
+    for plant, build, parent in (
+        (PLANTS[0], None, folder),
+        (PLANTS[1], None, tmp_path),
+        (PLANTS[0], "python", tmp_path),
+        (PLANTS[1], "native", folder),
+    ):
+        assert {path.parent for path in loop(plant, tmp_path, build).instances.values()} == {parent}
+    theirs = folder / f"{PLANTS[0]}.fmu"
+    assert loop(theirs, tmp_path).instances["plant"] == theirs
+    with pytest.raises(WiringError, match="unknown build nativ; did you mean native"):
+        loop(PLANTS[0], tmp_path, "nativ")
+
+
+def test_a_plant_from_elsewhere_runs_in_the_loop(built, tmp_path):
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", lambda xml: xml + "\n")
+    theirs = simulate(SHORT, plant, folder=built)
+    ours = simulate(SHORT, PLANTS[0], folder=built)
+    assert (theirs == ours).all()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ('name="omega_1"', 'name="omega1"', "no output omega_1; did you mean omega1"),
+        ('name="T_mot"', 'name="T_motor"', "no input T_mot; did you mean T_motor"),
+        ('name="T_gear"', 'name="gear"', "no output T_gear"),
+        ('name="v_0"', 'name="v0"', "no parameter v_0; did you mean v0"),
+        ('name="slope"', 'name="grade"', "no input slope; known are: T_mot, T_brake, grade"),
+    ],
+)
+def test_a_misnamed_variable_is_named(built, tmp_path, old, new, complaint):
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(old, new, 1))
+    with pytest.raises(WiringError, match=complaint):
+        simulate(MANOEUVRES["tipin15"], plant, folder=built)
+
+
+def in_unit(name, old, new):
+    """Change of a model description: the variable has another unit."""
+
+    def change(xml):
+        before, _, after = xml.partition(f'name="{name}"')
+        return before + f'name="{name}"' + after.replace(f'unit="{old}"', f'unit="{new}"', 1)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "complaint"),
+    [
+        ("omega_1", "rad/s", "rpm", r"plant\.omega_1 is in rpm, but motor\.omega_1, .* is in rad/s"),
+        ("T_mot", "N.m", "kN.m", r"motor\.T_mot is in N\.m, but plant\.T_mot, .* is in kN\.m"),
+        ("slope", "rad", "deg", r"plant\.slope is in deg; it must be in rad"),
+        ("T_gear", "N.m", "kN.m", r"plant\.T_gear is in kN\.m; it must be in N\.m"),
+        ("v_0", "m/s", "km/h", r"plant\.v_0 is in km/h; it must be in m/s"),
+    ],
+)
+def test_another_unit_is_named(built, tmp_path, name, old, new, complaint):
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", in_unit(name, old, new))
+    with pytest.raises(WiringError, match=complaint):
+        simulate(MANOEUVRES["tipin15"], plant, folder=built)
+
+
+def test_everything_that_is_wrong_is_named_at_once(built, tmp_path):
+    def change(xml):
+        return (
+            xml.replace('name="v_0"', 'name="v0"')
+            .replace('name="pitch"', 'name="omega_3"')
+            .replace('name="omega_2"', 'name="speed"')
+        )
+
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", change)
+    with pytest.raises(WiringError) as error:
+        simulate(MANOEUVRES["tipin15"], plant, folder=built)
+    assert len(str(error.value).splitlines()) == 2
+
+
+def test_unknown_names_are_answered_with_the_nearest(built):
+    for parameters, complaint in (
+        ({"plant.J1": 0.06}, "no parameter J1; did you mean J_1"),
+        ({"plat.J_1": 0.06}, "no instance plat; did you mean plant"),
+        ({"plant.T_mot": 1.0}, "T_mot is of causality input; it must be parameter"),
+    ):
+        with pytest.raises(WiringError, match=complaint):
+            simulate(MANOEUVRES["tipin15"], parameters=parameters, folder=built)
+    with pytest.raises(WiringError, match="did you mean ValidationVehicle"):
+        loop("ValidationVehicel")
+
+
+def test_types_and_causality_must_suit(built):
+    can, controller = built / "WheelSpeedCan.fmu", built / "DampingController.fmu"
+    for source, target, complaint in (
+        ("can.counter", "controller.omega_2_can", "can.counter is Integer, but .* is Real"),
+        ("can.valid", "controller.counter", "can.valid is Boolean, but .* is Integer"),
+        ("can.omega_wheel_L", "controller.omega_2_can", "of causality input; it must be output"),
+    ):
+        with pytest.raises(WiringError, match=complaint):
+            run(System({"can": can, "controller": controller}, (Connection(source, target),)), 1.0)
+
+
+def test_an_input_is_fed_once(built):
+    system = System({"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.T_mot", "motor.T_ref"),))
+    with pytest.raises(WiringError, match=r"motor\.T_ref is fed more than once"):
+        run(system, 1.0, inputs={"motor.T_ref": 5.0})
+
+
+def test_what_is_no_fmu_is_refused(built, tmp_path):
+    text = tmp_path / "text.fmu"
+    text.write_text("no archive")
+    for path, complaint in ((tmp_path / "none.fmu", "there is no FMU"), (text, "not an FMU")):
+        with pytest.raises(WiringError, match=complaint):
+            simulate(MANOEUVRES["tipin15"], path, folder=built)
+    exchange = tampered(
+        built / f"{PLANTS[0]}.fmu",
+        tmp_path / "exchange.fmu",
+        lambda xml: xml.replace('fmiVersion="2.0"', 'fmiVersion="3.0"'),
+    )
+    with pytest.raises(WiringError, match=r"exchange\.fmu"):
+        simulate(MANOEUVRES["tipin15"], exchange, folder=built)

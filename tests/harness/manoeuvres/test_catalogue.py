@@ -1,0 +1,86 @@
+"""The manoeuvres are exactly those of the specification."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from harness.manoeuvres.catalogue import COMPARED, MANOEUVRES, Held, lines, shift_register
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [("tipin15", -12, 100), ("tipin50", -12, 100), ("tipin0", 20, 100), ("tipout", 100, -30)],
+)
+def test_a_step_has_its_new_value_at_one_second_and_the_old_one_before(name, before, after):
+    manoeuvre = MANOEUVRES[name]
+    T = manoeuvre.T_driver(np.array([0.0, 0.999, 1.0, 1.001, 6.0]))
+    assert T.tolist() == [before, before, after, after, after]
+    assert (manoeuvre.T_0, manoeuvre.dT) == (before, after - before)
+
+
+@given(st.sampled_from([1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3]))
+def test_a_step_comes_at_the_same_sample_whatever_the_rounding_of_time(step_size):
+    products = np.arange(round(2.0 / step_size)) * step_size
+    sums = np.cumsum(np.full(len(products), step_size)) - step_size
+    expected = np.where(np.arange(len(products)) >= round(1.0 / step_size), 100.0, -12.0)
+    for t in (products, sums):
+        np.testing.assert_array_equal(MANOEUVRES["tipin15"].T_driver(t), expected)
+
+
+def test_ramps_rise_within_their_time():
+    assert MANOEUVRES["tipin50r"].T_driver([1.0, 1.075, 1.15, 2.0]) == pytest.approx([-12, 44, 100, 100])
+    assert MANOEUVRES["launch"].T_driver([0.0, 1.0, 1.05, 1.1, 6.0]) == pytest.approx([0, 0, 60, 120, 120])
+
+
+def test_drive_brakes_at_the_end():
+    drive = MANOEUVRES["drive"]
+    assert drive.T_brake([0.0, 16.2, 16.4, 16.6, 20.0]) == pytest.approx([0, 0, 650, 1300, 1300])
+    assert drive.T_driver([0.6, 4.55, 16.15, 20.0]) == pytest.approx([56, 53.5, 10.5, -24])
+
+
+def test_demand_is_constant_on_the_plateaus_of_drive():
+    drive = MANOEUVRES["drive"]
+    for end in drive.plateau_ends:
+        assert np.ptp(drive.T_driver(np.linspace(end - 0.45, end, 50))) == 0.0
+        assert drive.T_driver(end + 0.05) != drive.T_driver(end)
+
+
+def test_the_binary_sequence_begins_as_specified_and_repeats_after_511():
+    bits = shift_register(1022)
+    assert bits[:19].tolist() == [1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 1, 1, 0]
+    assert bits[:511].tolist() == bits[511:].tolist()
+    assert bits[:511].sum() == 256
+
+
+def test_prbs_holds_each_bit_for_40_ms():
+    T = MANOEUVRES["prbs"].T_driver(np.arange(10_000) * 1e-3)
+    np.testing.assert_array_equal(T, np.repeat(8.0 + 15.0 * (2.0 * shift_register(250) - 1.0), 40))
+
+
+def test_creep_floats_between_minus_8_and_22():
+    T = MANOEUVRES["creep"].T_driver(np.arange(12_000) * 1e-3)
+    assert T[0] == 7.0
+    assert (T.min(), T.max()) == (-8.0, 22.0)
+
+
+@pytest.mark.parametrize("manoeuvre", MANOEUVRES.values(), ids=lambda m: m.name)
+def test_signals_are_finite_and_brakes_never_push(manoeuvre):
+    t = np.arange(round(manoeuvre.duration / 1e-3) + 1) * 1e-3
+    for signal in (manoeuvre.T_driver, manoeuvre.T_brake, manoeuvre.slope):
+        assert signal(t).shape == t.shape
+        assert np.isfinite(signal(t)).all()
+    assert (manoeuvre.T_brake(t) >= 0.0).all()
+    assert np.abs(manoeuvre.T_driver(t)).max() <= 180.0
+
+
+def test_compared_are_the_manoeuvres_of_the_main_job():
+    assert COMPARED == (
+        "tipin15", "tipin50", "tipin15r", "tipin50r", "tipin0", "tipout", "launch", "drive", "creep", "prbs"
+    )  # fmt: skip
+
+
+def test_signals_are_held_beyond_their_ends():
+    ramp, held = lines((1.0, 2.0), (3.0, 4.0)), Held(0.5, np.array([1.0, 2.0]))
+    assert ramp([-1.0, 9.0]).tolist() == [2.0, 4.0]
+    assert held([-1.0, 0.49, 0.5, 9.0]).tolist() == [1.0, 1.0, 2.0, 2.0]

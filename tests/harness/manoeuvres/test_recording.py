@@ -1,0 +1,133 @@
+"""Recorded drives: what is read, what is refused and where, and the road made of them."""
+
+import numpy as np
+import pytest
+
+from harness.manoeuvres.recording import RecordingError, read_recording
+from harness.manoeuvres.road import RoadLoad, brake_torque, road
+from tests import ROOT
+
+HEADER = "Time [s],Velocity [km/h],Elevation [m],Throttle [%],Motor Torque [Nm]"
+LOAD = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
+TRIP = ROOT.parent / "shared" / "data" / "bmw_i3_trip_a01.csv"
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(*lines, header=HEADER):
+        path = tmp_path / "trip.csv"
+        path.write_text("\n".join((header, *lines)) + "\n", encoding="utf-8")
+        return path
+
+    return write
+
+
+def rows(count):
+    return [f"{0.1 * k:.1f},36,{500 + k},3,{k}" for k in range(count)]
+
+
+def test_columns_are_found_by_name_and_turned_into_si_units(write):
+    path = write("0,10,1,x,0.02", "200,11,2,x,0.03", header="t [ms],SPEED [m/s],Altitude [km],Note, Torque [kNm]")
+    recording = read_recording(path)
+    assert recording.time.tolist() == [0.0, 0.2]
+    assert recording.v.tolist() == [10.0, 11.0]
+    assert recording.elevation.tolist() == [1000.0, 2000.0]
+    assert recording.T_mot.tolist() == [20.0, 30.0]
+
+
+def test_kilometres_per_hour_and_newton_metres(write):
+    recording = read_recording(write(*rows(3), ""))
+    assert recording.v == pytest.approx([10.0, 10.0, 10.0])
+    assert recording.T_mot.tolist() == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ("Time [s],Velocty [km/h],Elevation [m],Motor Torque [Nm]", r"no column Velocity.*Velocty"),
+        ("Time [s],Velocity [km/s],Elevation [m],Motor Torque [Nm]", r"Velocity \[km/s\].*allowed.*km/h"),
+        ("Time [s],Velocity,Elevation [m],Motor Torque [Nm]", r"unit \(none\)"),
+        ("Time [s],Velocity [m/s],Elevation [m],Speed [m/s],Torque [Nm]", r"Velocity.*Speed.*keep one"),
+    ],
+)
+def test_a_header_that_does_not_fit_is_explained(write, header, said):
+    with pytest.raises(RecordingError, match=said):
+        read_recording(write("0,1,2,3", header=header))
+
+
+@pytest.mark.parametrize("cell", ["nan", "inf", "fast", ""])
+def test_a_cell_that_is_no_number_is_named_by_line_and_column(write, cell):
+    with pytest.raises(RecordingError, match=r"line 4, column Velocity \[km/h\]"):
+        read_recording(write(*rows(2), f"0.2,{cell},500,3,1"))
+
+
+def test_a_short_line_is_refused(write):
+    with pytest.raises(RecordingError, match=r"line 4, column Motor Torque.*nothing"):
+        read_recording(write(*rows(2), "0.2,36,500"))
+
+
+@pytest.mark.parametrize("time", ["0.1", "0.05"])
+def test_time_that_does_not_increase_is_refused_with_its_line(write, time):
+    with pytest.raises(RecordingError, match=r"line 4.*does not come after"):
+        read_recording(write(*rows(2), f"{time},36,500,3,1"))
+
+
+def test_a_gap_is_refused_with_its_line(write):
+    with pytest.raises(RecordingError, match=r"line 12: gap of 0\.4 s"):
+        read_recording(write(*rows(10), "1.3,36,500,3,1"))
+
+
+def test_blank_lines_do_not_shift_the_line_numbers(write):
+    with pytest.raises(RecordingError, match="line 6"):
+        read_recording(write(*rows(2), "", "", "0.1,36,500,3,1"))
+
+
+@pytest.mark.parametrize("lines", [[], rows(1)])
+def test_a_file_without_a_drive_is_refused(write, lines):
+    with pytest.raises(RecordingError, match="needs at least two"):
+        read_recording(write(*lines))
+
+
+def test_the_demand_is_the_recorded_torque_within_the_limits_of_the_motor(write):
+    lines = [f"{k},36,500,0,{T}" for k, T in ((5, 10), (6, 20), (7, 300))]
+    manoeuvre = road(read_recording(write(*lines)), LOAD)
+    assert manoeuvre.T_driver([0.0, 0.5, 1.0, 2.0]) == pytest.approx([10, 15, 20, 180])
+    assert manoeuvre.v_0 == pytest.approx(10.0)
+    assert manoeuvre.duration == pytest.approx(2.0)
+
+
+def test_the_rough_foot_holds_its_torque(write):
+    recording = read_recording(write(*rows(21)))
+    held, smooth = road(recording, LOAD, held=0.5), road(recording, LOAD)
+    assert held.T_driver([0.0, 0.499, 0.5, 1.7, 2.0]) == pytest.approx([0, 0, 5, 15, 20])
+    assert smooth.T_driver([0.25]) == pytest.approx([2.5])
+    assert held.T_brake([1.0]) == smooth.T_brake([1.0])
+
+
+def test_a_steady_climb_has_its_slope(write):
+    lines = [f"{k / 10},72,{500 + 0.04 * 2.0 * k},0,0" for k in range(1200)]
+    slope = road(read_recording(write(*lines)), LOAD).slope(60.0)
+    assert slope == pytest.approx(0.04, rel=1e-3)
+
+
+def test_brakes_take_what_the_motor_pushes_too_much():
+    v, T = np.full(200, 10.0), np.full(200, 40.0)
+    F = 9.0 * 40.0 / 0.29 - 1450.0 * 9.81 * 0.012 - 0.42 * 100.0
+    assert brake_torque(T, v, np.zeros(200), 0.1, LOAD) == pytest.approx(0.29 * (F - 300.0))
+
+
+def test_a_standing_car_is_held_until_its_driver_drives():
+    T = np.array([0.0] * 50 + [30.0] * 50)
+    brake = brake_torque(T, np.zeros(100), np.zeros(100), 0.1, LOAD)
+    assert (brake[:50] == 0.29 * 4000.0).all()
+    assert (brake[50:] < 0.29 * 700.0).all()
+
+
+@pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")
+def test_a_real_drive_gives_a_drivable_road():
+    manoeuvre = road(read_recording(TRIP), LOAD)
+    t = np.arange(0.0, manoeuvre.duration, 0.05)
+    assert manoeuvre.duration == pytest.approx(1008.9)
+    assert manoeuvre.v_0 == 0.0
+    assert 0.005 < np.abs(manoeuvre.slope(t)).max() <= 0.08
+    assert 0.0 <= manoeuvre.T_brake(t).min() < manoeuvre.T_brake(t).max() <= 1160.0

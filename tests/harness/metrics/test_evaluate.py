@@ -1,0 +1,185 @@
+"""Each metric on a signal whose answer is known."""
+
+from math import exp, pi, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.metrics.damage import damage
+from harness.metrics.evaluate import T_S, evaluate, impact_speed
+from harness.metrics.oscillation import amplitude
+from harness.metrics.spectrum import band_rms
+
+COLUMNS = (
+    "time",
+    "controller.T_driver",
+    "controller.T_ref",
+    "plant.T_gear",
+    "plant.omega_1",
+    "plant.omega_2",
+    "plant.a_body",
+)
+
+
+def run(duration=6.0, interval=1e-3, **signals):
+    """Results whose other signals are zero; a signal may be a function of time."""
+    t = np.arange(round(duration / interval) + 1) * interval
+    results = np.zeros(len(t), dtype=[(name, float) for name in COLUMNS])
+    results["time"] = t
+    for name, signal in signals.items():
+        column = next(column for column in COLUMNS if column.endswith("." + name))
+        results[column] = signal(t) if callable(signal) else signal
+    return results
+
+
+def after(t, t_0=1.0):
+    """Time since t_0, and whether it has come (of time in whole nanoseconds)."""
+    t = np.round(t, 9)
+    return np.maximum(t - t_0, 0.0), t >= t_0
+
+
+def decaying(zeta, f=8.0, dT=112.0):
+    """Step response of a second-order system from -12 N.m, and its decay rate in 1/s."""
+    sigma = 2 * pi * f * zeta / sqrt(1 - zeta**2)
+
+    def T_gear(t):
+        s, _ = after(t)
+        return -12.0 + dT * (
+            1 - np.exp(-sigma * s) * (np.cos(2 * pi * f * s) + sigma / (2 * pi * f) * np.sin(2 * pi * f * s))
+        )
+
+    return T_gear, sigma
+
+
+@pytest.mark.parametrize("zeta", [0.03, 0.08, 0.15])
+def test_a_decaying_oscillation_has_its_damping_overshoot_and_settling_time(zeta):
+    T_gear, sigma = decaying(zeta)
+    metrics = evaluate(run(T_gear=T_gear), MANOEUVRES["tipin15"])
+    # the line of the final value is fitted to what is left of the oscillation too
+    assert abs(metrics.OS - exp(-pi * zeta / sqrt(1 - zeta**2))) < 5e-3
+    assert metrics.zeta == pytest.approx(zeta, rel=0.05)
+    envelope = -np.log(0.05) / sigma  # the swing over the next 0.2 s lies at most one half period later
+    assert envelope - 1 / 8 < metrics.ts < envelope + 1 / 8
+    assert metrics.end < 0.05 * 112
+
+
+def test_settling_ends_one_sample_after_the_last_swing_above_5_percent():
+    steps = run(T_gear=lambda t: np.where(np.round(t, 9) < 2.0, 0.0, 0.11 * 112.0))
+    still = run(T_gear=lambda t: np.where(np.round(t, 9) < 2.0, 0.0, 0.09 * 112.0))
+    assert evaluate(steps, MANOEUVRES["tipin15"]).ts == pytest.approx(1.0)
+    assert evaluate(still, MANOEUVRES["tipin15"]).ts == 0.0
+
+
+def test_response_delay_is_the_first_instant_at_90_percent():
+    stairs = run(T_gear=lambda t: np.select([t < 0.999, t < 1.0499, t < 1.0999], [0.0, 44.0, 46.0], 50.0))
+    assert evaluate(stairs, MANOEUVRES["tipin15"]).t90 == pytest.approx(0.05)
+
+
+def test_the_final_value_is_a_line_extended_backwards():
+    drifting = run(T_gear=lambda t: np.where(after(t)[1], 100.0 - 3.0 * after(t)[0], 0.0))
+    metrics = evaluate(drifting, MANOEUVRES["tipin15"])
+    assert metrics.t90 == 0.0
+    assert metrics.OS < 1e-9
+
+
+@given(st.integers(1, 40))
+def test_loss_of_a_pure_delay_is_the_delay(samples):
+    tau = samples * T_S
+    results = run(
+        T_gear=decaying(0.1)[0],
+        T_driver=MANOEUVRES["tipin15"].T_driver,
+        T_ref=lambda t: MANOEUVRES["tipin15"].T_driver(np.round(t - tau - T_S, 9)),
+    )
+    metrics = evaluate(results, MANOEUVRES["tipin15"])
+    assert metrics.loss == pytest.approx(tau)
+    assert metrics.effP == 112.0
+    assert metrics.dT_stat == 0.0
+
+
+def test_the_computation_delay_is_not_counted():
+    T_driver = MANOEUVRES["tipout"].T_driver
+    results = run(T_gear=decaying(0.1)[0], T_driver=T_driver, T_ref=lambda t: T_driver(np.round(t - T_S, 9)))
+    metrics = evaluate(results, MANOEUVRES["tipout"])
+    assert (metrics.loss, metrics.effR, metrics.effP, metrics.dT_stat) == (0.0, 0.0, 0.0, 0.0)
+
+
+def test_stationary_change_is_the_mean_of_the_added_torque_at_the_end():
+    results = run(duration=12.0, T_ref=lambda t: np.where(np.round(t, 9) >= 11.0, 0.7, 9.0))
+    assert evaluate(results, MANOEUVRES["creep"]).dT_stat == pytest.approx(0.7)
+
+
+@given(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
+def test_a_straight_line_has_no_band_rms(offset, slope):
+    t = np.arange(2000) * T_S
+    assert band_rms(offset + slope * t, T_S) < 1e-9
+    assert band_rms(offset + slope * t, T_S, derivative=True) < 1e-7
+
+
+@given(st.integers(21, 199), st.floats(0.1, 100.0))
+def test_band_rms_of_a_sine_in_the_band(cycles, amplitude):
+    n = 2000
+    f = cycles / (n * T_S)
+    x = amplitude * np.sin(2 * pi * cycles * np.arange(n) / n)
+    # the line from the first to the last sample takes a little away, as the record is periodic, not closed
+    assert band_rms(x, T_S) == pytest.approx(amplitude / sqrt(2), rel=0.02)
+    assert band_rms(x, T_S, derivative=True) == pytest.approx(2 * pi * f * amplitude / sqrt(2), rel=0.05)
+
+
+@pytest.mark.parametrize("f", [2.0, 60.0])
+def test_band_rms_leaves_out_what_is_outside_the_band(f):
+    assert band_rms(np.sin(2 * pi * f * np.arange(2001) * T_S), T_S) < 0.02
+
+
+def test_jerk_is_the_derivative_of_the_acceleration():
+    t = np.arange(6001) * 1e-3
+    results = run(T_gear=decaying(0.1)[0], a_body=np.sin(2 * pi * 10.0 * t))
+    metrics = evaluate(results, MANOEUVRES["tipin15"])
+    assert metrics.bJ == pytest.approx(2 * pi * 10.0 / sqrt(2), rel=0.02)
+    assert metrics.bJ == pytest.approx(metrics.J, rel=0.02)
+
+
+def test_swing_needs_a_complete_piece():
+    x = np.r_[np.zeros(100), np.ones(100)]
+    swing = amplitude(x, T_S)
+    assert len(swing) == 101
+    assert swing[[0, 1, 99, 100]].tolist() == [0.0, 0.5, 0.5, 0.0]
+
+
+def test_impact_speed_is_the_speed_of_the_twist_when_the_torque_leaves_zero():
+    T_gear = np.array([-1.0, 0.0, 0.0, 5.0, 9.0, 0.0, 0.0, -2.0, 3.0])
+    speed = np.array([50.0, 10.0, 20.0, 30.0, 99.0, 99.0, 8.0, -12.0, 6.0])
+    results = run(duration=8e-3, T_gear=T_gear, omega_1=100.0 + speed, omega_2=100.0)
+    assert impact_speed(results, 0.0) == 25.0
+    assert impact_speed(results, 0.004) == 10.0
+    assert impact_speed(results, 0.1) == 0.0
+
+
+def test_hold_is_the_swing_left_on_the_plateaus():
+    results = run(duration=20.0, T_gear=lambda t: 50.0 + 2.0 * t + 0.3 * np.sin(2 * pi * 20.0 * t))
+    assert evaluate(results, MANOEUVRES["drive"]).hold == pytest.approx(0.3, rel=0.05)
+
+
+def test_metrics_of_a_step_are_not_given_for_a_drive():
+    metrics = evaluate(run(duration=20.0), MANOEUVRES["drive"])
+    assert all(np.isnan(x) for x in (metrics.ts, metrics.t90, metrics.OS, metrics.zeta, metrics.loss))
+
+
+def test_only_samples_of_the_controller_count():
+    T_gear, _ = decaying(0.08)
+    coarse = evaluate(run(T_gear=T_gear, interval=2e-3), MANOEUVRES["tipin15"])
+    fine = evaluate(run(T_gear=T_gear, interval=5e-4), MANOEUVRES["tipin15"])
+    assert (fine.ts, fine.OS, fine.bTg, fine.zeta) == pytest.approx((coarse.ts, coarse.OS, coarse.bTg, coarse.zeta))
+
+
+def test_results_too_coarse_for_the_controller_are_refused():
+    with pytest.raises(ValueError, match=r"3 ms apart.*2 ms"):
+        evaluate(run(interval=3e-3), MANOEUVRES["tipin15"])
+
+
+def test_damage_counts_ranges_to_the_fifth_power():
+    T_gear = np.array([0.0, 10.0, 0.0, 10.0, 0.0])
+    assert damage(T_gear) == pytest.approx(2 * 10.0**5)
+    assert damage(2.0 * T_gear) == pytest.approx(32 * damage(T_gear))

@@ -1,0 +1,68 @@
+"""The main job on a part of its cases."""
+
+import csv
+
+import pytest
+
+from harness.cli import main
+from harness.compare import cases, run_cases, write_figures, write_tables
+from harness.cosimulation.system import PLANTS
+
+
+def test_runs_without_and_with_damping_are_neighbours():
+    todo = cases(["A", "folder/B.fmu"], ["drive", "creep"])
+    assert [case.file_name for case in todo] == [
+        "A_drive_off", "A_drive_on", "A_creep_off", "A_creep_on",
+        "B_drive_off", "B_drive_on", "B_creep_off", "B_creep_on",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--manoeuvre", "tipin51"], "tipin50"),
+        (["--plant", "TwoMassDrivelin"], "TwoMassDriveline"),
+    ],
+)
+def test_unknown_names_are_answered_with_the_nearest(arguments, said, capsys):
+    assert main(["compare", *arguments]) != 0
+    assert said in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def compared(built, tmp_path_factory):
+    """Folder with what a comparison of one step on both plants writes."""
+    folder = tmp_path_factory.mktemp("compare")
+    outcomes = list(run_cases(cases(PLANTS, ["tipin15"]), 1, folder / "runs", built))
+    write_tables(outcomes, folder)
+    write_figures(outcomes, folder)
+    return folder
+
+
+def test_damping_settles_the_tip_in_on_both_plants(compared):
+    with (compared / "metrics.csv").open(newline="", encoding="utf-8") as file:
+        rows = {(row["plant"], row["control"]): row for row in csv.DictReader(file)}
+    assert len(rows) == 4
+    for plant in PLANTS:
+        off, on = rows[plant, "0"], rows[plant, "1"]
+        assert float(on["ts"]) < 0.4 * float(off["ts"])
+        assert float(on["bTg"]) < 0.5 * float(off["bTg"])
+        assert abs(float(on["dT_stat"])) < 0.2
+        assert float(off["effP"]) == 0.0
+
+
+def test_without_damping_the_design_model_rings_as_in_the_reference_study(compared):
+    with (compared / "metrics.csv").open(newline="", encoding="utf-8") as file:
+        off = next(csv.DictReader(file))
+    measured = [float(off[name]) for name in ("ts", "OS", "bTg", "J", "loss")]
+    assert measured == pytest.approx([1.758, 1.16, 26.5, 24.8, 0.0], rel=0.03, abs=1e-9)
+    # the coupled FMUs exchange their signals once a millisecond, the study integrated them together
+    assert float(off["t90"]) == pytest.approx(0.044, abs=0.005)
+
+
+def test_everything_that_is_announced_is_written(compared):
+    names = {path.relative_to(compared).as_posix() for path in compared.rglob("*") if path.is_file()}
+    assert {"table.md", "metrics.csv"} <= names
+    for plant in PLANTS:
+        assert {f"{plant}_tipin15.png", f"{plant}_tipin15.pdf"} <= names
+        assert {f"runs/{plant}_tipin15_off.csv", f"runs/{plant}_tipin15_on.csv"} <= names

@@ -1,0 +1,88 @@
+"""Recorded drives through the simulated vehicle."""
+
+import csv
+import sys
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from harness.cli import main
+from harness.manoeuvres.recording import read_recording
+from harness.manoeuvres.road import RoadLoad, road
+from harness.manoeuvres.town_drive import PATH
+from harness.metrics.damage import MissingExtra
+from harness.replay import replay, ride, write
+from tests import ROOT
+
+TRIP = ROOT.parent / "shared" / "data" / "bmw_i3_trip_a01.csv"
+
+
+@pytest.fixture(scope="module")
+def short_drive(tmp_path_factory):
+    """The first eight seconds of the bundled drive."""
+    path = tmp_path_factory.mktemp("recording") / "short.csv"
+    with PATH.open(encoding="utf-8") as file:
+        path.write_text("".join(islice(file, 82)), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def replayed(built, short_drive, tmp_path_factory):
+    """Folder of a replay of the short drive."""
+    folder = tmp_path_factory.mktemp("replay")
+    recording = read_recording(short_drive)
+    manoeuvre = road(recording, RoadLoad.of_fmu(built / "ValidationVehicle.fmu"), held=0.5)
+    rides = replay(manoeuvre, recording, "ValidationVehicle", fmus=built)
+    write(rides, recording, "ValidationVehicle", folder)
+    return folder
+
+
+def test_damping_lowers_oscillation_and_damage(replayed):
+    with (replayed / "short_metrics.csv").open(newline="", encoding="utf-8") as file:
+        rows = {row["quantity"]: row for row in csv.DictReader(file)}
+    for quantity in ("gear torque 5-50 Hz rms", "rainflow damage, relative", "body jerk 5-50 Hz rms"):
+        assert float(rows[quantity]["with damping"]) < 0.9 * float(rows[quantity]["without damping"])
+
+
+def test_figure_and_signals_every_10_ms_are_written(replayed):
+    assert {path.name for path in replayed.iterdir()} == {
+        "short_metrics.csv", "short_off.csv", "short_on.csv", "short.png", "short.pdf"
+    }  # fmt: skip
+    with (replayed / "short_on.csv").open(encoding="utf-8") as file:
+        times = [float(row["time"]) for row in csv.DictReader(file)]
+    assert times == pytest.approx(np.arange(801) * 0.01)
+
+
+def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands(built):
+    recording = read_recording(PATH)
+    manoeuvre = road(recording, RoadLoad.of_fmu(built / "TwoMassDriveline.fmu"))
+    result = ride(manoeuvre, recording, "TwoMassDriveline", control=False, fmus=built)
+    # the brakes leave out 300 N, so the car stops a little later than the recorded one
+    assert result.speed_error < 0.25 * np.sqrt(np.mean(recording.v**2))
+    at_the_light = (result.signals["time"] > 29.0) & (result.signals["time"] < 32.5)
+    assert np.abs(result.signals["plant.v"][at_the_light]).max() < 1e-3
+
+
+@pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")
+def test_a_real_car_pulls_away_in_simulation_too(built):
+    recording = read_recording(TRIP)
+    load = RoadLoad.of_fmu(built / "ValidationVehicle.fmu")
+    manoeuvre = replace(road(recording, load), duration=10.0)
+    signals = ride(manoeuvre, recording, "ValidationVehicle", control=False, fmus=built).signals
+    assert np.abs(signals["plant.v"][signals["time"] < 2.0]).max() < 1e-3
+    assert signals["plant.v"][-1] > 1.0
+
+
+def test_a_missing_recording_is_named(capsys):
+    assert main(["replay", "nowhere.csv"]) != 0
+    assert "nowhere.csv" in capsys.readouterr().err
+
+
+def test_without_the_counting_package_the_extra_is_named_before_the_run(short_drive, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rainflow", None)
+    recording = read_recording(short_drive)
+    load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
+    with pytest.raises(MissingExtra, match="extra `replay`"):
+        replay(road(recording, load), recording, "ValidationVehicle")

@@ -1,0 +1,174 @@
+"""The integrator: order 8 where a block is smooth, and no kink stepped over."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models import two_mass_driveline as driveline
+from models.block.integrator import LOCATION_TOLERANCE, MOST_CROSSINGS, Integrator
+from models.block.operators import maximum, where
+from models.block.types import Block
+from tests.models.exact_driveline import ExactDriveline
+
+P = driveline.Parameters(recorded_load=True)
+CONTACT = driveline.start(driveline.Input(), P)._replace(omega_1=3.0, phi=1.0)
+LIVELY = driveline.start(driveline.Input(), P)._replace(omega_1=40.0, omega_2=-3.0)
+BINARY_STEP = 2.0**-10
+"""About 1 ms; its multiples have no rounding."""
+
+
+class Body(NamedTuple):
+    """Height, speed, and what has been collected on the other side of the surface."""
+
+    x: float
+    v: float
+    beyond: float
+
+
+class Nothing(NamedTuple):
+    pass
+
+
+def block(derivative: Callable[..., Body], *surfaces: Callable[[Body], float], step_size: float = 0.1) -> Block:
+    return Block(
+        name="Body",
+        description="a body and surfaces",
+        Parameters=Nothing,
+        Input=Nothing,
+        State=Body,
+        Output=Body,
+        start=lambda u, p: Body(0.0, 0.0, 0.0),
+        output=lambda x, u, p: x,
+        derivative=derivative,
+        surfaces=lambda x, u, p: tuple(surface(x) for surface in surfaces),
+        step_size=step_size,
+    )
+
+
+def thrown(height: float) -> Block:
+    """A body under gravity; `beyond` is the integral of its height above `height`."""
+    return block(lambda x, u, p: Body(x.v, -9.81, maximum(x.x - height, 0.0)), lambda x: x.x - height)
+
+
+def error_in_contact(steps: int) -> float:
+    """Error after 0.2 s in contact, in rad/s, under torques that keep the teeth together."""
+    u = driveline.Input(T_mot=80.0, T_load_rec=-20.0)
+    exact = ExactDriveline(P, CONTACT.omega_1, CONTACT.omega_2, CONTACT.phi, side=1)
+    exact.advance(u.T_mot, u.T_load_rec, 0.2)
+    assert exact.crossings == 0
+    x = Integrator(replace(driveline.BLOCK, surfaces=None, step_size=0.2 / steps)).advance(CONTACT, u, P, 0.2)
+    omega = math.sqrt(P.C * (1.0 / P.J_1 + 1.0 / P.J_2))
+    return math.hypot(omega * (x.phi - exact.phi), x.omega_1 - exact.omega_1, x.omega_2 - exact.omega_2)
+
+
+def test_the_order_is_eight_where_the_block_is_smooth() -> None:
+    steps = np.array([6, 8, 12, 16, 24])
+    errors = [error_in_contact(n) for n in steps]
+    assert -np.diff(np.log(errors)) / np.diff(np.log(steps)) == pytest.approx(8.0, abs=0.2)
+
+
+def test_a_crossing_is_located_within_the_tolerance() -> None:
+    heights = []
+
+    def height(x: Body) -> float:
+        heights.append(x.x - 0.7)
+        return x.x - 0.7
+
+    rising = block(lambda x, u, p: Body(x.v, math.cos(7.0 * x.x), 0.0), height)
+    Integrator(rising).advance(Body(0.0, 8.0, 0.0), Nothing(), Nothing(), 0.1)
+    below, above = max(g for g in heights if g <= 0.0), min(g for g in heights if g > 0.0)
+    speed = 8.0
+    assert above - below <= 1.1 * LOCATION_TOLERANCE * speed
+
+
+@given(t=st.floats(0.011, 0.049), share=st.floats(1e-4, 0.99))
+def test_an_excursion_within_one_step_is_found(t: float, share: float) -> None:
+    """A body thrown up at t = 0 is highest at t; it is above the surface for 2 share t."""
+    speed, up = 9.81 * t, share * t
+    height = 0.5 * 9.81 * (t * t - up * up)
+    x = Integrator(thrown(height)).advance(Body(0.0, speed, 0.0), Nothing(), Nothing(), 0.1)
+    exact = 2.0 * 9.81 / 3.0 * up**3
+    assert x.beyond == pytest.approx(exact, rel=1e-6, abs=1e-15)
+    assert x.x == pytest.approx(speed * 0.1 - 0.5 * 9.81 * 0.01, rel=1e-12)
+
+
+@given(
+    steps=st.lists(st.integers(1, 40), min_size=1, max_size=6),
+    T_mot=st.floats(-100.0, 100.0),
+    T_load=st.floats(-100.0, 100.0),
+)
+@settings(max_examples=30)
+def test_one_long_advance_is_its_parts(steps: list[int], T_mot: float, T_load: float) -> None:
+    """Bit by bit, where the parts are whole steps; flanks are crossed on the way."""
+    integrator = Integrator(replace(driveline.BLOCK, step_size=BINARY_STEP))
+    u, x = driveline.Input(T_mot=T_mot, T_load_rec=T_load), LIVELY
+    for n in steps:
+        x = integrator.advance(x, u, P, n * BINARY_STEP)
+    assert x == integrator.advance(LIVELY, u, P, sum(steps) * BINARY_STEP)
+
+
+@given(parts=st.lists(st.floats(1e-5, 0.02), min_size=1, max_size=8))
+@settings(max_examples=30)
+def test_any_duration_can_be_split_anywhere(parts: list[float]) -> None:
+    """Motor, wheels and twist, whose only kinks are the flanks; the unused vehicle has others."""
+    integrator, u, x = Integrator(driveline.BLOCK), driveline.Input(T_mot=20.0), LIVELY
+    for part in parts:
+        x = integrator.advance(x, u, P, part)
+    whole = integrator.advance(LIVELY, u, P, sum(parts))
+    assert list(x[:3]) == pytest.approx(list(whole[:3]), rel=1e-10, abs=1e-10)
+
+
+def test_nothing_is_kept_between_calls() -> None:
+    used, u = Integrator(driveline.BLOCK), driveline.Input(T_mot=50.0)
+    for k in range(20):
+        used.advance(CONTACT._replace(omega_1=10.0 * k), u, P, 0.003)
+    assert used.advance(LIVELY, u, P, 0.05) == Integrator(driveline.BLOCK).advance(LIVELY, u, P, 0.05)
+
+
+def test_no_time_changes_nothing() -> None:
+    assert Integrator(driveline.BLOCK).advance(LIVELY, driveline.Input(), P, 0.0) == LIVELY
+
+
+def evaluations(surfaced: Block, x: Body, duration: float) -> tuple[Body, int]:
+    """State after the duration, and how often the derivative was evaluated."""
+    count = 0
+
+    def counted(x: Any, u: Any, p: Any) -> Any:
+        nonlocal count
+        count += 1
+        assert surfaced.derivative
+        return surfaced.derivative(x, u, p)
+
+    x = Integrator(replace(surfaced, derivative=counted)).advance(x, Nothing(), Nothing(), duration)
+    return x, count
+
+
+def test_chatter_about_a_surface_ends_in_bounded_work() -> None:
+    """Pushed to the surface from both sides, the body would cross it without end."""
+    pushed = block(lambda x, u, p: Body(where(x.x > 0.0, -1.0, 0.5), 0.0, 0.0), lambda x: x.x)
+    x, count = evaluations(pushed, Body(0.03, 0.0, 0.0), 0.1)
+    assert abs(x.x) < 0.1
+    assert 12 * MOST_CROSSINGS < count < 50 * 12 * MOST_CROSSINGS
+
+
+@pytest.mark.parametrize("power", [1, 3, 9])
+def test_a_flat_crossing_is_located_in_bounded_work(power: int) -> None:
+    """A surface with a root of high order, as a state coming to rest on it sees."""
+    passing = block(lambda x, u, p: Body(1.0, 0.0, 0.0), lambda x: (x.x - 0.07) ** power)
+    x, count = evaluations(passing, Body(0.0, 0.0, 0.0), 0.1)
+    assert x.x == pytest.approx(0.1, rel=1e-12)
+    assert count < (20 if power == 1 else 150) * 12
+
+
+@pytest.mark.parametrize("side", [-1e-17, 0.0, 1e-17])
+def test_lying_on_a_surface_costs_no_more_than_crossing_it(side: float) -> None:
+    resting = block(lambda x, u, p: Body(x.v, 0.0, 0.0), lambda x: x.x, lambda x: -x.x)
+    x, count = evaluations(resting, Body(side, 0.0, 0.0), 0.1)
+    assert x.x == side
+    assert count <= 3 * 12

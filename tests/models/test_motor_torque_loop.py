@@ -1,0 +1,117 @@
+"""The motor's torque loop: the lag of the paper's eq. (1), and what motor control reports."""
+
+from dataclasses import replace
+from math import cos, exp, sin, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models import motor_torque_loop as motor
+from models.block.integrator import Integrator
+
+P = motor.Parameters()
+SILENT = P._replace(sigma_T=0.0, sigma_omega=0.0, q_omega=0.0)
+
+
+def run(u: motor.Input, p: motor.Parameters, steps: int, h: float) -> np.ndarray:
+    """Outputs (steps + 1, 3) every h seconds under a held input, from rest."""
+    integrator = Integrator(motor.BLOCK)
+    x = motor.start(motor.Input(), p)
+    rows = [motor.output(x, u, p)]
+    for _ in range(steps):
+        x = integrator.advance(x, u, p, h)
+        rows.append(motor.output(x, u, p))
+    return np.array(rows)
+
+
+def step_response(t: float, tau: float) -> float:
+    """Of 1/(tau^2 s^2 + sqrt(2) tau s + 1)."""
+    a = t / (sqrt(2.0) * tau)
+    return 1.0 - exp(-a) * (cos(a) + sin(a))
+
+
+@given(T=st.floats(-180.0, 180.0), tau=st.floats(5e-4, 0.1))
+@settings(max_examples=25)
+def test_the_step_response_is_that_of_the_paper(T: float, tau: float) -> None:
+    """In steps of a third of tau, which is the default step at the default tau."""
+    block = replace(motor.BLOCK, step_size=min(motor.BLOCK.step_size, tau / 3.0))
+    x, u, p = motor.start(motor.Input(), SILENT), motor.Input(T), SILENT._replace(tau=tau)
+    integrator = Integrator(block)
+    for k in range(1, 20):
+        x = integrator.advance(x, u, p, tau / 2.0)
+        assert x.T_mot == pytest.approx(T * step_response(k * tau / 2.0, tau), abs=1e-9 * max(abs(T), 1.0))
+
+
+def test_the_step_response_is_exact_at_the_default_step() -> None:
+    ours = run(motor.Input(100.0), SILENT, 60, 1e-3)[:, 0]
+    exact = [100.0 * step_response(k * 1e-3, P.tau) for k in range(61)]
+    assert ours == pytest.approx(exact, abs=100.0 * 1e-9)
+
+
+@given(T_ref=st.floats(-2000.0, 2000.0))
+def test_the_torque_settles_at_the_demand_within_the_limit(T_ref: float) -> None:
+    p = SILENT._replace(T_max=150.0)
+    settled = run(motor.Input(T_ref), p, 1, 0.1)[-1, 0]
+    assert settled == pytest.approx(max(-150.0, min(T_ref, 150.0)), abs=1e-6)
+    assert motor.start(motor.Input(T_ref), p).T_mot == max(-150.0, min(T_ref, 150.0))
+
+
+def test_the_overshoot_is_that_of_a_damping_of_0_7() -> None:
+    response = run(motor.Input(100.0), SILENT, 400, 1e-4)[:, 0]
+    assert response.max() == pytest.approx(100.0 * (1.0 + exp(-np.pi)), abs=1e-2)
+
+
+def test_the_estimate_has_the_given_gain_and_offset_and_the_torque_has_not() -> None:
+    p = SILENT._replace(g_T=1.05, o_T=-1.5)
+    T_mot, T_mot_est, _ = run(motor.Input(80.0), p, 30, 1e-3).T
+    assert T_mot_est == pytest.approx(1.05 * T_mot - 1.5, abs=1e-12)
+    assert T_mot[-1] == pytest.approx(80.0, abs=0.5)
+
+
+def samples(p: motor.Parameters, count: int = 4000, omega_1: float = 123.4) -> np.ndarray:
+    """Outputs at each sample of the noise."""
+    u, x = motor.Input(50.0, omega_1), motor.start(motor.Input(50.0), p)
+    return np.array([motor.output(x._replace(sample=float(k)), u, p) for k in range(count)])
+
+
+def test_noise_has_the_given_deviation_and_no_mean_and_no_memory() -> None:
+    _, T_mot_est, omega_1_meas = samples(P._replace(q_omega=0.0)).T
+    for noise, sigma in ((T_mot_est - 50.0, P.sigma_T), (omega_1_meas - 123.4, P.sigma_omega)):
+        assert abs(noise.mean()) < 4.0 * sigma / sqrt(len(noise))
+        assert noise.std() == pytest.approx(sigma, rel=0.05)
+        assert abs(np.corrcoef(noise[1:], noise[:-1])[0, 1]) < 4.0 / sqrt(len(noise))
+    assert abs(np.corrcoef(T_mot_est, omega_1_meas)[0, 1]) < 4.0 / sqrt(len(T_mot_est))
+
+
+def test_the_same_seed_gives_the_same_noise_and_another_another() -> None:
+    first, again, other = samples(P, 200), samples(P, 200), samples(P._replace(seed=2), 200)
+    assert (first == again).all()
+    assert abs(np.corrcoef(first[:, 1], other[:, 1])[0, 1]) < 0.3
+
+
+@given(omega_1=st.floats(-2000.0, 2000.0))
+def test_the_speed_is_rounded_to_its_resolution(omega_1: float) -> None:
+    p = SILENT._replace(q_omega=0.1)
+    measured = motor.output(motor.start(motor.Input(), p), motor.Input(0.0, omega_1), p).omega_1_meas
+    assert abs(measured - omega_1) <= 0.05 + 1e-9
+    assert measured / 0.1 == pytest.approx(round(measured / 0.1), abs=1e-9)
+
+
+def test_without_resolution_and_noise_the_speed_is_exact() -> None:
+    assert run(motor.Input(0.0, 12.3456), SILENT, 3, 1e-3)[-1, 2] == 12.3456
+
+
+@pytest.mark.parametrize("h", [1e-4, 5e-4, 2e-3, 2e-3 / 3.0])
+def test_the_noise_does_not_depend_on_the_communication_step(h: float) -> None:
+    """A sample lasts 2 ms; seen at every 2 ms for 4 s, also after many additions of its time."""
+    per_sample = round(P.T_s / h)
+    seen = run(motor.Input(0.0, 7.0), P, 2000 * per_sample, h)[::per_sample]
+    assert (seen[:, 2] == samples(P, 2001, 7.0)[:, 2]).all()
+
+
+def test_the_noise_is_held_for_a_sample() -> None:
+    seen = run(motor.Input(0.0, 7.0), P._replace(q_omega=0.0), 40, 5e-4)[:40, 2].reshape(10, 4)
+    assert (np.ptp(seen, axis=1) == 0.0).all()
+    assert len(set(seen[:, 0])) == 10

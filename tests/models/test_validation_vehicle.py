@@ -1,0 +1,250 @@
+"""The validation vehicle obeys mechanics: power, contact, symmetry, friction."""
+
+from collections.abc import Callable
+from functools import cache
+from math import atan, pi, sin, tanh
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models import two_mass_driveline as driveline
+from models import validation_vehicle as vehicle
+from models.backlash import dead_zone
+from models.block.integrator import Integrator
+
+P = vehicle.Parameters()
+REST = vehicle.State(*[0.0] * len(vehicle.State._fields))
+SYMMETRIC = P._replace(asym=0.0, t_asym=0.0)
+
+LIMITS = vehicle.State(
+    omega_1=500.0, theta_1=6.3, theta_p=0.02, omega_p=1.0, gamma=0.025, omega_g=60.0, omega_d=2.0,
+    x_L=0.1, x_R=0.1, omega_L=60.0, omega_R=60.0, u_L=0.05, u_R=0.05, z_L=P.z_br, z_R=P.z_br,
+    s_h=0.005, v_h=15.0, v=15.0, theta_b=0.1, omega_b=0.5,
+)  # fmt: skip
+"""Range of each state, either sign."""
+
+states = st.tuples(*(st.just(0.0) | st.floats(-limit, limit) for limit in LIMITS)).map(vehicle.State._make)
+inputs = st.builds(
+    vehicle.Input,
+    T_mot=st.floats(-180.0, 180.0),
+    T_brake=st.floats(0.0, 4000.0),
+    slope=st.floats(-0.2, 0.2),
+)
+
+
+class Power(NamedTuple):
+    """W: taken in, stored, and the sum of what flows, as a measure of rounding."""
+
+    supplied: float
+    stored: float
+    flowing: float
+
+
+def power(x: vehicle.State, u: vehicle.Input, p: vehicle.Parameters) -> Power:
+    """Power taken in and stored at a state.
+
+    Stored are the kinetic energies (that of the rotor with its speed in space), the springs, the
+    spring of the gear stage 1/2 k_g y^2, the tyres as springs of their present load, and the brake
+    bristles as springs of the present T_brake.
+
+    Taken in are the air-gap torque with ripple at the speed of rotor against housing, gravity on the
+    slope, and where the model simplifies: bushing force and brake torque act on the pitch of the body
+    without their reaction on wheels and hubs. As tyre load and T_brake stiffen a spring they do work
+    on it; leaving their change out of what is stored counts that work as neither.
+    """
+    dx = vehicle.derivative(x, u, p)
+    k = vehicle.wheels(x, u, p)
+    F_h = vehicle.bushing_force(x, p)
+    friction = p.c_fm * tanh(x.omega_1 / p.omega_fm)
+    supplied = [
+        (vehicle.air_gap_torque(x, u, p) + friction) * x.omega_1,
+        -p.m * p.g * sin(u.slope) * x.v,
+        (F_h * (p.h - p.r) - k.T_brL - k.T_brR) * x.omega_b,
+    ]
+    y = dead_zone(x.gamma, p.phi_B / p.i)
+    stored = [
+        p.J_1 * (x.omega_1 + x.omega_p) * (dx.omega_1 + dx.omega_p),
+        p.J_p * x.omega_p * dx.omega_p,
+        p.J_g * x.omega_g * dx.omega_g,
+        p.J_d * x.omega_d * dx.omega_d,
+        0.5 * p.J_w * (x.omega_L * dx.omega_L + x.omega_R * dx.omega_R),
+        p.m_h * x.v_h * dx.v_h,
+        (p.m - p.m_h) * x.v * dx.v,
+        p.J_y * x.omega_b * dx.omega_b,
+        p.k_g * y * dx.gamma,
+        p.k_p * (x.theta_p + x.theta_b) * (dx.theta_p + dx.theta_b),
+        0.5 * p.k_s * (1.0 - p.asym) * x.x_L * dx.x_L,
+        0.5 * p.k_s * (1.0 + p.asym) * x.x_R * dx.x_R,
+        p.k_x * x.s_h * dx.s_h,
+        p.k_th * x.theta_b * dx.theta_b,
+        tyre_spring(x, x.u_L, 1.0 - p.t_asym, p) * dx.u_L,
+        tyre_spring(x, x.u_R, 1.0 + p.t_asym, p) * dx.u_R,
+        0.5 * u.T_brake * (x.z_L * dx.z_L + x.z_R * dx.z_R) / p.z_br,
+    ]
+    return Power(sum(supplied), sum(stored), sum(abs(term) for term in supplied + stored))
+
+
+def tyre_spring(x: vehicle.State, deflection: float, share: float, p: vehicle.Parameters) -> float:
+    """Force in N of one tyre without its damping."""
+    F_z = max(200.0, p.F_z0 - (p.k_th * x.theta_b + p.d_th * x.omega_b) / p.L_w)
+    B = share * p.c_slip / (p.C_x * p.mu * p.F_z0)
+    return 0.5 * p.mu * F_z * sin(p.C_x * atan(B * deflection / p.sigma))
+
+
+@cache
+def manoeuvre() -> list[tuple[vehicle.State, vehicle.Input]]:
+    """Tip-in, tip-out and a stop with brakes on a grade, every millisecond."""
+    p, integrator = P._replace(v_0=3.0, T_0=-12.0), Integrator(vehicle.BLOCK)
+    course = [(100.0, 0.0, 0.0), (-40.0, 0.0, 0.03), (0.0, 2000.0, 0.03)]
+    x, run = vehicle.start(vehicle.Input(-12.0), p), []
+    for values in course:
+        u = vehicle.Input(*values)
+        for _ in range(700):
+            run.append((x, u))
+            x = integrator.advance(x, u, p, 1e-3)
+    return run
+
+
+def dissipation(x: vehicle.State, u: vehicle.Input) -> tuple[float, float]:
+    """Dissipated power in W, and its rounding."""
+    found = power(x, u, P)
+    return found.supplied - found.stored, 1e-12 * found.flowing
+
+
+@given(x=states, u=inputs)
+@settings(max_examples=500)
+def test_dissipation_is_never_negative(x: vehicle.State, u: vehicle.Input) -> None:
+    dissipated, rounding = dissipation(x, u)
+    assert dissipated >= -rounding
+
+
+def test_dissipation_is_never_negative_while_driving() -> None:
+    powers = [dissipation(x, u) for x, u in manoeuvre()]
+    assert all(dissipated >= -rounding for dissipated, rounding in powers)
+    assert max(dissipated for dissipated, _ in powers) > 1000.0
+
+
+def test_the_manoeuvre_ends_at_rest_and_rattles_before() -> None:
+    contact = [np.sign(dead_zone(x.gamma, P.phi_B / P.i)) for x, _ in manoeuvre()]
+    assert set(contact) == {-1.0, 0.0, 1.0}
+    assert abs(manoeuvre()[-1][0].v) < 0.1
+
+
+@given(x=states)
+def test_teeth_never_pull(x: vehicle.State) -> None:
+    y = dead_zone(x.gamma, P.phi_B / P.i)
+    assert vehicle.gear_torque(x, P) * y >= 0.0
+    if y == 0.0:
+        assert vehicle.gear_torque(x, P) == 0.0
+
+
+@given(x=states, flank=st.sampled_from([-1.0, 1.0]), depth=st.floats(1e-12, 1e-6))
+def test_gear_torque_is_continuous_at_the_flanks(x: vehicle.State, flank: float, depth: float) -> None:
+    """Whatever the speed: the impact damping sets in with the penetration."""
+    touching = x._replace(gamma=flank * (P.phi_B / P.i + depth))
+    speed = abs(x.omega_1 / P.i + x.omega_p - x.omega_g)
+    assert abs(vehicle.gear_torque(touching, P)) <= 1.001 * (P.k_g + P.d_g * speed / P.y_g) * depth + 1e-9
+
+
+@settings(max_examples=30)
+@given(centre=st.floats(-2.0, 2.0), swing=st.floats(0.01, 4.0), omega=st.floats(0.1, 300.0))
+def test_the_gear_never_creates_energy(centre: float, swing: float, omega: float) -> None:
+    """Work put into the gear over a closed cycle of its twist; that of the design model is zero."""
+    angle = np.linspace(0.0, 2.0 * pi, 401)
+    twist, rate = centre + swing * np.sin(angle), swing * omega * np.cos(angle)
+
+    def work(torque: Callable[[float, float], float], half_gap: float) -> tuple[float, float]:
+        """In one cycle, in J, and its scale; the cycle is in half gaps."""
+        T = np.array([torque(*motion) for motion in zip(half_gap * twist, half_gap * rate, strict=True)])
+        return float(np.trapezoid(T * half_gap * rate, angle / omega)), float(half_gap * swing * max(abs(T)))
+
+    def impact(gamma: float, dgamma: float) -> float:
+        return vehicle.gear_torque(REST._replace(gamma=float(gamma), omega_1=P.i * float(dgamma)), P)
+
+    def elastic(phi: float, _: float) -> float:
+        return driveline.gear_torque(driveline.State(0.0, 0.0, float(phi), 0.0, 0.0, 0.0), driveline.Parameters())
+
+    lost, scale = work(impact, P.phi_B / P.i)
+    assert lost >= -1e-12 * scale
+    lost, scale = work(elastic, driveline.Parameters().phi_B)
+    assert abs(lost) <= 1e-12 * scale
+
+
+def mirrored(x: vehicle.State) -> vehicle.State:
+    """Left and right exchanged."""
+    return x._replace(
+        omega_d=-x.omega_d,
+        **{f"{name}_L": getattr(x, f"{name}_R") for name in ("x", "omega", "u", "z")},
+        **{f"{name}_R": getattr(x, f"{name}_L") for name in ("x", "omega", "u", "z")},
+    )
+
+
+@given(x=states, u=inputs)
+def test_left_and_right_are_mirror_images_without_asymmetry(x: vehicle.State, u: vehicle.Input) -> None:
+    there = mirrored(vehicle.derivative(x, u, SYMMETRIC))
+    here = vehicle.derivative(mirrored(x), u, SYMMETRIC)
+    assert list(here) == pytest.approx(list(there), rel=1e-9, abs=1e-6)
+
+
+def test_the_symmetric_vehicle_drives_straight_and_the_other_does_not() -> None:
+    difference = {}
+    for p in (SYMMETRIC, P):
+        p = p._replace(v_0=3.0, T_0=10.0)
+        u = vehicle.Input(120.0)
+        x = Integrator(vehicle.BLOCK).advance(vehicle.start(vehicle.Input(10.0), p), u, p, 0.1)
+        difference[p.asym] = abs(x.omega_L - x.omega_R)
+    assert difference[0.0] < 1e-9
+    assert difference[P.asym] > 1e-3
+
+
+@pytest.mark.parametrize(("v_0", "T_0"), [(15 / 3.6, -12.0), (15 / 3.6, 20.0), (50 / 3.6, 30.0)])
+def test_a_rolling_start_is_almost_stationary(v_0: float, T_0: float) -> None:
+    p, u = P._replace(v_0=v_0, T_0=T_0), vehicle.Input(T_0)
+    integrator, x, torques, speeds = Integrator(vehicle.BLOCK), vehicle.start(u, p), [], []
+    for _ in range(500):
+        x = integrator.advance(x, u, p, 1e-3)
+        y = vehicle.output(x, u, p)
+        torques.append(y.T_gear)
+        speeds.append(y.omega_1 - y.omega_2)
+    assert np.ptp(torques) < 0.02 * abs(T_0)
+    assert max(np.abs(speeds)) < 0.2
+
+
+def ripple(omega_1: float, T_mot: float) -> float:
+    """Largest deviation in N.m of the air-gap torque over an electric turn, at a speed."""
+    x = REST._replace(omega_1=omega_1)
+    angles = np.linspace(0.0, 2.0 * pi / P.pp, 721).tolist()
+    torques = [vehicle.air_gap_torque(x._replace(theta_1=a), vehicle.Input(T_mot), P) for a in angles]
+    assert np.mean(torques[1:]) == pytest.approx(T_mot - P.c_fm * tanh(omega_1 / P.omega_fm), abs=1e-9)
+    return np.ptp(torques) / 2.0
+
+
+def test_ripple_grows_with_the_torque_and_fades_with_the_speed() -> None:
+    assert ripple(0.0, 100.0) > 2.0 * ripple(0.0, 0.0) > 0.0
+    assert ripple(P.omega_rip, 100.0) == pytest.approx(0.5 * ripple(0.0, 100.0))
+    assert ripple(10.0 * P.omega_rip, 100.0) < 0.01 * ripple(0.0, 100.0)
+
+
+def test_a_raised_nose_unloads_the_tyres_but_never_lifts_them() -> None:
+    x = REST._replace(u_L=0.01, u_R=0.01)
+    forces = [vehicle.wheels(x._replace(theta_b=nose), vehicle.Input(), P).F_L for nose in (-0.02, 0.0, 0.02, 9.0)]
+    assert forces == sorted(forces, reverse=True)
+    assert forces[-1] > 0.0
+
+
+@given(u_L=st.floats(-1.0, 1.0))
+def test_a_tyre_transmits_at_most_what_the_road_gives(u_L: float) -> None:
+    x = REST._replace(u_L=u_L)
+    assert abs(vehicle.wheels(x, vehicle.Input(), P).F_L) <= 0.5 * P.mu * P.F_z0
+
+
+def test_the_twist_follows_the_speed_difference() -> None:
+    """dphi/dt = omega_1 - omega_2, through gear stage, shafts and mounts."""
+    for (before, u), (x, v), (after, _) in zip(manoeuvre(), manoeuvre()[1:], manoeuvre()[2:], strict=False):
+        if u == v:
+            rate = (vehicle.output(after, v, P).phi - vehicle.output(before, u, P).phi) / 2e-3
+            y = vehicle.output(x, v, P)
+            assert rate == pytest.approx(y.omega_1 - y.omega_2, rel=0.02, abs=0.1)

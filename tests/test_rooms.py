@@ -1,0 +1,79 @@
+"""Which room may import from which: the architecture as a table, read from the top."""
+
+import ast
+import importlib.util
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests import ROOT
+
+COSIMULATION = {"harness", "harness.cosimulation"}
+
+ROOMS = {
+    "models.block": set(),
+    "models.controller": {"models", "models.block"},
+    "models": {"models.block", "models.controller"},
+    "fmus.description": {"fmus", "models.block"},
+    "fmus.python": {"fmus", "fmus.description", "models.block"},
+    "fmus.native": {"fmus", "fmus.description", "models.block"},
+    "fmus": {"fmus.python", "fmus.native", "models", "models.block"},
+    "": {"fmus"},
+    "harness.cosimulation": {"harness"},
+    "harness.manoeuvres": COSIMULATION,
+    "harness.metrics": {"harness", "harness.manoeuvres"},
+    "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
+    "harness.compliance": COSIMULATION,
+    "harness.analysis": COSIMULATION | {"harness.manoeuvres", "fmus", "models", "models.block", "models.controller"},
+    "harness": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"},
+    "harness.commands": COSIMULATION
+    | {"harness.manoeuvres", "harness.reports", "harness.compliance", "harness.analysis", "fmus"},
+}
+"""Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
+the analysis knows the models."""
+
+
+def modules() -> Iterator[str]:
+    yield "build_fmus"
+    for package in ("models", "fmus", "harness"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            yield ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def source(module: str) -> Path:
+    return ROOT.joinpath(*module.split(".")).with_suffix(".py")
+
+
+def imports(module: str) -> Iterator[str]:
+    """What a module imports: of `from a import b` the module a.b, or a where b is something in it."""
+    package = module.rpartition(".")[0]
+    for node in ast.walk(ast.parse(source(module).read_bytes())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            for alias in node.names:
+                yield f"{base}.{alias.name}" if source(f"{base}.{alias.name}").is_file() else base
+
+
+def rooms_in(module: str) -> set[str]:
+    """Rooms of ours that a module imports from; what lies outside every room is a room of its own."""
+    found = {
+        name for name in imports(module) if name.split(".")[0] in ("models", "fmus", "harness", "tests", "benchmarks")
+    }
+    return {name if (ROOT / name.replace(".", "/")).is_dir() else name.rpartition(".")[0] for name in found}
+
+
+@pytest.mark.parametrize("module", list(modules()))
+def test_a_room_imports_from_the_rooms_that_it_may(module: str) -> None:
+    room = module.rpartition(".")[0]
+    assert rooms_in(module) <= ROOMS[room] | {room}
+
+
+def test_the_models_use_the_standard_library_alone() -> None:
+    for module in modules():
+        if module.startswith("models."):
+            others = {name.split(".")[0] for name in imports(module)} - {"models"}
+            assert others <= set(sys.stdlib_module_names), module
