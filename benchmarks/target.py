@@ -12,6 +12,7 @@ from harness.cosimulation.system import CONNECTIONS
 from harness.manoeuvres.catalogue import Manoeuvre
 from harness.simulate import signals, simulate
 from models.block.declaration import variables
+from models.damping_controller import T_S
 
 STEP_SIZE = 1e-3
 """Communication step of the loop in s."""
@@ -56,7 +57,7 @@ def recorded(manoeuvre: Manoeuvre, fmus: Path, control: bool = True) -> np.ndarr
     Args:
         fmus: folder of the built FMUs.
     """
-    every = round(FMU.block.sample_time / STEP_SIZE)
+    every = round(T_S / STEP_SIZE)
     results = simulate(manoeuvre, control=control, step_size=STEP_SIZE, folder=fmus)[::every]
     sources = {name: name for name in signals(manoeuvre)} | {target: source for source, target in CONNECTIONS}
     names = [variable.name for variable in variables(FMU.block.Input)]

@@ -26,7 +26,7 @@ class Fmu:
     @property
     def module(self) -> str:
         """Module that holds the equations, for example models.two_mass_driveline."""
-        return self.block.output.__module__
+        return self.block.module
 
     @property
     def equations(self) -> str:

@@ -4,8 +4,8 @@ The estimator (torque_estimator) is run once a sample, its estimate taken T_pred
 torque will act; the damping law (damping_law) adds to the driver's demand what opposes the twisting
 motion and vanishes when stationary. The damping torque is limited to T_damp_max; modes fade within
 t_fade. The literal form of the paper, an imperfect derivative of the estimated gear torque (Sugiura
-and Hori 1996) behind an observer without load, is lambda_v = k_d = T_pred = 0, K_T_l = Kw_T_l =
-H_T_l = 0, T_land = T_max.
+and Hori 1996) behind an observer without load, is lambda_v = k_d = T_pred = 0, L_T_l = Lw_T_l =
+L_can_T_l = 0, T_land = T_max.
 
 A motor speed or torque that is not finite, out of range, jumping or frozen is not used; if that lasts,
 the driver's demand is passed through (fallback). A lost, late or absurd wheel speed only ends the mode
@@ -17,7 +17,7 @@ from typing import Annotated, Any, NamedTuple
 
 from .block.declaration import Boolean, Enumeration, Integer, Real
 from .block.operators import branch, clip, is_finite, logical_and, minimum, where
-from .block.types import Block
+from .block.types import SampledBlock
 from .controller import damping_law as law
 from .controller import gains as design
 from .controller import signal_monitor as motor_signals
@@ -40,18 +40,18 @@ class Parameters(NamedTuple):
     lambda_v: Annotated[float, Real("1", "share of the gear torque that the vehicle takes", 0.0, 0.99)] = (
         design.lambda_v
     )
-    K_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, without wheel speed", -2.0, 2.0)] = design.K_omega_1
-    K_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, without wheel speed", -2.0, 2.0)] = design.K_omega_2
-    K_phi: Annotated[float, Real("s", "gain on phi_hat, without wheel speed", -0.1, 0.1)] = design.K_phi
-    K_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, without wheel speed", -10.0, 10.0)] = design.K_T_l
-    Kw_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, with wheel speed", -2.0, 2.0)] = design.Kw_omega_1
-    Kw_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, with wheel speed", -2.0, 2.0)] = design.Kw_omega_2
-    Kw_phi: Annotated[float, Real("s", "gain on phi_hat, with wheel speed", -0.1, 0.1)] = design.Kw_phi
-    Kw_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, with wheel speed", -10.0, 10.0)] = design.Kw_T_l
-    H_omega_1: Annotated[float, Real("1", "gain of a message on omega_1_hat", -2.0, 2.0)] = design.H_omega_1
-    H_omega_2: Annotated[float, Real("1", "gain of a message on omega_2_hat", -2.0, 2.0)] = design.H_omega_2
-    H_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = design.H_phi
-    H_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = design.H_T_l
+    L_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, without wheel speed", -2.0, 2.0)] = design.L_omega_1
+    L_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, without wheel speed", -2.0, 2.0)] = design.L_omega_2
+    L_phi: Annotated[float, Real("s", "gain on phi_hat, without wheel speed", -0.1, 0.1)] = design.L_phi
+    L_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, without wheel speed", -10.0, 10.0)] = design.L_T_l
+    Lw_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, with wheel speed", -2.0, 2.0)] = design.Lw_omega_1
+    Lw_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, with wheel speed", -2.0, 2.0)] = design.Lw_omega_2
+    Lw_phi: Annotated[float, Real("s", "gain on phi_hat, with wheel speed", -0.1, 0.1)] = design.Lw_phi
+    Lw_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, with wheel speed", -10.0, 10.0)] = design.Lw_T_l
+    L_can_omega_1: Annotated[float, Real("1", "gain of a message on omega_1_hat", -2.0, 2.0)] = design.L_can_omega_1
+    L_can_omega_2: Annotated[float, Real("1", "gain of a message on omega_2_hat", -2.0, 2.0)] = design.L_can_omega_2
+    L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = design.L_can_phi
+    L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = design.L_can_T_l
     T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.064)] = design.T_age
     T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02)] = design.T_pred
     k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0)] = design.k_d
@@ -254,9 +254,10 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
-BLOCK = Block(
+BLOCK = SampledBlock(
     name="DampingController",
     description="Active damping of the drive train: nonlinear torque estimator and damping control",
+    module=__name__,
     Parameters=Parameters,
     Input=Input,
     State=State,

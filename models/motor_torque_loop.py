@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 from .block.declaration import Integer, Real
 from .block.noise import normals
 from .block.operators import clip, floor, maximum, where
-from .block.types import Block
+from .block.types import ContinuousBlock
 
 SQRT_2 = 2.0**0.5
 NOISE = 0.0
@@ -72,9 +72,10 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
-BLOCK = Block(
+BLOCK = ContinuousBlock(
     name="MotorTorqueLoop",
     description="Torque-controlled motor with the errors of its torque and speed signals",
+    module=__name__,
     Parameters=Parameters,
     Input=Input,
     State=State,

@@ -22,7 +22,7 @@ from . import brake, vehicle
 from .backlash import dead_zone
 from .block.declaration import Boolean, Real
 from .block.operators import maximum, sign, where
-from .block.types import Block
+from .block.types import ContinuousBlock
 from .plant import Input, Output
 
 
@@ -130,14 +130,15 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
-def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
+def event_indicators(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
     """Both flanks of the gap; wheels at rest (the bristles turn round); the kinks of the tyre's rate."""
     return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2, p.r * x.omega_2 / p.i - x.v, x.v)
 
 
-BLOCK = Block(
+BLOCK = ContinuousBlock(
     name="TwoMassDriveline",
     description="Design model: two inertias, elastic gear with backlash, vehicle on a linear tyre",
+    module=__name__,
     Parameters=Parameters,
     Input=Input,
     State=State,
@@ -145,6 +146,6 @@ BLOCK = Block(
     start=start,
     output=output,
     derivative=derivative,
-    surfaces=surfaces,
+    event_indicators=event_indicators,
     step_size=0.001,
 )

@@ -26,7 +26,7 @@ from . import brake, vehicle
 from .backlash import dead_zone
 from .block.declaration import Real
 from .block.operators import atan, maximum, minimum, sign, sin, tanh, where
-from .block.types import Block
+from .block.types import ContinuousBlock
 from .plant import Input, Output
 
 
@@ -267,7 +267,7 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
-def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
+def event_indicators(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
     """Where the equations have kinks.
 
     The flanks of the gap, the penetrations at which the impact damping is full, wheels at rest (the
@@ -286,9 +286,10 @@ def surfaces(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
     )
 
 
-BLOCK = Block(
+BLOCK = ContinuousBlock(
     name="ValidationVehicle",
     description="Validation model: motor with ripple, mounts, differential, half shafts, tyres, hubs, body",
+    module=__name__,
     Parameters=Parameters,
     Input=Input,
     State=State,
@@ -296,6 +297,6 @@ BLOCK = Block(
     start=start,
     output=output,
     derivative=derivative,
-    surfaces=surfaces,
+    event_indicators=event_indicators,
     step_size=0.0005,
 )

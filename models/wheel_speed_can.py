@@ -11,7 +11,7 @@ from . import tooth_wheel
 from .block.declaration import Boolean, Integer, Real
 from .block.noise import uniform
 from .block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
-from .block.types import Block
+from .block.types import SampledBlock
 from .tooth_wheel import ToothWheel
 from .vehicle import GearRatio, WheelRadius
 
@@ -166,9 +166,10 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     return Output(omega_2_can=x.omega_2_can, valid=x.valid, counter=x.counter)
 
 
-BLOCK = Block(
+BLOCK = SampledBlock(
     name="WheelSpeedCan",
     description="Wheel speed from the ABS over CAN: coarse, late, absent at low speed",
+    module=__name__,
     Parameters=Parameters,
     Input=Input,
     State=State,

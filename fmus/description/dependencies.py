@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from models.block.types import Block
+from models.block.types import Block, SampledBlock
 
 
 class Symbol:
@@ -52,7 +52,7 @@ def _without_sources(value: Any) -> Any:
 
 def output_dependencies(block: Block) -> dict[str, frozenset[str]]:
     """For every output the inputs that it depends on directly; none for a sampled block."""
-    if block.update:
+    if isinstance(block, SampledBlock):
         return {name: frozenset() for name in block.Output._fields}
     start = block.start(block.Input(), block.Parameters())
     u, p = _symbols(block.Input, named=True), _symbols(block.Parameters, named=False)

@@ -6,7 +6,7 @@ from html import escape
 from pathlib import Path
 
 from models.block.declaration import Enumeration
-from models.block.types import Block
+from models.block.types import Block, ContinuousBlock
 
 from ..fmu import Fmu
 from .build_kind import BuildKind
@@ -75,8 +75,9 @@ def page(fmu: Fmu, kind: BuildKind) -> str:
 
 def timing(block: Block) -> str:
     """When the block computes, in a sentence."""
-    sentence = SAMPLED if block.update else CONTINUOUS
-    return sentence.format(step=1000.0 * (block.sample_time or block.step_size))
+    if isinstance(block, ContinuousBlock):
+        return CONTINUOUS.format(step=1000.0 * block.step_size)
+    return SAMPLED.format(step=1000.0 * block.sample_time)
 
 
 def tables(block: Block) -> Iterator[tuple[str, list[tuple[str, ...]]]]:

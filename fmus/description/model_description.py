@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from models.block.declaration import Boolean, Enumeration, Integer, Real
+from models.block.types import SampledBlock
 
 from ..fmu import Fmu
 from .build_kind import BuildKind
@@ -50,7 +51,7 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     SubElement(root, "DefaultExperiment", experiment)
     listed = SubElement(root, "ModelVariables")
     for variable in all_variables:
-        _add_variable(listed, variable, sampled=fmu.block.update is not None)
+        _add_variable(listed, variable, sampled=isinstance(fmu.block, SampledBlock))
     _add_structure(root, fmu, all_variables)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"

@@ -5,6 +5,8 @@ from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 
+from models.block.types import ContinuousBlock
+
 from ..archive import guid_of, write_archive
 from ..description.build_kind import DISCARDED, BuildKind
 from ..description.documentation import documentation
@@ -53,18 +55,18 @@ def build_native(
 
 def c_sources(fmu: Fmu) -> dict[str, bytes]:
     """All C files of an FMU by name, with an empty GUID."""
-    names = FOR_ALL + (FOR_SAMPLED if fmu.block.update else FOR_CONTINUOUS)
+    names = FOR_ALL + (FOR_CONTINUOUS if isinstance(fmu.block, ContinuousBlock) else FOR_SAMPLED)
     sources = {name: (C_FILES / name).read_bytes() for name in names}
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob("fmi2*.h")}
     generated = block_sources(fmu) | {"variables.c": variables_source(fmu, "")}
-    if fmu.block.derivative:
+    if isinstance(fmu.block, ContinuousBlock):
         generated["dop853.h"] = step_header()
     return sources | {name: text.encode() for name, text in generated.items()}
 
 
 def native_kind(fmu: Fmu, sources: Mapping[str, bytes]) -> BuildKind:
     """What the native build of an FMU says of itself; rates of change are known of continuous blocks."""
-    continuous = fmu.block.derivative is not None
+    continuous = isinstance(fmu.block, ContinuousBlock)
     return BuildKind(
         tool=f"CasADi {version('casadi')}",
         capabilities={

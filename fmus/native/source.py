@@ -3,6 +3,8 @@
 import re
 from typing import Any
 
+from models.block.types import SampledBlock
+
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 from .arithmetic import Graph
@@ -17,7 +19,7 @@ MEANINGS = {
     "start": "The state at the start, with the inputs of that instant.",
     "output": "The outputs.",
     "derivative": "The rate of change of the state.",
-    "surfaces": "Values that are zero where the equations have a kink.",
+    "event_indicators": "Values that are zero where the equations have a kink.",
     "update": "The state at the next sample.",
     "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
     "start_rate": "The rate of change of the outputs at the start when inputs and parameters change at du and dp.",
@@ -81,12 +83,12 @@ def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
 
 def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
     """What else there is to know of the block."""
-    if fmu.block.update:
+    if isinstance(fmu.block, SampledBlock):
         return [f"#define SAMPLE_TIME {fmu.block.sample_time!r} /* s */"]
-    surfaces = [each.function.size1_out(0) for each in traced if each.name == "surfaces"]
+    indicators = [each.function.size1_out(0) for each in traced if each.name == "event_indicators"]
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
-        f"#define SURFACES {sum(surfaces)}",
+        f"#define INDICATORS {sum(indicators)}",
     ]
 
 
@@ -101,7 +103,7 @@ WIDTH = 118
 def head(each: Traced, names: Names = IN_FMU) -> str:
     """The head of a function in C."""
     arguments = [f"const {names.struct}{_record(name)} *{name}" for name in each.arguments]
-    result = f"{names.real} g[]" if each.result == "g" else f"{names.struct}{_record(each.result)} *{each.result}"
+    result = f"{names.real} z[]" if each.result == "z" else f"{names.struct}{_record(each.result)} *{each.result}"
     line = f"void {names.function}{each.name}({', '.join([*arguments, result])})"
     return line if len(line) <= WIDTH else line.replace("(", "(\n    ").replace(", ", ",\n    ")
 
@@ -110,7 +112,7 @@ def function(each: Traced, records: dict[str, Any], precision: Precision, names:
     """A function in C; `records` holds one of each record that it reads or writes, by their names in RECORDS."""
     inputs = [_lvalues(name, records) for name in each.arguments]
     size = each.function.size1_out(0)
-    outputs = [f"g[{k}]" for k in range(size)] if each.result == "g" else _lvalues(each.result, records)
+    outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
     lines = Statements(Graph(each.function), inputs, outputs, precision).lines
     text = "\n".join(lines)
     unused = [f"    (void){name};" for name in each.arguments if not re.search(rf"\b{name}->", text)]

@@ -8,6 +8,7 @@ import argparse
 from pathlib import Path
 
 from models.block.declaration import Enumeration, variables
+from models.block.types import SampledBlock
 
 from ..damping_controller import FMU
 from ..fmu import Fmu
@@ -63,7 +64,7 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
         ValueError: the block is continuous.
     """
     block = fmu.block
-    if not block.update:
+    if not isinstance(block, SampledBlock):
         raise ValueError(f"{fmu.name} is a continuous block; only sampled ones run on a target")
     file = fmu.module.rpartition(".")[2]
     names = Names(precision.real, fmu.name, f"{file}_")

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import casadi
 
-from models.block.types import Block
+from models.block.types import Block, ContinuousBlock, SampledBlock
 
 from .symbol import Symbol, expression
 
@@ -22,7 +22,7 @@ class Traced(NamedTuple):
     Attributes:
         function: its inputs are the flattened records `arguments`, its output the flattened `result`.
         arguments: of x, u, p, and dx, du, dp for rates of change of these.
-        result: x, dx, y, dy or, for the surfaces, g.
+        result: x, dx, y, dy or, for the event indicators, z.
     """
 
     name: str
@@ -45,11 +45,11 @@ def trace(block: Block) -> tuple[Traced, ...]:
     x, u, p = symbols.values()
     with _exact():
         results = {"start": ("up", "x", block.start(u, p)), "output": ("xup", "y", block.output(x, u, p))}
-        if block.derivative:
+        if isinstance(block, ContinuousBlock):
             results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
-            if block.surfaces:
-                results["surfaces"] = ("xup", "g", block.surfaces(x, u, p))
-        if block.update:
+            if indicators := block.event_indicators(x, u, p):
+                results["event_indicators"] = ("xup", "z", indicators)
+        elif isinstance(block, SampledBlock):
             results["update"] = ("xup", "next", block.update(x, u, p))
         started = block.output(block.start(u, p), u, p)
     vectors = {name: _vector(record) for name, record in symbols.items()}
@@ -57,7 +57,7 @@ def trace(block: Block) -> tuple[Traced, ...]:
         _traced(name, {argument: vectors[argument] for argument in arguments}, result, _vector(values))
         for name, (arguments, result, values) in results.items()
     ]
-    if block.derivative:
+    if isinstance(block, ContinuousBlock):
         traced.append(_rate("output_rate", _vector(results["output"][2]), vectors, ("x", "u")))
         del vectors["x"]
         traced.append(_rate("start_rate", _vector(started), vectors, ("u", "p")))

@@ -5,19 +5,13 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any
 
-from models.block.integrator import Integrator
+from models.block.runner import Runner, runner
 
 from . import snapshot
 from .repairs import dismiss_guard, fmi_call
 from .values import Refused, Values
 
 FMI_DISCARD = 2
-
-TICK_TOLERANCE = 1e-3
-"""In sample times: a tick this close to a communication point is at it.
-
-Hosts that add up their step sizes instead of counting are off by 1e-8 s after a quarter of an hour.
-"""
 
 TIME_TOLERANCE = 1e-6
 """In s: how far the host's time may be from the FMU's."""
@@ -49,9 +43,8 @@ SETTABLE = (("input", "parameter"), ("input", "parameter"), ("input",), ())
 class BlockSlave:
     """Mixed into PythonFMU's Fmi2Slave with the class attribute `block`.
 
-    Before initialization mode is left there is no state x: the outputs then are those of the state that
-    the present inputs and parameters would start from. What the last tick of a sampled block computed
-    is `coming`, and becomes its state x at the next tick.
+    Before initialization mode is left nothing runs: the outputs then are those of the state that the
+    present inputs and parameters would start from.
     """
 
     block: Any
@@ -61,29 +54,29 @@ class BlockSlave:
         super().__init__(**kwargs)
         dismiss_guard(kwargs["resources"], self.block.name)
         self.values = Values(self.block)
-        if self.block.derivative:
-            self.integrator = Integrator(self.block)
         self.mode = Mode.INSTANTIATED
         self.start_time = self.time = 0.0
-        self.ticks = 0
-        self.x: Any = None
-        self.coming: Any = None
+        self.runner: Runner | None = None
+
+    @property
+    def _x(self) -> Any:
+        return self.runner and self.runner.x
 
     @fmi_call
     def get_real(self, vrs: list[int]) -> list[float]:
-        return self.values.get("Real", vrs, self.x)
+        return self.values.get("Real", vrs, self._x)
 
     @fmi_call
     def get_integer(self, vrs: list[int]) -> list[int]:
-        return [int(value) for value in self.values.get("Integer", vrs, self.x)]
+        return [int(value) for value in self.values.get("Integer", vrs, self._x)]
 
     @fmi_call
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        return self.values.get("Boolean", vrs, self.x)
+        return self.values.get("Boolean", vrs, self._x)
 
     @fmi_call
     def get_string(self, vrs: list[int]) -> list[str]:
-        return self.values.get("String", vrs, self.x)
+        return self.values.get("String", vrs, self._x)
 
     @fmi_call
     def set_real(self, vrs: list[int], values: list[float]) -> None:
@@ -124,7 +117,7 @@ class BlockSlave:
     @fmi_call
     def exit_initialization_mode(self) -> None:
         self._require(Mode.INITIALIZATION, "fmi2ExitInitializationMode")
-        self.x = self.coming = self.block.start(self.values.u, self.values.p)
+        self.runner = runner(self.block, self.values.u, self.values.p)
         self._enter(Mode.STEPPING)
 
     @fmi_call
@@ -140,13 +133,12 @@ class BlockSlave:
         except Refused as refusal:
             self.log(str(refusal), FMI_DISCARD, "logStatusDiscard")
             return False
-        end, before = current_time + step_size, self.x
-        if self.block.derivative:
-            self.x = self.integrator.advance(self.x, self.values.u, self.values.p, step_size)
-        else:
-            self._tick(end)
-        self.time = end
-        if self.x is not before:
+        assert self.runner
+        before = self.runner.x
+        self.runner.elapsed = current_time - self.start_time
+        self.runner.advance(self.values.u, step_size)
+        self.time = current_time + step_size
+        if self.runner.x is not before:
             self.values.up_to_date = False
         return True
 
@@ -163,32 +155,24 @@ class BlockSlave:
                 f"{self.block.name} has been computed up to {self.time!r} s"
             )
 
-    def _tick(self, end: float) -> None:
-        """All ticks before `end` that have not been made; tick k is due at start_time + k T_s."""
-        samples = (end - self.start_time) / self.block.sample_time
-        due = math.ceil(samples - TICK_TOLERANCE)
-        x, coming = self.x, self.coming
-        for _ in range(self.ticks, due):
-            x, coming = coming, self.block.update(coming, self.values.u, self.values.p)
-        self.x = coming if due - samples <= TICK_TOLERANCE else x
-        self.coming, self.ticks = coming, max(self.ticks, due)
-
     @fmi_call
     def _get_fmu_state(self) -> bytes:
         """The saved state, which is its own serialised form."""
-        times = (self.start_time, self.time, self.ticks)
-        content = (self.mode, times, self.x, self.coming, self.values.u, self.values.p)
+        memory = self.runner and self.runner.memory
+        content = (self.mode, self.start_time, self.time, self.values.u, self.values.p, memory)
         return snapshot.pack(type(self).__module__, content)
 
     @fmi_call
     def _set_fmu_state(self, state: bytes) -> None:
         try:
-            mode, times, x, coming, u, p = snapshot.unpack(type(self).__module__, state)
+            mode, start_time, time, u, p, memory = snapshot.unpack(type(self).__module__, state)
         except ValueError as error:
             raise Refused(f"the FMU state is refused: {error}") from error
         self.values.restore(u, p)
-        self.x, self.coming = (state and self.block.State._make(state) for state in (x, coming))
-        self.start_time, self.time, self.ticks = times
+        self.start_time, self.time, self.runner = start_time, time, None
+        if memory:
+            self.runner = runner(self.block, self.values.u, self.values.p)
+            self.runner.restore(snapshot.shaped(memory, self.runner.memory))
         self._enter(Mode(mode))
 
     @staticmethod

@@ -14,8 +14,8 @@ def pack(build: str, content: tuple[Any, ...]) -> bytes:
     return b"%08x" % zlib.crc32(body) + body
 
 
-def unpack(build: str, state: bytes) -> tuple[Any, ...]:
-    """What `pack` was given.
+def unpack(build: str, state: bytes) -> list[Any]:
+    """What `pack` was given, with lists in the place of tuples.
 
     Raises:
         ValueError: the bytes are damaged, or come from another build.
@@ -26,8 +26,12 @@ def unpack(build: str, state: bytes) -> tuple[Any, ...]:
     origin, content = json.loads(body)
     if origin != build:
         raise ValueError(f"it was saved by {origin}, this is {build}")
-    return _tuples(content)
+    return content
 
 
-def _tuples(content: Any) -> Any:
-    return tuple(_tuples(item) for item in content) if isinstance(content, list) else content
+def shaped(content: Any, template: Any) -> Any:
+    """Nested lists as the records and tuples of a template of the same structure."""
+    if not isinstance(template, tuple):
+        return content
+    items = [shaped(item, like) for item, like in zip(content, template, strict=True)]
+    return getattr(type(template), "_make", tuple)(items)

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from models.block.types import ContinuousBlock
+
 from ..description.variables import Variable, interface
 
 
@@ -43,7 +45,7 @@ class Values:
         self.u = self.block.Input._make(self._all[: self.first_output])
         if self._tuning:
             self.p = self.block.Parameters._make(self._all[self.first_parameter :])
-        if self._tuning or not self.block.update:
+        if self._tuning or isinstance(self.block, ContinuousBlock):
             self.up_to_date = False
 
     def get(self, fmi_type: str, references: list[int], x: Any) -> list[Any]:
@@ -78,7 +80,7 @@ class Values:
             self._all[reference] = value
         self._renew()
 
-    def restore(self, u: tuple[Any, ...], p: tuple[Any, ...]) -> None:
+    def restore(self, u: list[Any], p: list[Any]) -> None:
         """Puts back inputs and parameters as they were in `u` and `p`."""
         self._all[: self.first_output], self._all[self.first_parameter :] = u, p
         self.allow("input", "parameter")

@@ -8,13 +8,13 @@ with one instance after the other exchanged.
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fmus.catalogue import FMUS
 from models.block.declaration import Boolean, Integer, Real, variables
-from models.block.integrator import Integrator
+from models.block.runner import runner
 from models.block.types import Block
 
 from ..cosimulation.master import Scheme, Source, run
@@ -83,42 +83,13 @@ def by_functions(block: Block, given: Given) -> dict[str, np.ndarray]:
     p = block.Parameters(**given.parameters)
     rows = zip(*(given.inputs[v.name].tolist() for v in variables(block.Input)), strict=True)
     samples = [block.Input(*row) for row in rows]
-    x = block.start(samples[0], p)
-    outputs = [block.output(x, samples[0], p)]
-    advance = (Integrating if block.derivative else Ticking)(block, x, p).advance
-    outputs += [block.output(advance(u), u, p) for u in samples[:-1]]
+    running = runner(block, samples[0], p)
+    outputs = [running.output(samples[0])]
+    for u in samples[:-1]:
+        running.advance(u, STEP)
+        outputs.append(running.output(u))
     names = (v.name for v in variables(block.Output))
     return {name: np.array(column) for name, column in zip(names, zip(*outputs, strict=True), strict=True)}
-
-
-class Integrating:
-    """A continuous block."""
-
-    def __init__(self, block: Block, x: Any, p: Any) -> None:
-        self.integrator, self.x, self.p = Integrator(block), x, p
-
-    def advance(self, u: Any) -> Any:
-        """The state one STEP later."""
-        self.x = self.integrator.advance(self.x, u, self.p, STEP)
-        return self.x
-
-
-class Ticking:
-    """A sampled block whose sample time is a whole multiple of STEP."""
-
-    def __init__(self, block: Block, x: Any, p: Any) -> None:
-        assert block.update
-        self.update, self.coming, self.x, self.p = block.update, x, x, p
-        self.steps, self.k = round(block.sample_time / STEP), 0
-
-    def advance(self, u: Any) -> Any:
-        """The state one STEP later; what a tick computes shows one sample time after it."""
-        if self.k % self.steps == 0:
-            self.coming = self.update(self.x, u, self.p)
-        self.k += 1
-        if self.k % self.steps == 0:
-            self.x = self.coming
-        return self.x
 
 
 def by_fmu(path: Path, given: Given) -> np.ndarray:

@@ -22,11 +22,11 @@ OPEN = NOISELESS | {"controller.k_d": 0.0, "controller.k_T": 0.0, "controller.e_
 """The estimator takes its signals however far off they are, and nothing is done with what it finds."""
 
 STATES = ("omega_1", "omega_2", "phi", "T_l")
-NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("K", "Kw") for state in STATES}
-NO_WHEEL_SPEED = {f"controller.H_{state}": 0.0 for state in STATES}
+NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw") for state in STATES}
+NO_WHEEL_SPEED = {f"controller.L_can_{state}": 0.0 for state in STATES}
 NO_TORQUE = {"controller.J_1": 10.0}
 WHEEL_SPEED_HELD = NO_WHEEL_SPEED | {
-    "controller.H_omega_2": 1.0,
+    "controller.L_can_omega_2": 1.0,
     "controller.T_age": 0.002,
     "controller.J_2": 100.0,
 }

@@ -103,17 +103,17 @@ def both_speed_gains(A: np.ndarray, Q: np.ndarray, T_age: float, w: Weights) -> 
     P, gains = np.eye(size), []
     for k in range(400 * cycle):
         P = F @ P @ F.T + noise
-        P, K_1 = _measured(P, H_1, speed_noise())
-        gains = [*gains[1 - cycle :], K_1[:4]]
+        P, L_1 = _measured(P, H_1, speed_noise())
+        gains = [*gains[1 - cycle :], L_1[:4]]
         if k % cycle == 0:
-            P, K_2 = _measured(P, H_2, w.omega_2**2)
-    return np.mean(gains, axis=0), K_2[:4]
+            P, L_2 = _measured(P, H_2, w.omega_2**2)
+    return np.mean(gains, axis=0), L_2[:4]
 
 
 def _measured(P: np.ndarray, H: np.ndarray, R: float) -> tuple[np.ndarray, np.ndarray]:
     """Covariance and gain after a scalar measurement H x with variance R."""
-    K = P @ H / (H @ P @ H + R)
-    return P - np.outer(K, H @ P), K
+    L = P @ H / (H @ P @ H + R)
+    return P - np.outer(L, H @ P), L
 
 
 def damping_gain(w: Weights) -> float:
@@ -134,12 +134,12 @@ def design(w: Weights = WEIGHTS) -> dict[str, float]:
     model = SimpleNamespace(J_1=PLANT.J_1, J_2=PLANT.J_2, C=PLANT.C, phi_B=PLANT.phi_B, lambda_v=w.lambda_v)
     A, Q = transition(model), process_noise(w)
     T_age = 0.5 * CAN.T_cyc + 0.5 * (CAN.d_min + CAN.d_max)
-    K = motor_speed_gains(A, Q)
-    Kw, H = both_speed_gains(A, Q, T_age, w)
+    L = motor_speed_gains(A, Q)
+    Lw, L_can = both_speed_gains(A, Q, T_age, w)
     states = Estimate._fields
     gains = {
         f"{name}_{state}": float(gain)
-        for name, row in (("K", K), ("Kw", Kw), ("H", H))
+        for name, row in (("L", L), ("Lw", Lw), ("L_can", L_can))
         for state, gain in zip(states, row, strict=True)
     }
     return {

@@ -8,14 +8,15 @@ coupling error of the master and to design the controller; it runs the models th
 from collections import namedtuple
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from models import damping_controller, motor_torque_loop, wheel_speed_can
-from models.block.integrator import Integrator
-from models.block.types import Block
+from models.block.runner import runner
+from models.block.types import ContinuousBlock
 
 STEP = wheel_speed_can.T_S
 """Interval in s of the results; the sample times of all blocks are whole multiples of it."""
@@ -24,7 +25,8 @@ Signals = Callable[[int], tuple[float, float, float]]
 """Number of the interval -> T_driver (N.m), T_brake (N.m) and slope (rad), held over it."""
 
 
-def drive_train(plant: ModuleType) -> Block:
+@cache
+def drive_train(plant: ModuleType) -> ContinuousBlock:
     """Motor and plant as one continuous block; its input is that of the plant with T_ref for T_mot."""
     motor = motor_torque_loop
     split = len(motor.State._fields)
@@ -47,31 +49,12 @@ def drive_train(plant: ModuleType) -> Block:
         x_motor, u_motor, x_plant, u_plant = parts(x, u)
         return motor.output(x_motor, u_motor, p[0]), plant.output(x_plant, u_plant, p[1])
 
-    def surfaces(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
+    def event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
         _, _, x_plant, u_plant = parts(x, u)
-        return plant.surfaces(x_plant, u_plant, p[1])
+        return plant.event_indicators(x_plant, u_plant, p[1])
 
-    return replace(plant.BLOCK, State=State, start=start, derivative=derivative, output=output, surfaces=surfaces)
-
-
-class Ticking:
-    """A sampled block; what a tick computes shows one sample later."""
-
-    def __init__(self, model: ModuleType, u: Any, p: Any) -> None:
-        self.model, self.p = model, p
-        self.intervals = round(model.T_S / STEP)
-        self.x = self.coming = model.start(u, p)
-
-    def output(self, k: int) -> Any:
-        """Output from the instant k * STEP on."""
-        if k % self.intervals == 0:
-            self.x = self.coming
-        return self.model.output(self.x, None, self.p)
-
-    def tick(self, k: int, u: Any) -> None:
-        """Takes the inputs of the instant k * STEP, if there is a tick."""
-        if k % self.intervals == 0:
-            self.coming = self.model.update(self.x, u, self.p)
+    functions = {"start": start, "derivative": derivative, "output": output, "event_indicators": event_indicators}
+    return replace(plant.BLOCK, State=State, **functions)
 
 
 def run(
@@ -96,27 +79,23 @@ def run(
     """
     models = instances(plant)
     p = {name: model.Parameters(**(parameters or {}).get(name, {})) for name, model in models.items()}
-    p_d = (p["motor"], p["plant"])
-    block = drive_train(plant)
-    integrator = Integrator(block)
-
     u = plant.Input(*signals(0))
-    x = block.start(u, p_d)
-    motor, seen = block.output(x, u, p_d)
-    can = Ticking(wheel_speed_can, wheels(seen), p["can"])
-    measured = sensed(u.T_mot, motor, can.output(0), enable)
-    controller = Ticking(damping_controller, measured, p["controller"])
+    driven = runner(drive_train(plant), u, (p["motor"], p["plant"]))
+    motor, seen = driven.output(u)
+    can = runner(wheel_speed_can.BLOCK, wheels(seen), p["can"])
+    measured = sensed(u.T_mot, motor, can.output(None), enable)
+    controller = runner(damping_controller.BLOCK, measured, p["controller"])
 
     rows = []
     for k in range(round(duration / STEP) + 1):
         T_driver, T_brake, slope = signals(k)
-        command, bus = controller.output(k), can.output(k)
+        command, bus = controller.output(None), can.output(None)
         u = plant.Input(command.T_ref, T_brake, slope)
-        motor, seen = block.output(x, u, p_d)
+        motor, seen = driven.output(u)
         rows.append((k * STEP, T_driver, *command, *motor, *seen, *bus))
-        controller.tick(k, sensed(T_driver, motor, bus, enable))
-        can.tick(k, wheels(seen))
-        x = integrator.advance(x, u, p_d, STEP)
+        controller.advance(sensed(T_driver, motor, bus, enable), STEP)
+        can.advance(wheels(seen), STEP)
+        driven.advance(u, STEP)
     outputs = (f"{name}.{field}" for name, model in models.items() for field in model.Output._fields)
     return np.array(rows, dtype=[(name, float) for name in ("time", "controller.T_driver", *outputs)])
 

@@ -1,8 +1,8 @@
 """Integrating a continuous block, with its kinks located instead of stepped over.
 
-Between its surfaces a block is smooth and the method has order 8. When a surface changes sign
-within a step, the step is shortened so that it ends just behind the surface; an excursion that
-leaves and comes back within one step is found from the slopes at both ends.
+Between the zeros of its event indicators a block is smooth and the method has order 8. When an
+indicator changes sign within a step, the step is shortened so that it ends just behind the zero; an
+excursion that leaves and comes back within one step is found from the slopes at both ends.
 """
 
 import math
@@ -10,15 +10,16 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from .dop853 import A, B
+from .types import ContinuousBlock
 
 LOCATION_TOLERANCE = 1e-13
 """Time in s within which a crossing is located; it moves the state by less than rounding does."""
 
 PROBE = 1e-7
-"""Time in s over which the slope of a surface is taken."""
+"""Time in s over which the slope of an event indicator is taken."""
 
 MOST_CROSSINGS = 16
-"""Crossings located in one step; what rests on a surface may cross it without end."""
+"""Crossings located in one step; what rests on a zero may cross it without end."""
 
 
 Tableau = tuple[tuple[dict[int, float], ...], dict[int, float]]
@@ -27,7 +28,7 @@ Tableau = tuple[tuple[dict[int, float], ...], dict[int, float]]
 EULER: Tableau = (({},), {0: 1.0})
 
 
-def stepper(block: Any, tableau: Tableau) -> Callable[[Any, Any, Any, Any, float], Any]:
+def stepper(block: ContinuousBlock, tableau: Tableau) -> Callable[[Any, Any, Any, Any, float], Any]:
     """Function (x, dx, u, p, h) -> x after one step of length h, dx being the derivative at x.
 
     It is written out for the fields of the block's State (as NamedTuple writes its methods), which
@@ -67,9 +68,9 @@ class Start(NamedTuple):
 class Integrator:
     """Advances the state of one continuous block; keeps nothing between two calls."""
 
-    def __init__(self, block: Any) -> None:
+    def __init__(self, block: ContinuousBlock) -> None:
         self.derivative = block.derivative
-        self.surfaces = block.surfaces or (lambda x, u, p: ())
+        self.event_indicators = block.event_indicators
         self.step_size = block.step_size
         self.step = stepper(block, (A, B))
         self.tangent = stepper(block, EULER)
@@ -88,9 +89,9 @@ class Integrator:
         return x
 
     def _advance_through(self, x: Any, u: Any, p: Any, h: float, sides: list[bool]) -> Any:
-        """The state after one step of length h, split at every surface on its way.
+        """The state after one step of length h, split at every event on its way.
 
-        `sides` says on which side of each surface the state is, and is kept up to date. It is
+        `sides` says on which side of each zero the state is, and is kept up to date. It is
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
         for _ in range(MOST_CROSSINGS):
@@ -99,19 +100,19 @@ class Integrator:
             crossings = self._crossings(start, h, x_end, sides)
             if not crossings:
                 return x_end
-            length, surface = min(crossings)
+            length, crossed = min(crossings)
             x = self.step(*start, length)
-            sides[surface] = not sides[surface]
+            sides[crossed] = not sides[crossed]
             h -= length
             if h <= LOCATION_TOLERANCE:
                 return x
         return self.step(x, self.derivative(x, u, p), u, p, h)
 
     def _sides(self, x: Any, u: Any, p: Any) -> list[bool]:
-        return [g > 0.0 for g in self.surfaces(x, u, p)]
+        return [z > 0.0 for z in self.event_indicators(x, u, p)]
 
     def _crossings(self, start: Start, h: float, x_end: Any, sides: list[bool]) -> list[tuple[float, int]]:
-        """Each crossing within a step of length h: length of the step to it, number of the surface."""
+        """Each crossing within a step of length h: length of the step to it, number of the event indicator."""
         if not sides:
             return []
         end = self._sides(x_end, start.u, start.p)
@@ -127,19 +128,19 @@ class Integrator:
                 found.append((self._locate(n, start, beyond, side), n))
         return found
 
-    def _surface(self, n: int, x: Any, start: Start) -> float:
-        return self.surfaces(x, start.u, start.p)[n]
+    def _indicator(self, n: int, x: Any, start: Start) -> float:
+        return self.event_indicators(x, start.u, start.p)[n]
 
     def _value(self, n: int, start: Start, length: float) -> float:
-        return self._surface(n, self.step(*start, length), start)
+        return self._indicator(n, self.step(*start, length), start)
 
     def _slope(self, n: int, start: Start) -> float:
-        """Time derivative of surface n."""
+        """Time derivative of event indicator n."""
         probe = self.tangent(*start, PROBE)
-        return (self._surface(n, probe, start) - self._surface(n, start.x, start)) / PROBE
+        return (self._indicator(n, probe, start) - self._indicator(n, start.x, start)) / PROBE
 
     def _excursion(self, n: int, start: Start, h: float, x_end: Any, side: bool) -> float | None:
-        """Length of a step to beyond surface n, if the state goes there and is back before h."""
+        """Length of a step to beyond zero n, if the state goes there and is back before h."""
         dx_end = self.derivative(x_end, start.u, start.p)
         slope, slope_end = self._slope(n, start), self._slope(n, start._replace(x=x_end, dx=dx_end))
         if slope_end * slope >= 0.0:
@@ -148,27 +149,27 @@ class Integrator:
         return turn if (self._value(n, start, turn) > 0.0) != side else None
 
     def _locate(self, n: int, start: Start, far: float, side: bool) -> float:
-        """Shortest step (to LOCATION_TOLERANCE) that ends beyond surface n; one of length `far` does.
+        """Shortest step (to LOCATION_TOLERANCE) that ends beyond zero n; one of length `far` does.
 
         Regula falsi as modified by Illinois: when the same end moves twice, the value at the other
-        counts half. Three steps without halving the bracket (a surface that a block at rest lies on
+        counts half. Three steps without halving the bracket (an indicator on whose zero a block at rest lies
         is flat there) are followed by a bisection.
         """
-        near, g_near, g_far = 0.0, self._surface(n, start.x, start), self._value(n, start, far)
-        if (g_near > 0.0) != side:
-            g_near = 0.0
+        near, z_near, z_far = 0.0, self._indicator(n, start.x, start), self._value(n, start, far)
+        if (z_near > 0.0) != side:
+            z_near = 0.0
         moved, slow = "", 0
         while far - near > LOCATION_TOLERANCE:
             width = far - near
-            bisect = slow == 3 or g_far == g_near
-            length = near + 0.5 * width if bisect else far - g_far * width / (g_far - g_near)
+            bisect = slow == 3 or z_far == z_near
+            length = near + 0.5 * width if bisect else far - z_far * width / (z_far - z_near)
             length = min(max(length, near + 0.3 * LOCATION_TOLERANCE), far - 0.3 * LOCATION_TOLERANCE)
-            g = self._value(n, start, length)
-            if (g > 0.0) != side:
-                far, g_far, g_near = length, g, 0.5 * g_near if moved == "far" else g_near
+            z = self._value(n, start, length)
+            if (z > 0.0) != side:
+                far, z_far, z_near = length, z, 0.5 * z_near if moved == "far" else z_near
                 moved = "far"
             else:
-                near, g_near, g_far = length, g, 0.5 * g_far if moved == "near" else g_far
+                near, z_near, z_far = length, z, 0.5 * z_far if moved == "near" else z_far
                 moved = "near"
             slow = 0 if bisect or width >= 2.0 * (far - near) else slow + 1
         return far

@@ -1,10 +1,10 @@
 """A block of the control loop: its declared records and its pure functions.
 
 x is the state, u the input, p the parameters; all are named tuples of floats (booleans are bool,
-whole numbers int; a field of a state may itself be a tuple, of fixed shape).
+whole numbers int; a field of a state may itself be a record or a tuple of fixed length).
 
-A *continuous* block has `derivative`; between the surfaces g_k(x, u, p) = 0 its equations are
-smooth, at them they have kinks (no jumps). A *sampled* block has `update`:
+Between the zeros of its event indicators z_k(x, u, p) the equations of a *continuous* block are
+smooth; at them they have kinks (no jumps). A *sampled* block computes
 
     x(k+1) = update(x(k), u(k), p)    at the instants k T_s, k = 0, 1, 2, ...
 
@@ -17,35 +17,63 @@ from dataclasses import dataclass
 from typing import Any
 
 
-@dataclass(frozen=True)
-class Block:
-    """What a tool needs to run a block.
+def no_event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
+    """Of a block whose equations are smooth everywhere."""
+    return ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Block:
+    """What every block has.
 
     Attributes:
         name: the name of the FMU.
         description: one line.
+        module: where its equations stand; the docstring there explains them.
         Parameters, Input, State, Output: the declared named tuples.
         start: (u, p) -> x, the state at t = 0 with the inputs of that instant.
         output: (x, u, p) -> y; a sampled block does not use u.
-        derivative: (x, u, p) -> dx/dt as a State, for a continuous block.
-        surfaces: (x, u, p) -> tuple of floats whose zeros are located, for a continuous block.
-        step_size: longest internal integration step in s, for a continuous block.
-        update: (x, u, p) -> next x, for a sampled block.
-        sample_time: T_s in s, for a sampled block.
         tolerates_bad_input: inputs are not refused; the block itself copes with NaN and the absurd.
     """
 
     name: str
     description: str
-    Parameters: type
-    Input: type
-    State: type
-    Output: type
+    module: str
+    Parameters: type[Any]
+    Input: type[Any]
+    State: type[Any]
+    Output: type[Any]
     start: Callable[[Any, Any], Any]
     output: Callable[[Any, Any, Any], Any]
-    derivative: Callable[[Any, Any, Any], Any] | None = None
-    surfaces: Callable[[Any, Any, Any], tuple[Any, ...]] | None = None
-    step_size: float = 0.0
-    update: Callable[[Any, Any, Any], Any] | None = None
-    sample_time: float = 0.0
     tolerates_bad_input: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContinuousBlock(_Block):
+    """A block of differential equations.
+
+    Attributes:
+        derivative: (x, u, p) -> dx/dt as a State.
+        event_indicators: (x, u, p) -> tuple of floats whose zeros are located.
+        step_size: longest step of the integration in s.
+    """
+
+    derivative: Callable[[Any, Any, Any], Any]
+    event_indicators: Callable[[Any, Any, Any], tuple[Any, ...]] = no_event_indicators
+    step_size: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SampledBlock(_Block):
+    """A block that computes once a sample.
+
+    Attributes:
+        update: (x, u, p) -> next x.
+        sample_time: T_s in s.
+    """
+
+    update: Callable[[Any, Any, Any], Any]
+    sample_time: float
+
+
+Block = ContinuousBlock | SampledBlock

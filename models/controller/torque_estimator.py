@@ -52,10 +52,10 @@ def predict(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
 def correct_by_motor_speed(e: Estimate, omega_1_meas: Any, share: Any, p: Any) -> Estimate:
     error = omega_1_meas - e.omega_1
     return Estimate(
-        e.omega_1 + error * (p.K_omega_1 + share * (p.Kw_omega_1 - p.K_omega_1)),
-        e.omega_2 + error * (p.K_omega_2 + share * (p.Kw_omega_2 - p.K_omega_2)),
-        e.phi + error * (p.K_phi + share * (p.Kw_phi - p.K_phi)),
-        e.T_l + error * (p.K_T_l + share * (p.Kw_T_l - p.K_T_l)),
+        e.omega_1 + error * (p.L_omega_1 + share * (p.Lw_omega_1 - p.L_omega_1)),
+        e.omega_2 + error * (p.L_omega_2 + share * (p.Lw_omega_2 - p.L_omega_2)),
+        e.phi + error * (p.L_phi + share * (p.Lw_phi - p.L_phi)),
+        e.T_l + error * (p.L_T_l + share * (p.Lw_T_l - p.L_T_l)),
     )
 
 
@@ -65,10 +65,10 @@ def correct_by_wheel_speed(
     """Correction by a message that is `samples` samples old; past[k] is the estimate k + 1 samples ago."""
     error = share * (omega_2_can - interpolate(past, samples - 1.0))
     return Estimate(
-        e.omega_1 + error * p.H_omega_1,
-        e.omega_2 + error * p.H_omega_2,
-        e.phi + error * p.H_phi,
-        e.T_l + error * p.H_T_l,
+        e.omega_1 + error * p.L_can_omega_1,
+        e.omega_2 + error * p.L_can_omega_2,
+        e.phi + error * p.L_can_phi,
+        e.T_l + error * p.L_can_T_l,
     )
 
 

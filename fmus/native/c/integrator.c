@@ -1,8 +1,8 @@
 /* Integrating a continuous block, with its kinks located instead of stepped over.
 
-Between its surfaces a block is smooth and the method has order 8. When a surface changes sign within a
-step, the step is shortened so that it ends just behind the surface; an excursion that leaves and comes
-back within one step is found from the slopes at both ends. The same as integrator.py, operation by operation. */
+Between the zeros of its event indicators a block is smooth and the method has order 8. When an indicator
+changes sign within a step, the step is shortened so that it ends just behind the zero; an excursion that
+leaves and comes back within one step is found from the slopes at both ends. The same as integrator.py, operation by operation. */
 #include "integrator.h"
 
 #include <math.h>
@@ -45,29 +45,29 @@ static void begin(const Problem *problem, double t, const Vector x, Start *from)
     rate(problem, t, x, from->dx);
 }
 
-#if SURFACES
+#if INDICATORS
 
 /* Time in s within which a crossing is located; it moves the state by less than rounding does. */
 #define LOCATION_TOLERANCE 1e-13
 
-/* Time in s over which the slope of a surface is taken. */
+/* Time in s over which the slope of an event indicator is taken. */
 #define PROBE 1e-7
 
-/* Crossings located in one step; what rests on a surface may cross it without end. */
+/* Crossings located in one step; what rests on a zero may cross it without end. */
 #define MOST_CROSSINGS 16
 
-static void surfaces_at(const Problem *problem, double t, const Vector x, real g[SURFACES])
+static void indicators_at(const Problem *problem, double t, const Vector x, real z[INDICATORS])
 {
     Input room;
-    surfaces((const State *)(const void *)x, inputs_at(problem, t, &room), problem->p, g);
+    event_indicators((const State *)(const void *)x, inputs_at(problem, t, &room), problem->p, z);
 }
 
-static void sides_at(const Problem *problem, double t, const Vector x, int sides[SURFACES])
+static void sides_at(const Problem *problem, double t, const Vector x, int sides[INDICATORS])
 {
-    real g[SURFACES];
-    surfaces_at(problem, t, x, g);
-    for (int n = 0; n < SURFACES; n++)
-        sides[n] = g[n] > 0.0;
+    real z[INDICATORS];
+    indicators_at(problem, t, x, z);
+    for (int n = 0; n < INDICATORS; n++)
+        sides[n] = z[n] > 0.0;
 }
 
 static void tangent(const Start *from, double h, Vector end)
@@ -76,31 +76,31 @@ static void tangent(const Start *from, double h, Vector end)
         end[n] = from->x[n] + h * from->dx[n];
 }
 
-static double surface_at(int n, const Problem *problem, double t, const Vector x)
+static double indicator_at(int n, const Problem *problem, double t, const Vector x)
 {
-    real g[SURFACES];
-    surfaces_at(problem, t, x, g);
-    return g[n];
+    real z[INDICATORS];
+    indicators_at(problem, t, x, z);
+    return z[n];
 }
 
-/* Surface n after a step of that length. */
+/* Indicator n after a step of that length. */
 static double value(int n, const Problem *problem, const Start *from, double length)
 {
     Vector end;
     step(problem, from->t, from->x, from->dx, length, end);
-    return surface_at(n, problem, from->t + length, end);
+    return indicator_at(n, problem, from->t + length, end);
 }
 
-/* Time derivative of surface n. */
+/* Time derivative of indicator n. */
 static double slope(int n, const Problem *problem, const Start *from)
 {
     Vector probe;
     tangent(from, PROBE, probe);
-    const double here = surface_at(n, problem, from->t, from->x);
-    return (surface_at(n, problem, from->t + PROBE, probe) - here) / PROBE;
+    const double here = indicator_at(n, problem, from->t, from->x);
+    return (indicator_at(n, problem, from->t + PROBE, probe) - here) / PROBE;
 }
 
-/* Length of a step to beyond surface n, if the state goes there and is back before h; else 0. */
+/* Length of a step to beyond zero n, if the state goes there and is back before h; else 0. */
 static double excursion(int n, const Problem *problem, const Start *from, double h, const Vector end, int side)
 {
     Start back;
@@ -112,35 +112,35 @@ static double excursion(int n, const Problem *problem, const Start *from, double
     return (value(n, problem, from, turn) > 0.0) != side ? turn : 0.0;
 }
 
-/* Shortest step (to LOCATION_TOLERANCE) that ends beyond surface n; one of length `far` does.
+/* Shortest step (to LOCATION_TOLERANCE) that ends beyond zero n; one of length `far` does.
 
 Regula falsi as modified by Illinois: when the same end moves twice, the value at the other counts half. Three
-steps without halving the bracket (a surface that a block at rest lies on is flat there) are followed by a bisection. */
+steps without halving the bracket (an indicator on whose zero a block at rest lies is flat there) are followed by a bisection. */
 static double locate(int n, const Problem *problem, const Start *from, double far, int side)
 {
     double near = 0.0;
-    double g_near = surface_at(n, problem, from->t, from->x), g_far = value(n, problem, from, far);
-    if ((g_near > 0.0) != side)
-        g_near = 0.0;
+    double z_near = indicator_at(n, problem, from->t, from->x), z_far = value(n, problem, from, far);
+    if ((z_near > 0.0) != side)
+        z_near = 0.0;
     enum { NONE, NEAR, FAR } moved = NONE;
     int slow = 0;
     while (far - near > LOCATION_TOLERANCE) {
         const double width = far - near;
-        const int bisect = slow == 3 || g_far == g_near;
-        double length = bisect ? near + 0.5 * width : far - g_far * width / (g_far - g_near);
+        const int bisect = slow == 3 || z_far == z_near;
+        double length = bisect ? near + 0.5 * width : far - z_far * width / (z_far - z_near);
         const double least = near + 0.3 * LOCATION_TOLERANCE, most = far - 0.3 * LOCATION_TOLERANCE;
         length = length > least ? length : least;
         length = length < most ? length : most;
-        const double g = value(n, problem, from, length);
-        if ((g > 0.0) != side) {
+        const double z = value(n, problem, from, length);
+        if ((z > 0.0) != side) {
             far = length;
-            g_far = g;
-            g_near = moved == FAR ? 0.5 * g_near : g_near;
+            z_far = z;
+            z_near = moved == FAR ? 0.5 * z_near : z_near;
             moved = FAR;
         } else {
             near = length;
-            g_near = g;
-            g_far = moved == NEAR ? 0.5 * g_far : g_far;
+            z_near = z;
+            z_far = moved == NEAR ? 0.5 * z_far : z_far;
             moved = NEAR;
         }
         slow = bisect || width >= 2.0 * (far - near) ? 0 : slow + 1;
@@ -148,16 +148,16 @@ static double locate(int n, const Problem *problem, const Start *from, double fa
     return far;
 }
 
-/* The first surface crossed within a step of length h to `end`, and the length of the step to it; else -1. */
+/* The first zero crossed within a step of length h to `end`, and the length of the step to it; else -1. */
 static int first_crossing(
-    const Problem *problem, const Start *from, double h, const Vector end, const int sides[SURFACES], double *length)
+    const Problem *problem, const Start *from, double h, const Vector end, const int sides[INDICATORS], double *length)
 {
-    int ends[SURFACES], straight[SURFACES], first = -1;
+    int ends[INDICATORS], straight[INDICATORS], first = -1;
     Vector tip;
     sides_at(problem, from->t + h, end, ends);
     tangent(from, h, tip);
     sides_at(problem, from->t + h, tip, straight);
-    for (int n = 0; n < SURFACES; n++) {
+    for (int n = 0; n < INDICATORS; n++) {
         double beyond = 0.0;
         if (ends[n] != sides[n])
             beyond = h;
@@ -174,11 +174,11 @@ static int first_crossing(
     return first;
 }
 
-/* One step of length h, split at every surface on its way.
+/* One step of length h, split at every event on its way.
 
-`sides` says on which side of each surface the state is, and is kept up to date. It is remembered rather than
+`sides` says on which side of each zero the state is, and is kept up to date. It is remembered rather than
 looked up: at a crossing the value is zero but for rounding. */
-static void advance_through(const Problem *problem, double t, double h, Vector x, int sides[SURFACES])
+static void advance_through(const Problem *problem, double t, double h, Vector x, int sides[INDICATORS])
 {
     Start from;
     for (int crossings = 0; crossings < MOST_CROSSINGS; crossings++) {
@@ -209,12 +209,12 @@ void integrate(const Problem *problem, double duration, State *state)
     real *x = (real *)state;
     const double steps = fmax(1.0, ceil(duration / LONGEST_STEP - 1e-9));
     const double h = duration / steps;
-#if SURFACES
-    int sides[SURFACES];
+#if INDICATORS
+    int sides[INDICATORS];
     sides_at(problem, 0.0, x, sides);
 #endif
     for (double k = 0.0; k < steps; k += 1.0) {
-#if SURFACES
+#if INDICATORS
         advance_through(problem, k * h, h, x, sides);
 #else
         Start from;

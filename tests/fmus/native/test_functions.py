@@ -13,6 +13,7 @@ from fmus.description.variables import interface
 from fmus.native.compiler import host_compiler
 from fmus.native.packaging import C_FILES
 from fmus.native.trace import leaves
+from models.block.types import ContinuousBlock, SampledBlock
 from tests.fmus.native.functions import Functions
 
 TOLERANCE = 1e-12
@@ -73,20 +74,20 @@ def test_start_and_outputs_are_equal(functions, name):
 @every_fmu
 def test_what_moves_the_state_is_equal(functions, name):
     block, draw = FMUS[name].block, random.Random(name)
-    function = "update" if block.update else "derivative"
+    function = "update" if isinstance(block, SampledBlock) else "derivative"
     for _ in range(TIMES):
         u, p = records(block, draw)
         x = moved(block.start(u, p), draw)
         assert_same(functions[name](function, leaves(x), u, p), getattr(block, function)(x, u, p))
-        if block.surfaces:
-            assert_same(functions[name]("surfaces", leaves(x), u, p), block.surfaces(x, u, p))
+        if isinstance(block, ContinuousBlock) and (indicators := block.event_indicators(x, u, p)):
+            assert_same(functions[name]("event_indicators", leaves(x), u, p), indicators)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300])
 @pytest.mark.parametrize("signal", ["T_driver", "omega_1_meas", "T_mot_est", "omega_2_can"])
 def test_the_controller_copes_with_the_same_bad_signals(functions, signal, value):
     block = FMUS["DampingController"].block
-    assert block.update
+    assert isinstance(block, SampledBlock)
     u, p = block.Input(), block.Parameters()
     x = block.start(u, p)
     for k in range(100):

@@ -6,9 +6,10 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from fmus.catalogue import FMUS
+from models.block.types import ContinuousBlock
 from tests.fmus.host import opened
 
-CONTINUOUS = [name for name, fmu in FMUS.items() if fmu.block.derivative]
+CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]
 every_continuous = pytest.mark.parametrize("name", CONTINUOUS)
 
 

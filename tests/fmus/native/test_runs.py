@@ -6,7 +6,7 @@ import random
 import pytest
 
 from fmus.catalogue import FMUS
-from models.block.integrator import Integrator
+from models.block.runner import runner
 from tests.fmus.host import opened
 
 TOLERANCE = 1e-9
@@ -38,43 +38,21 @@ def inputs(name, k, draw):
     return {"T_mot": draw.uniform(-60.0, 80.0), "T_brake": draw.choice((0.0, 0.0, 800.0)), "slope": 0.05 * swing}
 
 
-class Reference:
-    """The block stepped by its own functions."""
-
-    def __init__(self, block, u, p):
-        self.block, self.u, self.p = block, u, p
-        self.x = self.coming = block.start(u, p)
-        self.integrator = Integrator(block) if block.derivative else None
-        self.ticks = 0
-
-    def step(self, k):
-        if self.integrator:
-            self.x = self.integrator.advance(self.x, self.u, self.p, STEP)
-            return
-        interval = round(self.block.sample_time / STEP)
-        if k % interval == 0:
-            self.x, self.coming = self.coming, self.block.update(self.coming, self.u, self.p)
-        if (k + 1) % interval == 0:
-            self.x = self.coming
-
-    def outputs(self):
-        return self.block.output(self.x, self.u, self.p)
-
-
 @pytest.mark.parametrize("name", FMUS)
 def test_ten_seconds_are_equal(native, tmp_path, name):
     block, draw = FMUS[name].block, random.Random(name)
     start = {"v_0": 8.0, "T_0": 20.0} if "v_0" in block.Parameters._fields else {}
-    reference = Reference(block, block.Input(), block.Parameters()._replace(**start))
+    u = block.Input()
+    reference = runner(block, u, block.Parameters()._replace(**start))
     with opened(native / f"{name}.fmu", tmp_path) as host:
         host.initialize(**start)
         for k in range(STEPS):
             if k % 20 == 0:
                 new = inputs(name, k, draw)
                 host.set(**new)
-                reference.u = reference.u._replace(**new)
+                u = u._replace(**new)
             host.step(k * STEP, STEP)
-            reference.step(k)
+            reference.advance(u, STEP)
             if k % COMPARED == 0:
-                computed, expected = host.outputs(), reference.outputs()._asdict()
+                computed, expected = host.outputs(), reference.output(u)._asdict()
                 assert computed == pytest.approx({n: y + 0 for n, y in expected.items()}, rel=TOLERANCE, abs=TOLERANCE)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from models import two_mass_driveline as driveline
 from models.block.integrator import LOCATION_TOLERANCE, MOST_CROSSINGS, Integrator
 from models.block.operators import maximum, where
-from models.block.types import Block
+from models.block.types import ContinuousBlock, no_event_indicators
 from tests.models.exact_driveline import ExactDriveline
 
 P = driveline.Parameters(recorded_load=True)
@@ -24,7 +24,7 @@ BINARY_STEP = 2.0**-10
 
 
 class Body(NamedTuple):
-    """Height, speed, and what has been collected on the other side of the surface."""
+    """Height, speed, and what has been collected on the other side of the zero."""
 
     x: float
     v: float
@@ -35,10 +35,13 @@ class Nothing(NamedTuple):
     pass
 
 
-def block(derivative: Callable[..., Body], *surfaces: Callable[[Body], float], step_size: float = 0.1) -> Block:
-    return Block(
+def block(
+    derivative: Callable[..., Body], *indicators: Callable[[Body], float], step_size: float = 0.1
+) -> ContinuousBlock:
+    return ContinuousBlock(
         name="Body",
-        description="a body and surfaces",
+        description="a body and its event indicators",
+        module=__name__,
         Parameters=Nothing,
         Input=Nothing,
         State=Body,
@@ -46,12 +49,12 @@ def block(derivative: Callable[..., Body], *surfaces: Callable[[Body], float], s
         start=lambda u, p: Body(0.0, 0.0, 0.0),
         output=lambda x, u, p: x,
         derivative=derivative,
-        surfaces=lambda x, u, p: tuple(surface(x) for surface in surfaces),
+        event_indicators=lambda x, u, p: tuple(indicator(x) for indicator in indicators),
         step_size=step_size,
     )
 
 
-def thrown(height: float) -> Block:
+def thrown(height: float) -> ContinuousBlock:
     """A body under gravity; `beyond` is the integral of its height above `height`."""
     return block(lambda x, u, p: Body(x.v, -9.81, maximum(x.x - height, 0.0)), lambda x: x.x - height)
 
@@ -62,7 +65,8 @@ def error_in_contact(steps: int) -> float:
     exact = ExactDriveline(P, CONTACT.omega_1, CONTACT.omega_2, CONTACT.phi, side=1)
     exact.advance(u.T_mot, u.T_load_rec, 0.2)
     assert exact.crossings == 0
-    x = Integrator(replace(driveline.BLOCK, surfaces=None, step_size=0.2 / steps)).advance(CONTACT, u, P, 0.2)
+    smooth = replace(driveline.BLOCK, event_indicators=no_event_indicators, step_size=0.2 / steps)
+    x = Integrator(smooth).advance(CONTACT, u, P, 0.2)
     omega = math.sqrt(P.C * (1.0 / P.J_1 + 1.0 / P.J_2))
     return math.hypot(omega * (x.phi - exact.phi), x.omega_1 - exact.omega_1, x.omega_2 - exact.omega_2)
 
@@ -89,7 +93,7 @@ def test_a_crossing_is_located_within_the_tolerance() -> None:
 
 @given(t=st.floats(0.011, 0.049), share=st.floats(1e-4, 0.99))
 def test_an_excursion_within_one_step_is_found(t: float, share: float) -> None:
-    """A body thrown up at t = 0 is highest at t; it is above the surface for 2 share t."""
+    """A body thrown up at t = 0 is highest at t; it is above zero for 2 share t."""
     speed, up = 9.81 * t, share * t
     height = 0.5 * 9.81 * (t * t - up * up)
     x = Integrator(thrown(height)).advance(Body(0.0, speed, 0.0), Nothing(), Nothing(), 0.1)
@@ -135,22 +139,21 @@ def test_no_time_changes_nothing() -> None:
     assert Integrator(driveline.BLOCK).advance(LIVELY, driveline.Input(), P, 0.0) == LIVELY
 
 
-def evaluations(surfaced: Block, x: Body, duration: float) -> tuple[Body, int]:
+def evaluations(body: ContinuousBlock, x: Body, duration: float) -> tuple[Body, int]:
     """State after the duration, and how often the derivative was evaluated."""
     count = 0
 
     def counted(x: Any, u: Any, p: Any) -> Any:
         nonlocal count
         count += 1
-        assert surfaced.derivative
-        return surfaced.derivative(x, u, p)
+        return body.derivative(x, u, p)
 
-    x = Integrator(replace(surfaced, derivative=counted)).advance(x, Nothing(), Nothing(), duration)
+    x = Integrator(replace(body, derivative=counted)).advance(x, Nothing(), Nothing(), duration)
     return x, count
 
 
-def test_chatter_about_a_surface_ends_in_bounded_work() -> None:
-    """Pushed to the surface from both sides, the body would cross it without end."""
+def test_chatter_about_a_zero_ends_in_bounded_work() -> None:
+    """Pushed to the zero from both sides, the body would cross it without end."""
     pushed = block(lambda x, u, p: Body(where(x.x > 0.0, -1.0, 0.5), 0.0, 0.0), lambda x: x.x)
     x, count = evaluations(pushed, Body(0.03, 0.0, 0.0), 0.1)
     assert abs(x.x) < 0.1
@@ -159,7 +162,7 @@ def test_chatter_about_a_surface_ends_in_bounded_work() -> None:
 
 @pytest.mark.parametrize("power", [1, 3, 9])
 def test_a_flat_crossing_is_located_in_bounded_work(power: int) -> None:
-    """A surface with a root of high order, as a state coming to rest on it sees."""
+    """An indicator with a root of high order, as a state coming to rest on it sees."""
     passing = block(lambda x, u, p: Body(1.0, 0.0, 0.0), lambda x: (x.x - 0.07) ** power)
     x, count = evaluations(passing, Body(0.0, 0.0, 0.0), 0.1)
     assert x.x == pytest.approx(0.1, rel=1e-12)
@@ -167,7 +170,7 @@ def test_a_flat_crossing_is_located_in_bounded_work(power: int) -> None:
 
 
 @pytest.mark.parametrize("side", [-1e-17, 0.0, 1e-17])
-def test_lying_on_a_surface_costs_no_more_than_crossing_it(side: float) -> None:
+def test_lying_on_a_zero_costs_no_more_than_crossing_it(side: float) -> None:
     resting = block(lambda x, u, p: Body(x.v, 0.0, 0.0), lambda x: x.x, lambda x: -x.x)
     x, count = evaluations(resting, Body(side, 0.0, 0.0), 0.1)
     assert x.x == side

@@ -1,0 +1,109 @@
+"""How a block runs: time passes in steps of any length, with the inputs held over each of them.
+
+A continuous block is integrated. A sampled block ticks at k T_s from the start on: a tick is made in the
+step that begins at its instant or holds it, with the inputs of that step, and what it computes shows
+one T_s later.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from functools import cache
+from typing import Any
+
+from .integrator import Integrator
+from .types import Block, ContinuousBlock, SampledBlock
+
+TICK_TOLERANCE = 1e-3
+"""In sample times: a tick this close to the end of a step is at it.
+
+Hosts that add up their step sizes instead of counting are off by 1e-8 s after a quarter of an hour.
+"""
+
+
+class Runner(ABC):
+    """A block at work.
+
+    Attributes:
+        x: its state now.
+        elapsed: time since the start in s; a host with a clock of its own may put it right before a step.
+    """
+
+    def __init__(self, block: Block, u: Any, p: Any) -> None:
+        """At the start, with the inputs u of that instant and the parameters p of the whole run."""
+        self.p = p
+        self.x = block.start(u, p)
+        self.elapsed = 0.0
+        self._output = block.output
+
+    def output(self, u: Any) -> Any:
+        """The outputs now."""
+        return self._output(self.x, u, self.p)
+
+    @abstractmethod
+    def advance(self, u: Any, duration: float) -> None:
+        """Lets `duration` seconds pass with the inputs u; any time above 0."""
+
+    @property
+    @abstractmethod
+    def memory(self) -> tuple[Any, ...]:
+        """All that the rest of the run depends on, beside the parameters."""
+
+    @abstractmethod
+    def restore(self, memory: tuple[Any, ...]) -> None:
+        """Goes back to where `memory` was taken."""
+
+
+_integrator = cache(Integrator)
+
+
+class ContinuousRunner(Runner):
+    """A continuous block, integrated."""
+
+    def __init__(self, block: ContinuousBlock, u: Any, p: Any) -> None:
+        super().__init__(block, u, p)
+        self._integrator = _integrator(block)
+
+    def advance(self, u: Any, duration: float) -> None:
+        self.x = self._integrator.advance(self.x, u, self.p, duration)
+        self.elapsed += duration
+
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        return self.elapsed, self.x
+
+    def restore(self, memory: tuple[Any, ...]) -> None:
+        self.elapsed, self.x = memory
+
+
+class SampledRunner(Runner):
+    """A sampled block, ticking; what its last tick computed is on its way to become the state."""
+
+    def __init__(self, block: SampledBlock, u: Any, p: Any) -> None:
+        super().__init__(block, u, p)
+        self._update, self._sample_time = block.update, block.sample_time
+        self._coming = self.x
+        self._ticks = 0
+
+    def advance(self, u: Any, duration: float) -> None:
+        self.elapsed += duration
+        samples = self.elapsed / self._sample_time
+        due = math.ceil(samples - TICK_TOLERANCE)
+        for _ in range(self._ticks, due):
+            self.x, self._coming = self._coming, self._update(self._coming, u, self.p)
+        self._ticks = max(self._ticks, due)
+        if due - samples <= TICK_TOLERANCE:
+            self.x = self._coming
+
+    @property
+    def memory(self) -> tuple[Any, ...]:
+        return self.elapsed, self.x, self._coming, self._ticks
+
+    def restore(self, memory: tuple[Any, ...]) -> None:
+        self.elapsed, self.x, self._coming, self._ticks = memory
+
+
+def runner(block: Block, u: Any, p: Any) -> Runner:
+    """A block at its start, with the inputs u of that instant and the parameters p of the whole run."""
+    if isinstance(block, ContinuousBlock):
+        return ContinuousRunner(block, u, p)
+    return SampledRunner(block, u, p)
