@@ -12,7 +12,7 @@ from harness.cosimulation.system import CONNECTIONS
 from harness.manoeuvres.catalogue import Manoeuvre
 from harness.simulate import signals, simulate
 from models.block.declaration import variables
-from models.damping_controller import T_S
+from models.controller.supervision import T_S
 
 STEP_SIZE = 1e-3
 """Communication step of the loop in s."""

@@ -31,7 +31,7 @@ TOOTH_L, TOOTH_R, PHASE, DELAY, LOSS = 10.0, 20.0, 30.0, 31.0, 32.0
 
 
 class Message(NamedTuple):
-    """What is under way on the bus."""
+    """A message on the bus."""
 
     arrival: Annotated[float, Real("s", "time of its arrival")]
     speed: Annotated[float, Real("rad/s", "mean speed of the driven wheels, motor side")]
@@ -62,12 +62,12 @@ class State(NamedTuple):
     sample: Annotated[float, Real("1", "number of the sample")]
     next_call: Annotated[float, Real("1", "sample of the next call of the ABS unit")]
     message: Annotated[float, Real("1", "number of the next message")]
-    wheel_L: Annotated[tuple[float, ...], Real("1", "left ToothWheel")]
-    wheel_R: Annotated[tuple[float, ...], Real("1", "right ToothWheel")]
+    wheel_L: ToothWheel
+    wheel_R: ToothWheel
     sent_valid: Annotated[bool, Boolean("flag of the message sent last")]
     last_arrival: Annotated[float, Real("s", "arrival of the last message that is not lost")]
     next_arrival: Annotated[float, Real("s", "arrival of the next message")]
-    under_way: Annotated[tuple[tuple[float, ...], ...], Real("1", "Messages under way, newest first")]
+    under_way: Annotated[tuple[Message, ...], Real("1", "newest first")]
     omega_2_can: Annotated[float, Real("rad/s", "speed in the message that arrived last")]
     valid: Annotated[bool, Boolean("flag of the message that arrived last")]
     counter: Annotated[int, Integer("messages that have arrived", 0)]
@@ -113,8 +113,8 @@ def update(x: State, u: Input, p: Parameters) -> State:
     now = (x.sample + 1.0) * T_S
     turned = x._replace(
         sample=x.sample + 1.0,
-        wheel_L=tooth_wheel.turn(ToothWheel._make(x.wheel_L), u.omega_wheel_L, now, T_S, TOOTH_L, p),
-        wheel_R=tooth_wheel.turn(ToothWheel._make(x.wheel_R), u.omega_wheel_R, now, T_S, TOOTH_R, p),
+        wheel_L=tooth_wheel.turn(x.wheel_L, u.omega_wheel_L, now, T_S, TOOTH_L, p),
+        wheel_R=tooth_wheel.turn(x.wheel_R, u.omega_wheel_R, now, T_S, TOOTH_R, p),
     )
     sent = branch(x.sample >= x.next_call, lambda: call(turned, now, p), lambda: turned)
     return branch(sent.next_arrival <= now + 1e-9, lambda: deliver(sent, now + 1e-9), lambda: sent)
@@ -122,8 +122,8 @@ def update(x: State, u: Input, p: Parameters) -> State:
 
 def call(x: State, now: Any, p: Parameters) -> State:
     """After a call of the ABS unit, with its message on the bus."""
-    wheel_L = tooth_wheel.call(ToothWheel._make(x.wheel_L), now)
-    wheel_R = tooth_wheel.call(ToothWheel._make(x.wheel_R), now)
+    wheel_L = tooth_wheel.call(x.wheel_L, now)
+    wheel_R = tooth_wheel.call(x.wheel_R, now)
     v = bus_speed(wheel_L.speed, wheel_R.speed, p)
     valid = logical_or(v > p.v_on, logical_and(v >= p.v_off, x.sent_valid))
     delay = p.d_min + maximum(p.d_max - p.d_min, 0.0) * uniform(p.seed, DELAY, x.message)
@@ -146,7 +146,7 @@ def deliver(x: State, now: Any) -> State:
     """What has arrived by now is taken off the bus, and the newest of it is kept."""
     omega, valid, counter, following = x.omega_2_can, x.valid, x.counter, NEVER
     left = []
-    for message in map(Message._make, reversed(x.under_way)):
+    for message in reversed(x.under_way):
         arrived = message.arrival <= now
         omega = where(arrived, message.speed, omega)
         valid = where(arrived, message.valid, valid)

@@ -47,9 +47,10 @@ def structs(record: tuple[Any, ...], names: Names = IN_FMU) -> Iterator[str]:
     inner = {type(value): value for item in record for value in _records(item)}
     for value in inner.values():
         yield from structs(value, names)
-    declared = zip(variables(type(record)), record, strict=True)
+    declared = {variable.name: _comment(variable) for variable in variables(type(record))}
     fields = [
-        (f"{c_type(value, names)} {variable.name}{extent(value)};", _comment(variable)) for variable, value in declared
+        (f"{c_type(value, names)} {name}{extent(value)};", declared.get(name) or _meaning(value))
+        for name, value in zip(record._fields, record, strict=True)  # pyright: ignore[reportAttributeAccessIssue]
     ]
     width = max(len(field) for field, _ in fields)
     lines = "\n".join(f"    {field:{width}}  /* {comment} */" for field, comment in fields)
@@ -62,6 +63,11 @@ def _records(value: Any) -> Iterator[Any]:
         yield value
     elif isinstance(value, tuple):
         yield from _records(value[0])
+
+
+def _meaning(value: Any) -> str:
+    """The first sentence of what a record within a record says of itself."""
+    return (type(value).__doc__ or "").split(".")[0]
 
 
 def _comment(variable: Variable) -> str:

@@ -1,6 +1,6 @@
 """What co-simulation does to the loop, measured against its monolithic solution.
 
-Everything is compared without noise, at the instants k * 2 ms that all communication steps share.
+Everything is compared without noise, at the samples of the controller, which all communication steps share.
 The demand changes only at these instants, so that all runs are given the same.
 """
 
@@ -10,18 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models import damping_controller, two_mass_driveline, validation_vehicle
+from models.controller.supervision import T_S
 
 from ..cosimulation.master import Scheme, run
 from ..cosimulation.system import BUILD, loop
 from ..manoeuvres.catalogue import KMH, Manoeuvre, Signal, lines
 from ..simulate import signals, start
 from . import monolithic
-
-PLANTS = {"TwoMassDriveline": two_mass_driveline, "ValidationVehicle": validation_vehicle}
-
-T_S = damping_controller.T_S
-"""Interval in s of the comparison, the sample time of the controller."""
+from .monolithic import INTERVAL, PLANTS
 
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)
 """Communication steps in s; each divides T_S."""
@@ -77,10 +73,10 @@ def reference(plant: str, manoeuvre: Manoeuvre, parameters: Mapping[str, float])
         by_instance.setdefault(instance, {})[parameter] = value
 
     def given(k: int) -> tuple[float, float, float]:
-        return float(manoeuvre.T_driver(k * monolithic.STEP)), 0.0, 0.0
+        return float(manoeuvre.T_driver(k * INTERVAL)), 0.0, 0.0
 
     results = monolithic.run(PLANTS[plant], given, manoeuvre.duration, by_instance)
-    return results[:: round(T_S / monolithic.STEP)]
+    return results[:: round(T_S / INTERVAL)]
 
 
 def cosimulated(

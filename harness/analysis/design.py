@@ -15,8 +15,8 @@ import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
 from models import motor_torque_loop, two_mass_driveline, wheel_speed_can
-from models.controller.torque_estimator import Estimate, predict
-from models.damping_controller import T_S
+from models.controller.supervision import T_S
+from models.controller.torque_estimator import Estimate, integrated
 
 PLANT = two_mass_driveline.Parameters()
 MOTOR = motor_torque_loop.Parameters()
@@ -63,9 +63,9 @@ WEIGHTS = Weights()
 def transition(p: Any) -> np.ndarray:
     """Matrix (4, 4) of one sample of the estimator's model in contact, deviations from a state there."""
     contact = Estimate(0.0, 0.0, 2.0 * p.phi_B, 0.0)
-    base = np.array(predict(contact, 0.0, T_S, p))
+    base = np.array(integrated(contact, 0.0, T_S, p))
     columns = [
-        np.array(predict(Estimate(*(np.array(contact) + row).tolist()), 0.0, T_S, p)) - base for row in np.eye(4)
+        np.array(integrated(Estimate(*(np.array(contact) + row).tolist()), 0.0, T_S, p)) - base for row in np.eye(4)
     ]
     return np.array(columns).T
 
@@ -156,7 +156,6 @@ def design(w: Weights = WEIGHTS) -> dict[str, float]:
     }
 
 
-def module(parameters: dict[str, float]) -> str:
-    """Source of the Python module that stores designed parameters, to six significant digits."""
-    lines = [f"{name} = {value:.6g}" for name, value in parameters.items()]
-    return '"""Designed parameters of the controller; written by `driveline design`."""\n\n' + "\n".join(lines) + "\n"
+def stored(parameters: dict[str, float]) -> str:
+    """Designed parameters as TOML, to six significant digits."""
+    return "".join(f"{name} = {float(f'{value:.6g}')!r}\n" for name, value in parameters.items())

@@ -7,11 +7,11 @@ from pathlib import Path
 NAME = "design"
 HELP = "compute the gains of the controller"
 
-STORED = Path("models/controller/gains.py")
+STORED = Path("models/controller/gains.toml")
 
 DESCRIPTION = """\
 Solves the Riccati equations of the estimator and of the damping law for the weights stated in
-harness/analysis/design.py and writes the result to models/controller/gains.py, from where the
+harness/analysis/design.py and writes the result to models/controller/gains.toml, from where the
 DampingController takes its default parameters. Run it in the root of the repository after a change of
 the weights or of the design model, then `driveline build`.
 """
@@ -29,9 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: only the design needs the models
-    from ..analysis.design import design, module
+    from ..analysis.design import design, stored
 
-    text = module(design())
+    text = stored(design())
     if args.show:
         print(text, end="")
         return 0

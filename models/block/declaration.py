@@ -8,6 +8,7 @@ variable, its checks, the tables of the documentation) is read from here with `v
 """
 
 import math
+from collections import namedtuple
 from dataclasses import dataclass
 from typing import Any, NamedTuple, get_type_hints
 
@@ -62,15 +63,31 @@ class Variable(NamedTuple):
 def variables(record: Any) -> tuple[Variable, ...]:
     """The declared quantities of a NamedTuple class, in the order of its fields.
 
+    A field that is a record itself is none: that has declared its own.
+
     Raises:
-        TypeError: a field carries no declaration.
+        TypeError: a field carries no declaration and is no record.
     """
     hints = get_type_hints(record, include_extras=True)
     defaults = record._field_defaults
     found = []
     for name, hint in hints.items():
         declared = [m for m in getattr(hint, "__metadata__", ()) if isinstance(m, Declaration)]
+        if not declared and (hint is Any or hasattr(hint, "_fields")):
+            continue
         if not declared:
             raise TypeError(f"{record.__module__}.{record.__name__}.{name} has no declaration")
         found.append(Variable(name, declared[0], defaults.get(name)))
     return tuple(found)
+
+
+def merged(name: str, *records: Any) -> Any:
+    """A NamedTuple class with the fields of several, each name once, with declarations and start values."""
+    hints, defaults = {}, {}
+    for record in reversed(records):
+        hints = get_type_hints(record, include_extras=True) | hints
+        defaults |= record._field_defaults
+    hints = {field: hints[field] for record in records for field in record._fields}
+    made = namedtuple(name, hints, defaults=[defaults[field] for field in hints])
+    made.__annotations__ = hints
+    return made

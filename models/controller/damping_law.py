@@ -2,26 +2,59 @@
 
     T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear],   k_d times k_gap in the gap
 
-and, while the estimated twist is in the gap but for at most t_land, a demand limited to T_land.
+with the motion T_pred ahead, when the torque will act; limited to T_damp_max. While the estimated twist
+is in the gap, but for at most t_land, the demand is limited to T_land, so that the teeth land softly.
 """
 
-from typing import Any
+from typing import Annotated, Any, NamedTuple
 
+from ..block.declaration import Real
 from ..block.operators import clip, logical_and, minimum, where
-from .torque_estimator import Estimate, gear_torque
+from .gains import GAINS
+from .parts import Motion
 
 
-def in_gap(e: Estimate, p: Any) -> Any:
-    return abs(e.phi) < p.phi_B
+class Parameters(NamedTuple):
+    T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02)] = GAINS["T_pred"]
+    k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0)] = GAINS["k_d"]
+    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0)] = GAINS["k_gap"]
+    k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0)] = GAINS["k_T"]
+    omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = GAINS["omega_w"]
+    T_land: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0)] = GAINS["T_land"]
+    t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0)] = GAINS["t_land"]
+    T_damp_max: Annotated[float, Real("N.m", "limit of the damping torque", 0.0, 2000.0)] = 60.0
 
 
-def motion(e: Estimate, p: Any) -> Any:
+class LawState(NamedTuple):
+    """State of the damping law."""
+
+    washout: Annotated[float, Real("N.m", "stationary part of what is fed back")]
+    landing: Annotated[float, Real("s", "time spent in the gap")]
+
+
+def start(motion: Motion, p: Any) -> LawState:
+    return LawState(washout=fed_back(motion, p), landing=0.0)
+
+
+def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[LawState, Any]:
+    changing = fed_back(later(p.T_pred), p)
+    landing = where(in_gap(motion, p), minimum(x.landing + T_s, p.t_land + T_s), 0.0)
+    softened = soft_landing(T_driver, landing, p) - T_driver
+    damping = clip(x.washout - changing, -p.T_damp_max, p.T_damp_max)
+    return LawState(washed_out(x.washout, changing, T_s, p), landing), softened + damping
+
+
+def in_gap(motion: Motion, p: Any) -> Any:
+    return abs(motion.phi) < p.phi_B
+
+
+def fed_back(motion: Motion, p: Any) -> Any:
     """The torque in N.m that the washout leaves the changing part of."""
-    k_d = p.k_d * where(in_gap(e, p), p.k_gap, 1.0)
-    return k_d * (e.omega_1 - e.omega_2) + p.k_T * gear_torque(e, p)
+    k_d = p.k_d * where(in_gap(motion, p), p.k_gap, 1.0)
+    return k_d * (motion.omega_1 - motion.omega_2) + p.k_T * motion.T_gear
 
 
-def washed_out(stationary: Any, value: Any, T_s: float, p: Any) -> Any:
+def washed_out(stationary: Any, value: Any, T_s: Any, p: Any) -> Any:
     """The stationary part of `value` at the next sample."""
     return stationary + minimum(p.omega_w * T_s, 1.0) * (value - stationary)
 
@@ -30,16 +63,3 @@ def soft_landing(T_driver: Any, landing: Any, p: Any) -> Any:
     """The demand, limited while the teeth are between the flanks, `landing` s after they left one."""
     soft = logical_and(landing > 0.0, landing <= p.t_land)
     return where(soft, clip(T_driver, -p.T_land, p.T_land), T_driver)
-
-
-def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
-    """Neither demand nor motion."""
-    return logical_and(abs(T_driver) <= p.T_rest, abs(omega_1) <= p.omega_rest)
-
-
-def resting(quiet: Any, p: Any) -> Any:
-    """From 0 to 1 as the damping fades out at rest, `quiet` s after the last demand or motion.
-
-    Written so that it is exactly 1 when quiet is t_rest + t_fade, whatever the rounding.
-    """
-    return clip(1.0 - (p.t_rest + p.t_fade - quiet) / p.t_fade, 0.0, 1.0)

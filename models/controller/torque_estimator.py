@@ -8,30 +8,100 @@ The vehicle takes the share lambda of the gear torque; T_l is the rest of the lo
 With lambda = 0 and no gain on T_l this is literally the paper's observer. Between samples the
 model is integrated by the leapfrog method. The measured motor speed corrects it at every sample,
 the wheel speed when a message arrives, against the estimate of T_age before: so old is the message.
-The constant gains come from a Riccati equation (harness, controller design), one set for
-each mode; `share` blends from the set without (0) to the set with the wheel speed (1).
+The constant gains come from a Riccati equation (harness, design), one set for each mode; `share` fades
+from the set without (0) to the set with the wheel speed (1).
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from ..backlash import dead_zone
+from ..block.declaration import Real
 from ..block.operators import clip, interpolate, where
+from ..vehicle import HalfGap, MotorInertia
+from .fading import toward
+from .gains import GAINS
+from .parts import Motion
 
 HISTORY = 32
 """Past estimates of omega_2 that are kept, one a sample."""
 
 
+class Parameters(NamedTuple):
+    J_1: MotorInertia = 0.055
+    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = 0.30
+    C: Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)] = 117.4
+    phi_B: HalfGap = 0.157
+    lambda_v: Annotated[float, Real("1", "share of the gear torque that the vehicle takes", 0.0, 0.99)] = GAINS[
+        "lambda_v"
+    ]
+    L_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, without wheel speed", -2.0, 2.0)] = GAINS["L_omega_1"]
+    L_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, without wheel speed", -2.0, 2.0)] = GAINS["L_omega_2"]
+    L_phi: Annotated[float, Real("s", "gain on phi_hat, without wheel speed", -0.1, 0.1)] = GAINS["L_phi"]
+    L_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, without wheel speed", -10.0, 10.0)] = GAINS["L_T_l"]
+    Lw_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, with wheel speed", -2.0, 2.0)] = GAINS["Lw_omega_1"]
+    Lw_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, with wheel speed", -2.0, 2.0)] = GAINS["Lw_omega_2"]
+    Lw_phi: Annotated[float, Real("s", "gain on phi_hat, with wheel speed", -0.1, 0.1)] = GAINS["Lw_phi"]
+    Lw_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, with wheel speed", -10.0, 10.0)] = GAINS["Lw_T_l"]
+    L_can_omega_1: Annotated[float, Real("1", "gain of a message on omega_1_hat", -2.0, 2.0)] = GAINS["L_can_omega_1"]
+    L_can_omega_2: Annotated[float, Real("1", "gain of a message on omega_2_hat", -2.0, 2.0)] = GAINS["L_can_omega_2"]
+    L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = GAINS["L_can_phi"]
+    L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = GAINS["L_can_T_l"]
+    T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.064)] = GAINS["T_age"]
+
+
 class Estimate(NamedTuple):
-    """State of the estimator, motor side: speeds (rad/s), twist (rad), load torque (N.m)."""
+    """State of the estimator's model, motor side."""
 
-    omega_1: Any
-    omega_2: Any
-    phi: Any
-    T_l: Any
+    omega_1: Annotated[float, Real("rad/s", "estimated speed of the motor")]
+    omega_2: Annotated[float, Real("rad/s", "estimated speed of the wheels, motor side")]
+    phi: Annotated[float, Real("rad", "estimated twist")]
+    T_l: Annotated[float, Real("N.m", "estimated slow part of the load torque")]
 
 
-def gear_torque(e: Estimate, p: Any) -> Any:
-    return p.C * dead_zone(e.phi, p.phi_B)
+class EstimatorState(NamedTuple):
+    """State of the torque estimator."""
+
+    estimate: Estimate
+    past: Annotated[tuple[float, ...], Real("rad/s", "estimates of omega_2 of the last samples, newest first")]
+    share: Annotated[float, Real("1", "share of the gains with wheel speed")]
+
+
+def start(omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> EstimatorState:
+    e = at_rest_with(omega_1, T_mot, p)
+    return EstimatorState(e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0))
+
+
+def restart(x: EstimatorState, omega_1: Any, T_mot: Any, p: Any) -> EstimatorState:
+    return x._replace(estimate=at_rest_with(omega_1, T_mot, p))
+
+
+def predict(x: EstimatorState, T_mot: Any, T_s: Any, p: Any) -> EstimatorState:
+    return x._replace(estimate=integrated(x.estimate, T_mot, T_s, p))
+
+
+def take_motor_speed(x: EstimatorState, omega_1: Any, p: Any) -> EstimatorState:
+    return x._replace(estimate=bounded(corrected_by_motor_speed(x.estimate, omega_1, x.share, p), p))
+
+
+def take_wheel_speed(x: EstimatorState, omega_2: Any, T_s: Any, p: Any) -> EstimatorState:
+    return x._replace(estimate=bounded(corrected_by_message(x, omega_2, p.T_age / T_s, p), p))
+
+
+def finish(x: EstimatorState, wheel: Any, T_s: Any, p: Any) -> EstimatorState:
+    share = toward(x.share, where(wheel, 1.0, 0.0), T_s, p)
+    return x._replace(past=(x.estimate.omega_2, *x.past[:-1]), share=share)
+
+
+def motion(x: EstimatorState, p: Any) -> Motion:
+    return seen(x.estimate, p)
+
+
+def motion_after(x: EstimatorState, T_mot: Any, h: Any, p: Any) -> Motion:
+    return seen(integrated(x.estimate, T_mot, h, p), p)
+
+
+def seen(e: Estimate, p: Any) -> Motion:
+    return Motion(e.omega_1, e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
 
 
 def at_rest_with(omega_1: Any, T_mot: Any, p: Any) -> Estimate:
@@ -40,8 +110,8 @@ def at_rest_with(omega_1: Any, T_mot: Any, p: Any) -> Estimate:
     return Estimate(omega_1, omega_1, T_mot / p.C + flank, 0.0)
 
 
-def predict(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
-    """The estimate h seconds later under the motor torque T_mot."""
+def integrated(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
+    """The estimate h seconds later under the motor torque T_mot (N.m)."""
     phi = e.phi + 0.5 * h * (e.omega_1 - e.omega_2)
     T_gear = p.C * dead_zone(phi, p.phi_B)
     omega_1 = e.omega_1 + h * (T_mot - T_gear) / p.J_1
@@ -49,7 +119,7 @@ def predict(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
     return Estimate(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), e.T_l)
 
 
-def correct_by_motor_speed(e: Estimate, omega_1_meas: Any, share: Any, p: Any) -> Estimate:
+def corrected_by_motor_speed(e: Estimate, omega_1_meas: Any, share: Any, p: Any) -> Estimate:
     error = omega_1_meas - e.omega_1
     return Estimate(
         e.omega_1 + error * (p.L_omega_1 + share * (p.Lw_omega_1 - p.L_omega_1)),
@@ -59,11 +129,10 @@ def correct_by_motor_speed(e: Estimate, omega_1_meas: Any, share: Any, p: Any) -
     )
 
 
-def correct_by_wheel_speed(
-    e: Estimate, omega_2_can: Any, past: tuple[Any, ...], samples: Any, share: Any, p: Any
-) -> Estimate:
+def corrected_by_message(x: EstimatorState, omega_2_can: Any, samples: Any, p: Any) -> Estimate:
     """Correction by a message that is `samples` samples old; past[k] is the estimate k + 1 samples ago."""
-    error = share * (omega_2_can - interpolate(past, samples - 1.0))
+    e = x.estimate
+    error = x.share * (omega_2_can - interpolate(x.past, samples - 1.0))
     return Estimate(
         e.omega_1 + error * p.L_can_omega_1,
         e.omega_2 + error * p.L_can_omega_2,

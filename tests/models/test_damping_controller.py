@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import damping_controller as controller
 from models.backlash import dead_zone
+from models.controller import supervision as controller
 from models.controller import torque_estimator as estimator
+from models.controller.supervision import T_S
+from models.damping_controller import BLOCK
 
-P = controller.Parameters()
-T_S = controller.T_S
+P = BLOCK.Parameters()
 ROLLING = controller.Input(T_driver=50.0, omega_1_meas=150.0, T_mot_est=50.0, omega_2_can=150.0, valid=True, counter=0)
 ABSURD = [math.nan, math.inf, -math.inf, 1e308, -1e308, 1e9, -3e3]
 
@@ -31,14 +32,12 @@ any_input = st.builds(
 )
 
 
-def run(
-    inputs: Iterable[controller.Input], p: controller.Parameters = P, x: controller.State | None = None
-) -> list[controller.State]:
+def run(inputs: Iterable[controller.Input], p: Any = P, x: controller.State | None = None) -> list[controller.State]:
     """States: that of the start, and after each input."""
     inputs = list(inputs)
-    states = [controller.start(inputs[0], p) if x is None else x]
+    states = [BLOCK.start(inputs[0], p) if x is None else x]
     for u in inputs:
-        states.append(controller.update(states[-1], u, p))
+        states.append(BLOCK.update(states[-1], u, p))
     return states
 
 
@@ -56,7 +55,7 @@ def driven(seconds: float, **changes: Any) -> list[controller.Input]:
     return inputs
 
 
-def last(states: list[controller.State], p: controller.Parameters = P) -> controller.Output:
+def last(states: list[controller.State], p: Any = P) -> controller.Output:
     return controller.output(states[-1], None, p)  # pyright: ignore[reportArgumentType]
 
 
@@ -142,7 +141,7 @@ def test_the_estimator_changes_its_mode_without_a_bump() -> None:
     assert statuses[299] == statuses[-1] == controller.WITH_WHEEL_SPEED
     assert statuses[599] == controller.WITHOUT_WHEEL_SPEED
     assert bump(states) <= 1.1 * bump(run(inputs))
-    assert max(abs(b.share - a.share) for a, b in pairwise(states)) <= 1.001 * T_S / P.t_fade
+    assert max(abs(b.estimator.share - a.estimator.share) for a, b in pairwise(states)) <= 1.001 * T_S / P.t_fade
 
 
 FAULTS = {
@@ -203,7 +202,7 @@ def test_at_rest_the_estimator_is_held_whatever_the_times(t_rest: float, t_fade:
     p = P._replace(t_rest=t_rest, t_fade=t_fade)
     at_rest = controller.Input(T_mot_est=1.0, enable=True)
     states = run([at_rest] * round((t_rest + t_fade) / T_S + 2), p)
-    assert states[-1][:4] == (0.0, 0.0, 0.0, 0.0)
+    assert states[-1].estimator.estimate == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_a_change_of_input_appears_one_sample_later() -> None:
@@ -211,12 +210,12 @@ def test_a_change_of_input_appears_one_sample_later() -> None:
     states = run(driven(0.2, enable=False))
     jump = ROLLING._replace(T_driver=90.0, enable=False)
     assert controller.output(states[-1], jump, P).T_ref == 50.0
-    assert controller.output(controller.update(states[-1], jump, P), ROLLING, P).T_ref == 90.0
+    assert controller.output(BLOCK.update(states[-1], jump, P), ROLLING, P).T_ref == 90.0
 
 
 def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None:
     x = run(driven(0.1))[-1]
-    ahead = estimator.predict(estimator.Estimate(x.omega_1, x.omega_2, x.phi, x.T_l), x.T_mot, T_S, P)
+    ahead = estimator.integrated(x.estimator.estimate, x.monitor.T_mot, T_S, P)
     y = controller.output(x, ROLLING, P)
     assert (y.phi_hat, y.omega_2_hat) == (ahead.phi, ahead.omega_2)
     assert y.T_gear_hat == P.C * dead_zone(ahead.phi, P.phi_B)
@@ -225,17 +224,18 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
 @pytest.mark.parametrize("late", [0, 1])
 def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: int) -> None:
     """The innovation is that of the message's own age, 11.5 samples; a sample more shows."""
-    p, x = P._replace(T_age=0.023), controller.start(ROLLING, P)
-    true = [estimator.Estimate(x.omega_1, x.omega_2, x.phi, x.T_l)]
+    p, x = P._replace(T_age=0.023), BLOCK.start(ROLLING, P)
+    true = [x.estimator.estimate]
     for k in range(1, 400):
-        true.append(estimator.predict(true[-1], 50.0, T_S, p))
+        true.append(estimator.integrated(true[-1], 50.0, T_S, p))
         u = ROLLING._replace(omega_1_meas=true[k].omega_1)
         if k > 40:
             message = 0.5 * (true[k - 11 - late].omega_2 + true[k - 12 - late].omega_2)
             u = u._replace(omega_2_can=message, counter=k // 10)
-        x = controller.update(x, u, p)
+        x = BLOCK.update(x, u, p)
     assert x.status == controller.WITH_WHEEL_SPEED
-    error = max(abs(x.omega_2 - true[-1].omega_2), abs(x.phi - true[-1].phi))
+    e = x.estimator.estimate
+    error = max(abs(e.omega_2 - true[-1].omega_2), abs(e.phi - true[-1].phi))
     assert error > 1e-6 if late else error < 1e-9
 
 
@@ -256,24 +256,24 @@ LITERAL = P._replace(
 
 def test_the_literal_form_of_the_paper_is_an_imperfect_derivative_of_the_gear_torque() -> None:
     states = run(shaken(1.0), LITERAL)
-    gear = [LITERAL.C * dead_zone(x.phi, LITERAL.phi_B) for x in states]
+    gear = [LITERAL.C * dead_zone(x.estimator.estimate.phi, LITERAL.phi_B) for x in states]
     low_passed = gear[0]
     for x, T_gear in zip(states[1:], gear[1:], strict=True):
         expected = -LITERAL.k_T * (T_gear - low_passed)
         low_passed += LITERAL.omega_w * T_S * (T_gear - low_passed)
         assert x.T_damp == pytest.approx(max(-P.T_damp_max, min(expected, P.T_damp_max)), abs=1e-9)
-        assert x.T_l == 0.0
+        assert x.estimator.estimate.T_l == 0.0
     assert max(abs(x.T_damp) for x in states) > 5.0
 
 
 def test_the_estimate_follows_a_perfect_model() -> None:
     """The estimator fed with its own model, started wrong, finds its twist again without wheel speed."""
     true = estimator.Estimate(150.0, 150.0, P.phi_B + 60.0 / P.C, -40.0)
-    x = controller.start(ROLLING._replace(valid=False), P)
+    x = BLOCK.start(ROLLING._replace(valid=False), P)
     for k in range(3000):
         T_mot = 50.0 + 20.0 * math.sin(0.02 * k)
-        true = estimator.predict(true, T_mot, T_S, P)
+        true = estimator.integrated(true, T_mot, T_S, P)
         u = ROLLING._replace(omega_1_meas=true.omega_1, T_mot_est=T_mot, valid=False)
-        x = controller.update(x, u, P)
-    assert x.phi == pytest.approx(true.phi, abs=0.02)
-    assert x.omega_2 == pytest.approx(true.omega_2, abs=0.5)
+        x = BLOCK.update(x, u, P)
+    assert x.estimator.estimate.phi == pytest.approx(true.phi, abs=0.02)
+    assert x.estimator.estimate.omega_2 == pytest.approx(true.omega_2, abs=0.5)

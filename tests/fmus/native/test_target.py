@@ -23,7 +23,7 @@ from fmus.native.target import target_sources
 from fmus.two_mass_driveline import FMU as CONTINUOUS
 from harness.cosimulation.system import NATIVE
 from harness.manoeuvres.catalogue import MANOEUVRES
-from models import damping_controller as controller
+from models.damping_controller import BLOCK as CONTROLLER
 
 DOUBLE_INSTRUCTION = re.compile(r"v?(cvt\w*sd\w*|(add|sub|mul|div|sqrt|min|max|comi|ucomi|cmp\w*)[sp]d)|f\w+")
 """Arithmetic in double precision, conversions, and the old floating-point unit, as x86-64 disassembles."""
@@ -65,7 +65,7 @@ def test_single_precision_recognises_a_fault_within_a_sample(
 ) -> None:
     inputs = recorded(MANOEUVRES["drive"], both_built / NATIVE)
     name, value = FAULTS[fault]
-    column = controller.Input._fields.index(name)
+    column = CONTROLLER.Input._fields.index(name)
     inputs[1000:1200, column] = inputs[1000, column] if value is None else value
     single, double = (outputs(programs[precision], inputs)["status"] for precision in ("float", "double"))
     assert len(set(double)) > 1
@@ -74,14 +74,14 @@ def test_single_precision_recognises_a_fault_within_a_sample(
 
 def test_in_double_precision_it_is_the_model(programs: dict[str, Path], both_built: Path) -> None:
     inputs = recorded(MANOEUVRES["launch_brake"], both_built / NATIVE)
-    p = controller.Parameters()
+    p = CONTROLLER.Parameters()
     expected, x = [], None
     for row in inputs.tolist():
-        u = controller.Input(*row)
+        u = CONTROLLER.Input(*row)
         u = u._replace(valid=bool(u.valid), enable=bool(u.enable))
-        x = x or controller.start(u, p)
-        expected.append(tuple(map(float, controller.output(x, u, p))))
-        x = controller.update(x, u, p)
+        x = x or CONTROLLER.start(u, p)
+        expected.append(tuple(map(float, CONTROLLER.output(x, u, p))))
+        x = CONTROLLER.update(x, u, p)
     found = np.array(outputs(programs["double"], inputs).tolist())
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 

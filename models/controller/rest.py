@@ -1,0 +1,31 @@
+"""Rest: neither demand nor motion, for so long that the damping fades out and the estimator is held.
+
+Sensor noise would otherwise rattle the motor of a standing car in its gap.
+"""
+
+from typing import Any
+
+from ..block.operators import clip, logical_and, minimum, where
+
+
+def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
+    """Neither demand nor motion."""
+    return logical_and(abs(T_driver) <= p.T_rest, abs(omega_1) <= p.omega_rest)
+
+
+def longest(p: Any) -> Any:
+    """Time of stillness in s after which it is complete rest."""
+    return p.t_rest + p.t_fade
+
+
+def quiet_time(quiet: Any, still: Any, T_s: Any, p: Any) -> Any:
+    """Time in s without demand and motion, one sample later; counted no further than needed."""
+    return where(still, minimum(quiet + T_s, longest(p)), 0.0)
+
+
+def share(quiet: Any, p: Any) -> Any:
+    """From 0 to 1 as the damping fades out, `quiet` s after the last demand or motion.
+
+    Written so that it is exactly 1 at complete rest, whatever the rounding.
+    """
+    return clip(1.0 - (longest(p) - quiet) / p.t_fade, 0.0, 1.0)
