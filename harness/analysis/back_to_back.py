@@ -22,7 +22,7 @@ from ..cosimulation.system import NATIVE, System, loop
 from ..manoeuvres.catalogue import KMH, Manoeuvre
 from ..simulate import signals, start
 
-STEP = 1e-3
+STEP_SIZE = 1e-3
 """Communication step in s."""
 
 SPREAD = 100.0
@@ -79,25 +79,25 @@ def random_inputs(block: Block, steps: int, seed: int = 1) -> Given:
 
 
 def by_functions(block: Block, given: Given) -> dict[str, np.ndarray]:
-    """Outputs of a block at all instants k * STEP, by name; no FMU takes part."""
+    """Outputs of a block at all instants k * STEP_SIZE, by name; no FMU takes part."""
     p = block.Parameters(**given.parameters)
     rows = zip(*(given.inputs[v.name].tolist() for v in variables(block.Input)), strict=True)
     samples = [block.Input(*row) for row in rows]
     running = runner(block, samples[0], p)
     outputs = [running.output(samples[0])]
     for u in samples[:-1]:
-        running.advance(u, STEP)
+        running.advance(u, STEP_SIZE)
         outputs.append(running.output(u))
     names = (v.name for v in variables(block.Output))
     return {name: np.array(column) for name, column in zip(names, zip(*outputs, strict=True), strict=True)}
 
 
 def by_fmu(path: Path, given: Given) -> np.ndarray:
-    """Outputs of an FMU at all instants k * STEP, by name."""
+    """Outputs of an FMU at all instants k * STEP_SIZE, by name."""
     steps = len(next(iter(given.inputs.values()))) - 1
     inputs: dict[str, Source] = {f"block.{name}": samples for name, samples in given.inputs.items()}
     parameters = {f"block.{name}": value for name, value in given.parameters.items()}
-    results = run(System({"block": path}), steps * STEP, STEP, inputs, parameters, label=path.stem)
+    results = run(System({"block": path}), steps * STEP_SIZE, STEP_SIZE, inputs, parameters, label=path.stem)
     columns = {name: name.removeprefix("block.") for name in results.dtype.names or () if name not in inputs}
     chosen = results[list(columns)]
     chosen.dtype.names = tuple(columns.values())
@@ -131,7 +131,7 @@ def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Di
 
 def drive(system: System, manoeuvre: Manoeuvre) -> np.ndarray:
     """The loop through a manoeuvre, with damping."""
-    return run(system, manoeuvre.duration, STEP, signals(manoeuvre), start(manoeuvre), Scheme.JACOBI, manoeuvre.name)
+    return run(system, manoeuvre.duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre), Scheme.JACOBI, manoeuvre.name)
 
 
 def fed(instance: str, system: System, results: np.ndarray, manoeuvre: Manoeuvre) -> Given:

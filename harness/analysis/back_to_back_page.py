@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from .back_to_back import STEP, Differences
+from .back_to_back import STEP_SIZE, Differences
 
 PAGE = """\
 # Back to back
@@ -44,7 +44,7 @@ def page(random: Mapping[str, Differences], random_steps: int, loops: Sequence[L
     blocks = [(name, _number(d.functions), _number(d.python)) for name, d in random.items()]
     rows = [(row.plant, row.manoeuvre, *map(_numbers, row.blocks.values())) for row in loops]
     return PAGE.format(
-        step=1e3 * STEP,
+        step=1e3 * STEP_SIZE,
         random_steps=random_steps,
         random=_table(("block", "functions", "PythonFMU"), blocks, labels=1),
         loops=_table(("plant", "manoeuvre", *loops[0].blocks), rows, labels=2),

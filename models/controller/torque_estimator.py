@@ -84,7 +84,7 @@ def take_motor_speed(x: EstimatorState, omega_1: Any, p: Any) -> EstimatorState:
 
 
 def take_wheel_speed(x: EstimatorState, omega_2: Any, T_s: Any, p: Any) -> EstimatorState:
-    return x._replace(estimate=bounded(corrected_by_message(x, omega_2, p.T_age / T_s, p), p))
+    return x._replace(estimate=corrected_by_message(x, omega_2, p.T_age / T_s, p))
 
 
 def finish(x: EstimatorState, wheel: Any, T_s: Any, p: Any) -> EstimatorState:
@@ -142,7 +142,7 @@ def corrected_by_message(x: EstimatorState, omega_2_can: Any, samples: Any, p: A
 
 
 def bounded(e: Estimate, p: Any) -> Estimate:
-    """The estimate within what the drive train can bear, whatever was measured."""
+    """The estimate within what the drive train can bear, whatever was measured at the motor."""
     phi_max = p.phi_B + 4.0 * p.T_max / p.C
     return Estimate(
         clip(e.omega_1, -p.omega_max, p.omega_max),
