@@ -1,10 +1,14 @@
 """Wheel brake as bristle friction: slides under load, holds as a spring at rest.
 
-    z' = w_s - |w_s| z/z_br,   w_s = omega limited to +-omega_sat     (Dahl 1968; LuGre without Stribeck)
+    z' = w_s - |w_s| z/z_br,   w_s = omega limited to +-omega_sat
     T  = T_brake (z + t_br z')/z_br
 
 Sliding, z tends to z_br sign(omega) and the torque to T_brake sign(omega); at rest the bristle is a
 spring T_brake/z_br with a damper. omega_sat only limits the rate of z, not the torque.
+
+P. R. Dahl, "A solid friction model", Aerospace Corporation TOR-0158(3107-18)-1, 1968; with the damper it is
+LuGre friction without Stribeck effect: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new
+model for control of systems with friction", IEEE Trans. Automatic Control 40(3), 1995.
 """
 
 from typing import Annotated, Any

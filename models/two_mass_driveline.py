@@ -12,6 +12,9 @@ with relaxation and of the brakes; w = omega_2/i is the speed of the wheels:
     du/dt   = v_s - max(|r w|, |v|) u/sigma_s
     m dv/dt = F - m g (c_rr tanh(v/v_rr) + sin(slope)) - c_wa v |v|
 
+The relaxation of the tyre stays regular at standstill (J. E. Bernard, C. L. Clover, "Tire modeling for
+low-speed and high-speed calculations", SAE 950311, 1995).
+
 With `recorded_load` vehicle and tyre are left out and T_load_rec takes the place of T_load; what
 they would show then follows omega_2 without slip.
 """

@@ -17,7 +17,10 @@ includes several additional real world effects').
     body         (m - m_h) dv/dt = F_h - resistance,   J_y domega_b/dt = F_h (h - r) - T_h - T_br - ...
 
 T_a is the air-gap torque with ripple and friction, T_h the mount torque, F_h the bushing force; F_k
-is half an axle's Magic Formula (Pacejka, without curvature term) on the deflection u_k of the tyre.
+is half an axle's Magic Formula without curvature term on the deflection u_k of the tyre (H. B. Pacejka,
+"Tire and Vehicle Dynamics", 3rd ed., 2012, section 4.3). The impact damping of the teeth grows
+with their penetration, so that the torque does not jump at the contact (K. H. Hunt, F. R. E. Crossley,
+"Coefficient of restitution interpreted as damping in vibroimpact", J. Applied Mechanics 42(2), 1975).
 """
 
 from typing import Annotated, Any, NamedTuple

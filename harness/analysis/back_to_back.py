@@ -131,7 +131,8 @@ def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Di
 
 def drive(system: System, manoeuvre: Manoeuvre) -> np.ndarray:
     """The loop through a manoeuvre, with damping."""
-    return run(system, manoeuvre.duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre), Scheme.JACOBI, manoeuvre.name)
+    inputs, parameters = signals(manoeuvre), start(manoeuvre)
+    return run(system, manoeuvre.duration, STEP_SIZE, inputs, parameters, Scheme.JACOBI, manoeuvre.name)
 
 
 def fed(instance: str, system: System, results: np.ndarray, manoeuvre: Manoeuvre) -> Given:

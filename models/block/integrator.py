@@ -151,9 +151,9 @@ class Integrator:
     def _locate(self, n: int, start: Start, far: float, side: bool) -> float:
         """Shortest step (to LOCATION_TOLERANCE) that ends beyond zero n; one of length `far` does.
 
-        Regula falsi as modified by Illinois: when the same end moves twice, the value at the other
-        counts half. Three steps without halving the bracket (an indicator on whose zero a block at rest lies
-        is flat there) are followed by a bisection.
+        The Illinois variant of regula falsi (M. Dowell, P. Jarratt, BIT 11, 1971): when the same end
+        moves twice, the value at the other counts half. Three steps without halving the bracket (an
+        indicator on whose zero a block at rest lies is flat there) are followed by a bisection.
         """
         near, z_near, z_far = 0.0, self._indicator(n, start.x, start), self._value(n, start, far)
         if (z_near > 0.0) != side:
