@@ -11,7 +11,7 @@ LuGre friction without Stribeck effect: C. Canudas de Wit, H. Olsson, K. J. Astr
 model for control of systems with friction", IEEE Trans. Automatic Control 40(3), 1995.
 """
 
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from .block.declaration import Real
 from .block.operators import clip
@@ -19,6 +19,17 @@ from .block.operators import clip
 BristleDeflection = Annotated[float, Real("rad", "twist of the brake bristles at sliding", 1e-4, 0.1)]
 BristleDamping = Annotated[float, Real("s", "damping time of the brake bristles", 1e-4, 0.1)]
 BristleSpeedLimit = Annotated[float, Real("rad/s", "wheel speed that limits the rate of the bristles", 1.0, 50.0)]
+
+
+class Bristles(NamedTuple):
+    """The brake that every plant starts with."""
+
+    z_br: BristleDeflection = 0.005
+    t_br: BristleDamping = 0.005
+    omega_sat: BristleSpeedLimit = 20.0
+
+
+BRAKE = Bristles()
 
 
 def bristle_rate(omega: Any, z: Any, p: Any) -> Any:

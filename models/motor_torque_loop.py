@@ -12,6 +12,7 @@ from .block.declaration import Integer, Real
 from .block.noise import normals
 from .block.operators import clip, floor, maximum, where
 from .block.types import ContinuousBlock
+from .vehicle import CAR, MotorTorque
 
 SQRT_2 = 2.0**0.5
 NOISE = 0.0
@@ -19,7 +20,7 @@ NOISE = 0.0
 
 class Parameters(NamedTuple):
     tau: Annotated[float, Real("s", "time constant of the torque loop", 1e-3, 0.1)] = 0.003
-    T_max: Annotated[float, Real("N.m", "largest torque of the motor, either sign", 1.0, 2000.0)] = 180.0
+    T_max: MotorTorque = CAR.T_max
     g_T: Annotated[float, Real("1", "gain of the torque estimate", 0.5, 2.0)] = 1.0
     o_T: Annotated[float, Real("N.m", "offset of the torque estimate", -50.0, 50.0)] = 0.0
     sigma_T: Annotated[float, Real("N.m", "standard deviation of the torque estimate", 0.0, 50.0)] = 0.3

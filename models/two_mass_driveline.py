@@ -26,28 +26,30 @@ from .backlash import dead_zone
 from .block.declaration import Boolean, Real
 from .block.operators import maximum, sign, where
 from .block.types import ContinuousBlock
+from .brake import BRAKE
 from .plant import Input, Output
+from .vehicle import CAR
 
 
 class Parameters(NamedTuple):
-    J_1: vehicle.MotorInertia = 0.055
-    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = 0.30
-    C: Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)] = 117.4
-    phi_B: vehicle.HalfGap = 0.157
-    i: vehicle.GearRatio = 9.0
-    m: vehicle.Mass = 1450.0
-    r: vehicle.WheelRadius = 0.29
-    c_slip: vehicle.SlipStiffness = 140000.0
+    J_1: vehicle.MotorInertia = CAR.J_1
+    J_2: vehicle.WheelInertia = CAR.J_2
+    C: vehicle.Stiffness = CAR.C
+    phi_B: vehicle.HalfGap = CAR.phi_B
+    i: vehicle.GearRatio = CAR.i
+    m: vehicle.Mass = CAR.m
+    r: vehicle.WheelRadius = CAR.r
+    c_slip: vehicle.SlipStiffness = CAR.c_slip
     sigma_s: Annotated[float, Real("m", "relaxation length of the linear tyre", 0.02, 1.0)] = 0.05
-    d_low: vehicle.LowSpeedDamping = 4000.0
-    v_low: vehicle.LowSpeed = 0.5
-    c_rr: vehicle.RollingResistance = 0.012
-    v_rr: vehicle.RollingSpeed = 0.1
-    c_wa: vehicle.AirDrag = 0.42
-    g: vehicle.Gravity = 9.81
-    z_br: brake.BristleDeflection = 0.005
-    t_br: brake.BristleDamping = 0.005
-    omega_sat: brake.BristleSpeedLimit = 20.0
+    d_low: vehicle.LowSpeedDamping = CAR.d_low
+    v_low: vehicle.LowSpeed = CAR.v_low
+    c_rr: vehicle.RollingResistance = CAR.c_rr
+    v_rr: vehicle.RollingSpeed = CAR.v_rr
+    c_wa: vehicle.AirDrag = CAR.c_wa
+    g: vehicle.Gravity = CAR.g
+    z_br: brake.BristleDeflection = BRAKE.z_br
+    t_br: brake.BristleDamping = BRAKE.t_br
+    omega_sat: brake.BristleSpeedLimit = BRAKE.omega_sat
     v_0: vehicle.StartSpeed = 0.0
     T_0: vehicle.StartTorque = 0.0
     recorded_load: Annotated[bool, Boolean("leave the vehicle out and take T_load_rec as load torque")] = False

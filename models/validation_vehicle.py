@@ -30,15 +30,17 @@ from .backlash import dead_zone
 from .block.declaration import Real
 from .block.operators import atan, maximum, minimum, sign, sin, tanh, where
 from .block.types import ContinuousBlock
+from .brake import BRAKE
 from .plant import Input, Output
+from .vehicle import CAR
 
 
 class Parameters(NamedTuple):
-    J_1: vehicle.MotorInertia = 0.055
-    phi_B: vehicle.HalfGap = 0.157
-    i: vehicle.GearRatio = 9.0
-    m: vehicle.Mass = 1450.0
-    r: vehicle.WheelRadius = 0.29
+    J_1: vehicle.MotorInertia = CAR.J_1
+    phi_B: vehicle.HalfGap = CAR.phi_B
+    i: vehicle.GearRatio = CAR.i
+    m: vehicle.Mass = CAR.m
+    r: vehicle.WheelRadius = CAR.r
     J_w: Annotated[float, Real("kg.m2", "inertia of both driven wheels", 0.1, 50.0)] = 1.8
     k_s: Annotated[float, Real("N.m/rad", "stiffness of both half shafts together", 1e3, 1e6)] = 25800.0
     d_s: Annotated[float, Real("N.m.s/rad", "damping of both half shafts together", 0.0, 500.0)] = 20.0
@@ -52,7 +54,7 @@ class Parameters(NamedTuple):
     J_p: Annotated[float, Real("kg.m2", "inertia of the powertrain block on its mounts", 0.5, 50.0)] = 6.0
     k_p: Annotated[float, Real("N.m/rad", "stiffness of the mounts", 1e3, 1e6)] = 70000.0
     d_p: Annotated[float, Real("N.m.s/rad", "damping of the mounts", 0.0, 2000.0)] = 120.0
-    c_slip: vehicle.SlipStiffness = 140000.0
+    c_slip: vehicle.SlipStiffness = CAR.c_slip
     sigma: Annotated[float, Real("m", "relaxation length of the tyres", 0.05, 1.0)] = 0.22
     mu: Annotated[float, Real("1", "friction coefficient of the road", 0.05, 2.0)] = 1.0
     C_x: Annotated[float, Real("1", "shape factor of the tyre characteristic", 1.0, 2.5)] = 1.65
@@ -77,15 +79,15 @@ class Parameters(NamedTuple):
     r_12a: Annotated[float, Real("N.m", "twelfth-order torque ripple without load", 0.0, 20.0)] = 0.15
     r_12b: Annotated[float, Real("1", "twelfth-order torque ripple over the torque", 0.0, 0.2)] = 0.003
     omega_rip: Annotated[float, Real("rad/s", "speed at which the ripple has halved", 1.0, 1000.0)] = 100.0
-    d_low: vehicle.LowSpeedDamping = 4000.0
-    v_low: vehicle.LowSpeed = 0.5
-    c_rr: vehicle.RollingResistance = 0.012
-    v_rr: vehicle.RollingSpeed = 0.1
-    c_wa: vehicle.AirDrag = 0.42
-    g: vehicle.Gravity = 9.81
-    z_br: brake.BristleDeflection = 0.005
-    t_br: brake.BristleDamping = 0.005
-    omega_sat: brake.BristleSpeedLimit = 20.0
+    d_low: vehicle.LowSpeedDamping = CAR.d_low
+    v_low: vehicle.LowSpeed = CAR.v_low
+    c_rr: vehicle.RollingResistance = CAR.c_rr
+    v_rr: vehicle.RollingSpeed = CAR.v_rr
+    c_wa: vehicle.AirDrag = CAR.c_wa
+    g: vehicle.Gravity = CAR.g
+    z_br: brake.BristleDeflection = BRAKE.z_br
+    t_br: brake.BristleDamping = BRAKE.t_br
+    omega_sat: brake.BristleSpeedLimit = BRAKE.omega_sat
     v_0: vehicle.StartSpeed = 0.0
     T_0: vehicle.StartTorque = 0.0
 

@@ -13,7 +13,7 @@ from .block.noise import uniform
 from .block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
 from .block.types import SampledBlock
 from .tooth_wheel import ToothWheel
-from .vehicle import GearRatio, WheelRadius
+from .vehicle import CAR, GearRatio, WheelRadius
 
 T_S = 0.001
 """Sample time in s; the ABS unit works at whole multiples of it."""
@@ -39,8 +39,8 @@ class Message(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    i: GearRatio = 9.0
-    r: WheelRadius = 0.29
+    i: GearRatio = CAR.i
+    r: WheelRadius = CAR.r
     g_w2: Annotated[float, Real("1", "gain error of the speed, from the wheel radius", 0.8, 1.25)] = 1.0
     sigma_tooth: Annotated[float, Real("1", "standard deviation of the edges, in teeth", 0.0, 0.05)] = 0.005
     T_cyc: Annotated[float, Real("s", "cycle of the messages, rounded to whole milliseconds", 0.01, 0.5)] = 0.02

@@ -12,6 +12,7 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Boolean, Enumeration, Integer, Real, merged
 from ..block.operators import branch, clip, is_finite, logical_and, where
 from ..block.types import SampledBlock
+from ..vehicle import CAR
 from . import rest
 from . import signal_monitor as monitor
 from .fading import toward
@@ -27,7 +28,7 @@ OFF, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, FALLBACK = 1.0, 2.0, 3.0, 4.0
 class Parameters(NamedTuple):
     """Of the supervision, for every controller."""
 
-    T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = 180.0
+    T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_frozen: Annotated[float, Real("s", "a speed unchanged for so long is frozen", 0.01, 10.0)] = 0.1

@@ -17,7 +17,7 @@ from typing import Annotated, Any, NamedTuple
 from ..backlash import dead_zone
 from ..block.declaration import Real
 from ..block.operators import clip, interpolate, where
-from ..vehicle import HalfGap, MotorInertia
+from ..vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia
 from .fading import toward
 from .gains import GAINS
 from .parts import Motion
@@ -27,10 +27,10 @@ HISTORY = 32
 
 
 class Parameters(NamedTuple):
-    J_1: MotorInertia = 0.055
-    J_2: Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)] = 0.30
-    C: Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)] = 117.4
-    phi_B: HalfGap = 0.157
+    J_1: MotorInertia = CAR.J_1
+    J_2: WheelInertia = CAR.J_2
+    C: Stiffness = CAR.C
+    phi_B: HalfGap = CAR.phi_B
     lambda_v: Annotated[float, Real("1", "share of the gear torque that the vehicle takes", 0.0, 0.99)] = GAINS[
         "lambda_v"
     ]
