@@ -9,7 +9,7 @@ from fmus.damping_controller import FMU
 from fmus.native.compiler import host_compiler
 from fmus.native.target import PRECISIONS, target_sources
 from harness.cosimulation.system import CONNECTIONS
-from harness.manoeuvres.catalogue import Manoeuvre
+from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.simulate import signals, simulate
 from models.block.declaration import variables
 from models.controller.supervision import T_S

@@ -7,16 +7,17 @@ of the cases, whatever finishes first.
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .cosimulation.system import BUILD
 from .manoeuvres.catalogue import MANOEUVRES
-from .metrics.evaluate import Metrics, at_samples, evaluate
+from .metrics.evaluate import at_samples, evaluate
+from .metrics.record import Metrics
 from .reports.csv_file import write_csv
 from .reports.figures import plot_drive, plot_step
-from .reports.table import Row, write_markdown, write_metrics
+from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
 from .workers import workers
 
@@ -50,6 +51,16 @@ class Outcome(NamedTuple):
     def row(self) -> Row:
         return Row(self.case.plant_name, self.case.manoeuvre, self.case.control, self.metrics)
 
+    @property
+    def record(self) -> dict[str, Any]:
+        """The run for files: what it was, and all metrics by their keys."""
+        return {
+            "plant": self.case.plant_name,
+            "manoeuvre": self.case.manoeuvre,
+            "control": self.case.control,
+            **values(self.metrics),
+        }
+
 
 def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     """All combinations, the runs without and with damping next to each other."""
@@ -73,21 +84,19 @@ def run_cases(
 
     Args:
         seed: of the noise of all runs.
-        folder: for the CSV files, made if absent.
+        folder: for the CSV files.
         fmus: folder of the built FMUs.
         build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     with workers() as pool:
         yield from pool.map(run_case, todo, repeat(seed), repeat(folder), repeat(fmus), repeat(build))
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
     """Writes the table as Markdown and all metrics as CSV; returns the files."""
-    rows = [outcome.row for outcome in outcomes]
     table, metrics = folder / "table.md", folder / "metrics.csv"
-    write_markdown(rows, table)
-    write_metrics(rows, metrics)
+    write_markdown([outcome.row for outcome in outcomes], table)
+    write_metrics([outcome.record for outcome in outcomes], metrics)
     return [table, metrics]
 
 

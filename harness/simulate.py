@@ -7,7 +7,7 @@ import numpy as np
 
 from .cosimulation.master import Scheme, Source, run
 from .cosimulation.system import BUILD, PLANTS, loop
-from .manoeuvres.catalogue import Manoeuvre
+from .manoeuvres.manoeuvre import Manoeuvre
 
 
 def simulate(

@@ -26,10 +26,11 @@ ROOMS = {
     "harness.metrics": {"harness", "harness.manoeuvres"},
     "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
-    "harness.analysis": COSIMULATION | {"harness.manoeuvres", "fmus", "models", "models.block", "models.controller"},
+    "harness.analysis": COSIMULATION
+    | {"harness.manoeuvres", "harness.reports", "fmus", "models", "models.block", "models.controller"},
     "harness": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"},
     "harness.commands": COSIMULATION
-    | {"harness.manoeuvres", "harness.reports", "harness.compliance", "harness.analysis", "fmus"},
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"},
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
 the analysis knows the models."""

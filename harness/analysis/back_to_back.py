@@ -19,7 +19,8 @@ from models.block.types import Block
 
 from ..cosimulation.master import Scheme, Source, run
 from ..cosimulation.system import NATIVE, System, loop
-from ..manoeuvres.catalogue import KMH, Manoeuvre
+from ..manoeuvres.catalogue import KMH
+from ..manoeuvres.manoeuvre import Manoeuvre
 from ..simulate import signals, start
 
 STEP_SIZE = 1e-3

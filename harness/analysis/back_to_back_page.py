@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from ..reports.markdown import markdown_table
 from .back_to_back import STEP_SIZE, Differences
 
 PAGE = """\
@@ -46,8 +47,8 @@ def page(random: Mapping[str, Differences], random_steps: int, loops: Sequence[L
     return PAGE.format(
         step=1e3 * STEP_SIZE,
         random_steps=random_steps,
-        random=_table(("block", "functions", "PythonFMU"), blocks, labels=1),
-        loops=_table(("plant", "manoeuvre", *loops[0].blocks), rows, labels=2),
+        random=markdown_table(("block", "functions", "PythonFMU"), blocks, labels=1),
+        loops=markdown_table(("plant", "manoeuvre", *loops[0].blocks), rows, labels=2),
     )
 
 
@@ -57,8 +58,3 @@ def _numbers(differences: Differences) -> str:
 
 def _number(difference: float) -> str:
     return f"{difference:.0e}" if difference else "0"
-
-
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]], labels: int) -> str:
-    ruler = ["---"] * labels + ["---:"] * (len(heads) - labels)
-    return "\n".join(f"| {' | '.join(row)} |" for row in (heads, ruler, *rows))

@@ -14,7 +14,9 @@ from models.controller.supervision import T_S
 
 from ..cosimulation.master import Scheme, run
 from ..cosimulation.system import BUILD, loop
-from ..manoeuvres.catalogue import KMH, Manoeuvre, Signal, lines
+from ..manoeuvres.catalogue import KMH
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.signals import Signal, lines
 from ..simulate import signals, start
 from . import monolithic
 from .monolithic import INTERVAL, PLANTS

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from ..cosimulation.master import Scheme
+from ..reports.markdown import markdown_table
 from .coupling import SIGNALS, Comparison
 
 PAGE = """\
@@ -82,7 +83,7 @@ def _dead_times(found: Mapping[tuple[Scheme, float], Mapping[str, float]]) -> st
     heads = [f"{scheme.value}, h = {1e3 * step:g} ms" for scheme, step in found]
     # adding zero turns a rounded -0 into 0
     rows = [[name, *(f"{round(1e3 * column[name], 2) + 0.0:.2f}" for column in columns)] for name in columns[0]]
-    return _table(["connection", *heads], rows, labels=1)
+    return markdown_table(["connection", *heads], rows, labels=1)
 
 
 def _errors(comparisons: Sequence[Comparison], step_size: float) -> str:
@@ -93,7 +94,7 @@ def _errors(comparisons: Sequence[Comparison], step_size: float) -> str:
         ]
         for c in comparisons
     ]
-    return _table([*CASE, *(f"`{name}`" for name in SIGNALS)], rows, labels=3)
+    return markdown_table([*CASE, *(f"`{name}`" for name in SIGNALS)], rows, labels=3)
 
 
 def _orders(comparisons: Sequence[Comparison]) -> str:
@@ -106,7 +107,7 @@ def _orders(comparisons: Sequence[Comparison]) -> str:
         ]
         for c in comparisons
     ]
-    return _table([*CASE, *(f"{1e3 * step:g}" for step in steps), "order"], rows, labels=3)
+    return markdown_table([*CASE, *(f"{1e3 * step:g}" for step in steps), "order"], rows, labels=3)
 
 
 CASE = ("plant", "tip-in", "scheme")
@@ -118,9 +119,3 @@ def _case(c: Comparison) -> tuple[str, str, str]:
 
 def _percent(share: float) -> str:
     return f"{100.0 * share:.2g}"
-
-
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]], labels: int) -> str:
-    """A Markdown table whose first columns are labels, the others numbers."""
-    ruler = ["---"] * labels + ["---:"] * (len(heads) - labels)
-    return "\n".join(f"| {' | '.join(row)} |" for row in (heads, ruler, *rows))

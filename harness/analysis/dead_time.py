@@ -13,7 +13,7 @@ import numpy as np
 
 from ..cosimulation.master import Scheme
 from ..cosimulation.system import BUILD
-from ..manoeuvres.catalogue import Signal
+from ..manoeuvres.signals import Signal
 from .coupling import NOISELESS, T_S, cosimulated, reference, short
 
 PLANT = "TwoMassDriveline"

@@ -10,7 +10,7 @@ from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build
 from ..errors import DrivelineError
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..names import nearest
-from ..reports.table import terminal_table, wide_console
+from ..reports.terminal import runs_table, wide_console
 
 NAME = "compare"
 HELP = "run the manoeuvres without and with damping and compare"
@@ -80,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
             disable=not console.is_terminal,
         )
     )
-    console.print(terminal_table([outcome.row for outcome in outcomes]))
+    console.print(runs_table([outcome.row for outcome in outcomes]))
     console.print(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
     tables = write_tables(outcomes, args.output)
     figures = write_figures(outcomes, args.output)

@@ -7,8 +7,8 @@ from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build, loop
 from ..errors import DrivelineError
 from ..manoeuvres.recording import COLUMNS, read_recording
 from ..manoeuvres.road import RoadLoad, road
-from ..replay import replay, terminal_table, write
-from ..reports.table import wide_console
+from ..replay import replay, write
+from ..reports.terminal import rides_table, wide_console
 
 NAME = "replay"
 HELP = "drive a recorded torque demand and road without and with damping"
@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
         f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, {build} FMUs, without and with damping"
     )
     rides = replay(manoeuvre, recording, args.plant, args.seed, build=build)
-    console.print(terminal_table(rides, f"{path.stem} on {recording.name}"))
+    console.print(rides_table(rides[0].metrics, rides[1].metrics, f"{path.stem} on {recording.name}"))
     for file in write(rides, recording, path.stem, args.output):
         console.print(f"written: {file}", soft_wrap=True)
     return 0

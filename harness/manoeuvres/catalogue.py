@@ -1,90 +1,11 @@
-"""The manoeuvres: what the driver, the brakes and the road do, as functions of time.
+"""The manoeuvres that the loop is driven through, by name."""
 
-A signal takes an array of instants in s and gives the values there. At a jump it already has the new
-value. Instants are taken as whole nanoseconds, so that `k * step_size` meets a jump whatever the
-rounding of the product.
-"""
+from dataclasses import replace
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
-
-import numpy as np
-from numpy.typing import ArrayLike
-
-Signal = Callable[[Any], np.ndarray]
+from .manoeuvre import Manoeuvre
+from .signals import FlatSine, Held, lines
 
 KMH = 1.0 / 3.6
-
-
-def nanoseconds(t: ArrayLike) -> np.ndarray:
-    """t in s, rounded to whole nanoseconds."""
-    return np.round(np.asarray(t, dtype=float), 9)
-
-
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """Straight lines between points, held beyond both ends; two points at one instant are a jump."""
-
-    times: np.ndarray
-    values: np.ndarray
-
-    def __call__(self, t: ArrayLike) -> np.ndarray:
-        return np.asarray(np.interp(nanoseconds(t), self.times, self.values))
-
-
-@dataclass(frozen=True, eq=False)
-class Held:
-    """values[k] from k * interval on; the first and the last value are held beyond the ends."""
-
-    interval: float
-    values: np.ndarray
-
-    def __call__(self, t: ArrayLike) -> np.ndarray:
-        k = np.floor(nanoseconds(t) / self.interval + 1e-6).astype(int)
-        return self.values[np.clip(k, 0, len(self.values) - 1)]
-
-
-def lines(*points: tuple[float, float]) -> Lines:
-    """The signal through the points (t in s, value)."""
-    return Lines(np.array([t for t, _ in points], float), np.array([value for _, value in points], float))
-
-
-NOTHING = lines((0.0, 0.0))
-
-
-@dataclass(frozen=True, eq=False)
-class Manoeuvre:
-    """One run of the loop and what its metrics refer to.
-
-    Attributes:
-        name: as on the command line.
-        description: one line.
-        duration: in s.
-        v_0: speed at the start in m/s.
-        T_driver: demanded motor torque in N.m.
-        T_brake: brake torque capacity of the driven wheels in N.m, wheel side.
-        slope: of the road in rad, positive uphill.
-        t_0: instant in s from which the metrics count; of a step, its first instant.
-        dT: height of the demanded step in N.m, None if the manoeuvre is not a step.
-        plateau_ends: instants in s at which the demand leaves a constant value, for the metric `hold`.
-    """
-
-    name: str
-    description: str
-    duration: float
-    v_0: float
-    T_driver: Signal
-    T_brake: Signal = NOTHING
-    slope: Signal = NOTHING
-    t_0: float = 0.0
-    dT: float | None = None
-    plateau_ends: tuple[float, ...] = ()
-
-    @property
-    def T_0(self) -> float:
-        """Demanded torque at the start in N.m, with which a rolling start is stationary."""
-        return float(self.T_driver(0.0))
 
 
 def step(name: str, description: str, v_0: float, before: float, after: float, rise: float = 0.0) -> Manoeuvre:
@@ -93,19 +14,14 @@ def step(name: str, description: str, v_0: float, before: float, after: float, r
     return Manoeuvre(name, description, 6.0, v_0, demand, t_0=1.0, dT=after - before)
 
 
-def creep_torque(t: ArrayLike) -> np.ndarray:
-    """7 +- 15 N.m at 0.45 Hz, with flanks four times as steep as a sine and flat tops."""
-    return 7.0 + 15.0 * np.clip(4.0 * np.sin(2.0 * np.pi * 0.45 * np.asarray(t, dtype=float)), -1.0, 1.0)
-
-
-def shift_register(length: int) -> np.ndarray:
+def shift_register(length: int) -> list[int]:
     """The first bits of the pseudo-random binary sequence x^9 + x^5 + 1, which repeats after 511."""
     stages = [1] * 9
     bits = []
     for _ in range(length):
         bits.append(stages[8])
         stages = [stages[8] ^ stages[4], *stages[:8]]
-    return np.array(bits)
+    return bits
 
 
 DRIVE = lines(
@@ -121,7 +37,7 @@ _PRBS = Manoeuvre(
     description="pseudo-random binary torque of 15 N.m around 8 N.m at 15 km/h",
     duration=10.0,
     v_0=15 * KMH,
-    T_driver=Held(0.04, 8.0 + 15.0 * (2.0 * shift_register(511) - 1.0)),
+    T_driver=Held(0.04, [8.0 + 15.0 * (2.0 * bit - 1.0) for bit in shift_register(511)]),
 )
 
 MANOEUVRES: dict[str, Manoeuvre] = {
@@ -144,7 +60,13 @@ MANOEUVRES: dict[str, Manoeuvre] = {
             t_0=0.3,
             plateau_ends=DRIVE_PLATEAU_ENDS,
         ),
-        Manoeuvre("creep", "the gear floats through zero torque at 15 km/h", 12.0, 15 * KMH, creep_torque),
+        Manoeuvre(
+            name="creep",
+            description="the gear floats through zero torque at 15 km/h",
+            duration=12.0,
+            v_0=15 * KMH,
+            T_driver=FlatSine(mean=7.0, amplitude=15.0, frequency=0.45, steepness=4.0),
+        ),
         _PRBS,
         replace(_PRBS, name="prbs15", description="the first 5 s of prbs", duration=5.0),
         Manoeuvre(

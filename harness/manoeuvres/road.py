@@ -16,8 +16,9 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..cosimulation.wiring import Interface
 from ..errors import WiringError
-from .catalogue import Held, Lines, Manoeuvre
+from .manoeuvre import Manoeuvre
 from .recording import Recording
+from .signals import Held, Lines
 
 T_LIMIT = 180.0
 """Largest demanded motor torque in N.m."""

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .catalogue import lines
 from .road import ROTATING_MASS, RoadLoad
+from .signals import lines
 
 PATH = Path(__file__).parent / "data" / "town_drive.csv"
 

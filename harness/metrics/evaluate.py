@@ -1,63 +1,20 @@
 """What a run is worth: oscillation, response to the driver, and what the control took from him.
 
-All torques are of the motor side. The signals are read at the samples of the controller, T_s apart.
-The window W is [t_0 - 0.2 s, t_0 + 4 s] for a step and the whole record for every other manoeuvre.
+The signals are read at the samples of the controller, T_s apart.
 """
 
-from dataclasses import dataclass
 from math import nan
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ..manoeuvres.catalogue import Manoeuvre
+from ..manoeuvres.manoeuvre import Manoeuvre
 from .oscillation import amplitude, damping_ratio
+from .record import Metrics
 from .spectrum import band_rms
-
-Signal = np.ndarray
 
 T_S = 0.002
 """Sample time of the controller in s."""
-
-
-@dataclass(frozen=True)
-class Metrics:
-    """The metrics of one run, in SI units; NaN where one has no meaning for the manoeuvre.
-
-    Attributes:
-        ts: settling time in s, from t_0 to the last instant at which T_gear swings by more than 5 % of
-            the step within the following 0.2 s, plus one sample; 0 if it never does.
-        end: largest swing (half of peak to peak within 0.2 s) of T_gear at the end of the record, N.m.
-        t90: response delay in s, from t_0 until T_gear has first made 90 % of its way to the final value.
-        OS: overshoot of T_gear over the straight line of its final value, as a share of its way.
-        zeta: damping ratio of T_gear about that line; a rough figure, see `damping_ratio`.
-        bTg: 5-50 Hz rms of T_gear in W, N.m.
-        bJ: 5-50 Hz rms of the jerk of the body in W, m/s3.
-        J: rms of the jerk of the body up to 50 Hz in W, m/s3.
-        effR: rms of what the control adds to the driver's torque in W, N.m.
-        effP: its largest magnitude in W, N.m.
-        dT_stat: its mean over the last 0.6 s, N.m: the stationary change of the torque; NaN if the
-            demand is not constant there.
-        loss: torque impulse withheld from the driver in the 2 s after t_0 over the height of the step,
-            in s: as if the vehicle lagged by that time.
-        imp: impact speed of the teeth in rad/s, motor side, see `impact_speed`.
-        hold: swing of T_gear left at the end of the plateaus of the demand, N.m, see `hold`.
-    """
-
-    ts: float
-    end: float
-    t90: float
-    OS: float
-    zeta: float
-    bTg: float
-    bJ: float
-    J: float
-    effR: float
-    effP: float
-    dT_stat: float
-    loss: float
-    imp: float
-    hold: float
 
 
 def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Metrics:
@@ -77,30 +34,30 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     e = added_torque(sampled["controller.T_driver"], sampled["controller.T_ref"])
     t_0, dT = manoeuvre.t_0, manoeuvre.dT
     window = np.full(len(t), True) if dT is None else _between(t, t_0 - 0.2, t_0 + 4.0)
-    ts, t90, OS, zeta, loss = (nan,) * 5
+    settling, delay, overshoot, zeta, withheld = (nan,) * 5
     if dT is not None:
-        ts = settling_time(T_gear, T_s, t_0, dT)
-        t90, OS, zeta = step_response(t, T_gear, t_0)
-        loss = withheld(e[_between(t, t_0, t_0 + 2.0)], T_s, dT)
+        settling = settling_time(T_gear, T_s, t_0, dT)
+        delay, overshoot, zeta = step_response(t, T_gear, t_0)
+        withheld = withheld_time(e[_between(t, t_0, t_0 + 2.0)], T_s, dT)
     return Metrics(
-        ts=ts,
-        end=float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),
-        t90=t90,
-        OS=OS,
-        zeta=zeta,
-        bTg=band_rms(T_gear[window], T_s),
-        bJ=band_rms(sampled["plant.a_body"][window], T_s, derivative=True),
-        J=band_rms(sampled["plant.a_body"][window], T_s, (0.0, 50.0), derivative=True),
-        effR=float(np.sqrt(np.mean(e[window] ** 2))),
-        effP=float(np.abs(e[window]).max()),
-        dT_stat=stationary_change(sampled["controller.T_driver"], e, T_s),
-        loss=loss,
-        imp=impact_speed(results, t_0),
-        hold=hold(t, T_gear, manoeuvre.plateau_ends),
+        settling_time=settling,
+        overshoot=overshoot,
+        damping_ratio=zeta,
+        gear_torque_rms=band_rms(T_gear[window], T_s),
+        jerk_rms=band_rms(sampled["plant.a_body"][window], T_s, derivative=True),
+        impact_speed=impact_speed(results, t_0),
+        response_delay=delay,
+        withheld_time=withheld,
+        stationary_torque_change=stationary_change(sampled["controller.T_driver"], e, T_s),
+        jerk_rms_to_50_Hz=band_rms(sampled["plant.a_body"][window], T_s, (0.0, 50.0), derivative=True),
+        added_torque_rms=float(np.sqrt(np.mean(e[window] ** 2))),
+        added_torque_peak=float(np.abs(e[window]).max()),
+        end_swing=float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),
+        plateau_swing=plateau_swing(t, T_gear, manoeuvre.plateau_ends),
     )
 
 
-def stationary_change(T_driver: Signal, e: Signal, T_s: float) -> float:
+def stationary_change(T_driver: np.ndarray, e: np.ndarray, T_s: float) -> float:
     """Mean of e in N.m over the last 0.6 s, NaN if the demand T_driver is not constant there."""
     last = -round(0.6 / T_s)
     return float(e[last:].mean()) if np.ptp(T_driver[last - 1 :]) == 0.0 else nan
@@ -122,23 +79,23 @@ def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
     return results[::stride]
 
 
-def added_torque(T_driver: Signal, T_ref: Signal) -> Signal:
+def added_torque(T_driver: np.ndarray, T_ref: np.ndarray) -> np.ndarray:
     """e = T_ref - T_driver in N.m, the demand delayed by the one sample that every controller needs."""
     return T_ref - np.concatenate((T_driver[:1], T_driver[:-1]))
 
 
-def settling_time(T_gear: Signal, T_s: float, t_0: float, dT: float) -> float:
+def settling_time(T_gear: np.ndarray, T_s: float, t_0: float, dT: float) -> float:
     """Time in s from t_0 to the last sample at which the swing exceeds 5 % of dT, plus one sample."""
     first = round(t_0 / T_s)
     exceeding = np.flatnonzero(amplitude(T_gear, T_s)[first:] > 0.05 * abs(dT))
     return float(exceeding[-1] + 1) * T_s if len(exceeding) else 0.0
 
 
-def step_response(t: Signal, T_gear: Signal, t_0: float) -> tuple[float, float, float]:
-    """Response delay t90 in s, overshoot and damping ratio of T_gear after a step at t_0.
+def step_response(t: np.ndarray, T_gear: np.ndarray, t_0: float) -> tuple[float, float, float]:
+    """Response delay in s, overshoot and damping ratio of T_gear after a step at t_0.
 
     The final value is a straight line fitted to the last 0.9 s and extended backwards (the torque of a
-    car that gains speed drifts). t90 and the damping ratio are NaN if 90 % are never reached.
+    car that gains speed drifts). Delay and damping ratio are NaN if 90 % are never reached.
     """
     T_s = float(t[1] - t[0])
     last = t > t[-1] - 0.9 + T_s / 2
@@ -148,14 +105,14 @@ def step_response(t: Signal, T_gear: Signal, t_0: float) -> tuple[float, float, 
     way = final(t[first]) - initial
     z = (T_gear - initial) / way
     y = (T_gear - final(t)) / way
-    OS = max(0.0, float(y[first:].max()))
+    overshoot = max(0.0, float(y[first:].max()))
     reached = np.flatnonzero(z[first:] >= 0.9)
     if not len(reached):
-        return nan, OS, nan
-    return float(reached[0] * T_s), OS, damping_ratio(y, T_s, first + int(reached[0]), OS)
+        return nan, overshoot, nan
+    return float(reached[0] * T_s), overshoot, damping_ratio(y, T_s, first + int(reached[0]), overshoot)
 
 
-def withheld(e: Signal, T_s: float, dT: float) -> float:
+def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
     """-(integral of e)/dT in s: by how much the added torque e delays the driver's step dT."""
     return float(-np.sum(e)) * T_s / dT
 
@@ -176,7 +133,7 @@ def impact_speed(results: np.ndarray, t_0: float) -> float:
     return float((0.5 * (speed[closes] + speed[closes + 1])).max(initial=0.0))
 
 
-def hold(t: Signal, T_gear: Signal, plateau_ends: tuple[float, ...]) -> float:
+def plateau_swing(t: np.ndarray, T_gear: np.ndarray, plateau_ends: tuple[float, ...]) -> float:
     """Mean over the plateaus of half the peak-to-peak of T_gear about a straight line, N.m.
 
     Of each plateau the piece from 0.45 s to 0.02 s before its end is taken. NaN without plateaus.
@@ -189,5 +146,5 @@ def hold(t: Signal, T_gear: Signal, plateau_ends: tuple[float, ...]) -> float:
     return float(np.mean(swings)) if swings else nan
 
 
-def _between(t: Signal, start: float, end: float) -> np.ndarray:
+def _between(t: np.ndarray, start: float, end: float) -> np.ndarray:
     return (t >= start - 1e-9) & (t <= end + 1e-9)

@@ -1,32 +1,31 @@
-"""Results as files."""
+"""Results as CSV files."""
+
+from __future__ import annotations
 
 import csv
-import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
+from .files import complete
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def write_rows(headings: Sequence[str], rows: Iterable[Sequence[object]], path: Path) -> None:
+    """Writes one row a line."""
+    with complete(path) as unfinished, unfinished.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(headings)
+        writer.writerows(rows)
 
 
 def write_csv(results: np.ndarray, path: Path) -> None:
     """Writes a structured array in the layout that `fmpy.util.read_csv` opens.
 
-    One column a field; numbers are written so that reading gives the same ones, truth values as 0 and
-    1. The file appears complete or not at all.
-
-    Args:
-        path: of the file; its folder is made if absent.
+    One column a field; numbers are written so that reading gives the same ones, truth values as 0 and 1.
     """
     names = results.dtype.names or ()
-    columns = [
-        (results[name].astype(int) if results[name].dtype == np.bool_ else results[name]).tolist() for name in names
-    ]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
-    try:
-        with unfinished.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(names)
-            writer.writerows(zip(*columns, strict=True))
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    columns = [(results[name].astype(int) if results[name].dtype == bool else results[name]).tolist() for name in names]
+    write_rows(names, zip(*columns, strict=True), path)

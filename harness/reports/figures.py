@@ -14,8 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
-from ..manoeuvres.catalogue import Manoeuvre
+from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.oscillation import amplitude
+from .files import complete
 
 STYLE = {
     "font.size": 9.0,
@@ -229,8 +230,8 @@ def legend(axes: Axes) -> None:
 
 def save(figure: Figure, path: Path) -> None:
     """Writes a figure as PNG or PDF, by the ending of the path, without a date."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=200, metadata=METADATA[path.suffix])
+    with complete(path) as unfinished:
+        figure.savefig(unfinished, dpi=200, format=path.suffix[1:], metadata=METADATA[path.suffix])
 
 
 def _write(figure: Figure, stem: Path) -> list[Path]:

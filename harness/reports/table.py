@@ -1,31 +1,16 @@
-"""The metrics of many runs as one table: on the terminal, as Markdown, as CSV."""
+"""The metrics of many runs as one table, for people (Markdown) and for tools (CSV, JSON), and what they mean."""
 
-import csv
 from collections.abc import Sequence
-from dataclasses import asdict, fields
 from math import isnan
 from pathlib import Path
-from typing import NamedTuple
+from textwrap import fill
+from typing import Any, NamedTuple
 
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.table import Table
-
-from ..metrics.evaluate import Metrics
-
-
-class Shown(NamedTuple):
-    """How a metric is shown: heading (in lines), unit, factor from SI and decimals."""
-
-    metric: str
-    heading: str
-    unit: str
-    factor: float
-    decimals: int
-
-    @property
-    def plain_heading(self) -> str:
-        return self.heading.replace("-\n", "").replace("\n", " ")
+from ..metrics.declaration import Column, declared
+from ..metrics.record import Metrics
+from .csv_file import write_rows
+from .files import write_text
+from .markdown import markdown_table
 
 
 class Row(NamedTuple):
@@ -37,70 +22,60 @@ class Row(NamedTuple):
     metrics: Metrics
 
 
-SHOWN = (
-    Shown("ts", "settling", "ms", 1e3, 0),
-    Shown("OS", "over-\nshoot", "%", 1e2, 0),
-    Shown("zeta", "damping\nratio", "1", 1.0, 2),
-    Shown("bTg", "torque\n5-50 Hz", "N.m", 1.0, 1),
-    Shown("bJ", "jerk\n5-50 Hz", "m/s3", 1.0, 1),
-    Shown("imp", "impact\nspeed", "rad/s", 1.0, 1),
-    Shown("t90", "delay\nto 90 %", "ms", 1e3, 0),
-    Shown("loss", "torque\nwithheld", "ms", 1e3, 1),
-    Shown("dT_stat", "stat.\nchange", "N.m", 1.0, 2),
-)
-NUMBER_WIDTH = 5
-"""Columns of the terminal that a number may need."""
-
-
-def wide_console() -> Console:
-    """Standard output; wide enough for the tables where it is no terminal with a width of its own."""
-    console = Console()
-    return console if console.is_terminal else Console(width=max(console.width, 120))
+SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column]
+"""The metrics that the table has, and how."""
 
 
 def cells(row: Row) -> list[str]:
     """What the table says of a run; a metric that has no meaning for it is a dash."""
-    return [row.manoeuvre, "on" if row.control else "off", *(_value(row.metrics, shown) for shown in SHOWN)]
+    numbers = (_number(metric.of(row.metrics), column) for metric, column in SHOWN)
+    return [row.manoeuvre, "on" if row.control else "off", *numbers]
 
 
-def _value(metrics: Metrics, shown: Shown) -> str:
-    value = getattr(metrics, shown.metric) * shown.factor
+def _number(value: float, column: Column) -> str:
     # adding zero turns a rounded -0 into 0
-    return "-" if isnan(value) else f"{round(value, shown.decimals) + 0.0:.{shown.decimals}f}"
+    return "-" if isnan(value) else f"{round(value * column.factor, column.decimals) + 0.0:.{column.decimals}f}"
 
 
-def terminal_table(rows: Sequence[Row]) -> Table:
-    """The table for the terminal; each plant is a section, each manoeuvre a pair of rows."""
-    table = Table(
-        title="without (off) and with (on) active damping",
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        padding=0,
+def legend(record: type) -> str:
+    """What the tables of a record of metrics show, for the terminal."""
+    shown = [(metric.column.plain_heading, metric.description) for metric in declared(record) if metric.column]
+    width = max(len(heading) for heading, _ in shown)
+    return "\n".join(
+        fill(meaning, 78, initial_indent=f"  {heading:{width}}  ", subsequent_indent=" " * (width + 4))
+        for heading, meaning in shown
     )
-    table.add_column("manoeuvre", no_wrap=True)
-    table.add_column("", min_width=3)
-    for shown in SHOWN:
-        table.add_column(f"{shown.heading}\n{shown.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold")
-    for k, row in enumerate(rows):
-        if k == 0 or row.plant != rows[k - 1].plant:
-            table.add_section()
-            table.add_row(f"[bold]{row.plant}[/bold]")
-        table.add_row(*cells(row), style="dim" if not row.control else "")
-    return table
 
 
 def write_markdown(rows: Sequence[Row], path: Path) -> None:
-    """The same table as Markdown, with the plant as first column."""
-    heads = ["plant", "manoeuvre", "damping", *(f"{shown.plain_heading}, {shown.unit}" for shown in SHOWN)]
-    lines = [heads, ["---"] * 3 + ["---:"] * len(SHOWN), *([row.plant, *cells(row)] for row in rows)]
-    path.write_text("".join(f"| {' | '.join(line)} |\n" for line in lines), encoding="utf-8")
+    """Writes the table, with the plant as first column, and below it what every metric means."""
+    headings = ["plant", "manoeuvre", "damping", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
+    table = markdown_table(headings, ([row.plant, *cells(row)] for row in rows), labels=3)
+    meanings = [
+        (metric.column.plain_heading if metric.column else "", f"`{metric.key}`", metric.description)
+        for metric in declared(Metrics)
+    ]
+    explained = markdown_table(("column", "in `metrics.csv`", "meaning"), meanings, labels=3)
+    write_text(f"{table}\n\n{explained}\n", path)
 
 
-def write_metrics(rows: Sequence[Row], path: Path) -> None:
-    """All metrics in SI units as CSV, one run a line; empty where one has no meaning."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("plant", "manoeuvre", "control", *(field.name for field in fields(Metrics))))
-        for row in rows:
-            values = ("" if isnan(x) else f"{x:.6g}" for x in asdict(row.metrics).values())
-            writer.writerow((row.plant, row.manoeuvre, int(row.control), *values))
+def values(metrics: Any) -> dict[str, float | None]:
+    """All metrics of a record by their keys, in SI units; None where one has no meaning."""
+    found = {metric.key: metric.of(metrics) for metric in declared(type(metrics))}
+    return {key: None if isnan(value) else value for key, value in found.items()}
+
+
+def write_metrics(runs: Sequence[dict[str, Any]], path: Path) -> None:
+    """Writes CSV: one run a line, its labels and its metrics; what is None stays empty."""
+    write_rows(list(runs[0]), ([_cell(value) for value in run.values()] for run in runs), path)
+
+
+def _cell(value: object) -> object:
+    match value:
+        case None:
+            return ""
+        case bool():
+            return int(value)
+        case float():
+            return f"{value:.6g}"
+    return value

@@ -36,8 +36,8 @@ def vehicle(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_vehicle_of_the_users_own_is_damped_in_the_loop(vehicle: Path, both_built: Path) -> None:
     tipin = MANOEUVRES["tipin15"]
     damped, free = (evaluate(simulate(tipin, vehicle, control, folder=both_built), tipin) for control in (True, False))
-    assert free.ts > 1.0
-    assert damped.ts < 0.2
+    assert free.settling_time > 1.0
+    assert damped.settling_time < 0.2
 
 
 def test_it_gains_the_speed_that_its_masses_let_it(vehicle: Path, both_built: Path) -> None:

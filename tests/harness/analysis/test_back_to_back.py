@@ -16,7 +16,8 @@ from harness.analysis.back_to_back import (
 )
 from harness.analysis.back_to_back_page import LoopRow, page
 from harness.cosimulation.system import PLANTS
-from harness.manoeuvres.catalogue import MANOEUVRES, Manoeuvre
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.manoeuvres.manoeuvre import Manoeuvre
 from models import two_mass_driveline
 
 EXACT = 1e-12

@@ -10,54 +10,103 @@ import pytest
 from rich.console import Console
 
 from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.metrics.evaluate import Metrics
+from harness.metrics.declaration import declared
+from harness.metrics.record import Metrics, RideMetrics
 from harness.reports.figures import plot_drive, plot_replay, plot_step
-from harness.reports.table import SHOWN, Row, cells, terminal_table, write_markdown, write_metrics
+from harness.reports.files import complete
+from harness.reports.table import SHOWN, Row, cells, legend, values, write_markdown, write_metrics
+from harness.reports.terminal import rides_table, runs_table
 
 
 def metrics(**values):
     return Metrics(**({field.name: math.nan for field in fields(Metrics)} | values))
 
 
-OFF = Row("Plant", "tipin15", False, metrics(ts=1.758, OS=1.16, bTg=26.5, dT_stat=-1e-9))
-ON = Row("Plant", "tipin15", True, metrics(ts=0.114, OS=0.19, loss=0.012))
+OFF = Row(
+    "Plant",
+    "tipin15",
+    False,
+    metrics(settling_time=1.758, overshoot=1.16, gear_torque_rms=26.5, stationary_torque_change=-1e-9),
+)
+ON = Row("Plant", "tipin15", True, metrics(settling_time=0.114, overshoot=0.19, withheld_time=0.012))
+
+
+def shown(row):
+    return dict(zip([metric.name for metric, _ in SHOWN], cells(row)[2:], strict=True))
+
+
+def printed(table):
+    text = io.StringIO()
+    Console(width=200, file=text).print(table)
+    return text.getvalue()
 
 
 def test_a_row_shows_milliseconds_and_percent():
-    shown = dict(zip([s.metric for s in SHOWN], cells(OFF)[2:], strict=True))
-    assert (shown["ts"], shown["OS"], shown["bTg"]) == ("1758", "116", "26.5")
+    found = shown(OFF)
+    assert (found["settling_time"], found["overshoot"], found["gear_torque_rms"]) == ("1758", "116", "26.5")
     assert cells(ON)[:2] == ["tipin15", "on"]
 
 
 def test_what_has_no_meaning_is_a_dash_and_a_rounded_zero_has_no_sign():
-    shown = dict(zip([s.metric for s in SHOWN], cells(OFF)[2:], strict=True))
-    assert shown["t90"] == "-"
-    assert shown["dT_stat"] == "0.00"
+    found = shown(OFF)
+    assert found["response_delay"] == "-"
+    assert found["stationary_torque_change"] == "0.00"
 
 
 def test_the_terminal_table_names_plant_units_and_runs():
-    text = io.StringIO()
-    Console(width=200, file=text).print(terminal_table([OFF, ON]))
-    assert all(part in text.getvalue() for part in ("Plant", "tipin15", "ms", "N.m", "1758", "114"))
+    text = printed(runs_table([OFF, ON]))
+    assert all(part in text for part in ("Plant", "tipin15", "ms", "N.m", "1758", "114"))
 
 
-def test_markdown_has_one_line_a_run(tmp_path):
+def test_two_rides_stand_side_by_side_with_their_ratio():
+    off, on = RideMetrics(2.0, 32.0, 4.0, 0.5), RideMetrics(1.0, 1.0, 3.0, 0.5)
+    lines = printed(rides_table(off, on, "a drive")).splitlines()
+    assert lines[0].strip() == "a drive"
+    assert [line.split()[-3:] for line in lines if "N.m" in line] == [["2", "1", "0.500"], ["32", "1", "0.031"]]
+
+
+@pytest.mark.parametrize("record", [Metrics, RideMetrics])
+def test_the_legend_explains_every_column(record):
+    text = " ".join(legend(record).split())
+    for metric in declared(record):
+        assert metric.column is None or f"{metric.column.plain_heading} {metric.description}" in text
+
+
+def test_markdown_has_one_line_a_run_and_explains_every_metric(tmp_path):
     path = tmp_path / "table.md"
     write_markdown([OFF, ON], path)
-    lines = path.read_text(encoding="utf-8").splitlines()
-    assert len(lines) == 4
-    assert len({line.count("|") for line in lines}) == 1
+    table, meanings = path.read_text(encoding="utf-8").split("\n\n")
+    assert len(table.splitlines()) == 4
+    assert len({line.count("|") for line in table.splitlines()}) == 1
+    for metric in declared(Metrics):
+        assert f"`{metric.key}` | {metric.description} |" in meanings
 
 
 def test_the_csv_file_has_all_metrics_in_si_units(tmp_path):
     path = tmp_path / "metrics.csv"
-    write_metrics([OFF, ON], path)
+    write_metrics([{"control": row.control, **values(row.metrics)} for row in (OFF, ON)], path)
     with path.open(newline="", encoding="utf-8") as file:
         off, on = csv.DictReader(file)
-    assert float(off["ts"]) == 1.758
-    assert off["t90"] == ""
-    assert (on["control"], float(on["loss"])) == ("1", 0.012)
-    assert set(off) == {"plant", "manoeuvre", "control", *(field.name for field in fields(Metrics))}
+    assert float(off["settling_time_s"]) == 1.758
+    assert off["response_delay_s"] == ""
+    assert (on["control"], float(on["withheld_time_s"])) == ("1", 0.012)
+    assert set(off) == {"control", *(metric.key for metric in declared(Metrics))}
+    assert {"overshoot_1", "impact_speed_rad_per_s", "jerk_rms_m_per_s3", "gear_torque_rms_N_m"} <= set(off)
+
+
+def interrupted(path):
+    with complete(path) as unfinished:
+        unfinished.write_text("new")
+        raise KeyboardInterrupt
+
+
+def test_a_file_that_is_not_finished_leaves_the_old_one_and_nothing_else(tmp_path):
+    path = tmp_path / "results" / "table.md"
+    with complete(path) as unfinished:
+        unfinished.write_text("old")
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(path)
+    assert [file.read_text() for file in path.parent.iterdir()] == ["old"]
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,123 @@
+"""The metrics of a run and of a recorded drive, in SI units; NaN where one has no meaning for the manoeuvre.
+
+All torques are of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
+T_ref - T_driver, the demand delayed by the one sample that every controller needs. The rms values are those in a
+window: from 0.2 s before a step to 4 s after it, of every other manoeuvre the whole record.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from .declaration import Column, Metric
+
+GearTorqueRms = Annotated[
+    float,
+    Metric(
+        "N.m",
+        "rms between 5 and 50 Hz of the gear torque, which wears the gear",
+        Column("torque\n5-50 Hz", "N.m", 1.0, 1),
+    ),
+]
+JerkRms = Annotated[
+    float,
+    Metric(
+        "m/s3",
+        "rms between 5 and 50 Hz of the jerk of the body, which the passengers feel",
+        Column("jerk\n5-50 Hz", "m/s3", 1.0, 1),
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Metrics:
+    """What a run is worth; computed by `harness.metrics.evaluate`."""
+
+    settling_time: Annotated[
+        float,
+        Metric(
+            "s",
+            "time from the step until the gear torque swings by less than 5 % of the step",
+            Column("settling", "ms", 1e3, 0),
+        ),
+    ]
+    overshoot: Annotated[
+        float,
+        Metric(
+            "1",
+            "overshoot of the gear torque over the straight line of its final value, as a share of its way",
+            Column("over-\nshoot", "%", 1e2, 0),
+        ),
+    ]
+    damping_ratio: Annotated[
+        float,
+        Metric(
+            "1",
+            "damping ratio by the logarithmic decrement of the gear torque about that line; a rough figure",
+            Column("damping\nratio", "1", 1.0, 2),
+        ),
+    ]
+    gear_torque_rms: GearTorqueRms
+    jerk_rms: JerkRms
+    impact_speed: Annotated[
+        float,
+        Metric(
+            "rad/s",
+            "largest speed, motor side, with which the teeth meet after the backlash",
+            Column("impact\nspeed", "rad/s", 1.0, 1),
+        ),
+    ]
+    response_delay: Annotated[
+        float,
+        Metric(
+            "s",
+            "time from the step until the gear torque has first made 90 % of its way",
+            Column("delay\nto 90 %", "ms", 1e3, 0),
+        ),
+    ]
+    withheld_time: Annotated[
+        float,
+        Metric(
+            "s",
+            "torque impulse withheld from the driver in the 2 s after the step over its height: a lag by that time",
+            Column("torque\nwithheld", "ms", 1e3, 1),
+        ),
+    ]
+    stationary_torque_change: Annotated[
+        float,
+        Metric(
+            "N.m",
+            "mean torque that the control adds in the last 0.6 s, if the demand is constant there",
+            Column("stat.\nchange", "N.m", 1.0, 2),
+        ),
+    ]
+    jerk_rms_to_50_Hz: Annotated[float, Metric("m/s3", "rms of the jerk of the body up to 50 Hz")]
+    added_torque_rms: Annotated[float, Metric("N.m", "rms of the torque that the control adds")]
+    added_torque_peak: Annotated[float, Metric("N.m", "largest magnitude of the torque that the control adds")]
+    end_swing: Annotated[float, Metric("N.m", "largest swing of the gear torque in the last second")]
+    plateau_swing: Annotated[
+        float,
+        Metric(
+            "N.m",
+            "swing of the gear torque about a straight line at the ends of the plateaus of the demand, their mean",
+        ),
+    ]
+
+
+@dataclass(frozen=True)
+class RideMetrics:
+    """What a recorded drive is worth that was simulated; computed by `harness.replay`."""
+
+    gear_torque_rms: GearTorqueRms
+    gear_damage: Annotated[
+        float,
+        Metric(
+            "N5.m5",
+            "fatigue of the gear by rainflow counting of its torque, of use only relative to another ride",
+            Column("gear\ndamage", "(N.m)^5", 1.0, 0),
+        ),
+    ]
+    jerk_rms: JerkRms
+    speed_error_rms: Annotated[
+        float,
+        Metric("m/s", "rms of simulated less recorded speed", Column("speed\nerror", "m/s", 1.0, 2)),
+    ]

@@ -1,0 +1,27 @@
+"""Files that are complete or absent."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def complete(path: Path) -> Iterator[Path]:
+    """A path to write to; what is there at the end of the block becomes the file at `path`, after an error nothing.
+
+    The folder is made if absent.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
+    try:
+        yield unfinished
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def write_text(text: str, path: Path) -> None:
+    """Writes a text file as UTF-8."""
+    with complete(path) as unfinished:
+        unfinished.write_text(text, encoding="utf-8")

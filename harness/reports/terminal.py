@@ -1,0 +1,49 @@
+"""Tables on the terminal."""
+
+from collections.abc import Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from ..metrics.declaration import declared
+from ..metrics.record import RideMetrics
+from .table import SHOWN, Row, cells
+
+NUMBER_WIDTH = 5
+"""Columns of the terminal that a number may need."""
+
+
+def wide_console() -> Console:
+    """Standard output; wide enough for the tables where it is no terminal with a width of its own."""
+    console = Console()
+    return console if console.is_terminal else Console(width=max(console.width, 120))
+
+
+def runs_table(rows: Sequence[Row]) -> Table:
+    """Each plant is a section, each manoeuvre a pair of rows."""
+    table = Table(title="without (off) and with (on) active damping", title_justify="left", box=SIMPLE_HEAD, padding=0)
+    table.add_column("manoeuvre", no_wrap=True)
+    table.add_column("", min_width=3)
+    for _, column in SHOWN:
+        table.add_column(f"{column.heading}\n{column.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold")
+    for k, row in enumerate(rows):
+        if k == 0 or row.plant != rows[k - 1].plant:
+            table.add_section()
+            table.add_row(f"[bold]{row.plant}[/bold]")
+        table.add_row(*cells(row), style="dim" if not row.control else "")
+    return table
+
+
+def rides_table(undamped: RideMetrics, damped: RideMetrics, title: str) -> Table:
+    """Both rides side by side, and their ratio."""
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
+    table.add_column("", no_wrap=True)
+    table.add_column("unit")
+    for heading in ("without damping", "with damping", "with/without"):
+        table.add_column(heading, justify="right")
+    for metric in declared(RideMetrics):
+        off, on = metric.of(undamped), metric.of(damped)
+        if metric.column:
+            table.add_row(metric.column.plain_heading, metric.column.unit, f"{off:.3g}", f"{on:.3g}", f"{on / off:.3f}")
+    return table
