@@ -1,12 +1,14 @@
-"""Which builds of an FMU are possible on this machine."""
+"""Building FMUs: those of the project by name, or one of a Python file of the user's own."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from difflib import get_close_matches
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
+from .errors import BuildError
 from .fmu import Fmu
-from .python.packaging import build
+from .own_file import fmu_in
 
 BUILDS = ("python", "native", "both")
 PLATFORMS = ("host", "all")
@@ -18,8 +20,46 @@ Builder = Callable[[Fmu, Path], Path]
 """Builds an FMU into a folder and returns the path of its file."""
 
 
-class NotPossible(Exception):
+class NotPossible(BuildError):
     """Something that a build needs is missing; the text says what."""
+
+
+def build_fmus(names: Sequence[str], folder: Path, builds: str | None = None, platform: str = "host") -> Iterator[Path]:
+    """Builds FMUs, one after the other; yields the path of each file.
+
+    Args:
+        names: of FMUs of the project, or paths of Python files with a block of the user's own, of which there is a
+            native build only; none for all of the project.
+        folder: for the files; the native ones go to NATIVE_FOLDER in it.
+        builds: one of BUILDS; None for each that is possible here.
+        platform: of the native builds, one of PLATFORMS.
+
+    Raises:
+        BuildError: a name is unknown, a build is not possible here, or a block of the user's own cannot be built.
+    """
+    from .catalogue import FMUS
+
+    fmus = [_named(name) for name in dict.fromkeys(names or FMUS)]
+    own = [fmu for fmu in fmus if fmu not in FMUS.values()]
+    if own and builds in ("python", "both"):
+        raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
+    of_the_project = builders(builds, platform) if len(own) < len(fmus) else []
+    of_own = [_guarded(builder) for builder in builders("native", platform)] if own else []
+    for fmu in fmus:
+        for build in of_own if fmu in own else of_the_project:
+            yield build(fmu, folder)
+
+
+def _named(name: str) -> Fmu:
+    from .catalogue import FMUS
+
+    if name in FMUS:
+        return FMUS[name]
+    if name.endswith(".py"):
+        return fmu_in(Path(name))
+    near = get_close_matches(name, FMUS, n=2, cutoff=0.5)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(FMUS)}"
+    raise BuildError(f"unknown FMU {name}; {hint}")
 
 
 def builders(builds: str | None, platform: str = "host") -> list[Builder]:
@@ -32,6 +72,8 @@ def builders(builds: str | None, platform: str = "host") -> list[Builder]:
     Raises:
         NotPossible: a build that is asked for cannot be made here.
     """
+    from .python.packaging import build
+
     if builds == "python":
         return [build]
     try:
@@ -62,3 +104,17 @@ def _native_builder(platform: str) -> Builder:
 
 def _into_own_folder(builder: Builder, fmu: Fmu, folder: Path) -> Path:
     return builder(fmu, folder / NATIVE_FOLDER)
+
+
+def _guarded(builder: Builder) -> Builder:
+    """The builder for blocks that are not ours: whatever goes wrong in one is a BuildError."""
+
+    def build(fmu: Fmu, folder: Path) -> Path:
+        try:
+            return builder(fmu, folder)
+        except OSError:
+            raise
+        except Exception as error:
+            raise BuildError(f"{fmu.name} cannot be built: {type(error).__name__}: {error}") from error
+
+    return build

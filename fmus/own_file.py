@@ -1,33 +1,47 @@
 """An FMU that is declared in a Python file of the user's own."""
 
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 
+from .errors import BuildError
 from .fmu import Fmu
-
-
-class NoFmu(Exception):
-    """The file declares no FMU; the text says why."""
 
 
 def fmu_in(path: Path) -> Fmu:
     """What the file at `path` calls FMU; the file is run for it.
 
     Raises:
-        NoFmu: there is no such file or it declares none; its name is that of a module that is in use.
+        BuildError: there is no such file, it cannot be run or it declares no FMU; its name is that of another
+            module.
     """
     if not path.is_file():
-        raise NoFmu(f"there is no file {path}")
-    if path.stem in sys.modules:
-        raise NoFmu(f"{path}: a module called {path.stem} is in use; give the file another name")
-    spec = spec_from_file_location(path.stem, path)
+        raise BuildError(f"there is no file {path}")
+    name = path.stem
+    if _taken(name, path):
+        raise BuildError(f"{path}: there is a module called {name}; give the file another name")
+    spec = spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
-        raise NoFmu(f"{path} is not a Python file")
+        raise BuildError(f"{path} is not a Python file")
     module = module_from_spec(spec)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise BuildError(f"{path} cannot be run: {type(error).__name__}: {error}") from error
     fmu = getattr(module, "FMU", None)
     if not isinstance(fmu, Fmu):
-        raise NoFmu(f"{path} has no line `FMU = Fmu(BLOCK, stop_time=10.0)`")
+        del sys.modules[name]
+        raise BuildError(f"{path} has no line `FMU = Fmu(BLOCK, stop_time=10.0)`")
     return fmu
+
+
+def _taken(name: str, path: Path) -> bool:
+    """Whether a module of that name would be hidden by the file."""
+    if name in sys.modules:
+        return True
+    spec = find_spec(name) if name.isidentifier() else None
+    if spec is None or spec.origin is None:
+        return False
+    return not (Path(spec.origin).exists() and path.samefile(spec.origin))

@@ -1,18 +1,31 @@
-"""The command line `driveline`: collects the subcommands and answers mistakes in one sentence."""
+"""The command line `driveline`: finds the command and answers mistakes in one sentence.
+
+A command is a module of `harness.commands` with DESCRIPTION, EXAMPLES, add_arguments(parser) and run(args) -> int. It
+is imported only when it is asked for, and itself imports what it needs when it runs, so that help and mistakes are
+answered at once.
+"""
 
 import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
+from types import ModuleType
 from typing import NoReturn
 
-from .commands import back_to_back, build, check, compare, coupling, design, replay, simulate
 from .errors import DrivelineError
 from .names import nearest
 
-_MODULES = (build, simulate, compare, replay, check, design, coupling, back_to_back)
-
-COMMANDS = {command.NAME: command for command in _MODULES}
+COMMANDS = {
+    "build": "build the FMUs",
+    "simulate": "drive the loop through one manoeuvre and write its signals",
+    "compare": "run the manoeuvres without and with damping and compare",
+    "replay": "drive a recorded torque demand and road without and with damping",
+    "check": "check FMUs for compliance",
+    "design": "compute the gains of the controller",
+    "coupling": "measure coupling error and dead time of the master",
+    "back-to-back": "compare both builds of each block with its functions",
+}
 
 DESCRIPTION = """\
 Active damping of drive-train oscillations: the closed loop of FMUs, with and without control.
@@ -21,50 +34,101 @@ First `driveline build`, then for example `driveline simulate --manoeuvre tipin1
 `driveline COMMAND --help` explains a command.
 """
 
+EXIT_CODES = "exit codes: 0 done, 1 something went wrong or there are findings, 2 wrong use"
+
+SHELLS = ("bash", "zsh", "tcsh")
+
+
+def command(name: str) -> ModuleType:
+    """The module of a command."""
+    return import_module(f".commands.{name.replace('-', '_')}", __package__)
+
 
 class Parser(argparse.ArgumentParser):
-    """Answers an unknown option with the nearest known ones."""
+    """Takes the arguments of a command from its module, and answers unknown options and values with the nearest.
+
+    Attributes:
+        command: name of the command whose arguments are still to be added; None for all others.
+    """
+
+    command: str | None = None
+
+    def add_command(self) -> None:
+        """Adds description, examples and arguments of the command."""
+        if self.command is None:
+            return
+        module, self.command = command(self.command), None
+        self.description, self.epilog = module.DESCRIPTION, module.EXAMPLES
+        module.add_arguments(self)
 
     def parse_known_args(self, args=None, namespace=None):  # type: ignore[override]
+        self.add_command()
         known, unknown = super().parse_known_args(args, namespace)
         options = [word.partition("=")[0] for word in unknown if word.startswith("--")]
         if options:
             self.error(f"unknown option {options[0]}; {nearest(options[0], self._option_string_actions)}")
         return known, unknown
 
+    def _check_value(self, action: argparse.Action, value: str) -> None:
+        if action.choices is not None and value not in action.choices:
+            name = "/".join(action.option_strings) or str(action.metavar).lower()
+            self.error(f"{name}: {value or 'an empty name'} is unknown; {nearest(value, action.choices)}")
+
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}\n(`{self.prog} --help` explains)\n")
 
 
-def parser() -> argparse.ArgumentParser:
-    """The parser with all subcommands."""
-    top = Parser(prog="driveline", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+class Version(argparse.Action):
+    """Prints the version of the package."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> NoReturn:
+        from importlib.metadata import version
+
+        print(f"driveline-damping {version('driveline-damping')}")
+        parser.exit()
+
+
+class Completion(argparse.Action):
+    """Prints what makes a shell complete commands, options and names."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> NoReturn:
+        import shtab
+
+        for action in parser._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                for subparser in action.choices.values():
+                    subparser.add_command()
+        print(shtab.complete(parser, str(values)))
+        parser.exit()
+
+
+def parser() -> Parser:
+    """The parser with all commands."""
+    style = argparse.RawDescriptionHelpFormatter
+    top = Parser(prog="driveline", description=DESCRIPTION, epilog=EXIT_CODES, formatter_class=style)
+    top.add_argument("--version", action=Version, nargs=0, help="print the version and exit")
+    top.add_argument(
+        "--print-completion",
+        action=Completion,
+        choices=SHELLS,
+        metavar="SHELL",
+        help=f"print the completion for {', '.join(SHELLS)} and exit",
+    )
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name, command in COMMANDS.items():
-        subparser = subparsers.add_parser(
-            name,
-            help=command.HELP,
-            description=command.DESCRIPTION,
-            epilog=command.EXAMPLES,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        command.add_arguments(subparser)
+    for name, text in COMMANDS.items():
+        subparsers.add_parser(name, help=text, formatter_class=style).command = name
     return top
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs `driveline`; returns its exit code: 0 done, 1 failed or findings, 2 wrong use.
+    """Runs `driveline`; returns its exit code, see EXIT_CODES; 130 if it was stopped at the keyboard.
 
     Args:
         arguments: without the name of the program; None for those of the process.
     """
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    top = parser()
-    if words and not words[0].startswith("-") and words[0] not in COMMANDS:
-        top.error(f"unknown command {words[0]}; {nearest(words[0], COMMANDS)}")
-    args = top.parse_args(words)
+    args = parser().parse_args(arguments)
     try:
-        return COMMANDS[args.command].run(args)
+        return command(args.command).run(args)
     except BrokenPipeError:
         # the reader has gone; nothing may be flushed to it at exit either
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -74,6 +138,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return error.exit_code
     except OSError as error:
         print(f"driveline {args.command}: {error}", file=sys.stderr)
+        return 1
+    except MemoryError as error:
+        print(f"driveline {args.command}: not enough memory: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"driveline {args.command}: stopped", file=sys.stderr)

@@ -4,7 +4,7 @@ The runs know nothing of each other and are spread over the cores; what comes ba
 of the cases, whatever finishes first.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import repeat
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -69,16 +69,36 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(case: Case, seed: int, folder: Path, fmus: Path = BUILD, build: str | None = None) -> Outcome:
+def run_case(
+    case: Case,
+    seed: int,
+    folder: Path,
+    fmus: Path = BUILD,
+    build: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to `folder` and evaluates it."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
-    results = simulate(manoeuvre, plant=case.plant, control=case.control, seed=seed, folder=fmus, build=build)
+    results = simulate(
+        manoeuvre,
+        plant=case.plant,
+        control=case.control,
+        parameters=parameters,
+        seed=seed,
+        folder=fmus,
+        build=build,
+    )
     write_csv(at_samples(results), folder / f"{case.file_name}.csv")
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
 def run_cases(
-    todo: Sequence[Case], seed: int, folder: Path, fmus: Path = BUILD, build: str | None = None
+    todo: Sequence[Case],
+    seed: int,
+    folder: Path,
+    fmus: Path = BUILD,
+    build: str | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> Iterator[Outcome]:
     """Runs the cases in parallel; yields their outcomes in the order of the cases.
 
@@ -87,9 +107,12 @@ def run_cases(
         folder: for the CSV files.
         fmus: folder of the built FMUs.
         build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
+        parameters: `instance.variable` -> value, in all runs.
     """
     with workers() as pool:
-        yield from pool.map(run_case, todo, repeat(seed), repeat(folder), repeat(fmus), repeat(build))
+        yield from pool.map(
+            run_case, todo, repeat(seed), repeat(folder), repeat(fmus), repeat(build), repeat(parameters)
+        )
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

@@ -1,6 +1,6 @@
 """A recorded drive, driven by the simulated vehicle without and with damping."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,9 +56,12 @@ def ride(
     seed: int = 1,
     fmus: Path = BUILD,
     build: str | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> Ride:
     """Simulates the manoeuvre of a recording and evaluates it against the recording."""
-    results = simulate(manoeuvre, plant=plant, control=control, seed=seed, folder=fmus, build=build)
+    results = simulate(
+        manoeuvre, plant=plant, control=control, parameters=parameters, seed=seed, folder=fmus, build=build
+    )
     signals = repack_fields(at_samples(results)[KEPT])
     metrics = evaluate(signals, manoeuvre)
     recorded = np.interp(signals["time"], recording.time - recording.time[0], recording.v)
@@ -78,6 +81,7 @@ def replay(
     seed: int = 1,
     fmus: Path = BUILD,
     build: str | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> tuple[Ride, Ride]:
     """The rides without and with damping, at the same time on two cores.
 
@@ -88,8 +92,8 @@ def replay(
     """
     require_counting()
     with workers(1) as pool:
-        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed, fmus, build)
-        undamped = ride(manoeuvre, recording, plant, False, seed, fmus, build)
+        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed, fmus, build, parameters)
+        undamped = ride(manoeuvre, recording, plant, False, seed, fmus, build, parameters)
         return undamped, damped.result()
 
 

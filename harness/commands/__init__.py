@@ -1,2 +1,1 @@
-"""The subcommands of `driveline`: each module has NAME, HELP, DESCRIPTION, EXAMPLES,
-add_arguments(parser) and run(args) -> int."""
+"""The commands of `driveline`, see `harness.cli`."""

@@ -3,13 +3,8 @@
 import argparse
 from pathlib import Path
 
-from rich.console import Console
-from rich.text import Text
-
-from ..compliance.check import check
-
-NAME = "check"
-HELP = "check FMUs for compliance"
+from .options import add_printing
+from .printing import Printer
 
 DESCRIPTION = """\
 Checks any FMI 2.0 Co-Simulation FMU: its archive, its model description (with fmpy, and what fmpy does
@@ -23,23 +18,33 @@ EXAMPLES = """\
 examples:
   driveline check build/TwoMassDriveline.fmu
   driveline check build/*.fmu
+  driveline check --json build/*.fmu > findings.json
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
+    files = parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
+    files.complete = "file"  # type: ignore[attr-defined]
+    add_printing(parser, table=True)
 
 
 def run(args: argparse.Namespace) -> int:
-    console = Console(highlight=False, soft_wrap=True)
-    findings = 0
+    from ..compliance.check import check
+    from ..reports.terminal import print_verdict
+
+    out = Printer(args)
+    found = []
     for path in args.fmus:
-        console.print(Text(str(path), style="bold"))
+        out.say(str(path))
+        verdicts = []
         for verdict in check(path):
-            mark = Text("  FOUND ", style="red") if verdict.problems else Text("  ok    ", style="green")
-            console.print(mark + verdict.title)
-            for problem in verdict.problems:
-                console.print(Text(f"        - {problem}"))
-            findings += len(verdict.problems)
-    console.print(f"{findings or 'no'} finding{'s' * (findings != 1)} in {len(args.fmus)} FMU(s)")
+            verdicts.append(verdict)
+            if not out.silent:
+                print_verdict(verdict.title, verdict.problems)
+            elif not out.json:
+                print("".join(f"{path}: {problem}\n" for problem in verdict.problems), end="")
+        found.append({"fmu": path, "verdicts": [verdict._asdict() for verdict in verdicts]})
+    findings = sum(len(verdict["problems"]) for fmu in found for verdict in fmu["verdicts"])
+    out.say(f"{findings or 'no'} finding{'s' * (findings != 1)} in {len(args.fmus)} FMU(s)")
+    out.document({"findings": findings, "fmus": found})
     return 1 if findings else 0

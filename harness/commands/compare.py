@@ -3,30 +3,22 @@
 import argparse
 from pathlib import Path
 
-from rich.progress import track
-
-from ..compare import cases, run_cases, write_figures, write_tables
-from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build
-from ..errors import DrivelineError
+from ..cosimulation.system import PLANTS
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
-from ..names import nearest
-from ..reports.terminal import runs_table, wide_console
+from ..metrics.record import Metrics
+from ..reports.table import legend
+from .options import NAMED, add_loop, add_output, add_plant, add_printing, built
+from .printing import Printer
 
-NAME = "compare"
-HELP = "run the manoeuvres without and with damping and compare"
+LEGEND = legend(Metrics)
 
-DESCRIPTION = """\
+DESCRIPTION = f"""\
 Runs every manoeuvre on every plant twice, with the damping off and on, and prints one table:
 
-  settling         until the gear torque swings by less than 5 % of the demanded step
-  overshoot        of the gear torque over its final value
-  damping ratio    from the decrement of the gear torque
-  torque, jerk     rms between 5 and 50 Hz of the gear torque, which wears the gear, and of the
-                   jerk of the body, which the passengers feel
-  impact speed     with which the teeth meet after the backlash
-  delay to 90 %    until the gear torque has made 90 % of its way
-  torque withheld  impulse taken from the driver over the step: a lag by that time
-  stat. change     mean torque that the damping adds at the end, when all is quiet
+{LEGEND}
+
+It goes to table.md in the output folder, all metrics to metrics.csv, the figures beside them and the
+signals of every run to runs/.
 """
 
 EXAMPLES = """\
@@ -34,59 +26,58 @@ examples:
   driveline compare
   driveline compare --plant ValidationVehicle --manoeuvre tipin15 --manoeuvre drive
   driveline compare --plant my_vehicle.fmu --seed 7 --output results/mine
+  driveline compare --set controller.k_d=1.5 --output results/softer
+  driveline compare --json > comparison.json
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--plant",
-        action="append",
-        metavar="NAME|FILE",
-        help=f"only this plant, {' or '.join(PLANTS)} or an FMU with the same interface (repeatable)",
-    )
-    parser.add_argument(
         "--manoeuvre",
         action="append",
+        choices=MANOEUVRES,
         metavar="NAME",
         help=f"only this manoeuvre (repeatable); default: {', '.join(COMPARED)}",
     )
-    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
-    parser.add_argument("--seed", type=int, default=1, help="of the sensor noise (default: %(default)s)")
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=Path("results/compare"),
-        metavar="FOLDER",
-        help="for tables, figures and the signals of every run (default: %(default)s)",
-    )
+    add_plant(parser, action="append", help=f"only this plant, {NAMED} (repeatable)")
+    add_loop(parser)
+    add_output(parser, "results/compare", "tables, figures and the signals of every run")
+    add_printing(parser, table=True)
 
 
 def run(args: argparse.Namespace) -> int:
-    plants = args.plant or PLANTS
-    builds = {plant: args.build or chosen_build(plant) for plant in plants}
-    manoeuvres = args.manoeuvre or COMPARED
-    for name in manoeuvres:
-        if name not in MANOEUVRES:
-            raise DrivelineError(f"unknown manoeuvre {name}; {nearest(name, MANOEUVRES)}")
-    todo = cases(plants, manoeuvres)
-    console = wide_console()
+    plants = list(dict.fromkeys(args.plant or PLANTS))
+    builds = {plant: built(plant, args.fmus, args.build) for plant in plants}
+    # here and not above: mistakes and help are answered without them
+    from rich.console import Console
+    from rich.progress import track
+
+    from ..compare import cases, run_cases, write_figures, write_tables
+    from ..reports.terminal import print_table, runs_table
+
+    out = Printer(args)
+    todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
+    console = Console(stderr=True)
     outcomes = list(
         track(
-            run_cases(todo, args.seed, args.output / "runs", build=args.build),
+            run_cases(todo, args.seed, args.output / "runs", args.fmus, args.build, dict(args.parameters)),
             description="simulating",
             total=len(todo),
             console=console,
             transient=True,
-            disable=not console.is_terminal,
+            disable=out.silent or not console.is_terminal,
         )
     )
-    console.print(runs_table([outcome.row for outcome in outcomes]))
-    console.print(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
-    tables = write_tables(outcomes, args.output)
+    if not out.silent:
+        print_table(runs_table([outcome.row for outcome in outcomes]))
+    out.say(f"{LEGEND}\n")
+    files = write_tables(outcomes, args.output)
     figures = write_figures(outcomes, args.output)
-    console.print(f"tables:  {' '.join(str(path) for path in tables)}", soft_wrap=True)
+    out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
+    out.say(f"tables:  {' '.join(str(path) for path in files)}")
     for figure in figures:
         if figure.suffix == ".png":
-            console.print(f"figure:  {figure} (and .pdf)", soft_wrap=True)
-    console.print(f"signals: {args.output / 'runs'}/*.csv ({len(outcomes)} runs)", soft_wrap=True)
+            out.say(f"figure:  {figure} (and .pdf)")
+    out.say(f"signals: {args.output / 'runs'}/*.csv ({len(outcomes)} runs)")
+    out.document({"runs": [outcome.record for outcome in outcomes], "files": [*files, *figures]})
     return 0

@@ -2,58 +2,54 @@
 
 import argparse
 from itertools import product
-from pathlib import Path
 
-from ..cosimulation.system import BUILD, loop
-
-NAME = "coupling"
-HELP = "measure coupling error and dead time of the master"
+from ..cosimulation.system import PLANTS, loop
+from .options import add_fmus, add_output, add_printing, built
+from .printing import Printer
 
 DESCRIPTION = """\
 Runs the loop under both schemes and several communication steps and compares it with its monolithic
 solution: the coupling error of each signal, the order with which it falls, and the dead time that a
-scheme adds to each connection and around the loop. The result is a page of Markdown.
+scheme adds to each connection and around the loop. The result is a page of Markdown, coupling.md in the
+output folder.
 """
 
 EXAMPLES = """\
 examples:
-  driveline coupling                             writes docs/coupling.md
-  driveline coupling --output results/coupling.md
+  driveline coupling                             writes results/coupling.md
+  driveline coupling --output docs               writes docs/coupling.md
 """
 
-STEP = 1e-3
+STEP_SIZE = 1e-3
 """Communication step in s of the table of errors, the default of the loop."""
 
-DEAD_TIME_STEPS = (STEP, 0.5 * STEP)
+DEAD_TIME_STEPS = (STEP_SIZE, 0.5 * STEP_SIZE)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=Path("docs/coupling.md"),
-        metavar="FILE.md",
-        help="(default: %(default)s)",
-    )
-    parser.add_argument(
-        "--fmus", type=Path, default=BUILD, metavar="FOLDER", help="of the built FMUs (default: %(default)s)"
-    )
+    add_fmus(parser)
+    add_output(parser, "results", "the page")
+    add_printing(parser)
 
 
 def run(args: argparse.Namespace) -> int:
+    for plant in PLANTS:
+        built(plant, args.fmus)
     # here and not above: only this measurement needs the models
-    from ..analysis.coupling import MANOEUVRES, PLANTS, Scheme, compare
+    from ..analysis.coupling import MANOEUVRES, Scheme, compare
+    from ..analysis.coupling import PLANTS as MODELS
     from ..analysis.coupling_page import page
     from ..analysis.dead_time import dead_times
+    from ..reports.files import write_text
 
-    cases = product(PLANTS, MANOEUVRES, Scheme)
+    cases = product(MODELS, MANOEUVRES, Scheme)
     text = page(
         [compare(plant, manoeuvre, scheme, folder=args.fmus) for plant, manoeuvre, scheme in cases],
         {(s, h): dead_times(s, h, args.fmus) for s, h in product(Scheme, DEAD_TIME_STEPS)},
         list(loop().instances),
-        STEP,
+        STEP_SIZE,
     )
-    args.output.parent.mkdir(parents=True, exist_ok=True)
-    args.output.write_text(text, encoding="utf-8")
-    print(f"page: {args.output}")
+    path = args.output / "coupling.md"
+    write_text(text, path)
+    Printer(args).say(f"page: {path}")
     return 0

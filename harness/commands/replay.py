@@ -3,15 +3,15 @@
 import argparse
 from pathlib import Path
 
-from ..cosimulation.system import BUILD_HELP, BUILDS, PLANTS, chosen_build, loop
+from ..cosimulation.system import PLANTS, loop
 from ..errors import DrivelineError
-from ..manoeuvres.recording import COLUMNS, read_recording
-from ..manoeuvres.road import RoadLoad, road
-from ..replay import replay, write
-from ..reports.terminal import rides_table, wide_console
+from ..manoeuvres.recording import COLUMNS
+from ..metrics.record import RideMetrics
+from ..reports.table import legend
+from .options import NAMED, add_loop, add_output, add_plant, add_printing, built, seconds
+from .printing import Printer
 
-NAME = "replay"
-HELP = "drive a recorded torque demand and road without and with damping"
+LEGEND = legend(RideMetrics)
 
 DESCRIPTION = f"""\
 Reads a recorded drive, a CSV file with the columns
@@ -20,57 +20,60 @@ Reads a recorded drive, a CSV file with the columns
 
 in any order (others are ignored), and drives the vehicle with its torque demand and its road, once
 without and once with damping. Friction brakes are seldom recorded: they get what the balance of
-forces along the road leaves over, and they hold the car where the recorded one stands. The speed is
-not forced on the simulated car; how far it strays from the recorded one is reported.
+forces along the road leaves over, and they hold the car where the recorded one stands. The table
+shows
+
+{LEGEND}
+
+and goes to RECORDING_metrics.csv in the output folder, the signals to RECORDING_on.csv and
+RECORDING_off.csv, the figure to RECORDING.png and RECORDING.pdf.
 """
 
 EXAMPLES = """\
 examples:
   driveline replay harness/manoeuvres/data/town_drive.csv
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
+  driveline replay my_trip.csv --set plant.m=1900
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("recording", type=Path, metavar="RECORDING.csv", help="the recorded drive")
-    parser.add_argument(
-        "--plant",
-        default=PLANTS[1],
-        metavar="NAME|FILE",
-        help=f"{' or '.join(PLANTS)}, or an FMU with the same interface (default: %(default)s)",
-    )
+    file = parser.add_argument("recording", type=Path, metavar="RECORDING.csv", help="the recorded drive")
+    file.complete = "file"  # type: ignore[attr-defined]
+    add_plant(parser, default=PLANTS[1], help=f"{NAMED} (default: %(default)s)")
     parser.add_argument(
         "--held",
-        type=float,
+        type=seconds,
         metavar="SECONDS",
         help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
     )
-    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
-    parser.add_argument("--seed", type=int, default=1, help="of the sensor noise (default: %(default)s)")
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=Path("results/replay"),
-        metavar="FOLDER",
-        help="for the table, the signals and the figure (default: %(default)s)",
-    )
+    add_loop(parser)
+    add_output(parser, "results/replay", "the metrics, the signals and the figure")
+    add_printing(parser, table=True)
 
 
 def run(args: argparse.Namespace) -> int:
-    if args.held is not None and not 0.0 < args.held < float("inf"):
-        raise DrivelineError(f"--held {args.held:g}: the demand is held for a time above 0 s")
     if not args.recording.is_file():
         raise DrivelineError(f"there is no recording {args.recording}")
+    build = built(args.plant, args.fmus, args.build)
+    # here and not above: mistakes and help are answered without them
+    from ..manoeuvres.recording import read_recording
+    from ..manoeuvres.road import RoadLoad, road
+    from ..replay import records, replay, write
+    from ..reports.terminal import print_table, rides_table
+
+    out = Printer(args)
     recording = read_recording(args.recording)
-    build = args.build or chosen_build(args.plant)
-    path = loop(args.plant, build=build).instances["plant"]
-    manoeuvre = road(recording, RoadLoad.of_fmu(path), args.held)
-    console = wide_console()
-    console.print(
-        f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, {build} FMUs, without and with damping"
-    )
-    rides = replay(manoeuvre, recording, args.plant, args.seed, build=build)
-    console.print(rides_table(rides[0].metrics, rides[1].metrics, f"{path.stem} on {recording.name}"))
-    for file in write(rides, recording, path.stem, args.output):
-        console.print(f"written: {file}", soft_wrap=True)
+    path = loop(args.plant, args.fmus, build).instances["plant"]
+    parameters = dict(args.parameters)
+    manoeuvre = road(recording, RoadLoad.of_fmu(path, parameters), args.held)
+    out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, {build} FMUs, without and with damping")
+    rides = replay(manoeuvre, recording, args.plant, args.seed, args.fmus, build, parameters)
+    if not out.silent:
+        print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{path.stem} on {recording.name}"))
+    out.say(f"{LEGEND}\n")
+    files = write(rides, recording, path.stem, args.output)
+    for file in files:
+        out.say(f"written: {file}")
+    out.document({"runs": records(rides, recording, path.stem), "files": files})
     return 0

@@ -8,8 +8,10 @@ from typing import NamedTuple
 from ..errors import WiringError
 from ..names import nearest
 
-BUILD = Path(__file__).resolve().parents[2] / "build"
-"""Where `driveline build` puts the FMUs."""
+_ROOT = Path(__file__).resolve().parents[2]
+
+BUILD = (_ROOT if (_ROOT / "build_fmus.py").is_file() else Path()) / "build"
+"""Where `driveline build` puts the FMUs: in the checkout; without one, in the working directory."""
 
 NATIVE = "native"
 """Folder of the native builds, in that of the others."""

@@ -6,6 +6,7 @@ driver does not drive, they hold the simulated one. The simulated speed is free:
 the recorded one as far as the vehicle resembles the recorded car.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Self
@@ -46,14 +47,18 @@ class RoadLoad:
     c_wa: float
 
     @classmethod
-    def of_fmu(cls, path: Path) -> Self:
-        """The start values of the parameters of these names.
+    def of_fmu(cls, path: Path, parameters: Mapping[str, float] | None = None) -> Self:
+        """The start values of the parameters of these names in the FMU of a plant.
+
+        Args:
+            parameters: `plant.name` -> value, which a run sets instead; others are ignored.
 
         Raises:
             WiringError: the FMU lacks one of them.
         """
         variables = Interface(path).variables.values()
         starts = {v.name: float(v.start) for v in variables if v.type == "Real" and v.start}
+        starts |= {name.removeprefix("plant."): value for name, value in (parameters or {}).items()}
         names = [field.name for field in fields(cls)]
         missing = [name for name in names if name not in starts]
         if missing:

@@ -17,7 +17,7 @@ from .signals import lines
 PATH = Path(__file__).parent / "data" / "town_drive.csv"
 
 CAR = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
-T_END, INTERVAL, STEP = 62.0, 0.1, 0.01
+T_END, INTERVAL, STEP_SIZE = 62.0, 0.1, 0.01
 
 TORQUE = lines(
     (0.0, 0.0), (2.0, 0.0), (2.3, 95.0), (4.8, 90.0), (5.0, 25.0), (6.4, 30.0), (6.6, 115.0), (8.6, 105.0),
@@ -45,9 +45,9 @@ def samples() -> np.ndarray:
     """Rows of time in s, speed in km/h, elevation in m and motor torque in N.m."""
     v = distance = 0.0
     rows = []
-    per_sample = round(INTERVAL / STEP)
-    for k in range(round(T_END / STEP) + 1):
-        t = k * STEP
+    per_sample = round(INTERVAL / STEP_SIZE)
+    for k in range(round(T_END / STEP_SIZE) + 1):
+        t = k * STEP_SIZE
         # no motor recuperates down to standstill
         demand = float(TORQUE(t))
         T_mot = demand if demand >= 0.0 else demand * min(1.0, v / 3.0) + 0.0
@@ -57,8 +57,8 @@ def samples() -> np.ndarray:
         push = CAR.i * T_mot / CAR.r - CAR.m * CAR.g * slope - CAR.c_wa * v * v
         resistance = CAR.m * CAR.g * CAR.c_rr + float(BRAKE(t))
         standing = v == 0.0 and push <= resistance
-        v = 0.0 if standing else max(0.0, v + STEP * (push - resistance) / (ROTATING_MASS * CAR.m))
-        distance += STEP * v
+        v = 0.0 if standing else max(0.0, v + STEP_SIZE * (push - resistance) / (ROTATING_MASS * CAR.m))
+        distance += STEP_SIZE * v
     return np.array(rows)
 
 

@@ -13,16 +13,14 @@ from .declaration import Column, Metric
 GearTorqueRms = Annotated[
     float,
     Metric(
-        "N.m",
-        "rms between 5 and 50 Hz of the gear torque, which wears the gear",
-        Column("torque\n5-50 Hz", "N.m", 1.0, 1),
+        "N.m", "rms from 5 to 50 Hz of the gear torque, which wears the gear", Column("torque\n5-50 Hz", "N.m", 1.0, 1)
     ),
 ]
 JerkRms = Annotated[
     float,
     Metric(
         "m/s3",
-        "rms between 5 and 50 Hz of the jerk of the body, which the passengers feel",
+        "rms from 5 to 50 Hz of the jerk of the body, which the passengers feel",
         Column("jerk\n5-50 Hz", "m/s3", 1.0, 1),
     ),
 ]
@@ -34,17 +32,13 @@ class Metrics:
 
     settling_time: Annotated[
         float,
-        Metric(
-            "s",
-            "time from the step until the gear torque swings by less than 5 % of the step",
-            Column("settling", "ms", 1e3, 0),
-        ),
+        Metric("s", "time until the gear torque swings by less than 5 % of the step", Column("settling", "ms", 1e3, 0)),
     ]
     overshoot: Annotated[
         float,
         Metric(
             "1",
-            "overshoot of the gear torque over the straight line of its final value, as a share of its way",
+            "of the gear torque over the straight line of its final value, as share of its way",
             Column("over-\nshoot", "%", 1e2, 0),
         ),
     ]
@@ -52,7 +46,7 @@ class Metrics:
         float,
         Metric(
             "1",
-            "damping ratio by the logarithmic decrement of the gear torque about that line; a rough figure",
+            "from the logarithmic decrement of the gear torque about that line; a rough figure",
             Column("damping\nratio", "1", 1.0, 2),
         ),
     ]
@@ -62,23 +56,21 @@ class Metrics:
         float,
         Metric(
             "rad/s",
-            "largest speed, motor side, with which the teeth meet after the backlash",
+            "largest with which the teeth meet after the backlash, motor side",
             Column("impact\nspeed", "rad/s", 1.0, 1),
         ),
     ]
     response_delay: Annotated[
         float,
         Metric(
-            "s",
-            "time from the step until the gear torque has first made 90 % of its way",
-            Column("delay\nto 90 %", "ms", 1e3, 0),
+            "s", "time until the gear torque has first made 90 % of its way", Column("delay\nto 90 %", "ms", 1e3, 0)
         ),
     ]
     withheld_time: Annotated[
         float,
         Metric(
             "s",
-            "torque impulse withheld from the driver in the 2 s after the step over its height: a lag by that time",
+            "impulse kept from the driver in the 2 s after a step, over its height: a lag",
             Column("torque\nwithheld", "ms", 1e3, 1),
         ),
     ]
@@ -86,7 +78,7 @@ class Metrics:
         float,
         Metric(
             "N.m",
-            "mean torque that the control adds in the last 0.6 s, if the demand is constant there",
+            "mean torque that the control adds in the last 0.6 s of a constant demand",
             Column("stat.\nchange", "N.m", 1.0, 2),
         ),
     ]
@@ -98,7 +90,7 @@ class Metrics:
         float,
         Metric(
             "N.m",
-            "swing of the gear torque about a straight line at the ends of the plateaus of the demand, their mean",
+            "mean swing of the gear torque about a straight line at the ends of the demand's plateaus",
         ),
     ]
 
@@ -112,12 +104,16 @@ class RideMetrics:
         float,
         Metric(
             "N5.m5",
-            "fatigue of the gear by rainflow counting of its torque, of use only relative to another ride",
+            "fatigue by rainflow counting of the gear torque; only the ratio means something",
             Column("gear\ndamage", "(N.m)^5", 1.0, 0),
         ),
     ]
     jerk_rms: JerkRms
     speed_error_rms: Annotated[
         float,
-        Metric("m/s", "rms of simulated less recorded speed", Column("speed\nerror", "m/s", 1.0, 2)),
+        Metric(
+            "m/s",
+            "rms of simulated less recorded speed; the speed is not forced on the car",
+            Column("speed\nerror", "m/s", 1.0, 2),
+        ),
     ]

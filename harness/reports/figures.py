@@ -37,8 +37,8 @@ STYLE = {
 BLACK, BLUE, VERMILION, GREEN, GREY = "black", "#0072B2", "#D55E00", "#009E73", "0.6"
 
 METADATA = {
-    ".png": {"Software": None},
-    ".pdf": {"CreationDate": None, "Producer": None, "Creator": None},
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Producer": None, "Creator": None},
 }
 """What matplotlib would say of date and origin, by the kind of file: nothing."""
 
@@ -64,7 +64,7 @@ class Panel:
     lines: tuple[Line, ...]
 
 
-DRIVE = (
+DRIVE_PANELS = (
     Panel(r"motor speed $\omega_1$ in rad/s", (Line("plant.omega_1", r"$\omega_1$", BLACK),)),
     Panel(r"wheel speed $\omega_2$ in rad/s", (Line("plant.omega_2", r"$\omega_2$", BLACK),)),
     Panel(
@@ -76,7 +76,7 @@ DRIVE = (
         ),
     ),
 )
-STEP = (
+STEP_PANELS = (
     Panel(
         "gear torque in N·m",
         (
@@ -115,7 +115,7 @@ def plot_drive(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, ste
     Returns:
         The files written.
     """
-    return _compare(runs, DRIVE, (0.0, manoeuvre.duration), f"{plant}, {manoeuvre.description}", stem)
+    return _compare(runs, DRIVE_PANELS, (0.0, manoeuvre.duration), f"{plant}, {manoeuvre.description}", stem)
 
 
 def plot_step(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path) -> list[Path]:
@@ -124,7 +124,7 @@ def plot_step(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem
     Arguments and result are those of `plot_drive`.
     """
     window = (manoeuvre.t_0 - 0.1, manoeuvre.t_0 + 1.4)
-    return _compare(runs, STEP, window, f"{plant}, {manoeuvre.description}", stem)
+    return _compare(runs, STEP_PANELS, window, f"{plant}, {manoeuvre.description}", stem)
 
 
 def plot_replay(
@@ -160,7 +160,7 @@ def plot_replay(
         close.set_xlabel("time in s")
         for axes in (speed, torque, close):
             legend(axes)
-        return _write(figure, stem)
+        return save(figure, stem)
 
 
 def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:
@@ -194,7 +194,7 @@ def _compare(
             axes.xaxis.set_major_locator(MaxNLocator(5))
         for axes in grid[-1]:
             axes.set_xlabel("time in s")
-        return _write(figure, stem)
+        return save(figure, stem)
 
 
 def draw(axes: Axes, panel: Panel, run: np.ndarray, shown: np.ndarray) -> None:
@@ -228,14 +228,11 @@ def legend(axes: Axes) -> None:
     made.set_in_layout(False)  # it may reach over the next column
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Writes a figure as PNG or PDF, by the ending of the path, without a date."""
-    with complete(path) as unfinished:
-        figure.savefig(unfinished, dpi=200, format=path.suffix[1:], metadata=METADATA[path.suffix])
-
-
-def _write(figure: Figure, stem: Path) -> list[Path]:
-    files = [stem.with_suffix(suffix) for suffix in METADATA]
-    for file in files:
-        save(figure, file)
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Writes a figure as PNG and PDF, without a date; returns the files."""
+    files = []
+    for kind, metadata in METADATA.items():
+        files.append(stem.with_name(f"{stem.name}.{kind}"))
+        with complete(files[-1]) as unfinished:
+            figure.savefig(unfinished, dpi=200, format=kind, metadata=metadata)
     return files

@@ -41,12 +41,15 @@ PANELS = (
 )
 
 
-def plot_run(results: np.ndarray, title: str, path: Path) -> None:
-    """Writes the figure of one run of the loop.
+def plot_run(results: np.ndarray, title: str, stem: Path) -> list[Path]:
+    """Draws one run of the loop.
 
     Args:
         results: of `harness.simulate.simulate`.
-        path: ends in .png or .pdf.
+        stem: path of the files without their ending.
+
+    Returns:
+        The files written.
     """
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 8.4), layout=ConstrainedLayoutEngine(h_pad=0.12))
@@ -59,4 +62,4 @@ def plot_run(results: np.ndarray, title: str, path: Path) -> None:
                 legend(axes)
         rows[-1].set(xlabel="time in s", xlim=(results["time"][0], results["time"][-1]))
         figure.align_ylabels()
-        save(figure, path)
+        return save(figure, stem)

@@ -42,7 +42,7 @@ def legend(record: type) -> str:
     shown = [(metric.column.plain_heading, metric.description) for metric in declared(record) if metric.column]
     width = max(len(heading) for heading, _ in shown)
     return "\n".join(
-        fill(meaning, 78, initial_indent=f"  {heading:{width}}  ", subsequent_indent=" " * (width + 4))
+        fill(meaning, 100, initial_indent=f"  {heading:{width}}  ", subsequent_indent=" " * (width + 4))
         for heading, meaning in shown
     )
 

@@ -1,10 +1,11 @@
-"""Tables on the terminal."""
+"""Tables and verdicts on the terminal."""
 
 from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from ..metrics.declaration import declared
 from ..metrics.record import RideMetrics
@@ -14,10 +15,19 @@ NUMBER_WIDTH = 5
 """Columns of the terminal that a number may need."""
 
 
-def wide_console() -> Console:
-    """Standard output; wide enough for the tables where it is no terminal with a width of its own."""
+def print_table(table: Table) -> None:
+    """Prints a table, wide enough where stdout is no terminal with a width of its own."""
     console = Console()
-    return console if console.is_terminal else Console(width=max(console.width, 120))
+    (console if console.is_terminal else Console(width=max(console.width, 120))).print(table)
+
+
+def print_verdict(title: str, problems: Sequence[str]) -> None:
+    """Prints a rule, whether it is kept, and each problem on a line of its own."""
+    console = Console(highlight=False, soft_wrap=True)
+    mark = Text("  FOUND ", style="red") if problems else Text("  ok    ", style="green")
+    console.print(mark + title)
+    for problem in problems:
+        console.print(Text(f"        - {problem}"))
 
 
 def runs_table(rows: Sequence[Row]) -> Table:

@@ -1,13 +1,17 @@
 """The command line: what it does, what it answers to mistakes, and its exit codes."""
 
+import json
 import subprocess
 import sys
+from importlib.metadata import version
 
 import pytest
 from fmpy.util import read_csv
 
-from harness.cli import COMMANDS, main
-from harness.cosimulation.system import PLANTS, loop
+from harness.cli import COMMANDS, SHELLS, main
+from harness.cosimulation.system import PLANTS
+from harness.metrics.declaration import declared
+from harness.metrics.record import Metrics
 from tests import ROOT
 
 
@@ -20,11 +24,6 @@ def answer(capsys, *arguments):
     return code, *capsys.readouterr()
 
 
-@pytest.fixture
-def plant(built):
-    return str(built / f"{PLANTS[0]}.fmu")
-
-
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_teaches(capsys, command):
     code, out, _ = answer(capsys, command, "--help")
@@ -33,19 +32,36 @@ def test_every_command_teaches(capsys, command):
     assert f"driveline {command}" in out
 
 
+def test_help_names_commands_and_exit_codes(capsys):
+    code, out, _ = answer(capsys, "--help")
+    assert code == 0
+    assert all(command in out for command in COMMANDS)
+    assert "0 done, 1 something went wrong or there are findings, 2 wrong use" in out
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    assert answer(capsys, "--version")[:2] == (0, f"driveline-damping {version('driveline-damping')}\n")
+
+
 @pytest.mark.parametrize(
     ("arguments", "hint"),
     [
         (["simulat"], "did you mean simulate"),
         (["simulate", "--manoeuvre", "tipn15"], "did you mean tipin15"),
+        (["simulate", "--manoeuvre", ""], "an empty name is unknown"),
         (["simulate", "--plant", "TwoMasDriveline"], "did you mean TwoMassDriveline"),
         (["simulate", "--plnt", "x"], "did you mean --plant"),
         (["simulate", "--set", "plant.J_1"], "plant.J_1=0.06"),
         (["simulate", "--scheme", "gaus"], "gauss-seidel"),
-        (["simulate", "--plot", "run.jpeg"], "does not end in .png or .pdf"),
+        (["simulate", "--seed", "1.5"], "'1.5' is not a whole number"),
+        (["simulate", "--step", "nan"], "'nan' is not a time above 0 s"),
+        (["simulate", "--output", ""], "the name of the folder is empty"),
+        (["replay", "trip.csv", "--held", "0"], "'0' is not a time above 0 s"),
         (["build", "TwoMass"], "did you mean TwoMassDriveline"),
+        (["build", "nothing.py"], "there is no file nothing.py"),
         (["check", "nothing.fmu"], "there is no FMU nothing.fmu"),
         (["compare", "--manoeuvre", "launc"], "did you mean launch"),
+        (["--print-completion", "bsh"], "did you mean bash"),
         ([], "COMMAND"),
     ],
 )
@@ -56,6 +72,60 @@ def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
     assert "Traceback" not in err
 
 
+@pytest.mark.parametrize("arguments", [["--help"], ["simulate", "--help"], ["simulate", "--manoeuvre", "tipn15"]])
+def test_help_and_mistakes_are_answered_without_the_packages_that_a_run_needs(arguments):
+    listed = f"""
+import sys
+from harness.cli import main
+try:
+    main({arguments})
+except SystemExit:
+    print(*sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", listed], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert "harness.cli" in loaded
+    assert not loaded & {"numpy", "scipy", "matplotlib", "fmpy", "rich", "shtab"}
+
+
+def test_simulate_draws_nothing_unless_asked():
+    listed = "import sys, harness.commands.simulate, harness.simulate; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", listed], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert not set(done.stdout.split()) & {"matplotlib", "scipy", "rich"}
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_completion_knows_commands_options_and_manoeuvres(capsys, shell):
+    code, out, _ = answer(capsys, "--print-completion", shell)
+    assert code == 0
+    assert all(word in out for word in ("back-to-back", "manoeuvre", "launch_brake"))
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("driveline sim", {"simulate"}),
+        ("driveline simulate --manoeuvre tipin1", {"tipin15", "tipin15r"}),
+        ("driveline replay --plant Val", {"ValidationVehicle"}),
+        ("driveline check my", {"my.fmu"}),
+        ("driveline simulate --plant my", {"my.fmu"}),
+    ],
+)
+def test_bash_completes_words(capsys, tmp_path, typed, offered):
+    _, completion, _ = answer(capsys, "--print-completion", "bash")
+    (tmp_path / "my.fmu").touch()
+    (tmp_path / "complete").write_text(completion, encoding="utf-8")
+    words = typed.split()
+    script = f"""
+source ./complete
+COMP_WORDS=({typed}); COMP_CWORD={len(words) - 1}
+_shtab_driveline
+printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert set(done.stdout.split()) == offered
+
+
 def test_the_module_builds_the_named_fmu(tmp_path):
     command = [sys.executable, "-m", "harness", "build", "MotorTorqueLoop", "--build", "python"]
     done = subprocess.run([*command, "--output", str(tmp_path)], cwd=ROOT, capture_output=True, text=True)
@@ -64,22 +134,29 @@ def test_the_module_builds_the_named_fmu(tmp_path):
     assert "MotorTorqueLoop.fmu" in done.stdout
 
 
+def test_a_quiet_build_says_nothing(capsys, tmp_path):
+    arguments = ("build", "WheelSpeedCan", "--build", "python", "--output", str(tmp_path), "--quiet")
+    assert answer(capsys, *arguments) == (0, "", "")
+    assert (tmp_path / "WheelSpeedCan.fmu").is_file()
+
+
 @pytest.fixture
-def simulate(capsys, built, tmp_path, monkeypatch):
-    """Runs `driveline simulate` on the freshly built FMUs; gives its answer and the file."""
-    monkeypatch.setattr("harness.simulate.loop", lambda plant, *_: loop(plant, built))
+def simulate(capsys, built, tmp_path):
+    """Runs `driveline simulate` on the freshly built FMUs; gives its answer and the folder."""
 
     def run(*arguments):
-        path = tmp_path / "signals.csv"
-        return answer(capsys, "simulate", *arguments, "--output", str(path)), path
+        folder = tmp_path / "results"
+        return answer(capsys, "simulate", *arguments, "--fmus", str(built), "--output", str(folder)), folder
 
     return run
 
 
-def test_simulate_writes_what_was_asked_for(simulate, plant):
+def test_simulate_writes_what_was_asked_for(simulate, built):
+    plant = str(built / f"{PLANTS[0]}.fmu")
     arguments = ("--plant", plant, "--manoeuvre", "launch", "--control", "off", "--step", "0.002", "--build", "python")
-    (code, out, err), path = simulate(*arguments, "--set", "motor.sigma_omega=0", "--set", "motor.q_omega=0")
+    (code, out, err), folder = simulate(*arguments, "--set", "motor.sigma_omega=0", "--set", "motor.q_omega=0")
     assert (code, err) == (0, "")
+    path = folder / "TwoMassDriveline_launch_off.csv"
     assert str(path) in out
     assert "python FMUs" in out
     signals = read_csv(path)
@@ -89,25 +166,55 @@ def test_simulate_writes_what_was_asked_for(simulate, plant):
     assert (signals["motor.omega_1_meas"][1:] == signals["plant.omega_1"][:-1]).all()
 
 
-def test_simulate_draws_the_run(simulate, tmp_path):
-    figure = tmp_path / "figures" / "run.png"
-    (code, out, err), _ = simulate("--step", "0.002", "--plot", str(figure))
-    assert (code, err) == (0, "")
-    assert str(figure) in out
-    assert figure.read_bytes().startswith(b"\x89PNG")
+def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):
+    said, folder = simulate("--step", "0.002", "--plot", "--quiet")
+    assert said == (0, "", "")
+    assert {path.name for path in folder.iterdir()} == {
+        f"TwoMassDriveline_tipin15_on.{kind}" for kind in ("csv", "png", "pdf")
+    }
 
 
 def test_a_refused_parameter_is_named_with_exit_code_1(simulate):
-    (code, _, err), path = simulate("--set", "plant.J_1=-1")
+    (code, _, err), folder = simulate("--set", "plant.J_1=-1", "--quiet")
     assert code == 1
     assert "J_1 = -1" in err
-    assert not path.exists()
+    assert not folder.exists()
 
 
 def test_an_unknown_parameter_is_answered_with_exit_code_2(simulate):
     (code, _, err), _ = simulate("--set", "plant.J1=0.06")
     assert code == 2
     assert "did you mean J_1" in err
+
+
+def test_a_run_that_does_not_fit_in_memory_is_refused_in_one_line(simulate):
+    (code, _, err), _ = simulate("--step", "1e-15")
+    assert code == 1
+    assert err.startswith("driveline simulate: not enough memory")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "made_by"), [([], "driveline build"), (["--build", "native"], "driveline build --build native")]
+)
+@pytest.mark.parametrize("command", ["simulate", "compare", "replay harness/manoeuvres/data/town_drive.csv"])
+def test_missing_fmus_are_answered_with_the_command_that_makes_them(capsys, tmp_path, command, arguments, made_by):
+    code, _, err = answer(capsys, *command.split(), "--fmus", str(tmp_path), *arguments)
+    assert code == 2
+    assert f"`{made_by} --output {tmp_path}` makes it" in err
+
+
+def test_compare_as_a_document_has_every_metric_of_every_run(capsys, built, tmp_path):
+    given = ("--fmus", str(built), "--output", str(tmp_path), "--manoeuvre", "prbs15", "--plant", PLANTS[0])
+    code, out, err = answer(capsys, "compare", *given, "--set", "controller.k_d=0", "--json")
+    assert (code, err) == (0, "")
+    document = json.loads(out)
+    off, on = document["runs"]
+    assert (off["plant"], off["manoeuvre"], off["control"], on["control"]) == (PLANTS[0], "prbs15", False, True)
+    assert set(off) == {"plant", "manoeuvre", "control", *(metric.key for metric in declared(Metrics))}
+    assert off["settling_time_s"] is None, "it has no meaning for this manoeuvre"
+    assert document["files"] == [str(tmp_path / "table.md"), str(tmp_path / "metrics.csv")]
+    # without gain only what it does in the gap and with the estimated torque is left
+    assert 0.0 < on["added_torque_rms_N_m"] < 20.0
 
 
 def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
@@ -117,3 +224,9 @@ def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
     code, out, _ = answer(capsys, "check", str(faulty))
     assert code == 1
     assert "not an FMU" in out
+    code, out, _ = answer(capsys, "check", "--quiet", str(faulty))
+    assert (code, len(out.splitlines())) == (1, 1)
+    assert out.startswith(f"{faulty}: ")
+    code, out, _ = answer(capsys, "check", "--json", str(faulty))
+    document = json.loads(out)
+    assert (code, document["findings"], document["fmus"][0]["fmu"]) == (1, 1, str(faulty))

@@ -28,7 +28,7 @@ def vehicle(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("own")
     file = folder / "my_vehicle.py"
     file.write_text(EXAMPLE, encoding="utf-8")
-    done = build(file, folder, "--build", "native")
+    done = build(file, folder)
     assert done.returncode == 0, done.stderr
     return folder / NATIVE / "MyVehicle.fmu"
 
@@ -63,15 +63,34 @@ def test_a_file_whose_name_is_taken_is_refused(tmp_path: Path) -> None:
     file.write_text(EXAMPLE, encoding="utf-8")
     done = build(file, tmp_path, "--build", "native")
     assert done.returncode == 2
-    assert "a module called json is in use" in done.stderr
+    assert "there is a module called json" in done.stderr
 
 
-def test_a_block_of_a_file_is_built_natively_or_not_at_all(tmp_path: Path) -> None:
+@pytest.mark.parametrize("builds", ["python", "both"])
+def test_a_block_of_a_file_has_no_python_build(tmp_path: Path, builds: str) -> None:
     file = tmp_path / "my_vehicle.py"
     file.write_text(EXAMPLE, encoding="utf-8")
+    done = build(file, tmp_path, "--build", builds)
+    assert done.returncode == 2
+    assert "MyVehicle has a native build only" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("import nonsense", "cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
+        ("FMU = (", "cannot be run: SyntaxError"),
+        (EXAMPLE.replace("p.r * braking_force", "p.s * braking_force"), "MyVehicle cannot be built: AttributeError"),
+        (EXAMPLE.replace("tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"), "MyVehicle cannot be built: TypeError: a model"),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str, said: str) -> None:
+    file = tmp_path / "my_vehicle.py"
+    file.write_text(text, encoding="utf-8")
     done = build(file, tmp_path)
     assert done.returncode == 2
-    assert "add --build native" in done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_the_lines_for_fmpy_run(both_built: Path, tmp_path: Path) -> None:

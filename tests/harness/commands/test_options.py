@@ -1,0 +1,77 @@
+"""What the shared options take and what they refuse."""
+
+import os
+import subprocess
+import sys
+from argparse import ArgumentTypeError
+from shutil import copytree, ignore_patterns
+
+import pytest
+
+from harness.commands.options import LARGEST_SEED, assignment, folder, seconds, seed
+from harness.cosimulation.system import BUILD
+from tests import ROOT
+
+
+@pytest.mark.parametrize(
+    ("text", "pair"),
+    [
+        ("plant.J_1=0.06", ("plant.J_1", 0.06)),
+        (" motor.g_T = 1e-2 ", ("motor.g_T", 0.01)),
+        ("controller.enable=True", ("controller.enable", 1.0)),
+        ("plant.recorded_load=false", ("plant.recorded_load", 0.0)),
+        ("plant.tyre.c=2", ("plant.tyre.c", 2.0)),
+    ],
+)
+def test_an_assignment_has_a_name_and_a_number(text, pair):
+    assert assignment(text) == pair
+
+
+@pytest.mark.parametrize("text", ["", "plant.J_1", "J_1=3", "plant.=3", ".J_1=3", "plant.J_1=", "plant.J_1=heavy"])
+def test_what_is_no_assignment_is_answered_with_one(text):
+    with pytest.raises(ArgumentTypeError, match=r"plant\.J_1=0\.06"):
+        assignment(text)
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
+def test_a_parameter_is_finite(value):
+    with pytest.raises(ArgumentTypeError, match="finite"):
+        assignment(f"plant.m={value}")
+
+
+def test_a_seed_is_what_an_fmi_integer_holds():
+    assert [seed(str(number)) for number in (0, LARGEST_SEED)] == [0, LARGEST_SEED]
+    for text in ("-1", str(LARGEST_SEED + 1), "", "one", "1.0"):
+        with pytest.raises(ArgumentTypeError, match="whole number from 0 to 2147483647"):
+            seed(text)
+
+
+def test_a_time_is_above_zero_and_finite():
+    assert seconds("1e-9") == 1e-9
+    for text in ("0", "-0.001", "nan", "inf", "", "1 s"):
+        with pytest.raises(ArgumentTypeError, match="not a time above 0 s"):
+            seconds(text)
+
+
+def test_a_folder_is_no_file(tmp_path):
+    file = tmp_path / "signals.csv"
+    assert folder(str(file)) == file
+    file.touch()
+    with pytest.raises(ArgumentTypeError, match="is a file"):
+        folder(str(file))
+    assert folder(str(tmp_path)) == tmp_path
+
+
+def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
+    assert BUILD == ROOT / "build"
+    copytree(ROOT / "harness", tmp_path / "site" / "harness", ignore=ignore_patterns("__pycache__", "*.so"))
+    asked = "from harness.cosimulation.system import BUILD; print(BUILD)"
+    done = subprocess.run(
+        [sys.executable, "-c", asked],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == "build"
