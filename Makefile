@@ -39,15 +39,16 @@ cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[cross]'
 	$(BIN)/driveline build --build native --platform all
 
-bench: $(READY) ## cost per communication step, side by side and in other hosts
+bench: $(READY) ## cost per communication step, side by side and in other hosts, and of the start of a command
 	$(BIN)/driveline build
 	$(BIN)/python -m benchmarks.step_cost
+	$(BIN)/python -m benchmarks.start_up
 	$(BIN)/python -m benchmarks.hosts
 
 docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build
-	$(BIN)/driveline coupling --output docs/coupling.md
-	$(BIN)/driveline back-to-back --output docs/back_to_back.md
+	$(BIN)/driveline coupling --output docs
+	$(BIN)/driveline back-to-back --output docs
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline compare

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .cosimulation.system import BUILD
+from .errors import DrivelineError
 from .manoeuvres.catalogue import MANOEUVRES
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
@@ -63,7 +64,15 @@ class Outcome(NamedTuple):
 
 
 def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
-    """All combinations, the runs without and with damping next to each other."""
+    """All combinations, the runs without and with damping next to each other.
+
+    Raises:
+        DrivelineError: two plants have the same name, by which their files would be told apart.
+    """
+    names = [Path(plant).stem for plant in plants]
+    for name in names:
+        if names.count(name) > 1:
+            raise DrivelineError(f"two plants are called {name}; rename the file of one")
     return [
         Case(plant, manoeuvre, control) for plant in plants for manoeuvre in manoeuvres for control in (False, True)
     ]

@@ -5,7 +5,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from ..cosimulation.system import BUILD, BUILDS, NATIVE, PLANTS, chosen_build, loop
+from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLANTS, chosen_build, loop
 from ..errors import DrivelineError
 
 LARGEST_SEED = 2**31 - 1
@@ -54,7 +54,7 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--build",
         choices=BUILDS,
-        help="native FMUs or those that run Python (default: native where all FMUs of the loop have that build)",
+        help=BUILD_HELP,
     )
     add_fmus(parser)
 

@@ -1,9 +1,4 @@
-"""The metrics of a run and of a recorded drive, in SI units; NaN where one has no meaning for the manoeuvre.
-
-All torques are of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
-T_ref - T_driver, the demand delayed by the one sample that every controller needs. The rms values are those in a
-window: from 0.2 s before a step to 4 s after it, of every other manoeuvre the whole record.
-"""
+"""The metrics of a run and of a recorded drive, in SI units; NaN where one has no meaning for the manoeuvre."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -28,7 +23,10 @@ JerkRms = Annotated[
 
 @dataclass(frozen=True)
 class Metrics:
-    """What a run is worth; computed by `harness.metrics.evaluate`."""
+    """Torques are those of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
+    T_ref - T_driver, the demand delayed by the one sample that every controller needs. Rms and peak values are those
+    from 0.2 s before a step to 4 s after it, in every other manoeuvre those of the whole record.
+    """
 
     settling_time: Annotated[
         float,
@@ -97,7 +95,7 @@ class Metrics:
 
 @dataclass(frozen=True)
 class RideMetrics:
-    """What a recorded drive is worth that was simulated; computed by `harness.replay`."""
+    """The metrics of a recorded drive that was simulated."""
 
     gear_torque_rms: GearTorqueRms
     gear_damage: Annotated[

@@ -1,6 +1,7 @@
 """The metrics of many runs as one table, for people (Markdown) and for tools (CSV, JSON), and what they mean."""
 
 from collections.abc import Sequence
+from inspect import cleandoc
 from math import isnan
 from pathlib import Path
 from textwrap import fill
@@ -48,7 +49,7 @@ def legend(record: type) -> str:
 
 
 def write_markdown(rows: Sequence[Row], path: Path) -> None:
-    """Writes the table, with the plant as first column, and below it what every metric means."""
+    """Writes the table, with the plant as first column, and what every metric means."""
     headings = ["plant", "manoeuvre", "damping", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
     table = markdown_table(headings, ([row.plant, *cells(row)] for row in rows), labels=3)
     meanings = [
@@ -56,7 +57,7 @@ def write_markdown(rows: Sequence[Row], path: Path) -> None:
         for metric in declared(Metrics)
     ]
     explained = markdown_table(("column", "in `metrics.csv`", "meaning"), meanings, labels=3)
-    write_text(f"{table}\n\n{explained}\n", path)
+    write_text(f"{table}\n\n{cleandoc(Metrics.__doc__ or '')}\n\n{explained}\n", path)
 
 
 def values(metrics: Any) -> dict[str, float | None]:

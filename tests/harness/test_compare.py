@@ -7,6 +7,7 @@ import pytest
 from harness.cli import main
 from harness.compare import cases, run_cases, write_figures, write_tables
 from harness.cosimulation.system import PLANTS
+from harness.errors import DrivelineError
 
 
 def test_runs_without_and_with_damping_are_neighbours():
@@ -15,6 +16,11 @@ def test_runs_without_and_with_damping_are_neighbours():
         "A_drive_off", "A_drive_on", "A_creep_off", "A_creep_on",
         "B_drive_off", "B_drive_on", "B_creep_off", "B_creep_on",
     ]  # fmt: skip
+
+
+def test_plants_of_the_same_name_are_refused():
+    with pytest.raises(DrivelineError, match="two plants are called A"):
+        cases(["A", "folder/A.fmu"], ["drive"])
 
 
 def test_an_unknown_plant_is_answered_with_the_nearest(capsys):

@@ -1,6 +1,7 @@
 """Recorded drives through the simulated vehicle."""
 
 import csv
+import json
 import sys
 from dataclasses import replace
 from itertools import islice
@@ -45,6 +46,15 @@ def test_damping_lowers_oscillation_and_damage(replayed):
     assert (off["recording"], off["control"], on["control"]) == ("short", "0", "1")
     for quantity in ("gear_torque_rms_N_m", "gear_damage_N5_m5", "jerk_rms_m_per_s3"):
         assert float(on[quantity]) < 0.9 * float(off[quantity])
+
+
+def test_as_a_document_it_has_both_rides(built, short_drive, tmp_path, capsys):
+    given = ["--fmus", str(built), "--output", str(tmp_path), "--set", "plant.m=1900"]
+    assert main(["replay", str(short_drive), *given, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [run["control"] for run in document["runs"]] == [False, True]
+    assert all(run["gear_torque_rms_N_m"] > 0.0 for run in document["runs"])
+    assert str(tmp_path / "short_metrics.csv") in document["files"]
 
 
 def test_figure_and_signals_every_10_ms_are_written(replayed):

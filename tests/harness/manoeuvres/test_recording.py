@@ -116,6 +116,12 @@ def test_brakes_take_what_the_motor_pushes_too_much():
     assert brake_torque(T, v, np.zeros(200), 0.1, LOAD) == pytest.approx(0.29 * (F - 300.0))
 
 
+def test_the_brakes_know_the_vehicle_as_the_run_sets_it(built):
+    given = {"plant.m": 1900.0, "can.r": 0.4}
+    load = RoadLoad.of_fmu(built / "ValidationVehicle.fmu", given)
+    assert (load.m, load.r) == (1900.0, RoadLoad.of_fmu(built / "ValidationVehicle.fmu").r)
+
+
 def test_a_standing_car_is_held_until_its_driver_drives():
     T = np.array([0.0] * 50 + [30.0] * 50)
     brake = brake_torque(T, np.zeros(100), np.zeros(100), 0.1, LOAD)

@@ -1,0 +1,51 @@
+"""What `driveline` takes before it does anything: `python -m benchmarks.start_up`, as ratios to `import numpy`.
+
+The contenders take turns in processes of their own; the least of all turns is shown.
+"""
+
+import argparse
+import subprocess
+import sys
+from collections import defaultdict
+from tempfile import TemporaryDirectory
+from time import perf_counter
+
+from rich.console import Console
+from rich.table import Table
+
+CONTENDERS: dict[str, tuple[str, ...]] = {
+    "python": ("-c", "pass"),
+    "python, import numpy": ("-c", "import numpy"),
+    "python, import fmpy": ("-c", "import fmpy"),
+    "driveline --help": ("-m", "harness", "--help"),
+    "driveline simulate --help": ("-m", "harness", "simulate", "--help"),
+    "driveline simulate, an unknown manoeuvre": ("-m", "harness", "simulate", "--manoeuvre", "tipn15"),
+    "driveline simulate, up to an unknown parameter": ("-m", "harness", "simulate", "--set", "plant.nothing=1"),
+    "driveline simulate, a manoeuvre of 6 s": ("-m", "harness", "simulate", "--manoeuvre", "tipin15"),
+}
+
+
+def seconds(arguments: tuple[str, ...], folder: str) -> float:
+    """Time that Python takes with these arguments, in a folder."""
+    began = perf_counter()
+    subprocess.run([sys.executable, *arguments], cwd=folder, capture_output=True, check=False)
+    return perf_counter() - began
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.start_up", description=__doc__)
+    parser.add_argument("--repetitions", type=int, default=15, help="turns of each (default: %(default)s)")
+    turns = defaultdict(list)
+    with TemporaryDirectory() as folder:
+        for _ in range(parser.parse_args().repetitions):
+            for name, arguments in CONTENDERS.items():
+                turns[name].append(seconds(arguments, folder))
+    least = {name: min(times) for name, times in turns.items()}
+    table = Table("", "ms", "over import numpy", title="start-up")
+    for name, time in least.items():
+        table.add_row(name, f"{1e3 * time:.0f}", f"{time / least['python, import numpy']:.2f}")
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
