@@ -3,6 +3,7 @@
 import argparse
 from math import isfinite
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLANTS, chosen_build, loop
@@ -147,7 +148,7 @@ def built(plant: str, folder: Path, build: str | None = None) -> str:
     build = build or chosen_build(plant, folder)
     missing = [path for path in loop(plant, folder, build).instances.values() if not path.is_file()]
     if missing and missing[0].is_relative_to(folder):
-        where = "" if folder == BUILD else f" --output {folder}"
+        where = "" if folder == BUILD else f" --output {quote(str(folder))}"
         only = f" --build {NATIVE}" if build == NATIVE else ""
         raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{only}{where}` makes it")
     return build
