@@ -91,7 +91,7 @@ class SampledRunner(Runner):
         for _ in range(self._ticks, due):
             self.x, self._coming = self._coming, self._update(self._coming, u, self.p)
         self._ticks = max(self._ticks, due)
-        if due - samples <= TICK_TOLERANCE:
+        if self._ticks - samples <= TICK_TOLERANCE:
             self.x = self._coming
 
     @property
