@@ -82,12 +82,17 @@ def variables(record: Any) -> tuple[Variable, ...]:
 
 
 def merged(name: str, *records: Any) -> Any:
-    """A NamedTuple class with the fields of several, each name once, with declarations and start values."""
-    hints, defaults = {}, {}
-    for record in reversed(records):
-        hints = get_type_hints(record, include_extras=True) | hints
-        defaults |= record._field_defaults
-    hints = {field: hints[field] for record in records for field in record._fields}
-    made = namedtuple(name, hints, defaults=[defaults[field] for field in hints])
-    made.__annotations__ = hints
+    """A NamedTuple class with the fields of several, each name once, with declarations and start values.
+
+    Raises:
+        TypeError: two records mean different things by one name.
+    """
+    fields: dict[str, tuple[Any, Any]] = {}
+    for record in records:
+        for field, hint in get_type_hints(record, include_extras=True).items():
+            declared = hint, record._field_defaults[field]
+            if fields.setdefault(field, declared) != declared:
+                raise TypeError(f"{record.__module__}.{record.__name__}.{field} is declared otherwise elsewhere")
+    made = namedtuple(name, fields, defaults=[start for _, start in fields.values()])
+    made.__annotations__ = {field: hint for field, (hint, _) in fields.items()}
     return made
