@@ -9,7 +9,7 @@ finite, in range and near the estimate; the wheel speed counts as known while su
 
 from typing import Annotated, Any, NamedTuple
 
-from ..block.declaration import Real
+from ..block.declaration import Boolean, Real
 from ..block.operators import is_finite, logical_and, logical_not, logical_or, minimum, where
 
 STILL = 1.0
@@ -27,7 +27,8 @@ class MonitorState(NamedTuple):
     omega_1_last: Annotated[float, Real("rad/s", "motor speed received last")]
     T_mot_last: Annotated[float, Real("N.m", "torque estimate received last")]
     omega_1_unchanged: Annotated[float, Real("s", "time since that speed changed")]
-    T_mot_unchanged: Annotated[float, Real("s", "time since that torque changed; 2 t_frozen: found frozen")]
+    T_mot_unchanged: Annotated[float, Real("s", "time since that torque changed")]
+    T_mot_frozen: Annotated[bool, Boolean("that torque was found frozen")]
     bad: Annotated[float, Real("s", "time since the motor signals were good")]
     counter: Annotated[float, Real("1", "counter of the message received last")]
     silence: Annotated[float, Real("s", "time since a usable message")]
@@ -42,6 +43,7 @@ def start(u: Any, p: Any) -> MonitorState:
         T_mot_last=T_mot,
         omega_1_unchanged=0.0,
         T_mot_unchanged=0.0,
+        T_mot_frozen=False,
         bad=0.0,
         counter=1.0 * u.counter,
         silence=where(has_wheel_speed(u, p), 0.0, p.t_stale),
@@ -98,7 +100,7 @@ def update(x: MonitorState, u: Any, omega_1_hat: Any, T_ref: Any, usable: Any, T
     omega_1_unchanged = where(u.omega_1_meas == x.omega_1_last, x.omega_1_unchanged + T_s, 0.0)
     T_mot_unchanged = where(u.T_mot_est == x.T_mot_last, x.T_mot_unchanged + T_s, 0.0)
     omega_1_frozen = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
-    disobeyed = logical_or(abs(T_mot - T_ref) > OBEYED, T_mot_unchanged > 1.5 * p.t_frozen)
+    disobeyed = logical_or(abs(T_mot - T_ref) > OBEYED, x.T_mot_frozen)
     T_mot_frozen = logical_and(T_mot_unchanged >= p.t_frozen, disobeyed)
     in_range = logical_and(plausible(u.omega_1_meas, p.omega_max), plausible(u.T_mot_est, 2.0 * p.T_max))
     alive = logical_not(logical_or(omega_1_frozen, T_mot_frozen))
@@ -109,7 +111,8 @@ def update(x: MonitorState, u: Any, omega_1_hat: Any, T_ref: Any, usable: Any, T
         omega_1_last=where(is_finite(u.omega_1_meas), u.omega_1_meas, 0.0),
         T_mot_last=where(is_finite(u.T_mot_est), u.T_mot_est, 0.0),
         omega_1_unchanged=minimum(omega_1_unchanged, p.t_frozen),
-        T_mot_unchanged=where(T_mot_frozen, 2.0 * p.t_frozen, minimum(T_mot_unchanged, p.t_frozen)),
+        T_mot_unchanged=minimum(T_mot_unchanged, p.t_frozen),
+        T_mot_frozen=T_mot_frozen,
         bad=where(good, 0.0, minimum(x.bad + T_s, p.t_bad + T_s)),
         counter=1.0 * u.counter,
         silence=where(usable, 0.0, minimum(x.silence + T_s, p.t_stale)),
