@@ -2,12 +2,12 @@
 
 import math
 from itertools import combinations
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import pytest
 
 from models import two_mass_driveline, validation_vehicle
-from models.block.declaration import Enumeration, Real, variables
+from models.block.declaration import Enumeration, Real, merged, variables
 from models.block.types import Block
 from tests.models.block.test_operators import BLOCKS, every_block
 
@@ -15,6 +15,19 @@ from tests.models.block.test_operators import BLOCKS, every_block
 class Sample(NamedTuple):
     J_1: Annotated[float, Real("kg.m2", "inertia", 1e-4, 10.0)] = 0.055
     omega_1: Annotated[float, Real("rad/s", "speed")] = 0.0
+
+
+class Other(NamedTuple):
+    C: Annotated[float, Real("N.m/rad", "stiffness", 1.0, 1e5)] = 117.4
+    J_1: Annotated[float, Real("kg.m2", "inertia", 1e-4, 10.0)] = 0.055
+
+
+class OtherStart(NamedTuple):
+    J_1: Annotated[float, Real("kg.m2", "inertia", 1e-4, 10.0)] = 0.06
+
+
+class OtherBound(NamedTuple):
+    J_1: Annotated[float, Real("kg.m2", "inertia", 1e-4, 20.0)] = 0.055
 
 
 class Bare(NamedTuple):
@@ -34,6 +47,20 @@ def test_a_declaration_is_read_in_the_order_of_the_fields() -> None:
 def test_a_field_without_declaration_is_named() -> None:
     with pytest.raises(TypeError, match=r"Bare\.J_1"):
         variables(Bare)
+
+
+def test_records_merge_into_one_with_each_name_once_in_their_order() -> None:
+    made = merged("Both", Sample, Other)
+    assert made.__name__ == "Both"
+    assert made() == (0.055, 0.0, 117.4)
+    assert made(C=2.0) == made(0.055, 0.0, 2.0)
+    assert variables(made) == (*variables(Sample), variables(Other)[0])
+
+
+@pytest.mark.parametrize("other", [OtherStart, OtherBound])
+def test_records_that_mean_different_things_by_one_name_do_not_merge(other: Any) -> None:
+    with pytest.raises(TypeError, match=rf"{other.__name__}\.J_1 is declared otherwise elsewhere"):
+        merged("Both", Sample, other)
 
 
 @every_block

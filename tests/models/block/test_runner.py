@@ -1,0 +1,156 @@
+"""How time passes: a sampled block ticks at k T_s whatever the steps, and a run goes on where it was taken up."""
+
+from typing import Annotated, NamedTuple
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models import two_mass_driveline
+from models.block.declaration import Real
+from models.block.integrator import Integrator
+from models.block.runner import Runner, runner
+from models.block.types import Block, SampledBlock
+from tests.models.block.test_operators import every_block
+
+
+class Number(NamedTuple):
+    n: Annotated[float, Real("1", "a number")] = 0.0
+
+
+def counter(T_s: float) -> Runner:
+    """At its start: adds its input once every tick."""
+    block = SampledBlock(
+        name="Counter",
+        description="Sum over the ticks",
+        module=__name__,
+        Parameters=Number,
+        Input=Number,
+        State=Number,
+        Output=Number,
+        start=lambda u, p: Number(p.n),
+        output=lambda x, u, p: x,
+        update=lambda x, u, p: Number(x.n + u.n),
+        sample_time=T_s,
+    )
+    return runner(block, Number(), Number(100.0))
+
+
+def shown(running: Runner) -> float:
+    return running.output(Number()).n
+
+
+def ticks(running: Runner) -> float:
+    """That were made since the start, what the last one computed on its way or not."""
+    running.advance(Number(), 1000.0)
+    return shown(running) - 100.0
+
+
+ONE = Number(1.0)
+
+
+def test_a_run_starts_with_the_state_of_the_start() -> None:
+    running = counter(1.0)
+    assert (running.elapsed, running.x, shown(running)) == (0.0, Number(100.0), 100.0)
+
+
+def test_the_first_tick_is_made_in_the_first_step_with_its_inputs() -> None:
+    running = counter(1.0)
+    running.advance(ONE, 0.25)
+    running.advance(Number(50.0), 0.5)
+    assert (shown(running), ticks(running)) == (100.0, 1.0)
+
+
+def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later() -> None:
+    running, seen = counter(1.0), []
+    for k in range(8):
+        running.advance(Number(10.0**k), 0.5)
+        seen.append(shown(running) - 100.0)
+    assert seen == [0.0, 1.0, 1.0, 101.0, 101.0, 10101.0, 10101.0, 1010101.0]
+
+
+def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held() -> None:
+    running = counter(1.0)
+    running.advance(ONE, 1.5)
+    running.advance(Number(10.0), 5.0)
+    assert (running.elapsed, shown(running)) == (6.5, 100.0 + 1.0 + 1.0 + 4.0 * 10.0)
+    assert ticks(running) == 2.0 + 5.0 * 10.0
+
+
+@pytest.mark.parametrize("samples", [1.0, 7.0, 300.0])
+def test_a_tick_within_a_thousandth_of_a_sample_behind_the_end_of_a_step_is_at_it(samples: float) -> None:
+    """What was computed a sample before shows, and the tick itself is left to the step that begins there."""
+    at, before = counter(1.0), counter(1.0)
+    at.advance(ONE, samples - 0.9e-3)
+    before.advance(ONE, samples - 1.1e-3)
+    assert (shown(at), shown(before)) == (100.0 + samples, 99.0 + samples)
+    assert ticks(at) == ticks(before) == samples
+
+
+@pytest.mark.parametrize("samples", [1.0, 7.0, 300.0])
+def test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_it(samples: float) -> None:
+    at, after = counter(1.0), counter(1.0)
+    at.advance(ONE, samples + 0.9e-3)
+    after.advance(ONE, samples + 1.1e-3)
+    assert shown(at) == shown(after) == 100.0 + samples
+    assert (ticks(at), ticks(after)) == (samples, samples + 1.0)
+
+
+@given(steps=st.lists(st.floats(1e-3, 20.0), min_size=1, max_size=30), T_s=st.sampled_from([0.001, 0.002, 0.5, 3.0]))
+def test_ticks_do_not_depend_on_the_steps(steps: list[float], T_s: float) -> None:
+    pieces, whole = counter(T_s), counter(T_s)
+    for step in steps:
+        pieces.advance(ONE, step * T_s)
+    whole.advance(ONE, pieces.elapsed)
+    assert pieces.memory == whole.memory
+
+
+def test_a_clock_put_back_makes_no_tick_twice() -> None:
+    running, seen = counter(1.0), []
+    running.advance(ONE, 1.002)
+    running.elapsed = 0.995
+    for step in (0.003, 0.002, 0.9):
+        running.advance(ONE, step)
+        seen.append(shown(running))
+    assert seen == [101.0, 101.0, 101.0]
+    assert ticks(running) == 2.0
+
+
+def test_a_clock_put_forward_skips_no_tick() -> None:
+    running = counter(1.0)
+    running.advance(ONE, 0.5)
+    running.elapsed = 3.25
+    running.advance(ONE, 0.25)
+    assert ticks(running) == 4.0
+
+
+def test_a_continuous_block_is_integrated() -> None:
+    block, p = two_mass_driveline.BLOCK, two_mass_driveline.Parameters(v_0=5.0)
+    u = two_mass_driveline.Input(T_mot=80.0)
+    running, integrator = runner(block, u, p), Integrator(block)
+    x = block.start(u, p)
+    assert running.x == x
+    for k in range(1, 5):
+        running.advance(u, 0.003)
+        x = integrator.advance(x, u, p, 0.003)
+        assert (running.x, running.elapsed) == (x, pytest.approx(0.003 * k))
+    assert running.output(u) == block.output(x, u, p)
+
+
+@every_block
+def test_a_run_goes_on_from_its_memory_bit_by_bit(block: Block) -> None:
+    """In a runner of its own, whatever it did meanwhile."""
+    u = block.Input()._replace(**{block.Input._fields[0]: 20.0, block.Input._fields[1]: 30.0})
+    first, second = (runner(block, u, block.Parameters()) for _ in range(2))
+    for step in (0.0013, 0.01, 0.0004):
+        first.advance(u, step)
+    second.advance(u, 0.05)
+    memory = first.memory
+    second.restore(memory)
+    assert second.memory == memory
+    for step in (0.0007, 0.02, 0.0033):
+        first.advance(u, step)
+        second.advance(u, step)
+        assert (second.output(u), second.memory) == (first.output(u), first.memory)
+    first.restore(memory)
+    assert first.memory == memory != second.memory

@@ -1,0 +1,51 @@
+"""A second estimator and a second law: a file each, and one line that joins them (OTHER, in controllers.py)."""
+
+import math
+
+import pytest
+
+from models.block.declaration import variables
+from models.block.runner import runner
+from models.controller import supervision
+from models.controller.supervision import T_S
+from tests.models.controller import motor_speed, speed_washout
+from tests.models.controller.controllers import OTHER, ROLLING, run, shaken
+
+
+def test_the_parameters_are_those_of_the_parts_and_of_the_supervision() -> None:
+    parts = motor_speed.Parameters, speed_washout.Parameters, supervision.Parameters
+    assert variables(OTHER.Parameters) == tuple(v for part in parts for v in variables(part))
+
+
+def test_it_damps_by_its_own_law() -> None:
+    inputs = shaken(0.5)
+    states, slow, p = run(OTHER, inputs), inputs[0].omega_1_meas, OTHER.Parameters()
+    for x, u in zip(states[1:], inputs, strict=True):
+        assert x.T_damp == pytest.approx(-p.k_v * (u.omega_1_meas - slow), abs=1e-9)
+        slow += p.omega_v * T_S * (u.omega_1_meas - slow)
+    assert max(abs(x.T_damp) for x in states) > 10.0
+
+
+def test_a_runner_takes_it_as_it_takes_any_block() -> None:
+    inputs = shaken(0.2)
+    running = runner(OTHER, inputs[0], OTHER.Parameters())
+    for x, u in zip(run(OTHER, inputs)[1:], inputs, strict=True):
+        running.advance(u, T_S)
+        assert running.output(u) == OTHER.output(x, u, None)
+
+
+def test_it_is_traced_for_the_native_build() -> None:
+    """And computes with symbols what it computes with numbers, in fallback too."""
+    pytest.importorskip("casadi", reason="the extra `native` is not installed")
+    from fmus.native.trace import leaves, trace
+
+    functions = {each.name: each.function for each in trace(OTHER)}
+    p, inputs = OTHER.Parameters(), shaken(0.2)
+    inputs = [u._replace(T_mot_est=math.nan) if 40 <= k < 60 else u for k, u in enumerate(inputs)]
+    states = run(OTHER, inputs)
+    assert supervision.FALLBACK in {x.status for x in states}
+    for x, u, after in zip(states, inputs, states[1:], strict=False):
+        computed = functions["update"](leaves(x), leaves(u), leaves(p)).full().ravel()
+        assert computed.tolist() == pytest.approx([float(value) for value in leaves(after)], rel=1e-12)
+    shown = functions["output"](leaves(states[-1]), leaves(ROLLING), leaves(p)).full().ravel()
+    assert shown.tolist() == list(OTHER.output(states[-1], ROLLING, p))

@@ -1,0 +1,220 @@
+"""The signal monitor: each signal just good enough and just not, what bridges it, and what is trusted."""
+
+import math
+from collections.abc import Iterable
+
+import pytest
+
+from models.controller import signal_monitor as monitor
+from models.controller.signal_monitor import MonitorState
+from models.controller.supervision import Input, Parameters
+
+P = Parameters(T_max=100.0, omega_max=500.0, e_max=40.0, t_bad=1.0, t_frozen=1.0, t_stale=1.0)
+T_S = 0.25
+U = Input(T_driver=50.0, omega_1_meas=150.0, T_mot_est=50.0, omega_2_can=150.0, valid=True, counter=7)
+NO_NUMBERS = [math.nan, math.inf, -math.inf]
+
+each_side = pytest.mark.parametrize("side", [1.0, -1.0])
+
+
+def above(limit: float) -> float:
+    return math.nextafter(limit, math.inf)
+
+
+def after(
+    inputs: Iterable[Input], x: MonitorState | None = None, omega_1_hat: float | None = None, T_ref: float = 50.0
+) -> MonitorState:
+    """The state after these inputs; the estimated speed is the measured one unless given."""
+    x = monitor.start(U, P) if x is None else x
+    for u in inputs:
+        x = monitor.update(x, u, u.omega_1_meas if omega_1_hat is None else omega_1_hat, T_ref, False, T_S, P)
+    return x
+
+
+def changing(samples: int, **signals: float) -> list[Input]:
+    """Motor signals that are never the same twice."""
+    return [U._replace(omega_1_meas=150.0 + k / 64, T_mot_est=50.0 + k / 64, **signals) for k in range(1, samples + 1)]
+
+
+def test_a_signal_that_is_no_number_is_bridged_by_what_is_known() -> None:
+    for signal in NO_NUMBERS:
+        assert monitor.speed(signal, 7.0, P) == monitor.near_speed(signal, 7.0, P) == 7.0
+        assert monitor.torque(signal, 7.0, P) == 7.0
+        assert monitor.message(U._replace(omega_2_can=signal)) == 0.0
+        assert not monitor.has_wheel_speed(U._replace(omega_2_can=signal), P)
+        assert after([U._replace(omega_1_meas=signal)], omega_1_hat=150.0).bad == T_S
+        assert after([U._replace(T_mot_est=signal)]).bad == T_S
+
+
+@each_side
+def test_a_motor_speed_is_plausible_up_to_omega_max(side: float) -> None:
+    most, more = side * 500.0, side * above(500.0)
+    assert monitor.speed(most, 7.0, P) == most
+    assert monitor.speed(more, 7.0, P) == 7.0
+    assert after([U._replace(omega_1_meas=most)]).bad == 0.0
+    assert after([U._replace(omega_1_meas=more)], omega_1_hat=side * 490.0).bad == T_S
+
+
+@each_side
+def test_a_motor_torque_is_plausible_up_to_twice_T_max(side: float) -> None:
+    most, more = side * 200.0, side * above(200.0)
+    assert monitor.torque(most, 7.0, P) == most
+    assert monitor.torque(more, 7.0, P) == 7.0
+    assert after([U._replace(T_mot_est=most)]).bad == 0.0
+    assert after([U._replace(T_mot_est=more)]).bad == T_S
+
+
+@each_side
+def test_a_motor_speed_is_used_up_to_e_max_from_the_estimate(side: float) -> None:
+    most, more = 0.0 + side * 40.0, 0.0 + side * above(40.0)
+    assert monitor.near_speed(most, 0.0, P) == most
+    assert monitor.near_speed(more, 0.0, P) == 0.0
+    assert monitor.near_speed(190.0, 150.0, P) == 190.0
+    assert monitor.near_speed(191.0, 150.0, P) == 150.0
+    assert monitor.speed(191.0, 150.0, P) == 191.0
+    good, bad = (after([U._replace(omega_1_meas=omega)], omega_1_hat=0.0) for omega in (most, more))
+    assert (good.bad, good.omega_1) == (0.0, most)
+    assert (bad.bad, bad.omega_1) == (T_S, 0.0)
+    assert after([U._replace(omega_1_meas=190.0)], omega_1_hat=150.0).bad == 0.0
+
+
+@each_side
+def test_a_message_is_usable_up_to_e_max_from_the_estimate(side: float) -> None:
+    x = monitor.start(U, P)
+    assert monitor.is_usable(x, U._replace(counter=8, omega_2_can=side * 40.0), 0.0, P)
+    assert not monitor.is_usable(x, U._replace(counter=8, omega_2_can=side * above(40.0)), 0.0, P)
+    assert monitor.is_usable(x, U._replace(counter=8, omega_2_can=190.0), 150.0, P)
+    assert not monitor.is_usable(x, U._replace(counter=8, omega_2_can=191.0), 150.0, P)
+
+
+@each_side
+def test_a_wheel_speed_is_plausible_up_to_omega_max(side: float) -> None:
+    assert monitor.has_wheel_speed(U._replace(omega_2_can=side * 500.0), P)
+    assert not monitor.has_wheel_speed(U._replace(omega_2_can=side * above(500.0)), P)
+
+
+def test_a_message_is_usable_once_and_while_it_is_valid() -> None:
+    x = monitor.start(U, P)
+    assert not monitor.is_usable(x, U, 150.0, P), "it was there at the start"
+    for counter in (6, 8, -(2**31)):
+        new = U._replace(counter=counter)
+        assert monitor.is_usable(x, new, 150.0, P)
+        assert not monitor.is_usable(x, new._replace(valid=False), 150.0, P)
+        assert not monitor.is_usable(after([new], x), new, 150.0, P)
+
+
+def test_what_was_received_last_is_finite_whatever_came() -> None:
+    for signal in NO_NUMBERS:
+        x = after([U._replace(omega_1_meas=signal, T_mot_est=signal)], omega_1_hat=150.0)
+        assert (x.omega_1_last, x.T_mot_last) == (0.0, 0.0)
+        assert (x.omega_1, x.T_mot) == (150.0, 50.0)
+
+
+@each_side
+def test_a_motor_speed_unchanged_for_t_frozen_is_frozen_above_one_radian_per_second(side: float) -> None:
+    for speed, frozen in ((side * 1.0, False), (side * above(1.0), True)):
+        torques = [U._replace(omega_1_meas=speed, T_mot_est=u.T_mot_est) for u in changing(6)]
+        x = after(torques[:4])
+        assert (x.omega_1_unchanged, x.bad) == (0.75, 0.0)
+        x = after(torques[:5])
+        assert (x.omega_1_unchanged, x.bad) == (1.0, T_S if frozen else 0.0)
+        x = after(torques)
+        assert (x.omega_1_unchanged, x.bad) == (1.0, 2.0 * T_S if frozen else 0.0), "counted no further"
+
+
+def test_a_motor_speed_that_changes_is_no_longer_frozen() -> None:
+    frozen = after([U._replace(T_mot_est=u.T_mot_est) for u in changing(6)])
+    assert frozen.bad > 0.0
+    x = after([U._replace(omega_1_meas=above(150.0), T_mot_est=60.0)], frozen)
+    assert (x.omega_1_unchanged, x.bad) == (0.0, 0.0)
+
+
+@each_side
+def test_a_motor_torque_unchanged_for_t_frozen_is_frozen_more_than_ten_newton_metres_from_the_demand(
+    side: float,
+) -> None:
+    for T_ref, frozen in ((side * 10.0, False), (side * above(10.0), True)):
+        speeds = [U._replace(T_mot_est=0.0, omega_1_meas=u.omega_1_meas) for u in changing(9)]
+        x = after(speeds[:4], T_ref=T_ref)
+        assert (x.T_mot_unchanged, x.bad) == (0.75, 0.0)
+        assert after(speeds[:5], T_ref=T_ref).bad == (T_S if frozen else 0.0)
+        assert after(speeds, T_ref=T_ref).bad == (P.t_bad + T_S if frozen else 0.0)
+
+
+def test_the_distance_from_the_demand_is_what_counts() -> None:
+    speeds = [U._replace(omega_1_meas=u.omega_1_meas) for u in changing(4)]
+    assert after(speeds, T_ref=60.0).bad == 0.0
+    assert after(speeds, T_ref=40.0).bad == 0.0
+    assert after(speeds, T_ref=-50.0).bad == T_S
+
+
+def test_a_frozen_motor_torque_stays_frozen_until_it_changes() -> None:
+    """Even if what is demanded comes near it again."""
+    speeds = [U._replace(omega_1_meas=u.omega_1_meas) for u in changing(12)]
+    frozen = after(speeds[:4], T_ref=80.0)
+    assert after(speeds[4:7], frozen, T_ref=50.0).bad == 4.0 * T_S
+    good = after([speeds[4]._replace(T_mot_est=50.5)], frozen, T_ref=50.0)
+    assert (good.bad, good.T_mot_unchanged) == (0.0, 0.0)
+    again = after([u._replace(T_mot_est=50.5) for u in speeds[5:]], good, T_ref=50.0)
+    assert (again.bad, again.T_mot_unchanged) == (0.0, 1.0), "as good as any other"
+
+
+def test_an_obeying_motor_torque_counts_its_time_no_further_than_needed() -> None:
+    speeds = [U._replace(omega_1_meas=u.omega_1_meas) for u in changing(40)]
+    assert after(speeds).T_mot_unchanged == P.t_frozen
+
+
+def test_both_motor_signals_must_be_good() -> None:
+    (good,) = changing(1)
+    for bad in (good._replace(omega_1_meas=600.0), good._replace(T_mot_est=300.0)):
+        assert after([bad], omega_1_hat=150.0).bad == T_S
+    assert after([good]).bad == 0.0
+
+
+def test_motor_signals_are_trusted_until_they_were_bad_for_longer_than_t_bad() -> None:
+    bad = [u._replace(T_mot_est=math.nan) for u in changing(8)]
+    assert [after(bad[:n]).bad for n in (3, 4, 5, 8)] == [0.75, 1.0, 1.25, 1.25]
+    assert [monitor.trusts_motor(after(bad[:n]), P) for n in (3, 4, 5, 8)] == [True, True, False, False]
+
+
+def test_one_good_sample_is_trusted_again() -> None:
+    x = after([u._replace(T_mot_est=math.nan) for u in changing(8)])
+    assert monitor.trusts_motor(after(changing(1), x), P)
+
+
+def test_the_wheel_speed_is_known_while_messages_keep_coming() -> None:
+    """For less than t_stale without one."""
+    x, heard = monitor.start(U, P), []
+    for _ in range(6):
+        heard.append((x.silence, monitor.hears_wheels(x, U, P)))
+        x = after([U], x)
+    assert heard == [(0.0, True), (0.25, True), (0.5, True), (0.75, True), (1.0, False), (1.0, False)]
+    assert monitor.update(x, U, 150.0, 50.0, True, T_S, P).silence == 0.0
+
+
+def test_a_wheel_speed_that_is_not_valid_is_not_known() -> None:
+    assert not monitor.hears_wheels(monitor.start(U, P), U._replace(valid=False), P)
+
+
+def test_at_the_start_all_that_is_plausible_is_believed() -> None:
+    assert monitor.start(U, P) == MonitorState(
+        omega_1=150.0,
+        T_mot=50.0,
+        omega_1_last=150.0,
+        T_mot_last=50.0,
+        omega_1_unchanged=0.0,
+        T_mot_unchanged=0.0,
+        T_mot_frozen=False,
+        bad=0.0,
+        counter=7.0,
+        silence=0.0,
+    )
+    x = monitor.start(Input(omega_1_meas=math.nan, T_mot_est=300.0, omega_2_can=600.0, valid=True), P)
+    assert (x.omega_1, x.T_mot, x.omega_1_last, x.T_mot_last) == (0.0, 0.0, 0.0, 0.0)
+    assert x.silence == P.t_stale
+
+
+def test_the_counter_of_messages_is_kept_as_a_real_number() -> None:
+    """As it is declared, so that it is restored and traced as one."""
+    for x in (monitor.start(U, P), after([U])):
+        assert (type(x.counter), x.counter) == (float, 7.0)

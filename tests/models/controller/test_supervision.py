@@ -1,0 +1,268 @@
+"""The supervision: what holds for every controller, whatever its estimator and its law are."""
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models.block.declaration import Enumeration, variables
+from models.block.types import SampledBlock
+from models.controller import supervision
+from models.controller.supervision import FALLBACK, OFF, T_S, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
+from tests.models.controller.controllers import (
+    ABSURD,
+    OTHER,
+    ROLLING,
+    any_input,
+    any_signal,
+    bump,
+    driven,
+    every_controller,
+    run,
+    shaken,
+)
+
+P = OTHER.Parameters()
+
+
+@every_controller
+@given(inputs=st.lists(any_input, min_size=1, max_size=40), T_max=st.floats(1.0, 500.0))
+@settings(max_examples=75)
+def test_the_torque_is_finite_and_limited_whatever_comes_in(
+    block: SampledBlock, inputs: list[Input], T_max: float
+) -> None:
+    for x in run(block, inputs, T_max=T_max):
+        y = block.output(x, inputs[0], None)
+        assert all(math.isfinite(value) for value in y)
+        assert abs(y.T_ref) <= T_max
+        assert y.status in (1, 2, 3, 4)
+
+
+@every_controller
+def test_the_demand_of_the_driver_is_passed_through_when_off(block: SampledBlock) -> None:
+    states = run(block, shaken(0.5, enable=False))
+    assert {(x.T_ref, x.T_damp, x.status) for x in states} == {(50.0, 0.0, OFF)}
+
+
+@every_controller
+@given(T=any_signal)
+def test_a_demand_is_limited_and_one_that_is_no_number_is_none(block: SampledBlock, T: float) -> None:
+    u = ROLLING._replace(T_driver=T, enable=False)
+    wanted = max(-180.0, min(T, 180.0)) if math.isfinite(T) else 0.0
+    assert {x.T_ref for x in run(block, [u, u])} == {wanted}
+
+
+@every_controller
+def test_it_is_switched_on_and_off_without_a_bump(block: SampledBlock) -> None:
+    """The change per sample is at most that of the damping torque itself and of its fading."""
+    steady = shaken(1.5)
+    switched = [u._replace(enable=100 < k < 400) for k, u in enumerate(steady)]
+    states, always = run(block, switched), run(block, steady)
+    largest = max(abs(x.T_damp) for x in always)
+    assert states[100].T_damp == states[-1].T_damp == 0.0
+    assert max(abs(x.T_damp) for x in states) > 10.0
+    assert bump(states) <= bump(always) + largest * T_S / P.t_fade
+
+
+FAULTS = {
+    "speed is no number": {"omega_1_meas": math.nan},
+    "speed infinite": {"omega_1_meas": math.inf},
+    "speed absurd": {"omega_1_meas": 1e7},
+    "speed frozen": {"omega_1_meas": 151.0},
+    "torque is no number": {"T_mot_est": math.nan},
+    "torque infinite": {"T_mot_est": -math.inf},
+    "torque absurd": {"T_mot_est": 1e5},
+    "torque frozen elsewhere": {"T_mot_est": 20.0},
+}
+
+
+@every_controller
+@pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
+def test_bad_motor_signals_lead_to_the_demand_of_the_driver_and_back(
+    block: SampledBlock, fault: dict[str, float]
+) -> None:
+    onset, end = round(0.5 / T_S), round(1.0 / T_S)
+    good = shaken(2.5)
+    states = run(block, [u._replace(**fault) if onset <= k < end else u for k, u in enumerate(good)])
+    latest = onset + round((P.t_bad + P.t_frozen + P.t_fade) / T_S) + 3
+    assert states[onset].status == WITH_WHEEL_SPEED
+    assert {(x.T_ref, x.status) for x in states[latest : end + 1]} == {(50.0, FALLBACK)}
+    assert max(abs(x.T_damp) for x in states[-250:]) > 5.0, "damping again"
+    assert states[-1].status == WITH_WHEEL_SPEED
+
+
+@every_controller
+@pytest.mark.parametrize("bad", [*ABSURD, 150.0 + 2.0 * P.e_max])
+def test_an_absurd_wheel_speed_only_ends_its_mode(block: SampledBlock, bad: float) -> None:
+    states = run(block, [u._replace(omega_2_can=bad) if k >= 100 else u for k, u in enumerate(driven(0.5))])
+    assert states[100].status == WITH_WHEEL_SPEED
+    assert {x.status for x in states[100 + round(P.t_stale / T_S) + 10 :]} == {WITHOUT_WHEEL_SPEED}
+    assert states[-1].T_ref == pytest.approx(50.0, abs=3.0)
+
+
+@every_controller
+def test_a_wheel_speed_that_is_not_valid_ends_its_mode_at_once(block: SampledBlock) -> None:
+    states = run(block, [u._replace(valid=not 100 <= k < 150) for k, u in enumerate(driven(0.5))])
+    without = [k for k, x in enumerate(states) if x.status == WITHOUT_WHEEL_SPEED]
+    assert without == list(range(101, 151)), "messages came all the time"
+
+
+@every_controller
+def test_a_change_of_input_appears_one_sample_later(block: SampledBlock) -> None:
+    """What is computed from the inputs at k T_s appears at (k+1) T_s, not before."""
+    p, states = block.Parameters(), run(block, driven(0.2, enable=False))
+    jump = ROLLING._replace(T_driver=90.0, enable=False)
+    assert block.output(states[-1], jump, p).T_ref == 50.0
+    assert block.output(block.update(states[-1], jump, p), ROLLING, p).T_ref == 90.0
+
+
+@every_controller
+def test_it_copes_with_bad_input_itself(block: SampledBlock) -> None:
+    assert block.tolerates_bad_input
+
+
+def test_the_numbers_of_the_status_are_those_declared() -> None:
+    (names,) = (
+        [name for name, _ in v.declaration.items]
+        for v in variables(supervision.Output)
+        if isinstance(v.declaration, Enumeration)
+    )
+    numbers = {"off": OFF, "fallback": FALLBACK}
+    numbers |= {"damping_with_wheel_speed": WITH_WHEEL_SPEED, "damping_without_wheel_speed": WITHOUT_WHEEL_SPEED}
+    assert {name: number for number, name in enumerate(names, start=1)} == numbers
+
+
+# from here on in detail, seen through an estimator and a law of which all is known
+
+
+def started(u: Input = ROLLING, **parameters: float) -> tuple[State, Any]:
+    p = OTHER.Parameters(**parameters)
+    return OTHER.start(u, p), p
+
+
+def test_it_starts_with_the_demand_and_what_is_measured() -> None:
+    x, _ = started()
+    assert (x.T_ref, x.T_damp, x.added, x.quiet, x.level, x.status) == (50.0, 0.0, 0.0, 0.0, 1.0, WITH_WHEEL_SPEED)
+    assert x.estimator == (150.0, 150.0, 50.0, 1.0)
+    assert x.law == (150.0,)
+    assert (x.ahead.omega_1, x.ahead.T_gear) == (150.0, 50.0)
+
+
+def test_it_starts_in_the_mode_that_it_is_asked_for() -> None:
+    off, _ = started(ROLLING._replace(enable=False))
+    assert (off.level, off.status) == (0.0, OFF)
+    deaf, _ = started(ROLLING._replace(valid=False))
+    assert (deaf.level, deaf.status, deaf.estimator.wheel) == (1.0, WITHOUT_WHEEL_SPEED, 0.0)
+
+
+def test_a_car_that_stands_at_the_start_is_at_rest() -> None:
+    standing = Input(T_driver=2.0, omega_1_meas=3.0, T_mot_est=0.0)
+    x, p = started(standing)
+    assert x.quiet == p.t_rest + p.t_fade
+    assert OTHER.update(x, standing, p).estimator[:3] == (0.0, 0.0, 0.0)
+    assert started(standing._replace(T_driver=2.1))[0].quiet == 0.0
+
+
+def test_the_estimator_is_predicted_under_the_mean_torque_of_the_sample() -> None:
+    """Seen where no measured speed takes its place."""
+    x, p = started()
+    x = OTHER.update(x, ROLLING._replace(T_mot_est=70.0, omega_1_meas=math.nan), p)
+    assert x.estimator.omega_1 == 150.0 + T_S * 60.0 / p.J
+    assert x.monitor.omega_1 == x.estimator.omega_1
+
+
+def test_the_motion_shown_is_ahead_by_a_sample_under_the_present_torque() -> None:
+    x, p = started()
+    x = OTHER.update(x, ROLLING._replace(T_mot_est=70.0, omega_1_meas=151.0, omega_2_can=149.0, counter=1), p)
+    assert x.ahead == (151.0 + T_S * 70.0 / p.J, 149.0, 0.0, 70.0)
+    y = OTHER.output(x, ROLLING, p)
+    assert (y.T_ref, y.T_damp, y.status) == (x.T_ref, x.T_damp, WITH_WHEEL_SPEED)
+    assert (y.T_gear_hat, y.phi_hat, y.omega_2_hat) == (70.0, 0.0, 149.0)
+
+
+def test_a_message_is_taken_once() -> None:
+    x, p = started()
+    x = OTHER.update(x, ROLLING._replace(omega_2_can=149.0, counter=1), p)
+    assert x.estimator.omega_2 == 149.0
+    assert OTHER.update(x, ROLLING._replace(omega_2_can=140.0, counter=1), p).estimator.omega_2 == 149.0
+
+
+def test_a_message_far_from_the_estimate_is_not_taken() -> None:
+    x, p = started()
+    assert OTHER.update(x, ROLLING._replace(omega_2_can=191.0, counter=1), p).estimator.omega_2 == 150.0
+    assert OTHER.update(x, ROLLING._replace(omega_2_can=190.0, counter=1), p).estimator.omega_2 == 190.0
+
+
+def test_what_the_law_says_is_added_to_the_demand() -> None:
+    x, p = started()
+    x = OTHER.update(x, ROLLING._replace(omega_1_meas=153.0), p)
+    assert (x.T_ref, x.T_damp, x.added) == (50.0 - p.k_v * 3.0, -p.k_v * 3.0, -p.k_v * 3.0)
+    assert x.law.slow == 150.0 + p.omega_v * T_S * 3.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_demand_and_damping_together_are_limited(side: float) -> None:
+    x, p = started(ROLLING._replace(T_driver=side * 170.0))
+    x = OTHER.update(x, ROLLING._replace(T_driver=side * 170.0, omega_1_meas=150.0 - side * 10.0), p)
+    assert (x.T_ref, x.T_damp, x.added) == (side * 180.0, side * 10.0, side * 20.0)
+
+
+def test_the_damping_fades_in_and_out_with_its_switch() -> None:
+    x, p = started(ROLLING._replace(enable=False), t_fade=4.0 * T_S)
+    levels = []
+    for enable in [True] * 5 + [False] * 5:
+        x = OTHER.update(x, ROLLING._replace(omega_1_meas=153.0, enable=enable), p)
+        levels.append(x.level)
+        assert x.T_damp == pytest.approx(x.level * x.added, rel=1e-12)
+    assert levels == [0.25, 0.5, 0.75, 1.0, 1.0, 0.75, 0.5, 0.25, 0.0, 0.0]
+
+
+def test_the_damping_fades_out_at_rest() -> None:
+    standing = Input(omega_1_meas=1.0)
+    x, p = started(ROLLING, t_rest=2.0 * T_S, t_fade=4.0 * T_S, k_v=1.0, omega_v=0.0)
+    x = x._replace(law=x.law._replace(slow=-9.0), estimator=x.estimator._replace(omega_1=1.0))
+    torques = []
+    for _ in range(7):
+        x = OTHER.update(x, standing, p)
+        torques.append(x.T_damp)
+    assert torques == pytest.approx([-10.0, -10.0, -7.5, -5.0, -2.5, 0.0, 0.0])
+
+
+def test_signals_are_bridged_before_they_lead_to_fallback() -> None:
+    """What full damping adds is held while the law has lost its estimate."""
+    x, p = started(ROLLING, t_bad=2.0 * T_S, t_fade=2.0 * T_S, k_v=1.0, omega_v=0.0)
+    x = OTHER.update(x, ROLLING._replace(omega_1_meas=160.0), p)
+    seen = []
+    for k in range(5):
+        x = OTHER.update(x, ROLLING._replace(omega_1_meas=math.nan, T_mot_est=0.001 * k), p)
+        seen.append((x.status, x.level))
+        assert x.added == pytest.approx(-10.0, abs=0.2)
+    assert seen == [(WITH_WHEEL_SPEED, 1.0)] * 2 + [(FALLBACK, 0.5), (FALLBACK, 0.0), (FALLBACK, 0.0)]
+
+
+def test_in_fallback_the_estimator_starts_anew_from_what_it_gets() -> None:
+    """From any plausible speed, however far from the estimate, and it is trusted in the next sample."""
+    x, p = started(ROLLING, t_bad=2.0 * T_S)
+    statuses = []
+    for k in range(5):
+        x = OTHER.update(x, ROLLING._replace(omega_1_meas=300.0 + k, T_mot_est=60.0 + k), p)
+        statuses.append(x.status)
+    assert statuses == [WITH_WHEEL_SPEED] * 2 + [FALLBACK] + [WITH_WHEEL_SPEED] * 2
+    assert x.estimator.omega_1 == 304.0
+
+
+def test_in_fallback_the_wheel_speed_is_not_in_use() -> None:
+    x, p = started(ROLLING, t_bad=0.0)
+    x = OTHER.update(x, ROLLING._replace(T_mot_est=math.nan), p)
+    assert (x.status, x.estimator) == (FALLBACK, (150.0, 150.0, 50.0, 0.0))
+
+
+def test_the_state_moves_by_one_sample_a_sample() -> None:
+    """Nothing of it is left behind."""
+    states = run(OTHER, [u._replace(T_driver=50.0 + k % 7) for k, u in enumerate(shaken(0.1))])
+    for a, b in pairwise(states[1:]):
+        for name in ("estimator", "law", "monitor", "added", "T_ref", "T_damp", "ahead"):
+            assert getattr(a, name) != getattr(b, name), name

@@ -1,0 +1,197 @@
+"""The torque estimator: its model is the drive train, its corrections have the gains, its estimate has bounds."""
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from models import damping_controller
+from models.block.declaration import Real, variables
+from models.controller import torque_estimator as estimator
+from models.controller.supervision import T_S
+from models.controller.torque_estimator import HISTORY, Estimate, EstimatorState
+from tests.models.controller.controllers import ROLLING
+
+BLOCK = damping_controller.BLOCK
+P = BLOCK.Parameters()
+IN_CONTACT = Estimate(omega_1=150.0, omega_2=148.0, phi=P.phi_B + 50.0 / P.C, T_l=-3.0)
+
+
+def estimating(e: Estimate, share: float = 1.0) -> EstimatorState:
+    return EstimatorState(e, past=(e.omega_2,) * HISTORY, share=share)
+
+
+def rates(e: Estimate, T_mot: float) -> Estimate:
+    """The equations of the estimator's model in contact."""
+    T_gear = P.C * (e.phi - P.phi_B)
+    return Estimate((T_mot - T_gear) / P.J_1, (e.T_l + (1.0 - P.lambda_v) * T_gear) / P.J_2, e.omega_1 - e.omega_2, 0.0)
+
+
+def advanced(e: Estimate, h: float, dx: Estimate) -> Estimate:
+    return Estimate(*(value + h * rate for value, rate in zip(e, dx, strict=True)))
+
+
+def distance_after(T_s: float, duration: float = 0.03) -> float:
+    """Between samples T_s apart and a fine solution by the midpoint rule: rad and, at 10 Hz and so on, rad/s."""
+    coarse, fine, steps = IN_CONTACT, IN_CONTACT, 3000
+    for _ in range(round(duration / T_s)):
+        coarse = estimator.integrated(coarse, 80.0, T_s, P)
+    h = duration / steps
+    for _ in range(steps):
+        fine = advanced(fine, h, rates(advanced(fine, 0.5 * h, rates(fine, 80.0)), 80.0))
+    return math.dist(coarse, fine)
+
+
+def test_the_model_follows_its_equations_with_order_two() -> None:
+    errors = [distance_after(T_s) for T_s in (0.002, 0.001, 0.0005)]
+    assert [a / b for a, b in pairwise(errors)] == pytest.approx([4.0, 4.0], rel=0.05)
+
+
+@pytest.mark.parametrize(("T_mot", "phi"), [(23.48, 0.357), (-23.48, -0.357), (0.0, 0.0)])
+def test_it_starts_with_the_motor_torque_in_the_gear(T_mot: float, phi: float) -> None:
+    """Against the flank that bears it, and without torque in the middle of the backlash."""
+    p = P._replace(C=117.4, phi_B=0.157)
+    e = estimator.start(120.0, T_mot, True, p).estimate
+    assert e == (120.0, 120.0, pytest.approx(phi, rel=1e-12), 0.0)
+    assert estimator.motion(estimating(e), p).T_gear == pytest.approx(T_mot, rel=1e-12)
+
+
+def test_the_smallest_torque_bears_on_its_flank() -> None:
+    assert estimator.at_rest_with(0.0, 5e-324, P).phi == P.phi_B
+    assert estimator.at_rest_with(0.0, -5e-324, P).phi == -P.phi_B
+
+
+def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
+    with_wheel, without = (estimator.start(120.0, 10.0, wheel, P) for wheel in (True, False))
+    assert (with_wheel.share, without.share) == (1.0, 0.0)
+    assert with_wheel.past == without.past == (120.0,) * HISTORY
+
+
+def test_a_new_start_forgets_the_estimate_alone() -> None:
+    x = EstimatorState(IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25)
+    again = estimator.restart(x, 90.0, -20.0, P)
+    assert again == x._replace(estimate=estimator.start(90.0, -20.0, True, P).estimate)
+
+
+GAINS = P._replace(
+    L_omega_1=0.5, L_omega_2=0.25, L_phi=-0.0625, L_T_l=1.0,
+    Lw_omega_1=1.0, Lw_omega_2=0.5, Lw_phi=-0.03125, Lw_T_l=2.0,
+    L_can_omega_1=0.0625, L_can_omega_2=0.75, L_can_phi=-0.015625, L_can_T_l=4.0,
+)  # fmt: skip
+"""Gains whose products have no rounding."""
+E_0 = Estimate(omega_1=150.0, omega_2=148.0, phi=0.5, T_l=-3.0)
+
+
+@pytest.mark.parametrize(
+    ("share", "correction"),
+    [
+        (0.0, (2.0, 1.0, -0.25, 4.0)),
+        (1.0, (4.0, 2.0, -0.125, 8.0)),
+        (0.5, (3.0, 1.5, -0.1875, 6.0)),
+    ],
+)
+def test_the_motor_speed_corrects_with_the_gains_of_the_mode(share: float, correction: tuple[float, ...]) -> None:
+    """4 rad/s above the estimate."""
+    x = estimator.take_motor_speed(estimating(E_0, share), 154.0, GAINS)
+    assert x == estimating(E_0, share)._replace(estimate=advanced(E_0, 1.0, Estimate(*correction)))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_a_message_corrects_as_far_as_the_wheel_speed_is_in_use(share: float) -> None:
+    """It is 4 rad/s above the estimate of its time."""
+    x = estimating(E_0, share)._replace(past=(140.0,) * HISTORY)
+    e = estimator.take_wheel_speed(x, 144.0, T_S, GAINS).estimate
+    assert e == advanced(E_0, 4.0 * share, Estimate(0.0625, 0.75, -0.015625, 4.0))
+
+
+@pytest.mark.parametrize(("samples", "estimate"), [(1, 100.0), (2, 104.0), (2.5, 106.0), (HISTORY, 224.0)])
+def test_a_message_is_compared_with_the_estimate_of_its_time(samples: float, estimate: float) -> None:
+    x = estimating(E_0)._replace(past=tuple(100.0 + 4.0 * k for k in range(HISTORY)))
+    p = GAINS._replace(T_age=samples * 0.25)
+    assert estimator.take_wheel_speed(x, estimate, 0.25, p).estimate == E_0
+
+
+@pytest.mark.parametrize("late", [0, 1])
+def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: int) -> None:
+    """The innovation is that of the message's own age, 11.5 samples; a sample more shows."""
+    p, x = P._replace(T_age=0.023), BLOCK.start(ROLLING, P)
+    true = [x.estimator.estimate]
+    for k in range(1, 400):
+        true.append(estimator.integrated(true[-1], 50.0, T_S, p))
+        u = ROLLING._replace(omega_1_meas=true[k].omega_1)
+        if k > 40:
+            message = 0.5 * (true[k - 11 - late].omega_2 + true[k - 12 - late].omega_2)
+            u = u._replace(omega_2_can=message, counter=k // 10)
+        x = BLOCK.update(x, u, p)
+    e = x.estimator.estimate
+    error = max(abs(e.omega_2 - true[-1].omega_2), abs(e.phi - true[-1].phi))
+    assert error > 1e-6 if late else error < 1e-9
+
+
+def test_the_oldest_message_that_may_be_assumed_is_as_old_as_the_oldest_estimate() -> None:
+    """And the newest as old as the newest past estimate."""
+    (age,) = (v.declaration for v in variables(estimator.Parameters) if v.name == "T_age")
+    assert isinstance(age, Real)
+    assert (age.minimum, age.maximum) == (T_S, HISTORY * T_S)
+
+
+def test_past_estimates_are_kept_newest_first() -> None:
+    x = estimating(E_0)
+    for k in range(HISTORY + 5):
+        x = estimator.finish(x._replace(estimate=E_0._replace(omega_2=float(k))), True, T_S, P)
+    assert x.past == tuple(float(HISTORY + 4 - k) for k in range(HISTORY))
+
+
+def test_the_gains_fade_from_one_mode_to_the_other() -> None:
+    p, shares = P._replace(t_fade=1.0), []
+    x = estimating(E_0, share=0.0)
+    for wheel in [True] * 5 + [False] * 5:
+        x = estimator.finish(x, wheel, 0.25, p)
+        shares.append(x.share)
+    assert shares == [0.25, 0.5, 0.75, 1.0, 1.0, 0.75, 0.5, 0.25, 0.0, 0.0]
+
+
+BOUNDS = {
+    "omega_1": 800.0,
+    "omega_2": 800.0,
+    "phi": 0.25 + 4.0 * 100.0 / 128.0,
+    "T_l": 400.0,
+}
+"""For omega_max = 800 rad/s, T_max = 100 N.m, C = 128 N.m/rad and phi_B = 0.25 rad."""
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("name", BOUNDS)
+def test_the_estimate_stays_within_what_the_drive_train_can_bear(name: str, side: float) -> None:
+    """Four times the largest motor torque in gear and load, and the largest plausible speed."""
+    p = GAINS._replace(omega_max=800.0, T_max=100.0, C=128.0, phi_B=0.25)
+    zero, bound = Estimate(0.0, 0.0, 0.0, 0.0), BOUNDS[name]
+    below, beyond = (zero._replace(**{name: side * size}) for size in (bound - 0.125, bound + 0.125))
+    assert estimator.bounded(below, p) == below
+    assert estimator.bounded(beyond, p) == zero._replace(**{name: side * bound})
+
+
+def test_a_correction_by_the_motor_speed_stays_within_the_bounds() -> None:
+    """A message cannot leave them: it is near the estimate."""
+    x = estimator.take_motor_speed(estimating(E_0._replace(T_l=4.0 * P.T_max)), 151.0, GAINS)
+    assert x.estimate.T_l == 4.0 * P.T_max
+
+
+def test_the_motion_ahead_is_that_of_the_model() -> None:
+    x = estimating(IN_CONTACT)
+    ahead = estimator.integrated(IN_CONTACT, 60.0, 0.005, P)
+    assert estimator.motion_after(x, 60.0, 0.005, P) == estimator.motion(estimating(ahead), P)
+    assert estimator.predict(x, 60.0, 0.005, P) == x._replace(estimate=ahead)
+
+
+def test_the_estimate_follows_a_perfect_model() -> None:
+    """The estimator fed with its own model, started wrong, finds its twist again without wheel speed."""
+    true = Estimate(150.0, 150.0, P.phi_B + 60.0 / P.C, -40.0)
+    x = BLOCK.start(ROLLING._replace(valid=False), P)
+    for k in range(3000):
+        T_mot = 50.0 + 20.0 * math.sin(0.02 * k)
+        true = estimator.integrated(true, T_mot, T_S, P)
+        u = ROLLING._replace(omega_1_meas=true.omega_1, T_mot_est=T_mot, valid=False)
+        x = BLOCK.update(x, u, P)
+    assert x.estimator.estimate.phi == pytest.approx(true.phi, abs=0.02)
+    assert x.estimator.estimate.omega_2 == pytest.approx(true.omega_2, abs=0.5)
