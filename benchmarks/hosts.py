@@ -10,7 +10,9 @@ import argparse
 import os
 import sys
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from importlib.util import find_spec
+from multiprocessing import get_context
 from pathlib import Path
 from shutil import which
 from time import process_time
@@ -20,17 +22,21 @@ from rich.console import Console
 from rich.table import Table
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.master import Scheme, prepared
-from harness.cosimulation.steps import interpreted
+from harness.cosimulation.master import loaded
+from harness.cosimulation.steps import MakeSteps, interpreted
 from harness.cosimulation.system import PLANTS, System, loop
-from harness.workers import workers
+from harness.cosimulation.wires import Scheme
+from harness.manoeuvres.catalogue import Manoeuvre, lines
+from harness.simulate import signals
 
 from . import plain_loop
+from .timed import Timed
 
 STEP_SIZE = 1e-3
 MICRO = 1e6
 START = {"plant.v_0": 5.0, "plant.T_0": 20.0}
 T_DRIVER = 60.0
+STEADY = Manoeuvre("steady", "one demand all the time", 0.0, START["plant.v_0"], lines((0.0, T_DRIVER)))
 KINDS = {"can.valid": "boolean", "can.counter": "integer"}
 """Types of the outputs that are not Real."""
 
@@ -56,12 +62,12 @@ def in_python(system: System, steps: int) -> Run:
     return _in_our_master(system, steps, interpreted)
 
 
-def _in_our_master(system: System, steps: int, make: Callable) -> Run:
-    inputs = {"controller.T_driver": T_DRIVER, "controller.enable": True, "plant.T_brake": 0.0, "plant.slope": 0.0}
-    with prepared(system, steps * STEP_SIZE, STEP_SIZE, inputs, START) as run:
-        began = process_time()
-        run.run(Scheme.JACOBI, "benchmark", make)
-        return Run((process_time() - began) / steps * MICRO, float(run.table["plant.T_gear"][-1]))
+def _in_our_master(system: System, steps: int, make: MakeSteps) -> Run:
+    timed = Timed(make)
+    with loaded(system, make_steps=timed) as running:
+        duration = steps * STEP_SIZE
+        results = running.run(duration, STEP_SIZE, signals(STEADY), START, Scheme.JACOBI, "benchmark")
+    return Run(timed.seconds / steps * MICRO, float(results["plant.T_gear"][-1]))
 
 
 def libcosim(system: System, steps: int) -> Run:
@@ -86,7 +92,7 @@ def libcosim(system: System, steps: int) -> Run:
 
     for name, value in {**START, "controller.T_driver": T_DRIVER}.items():
         execution.real_initial_value(*place(name), value)
-    for source, target in system.connections:
+    for source, target, _ in system.connections:
         connect = getattr(execution, f"connect_{KINDS.get(source, 'real')}_variables")
         connect(*place(source), *place(target))
     observer = CosimObserver.create_last_value()
@@ -107,7 +113,7 @@ def ecos(system: System, steps: int) -> Run:
     with EcosSimulationStructure() as structure:
         for name, path in system.instances.items():
             structure.add_model(name, path)
-        for source, target in system.connections:
+        for source, target, _ in system.connections:
             connect = getattr(structure, f"make_{names.get(KINDS.get(source, ''), 'real')}_connection")
             connect(source.replace(".", "::"), target.replace(".", "::"))
         start = {**START, "controller.T_driver": T_DRIVER}
@@ -153,7 +159,7 @@ def measure(plant: str, steps: int, turns: int) -> dict[Contender, Run]:
     for _ in range(turns):
         for contender in CONTENDERS:
             if contender.present:
-                with workers(1) as pool:
+                with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
                     run = pool.submit(contender.host, loop(plant, build=contender.build), steps).result()
                 best[contender] = min(run, best.get(contender, run))
     return best

@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 import fmpy
 
 from fmus.native.compiler import host_compiler
+from harness.cosimulation.interface import Interface, type_of
 from harness.cosimulation.system import System
-from harness.cosimulation.wiring import Interface, type_of
 
 SOURCE = Path(__file__).parent / "plain_loop.c"
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2")
@@ -52,7 +52,7 @@ def run(system: System, steps: int, step_size: float, start: Mapping[str, float]
 def _header(
     system: System, interfaces: Mapping[str, Interface], folder: Path, start: Mapping[str, float], watched: str
 ) -> str:
-    sources = {target: source for source, target in system.connections}
+    sources = {target: source for source, target, _ in system.connections}
     used = {*sources.values(), watched}
     outputs = dict(_ports(interfaces, "output", used))
     inputs = dict(_ports(interfaces, "input", sources))

@@ -8,7 +8,7 @@ shares, the least of their times.
 
 import argparse
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partialmethod
 from statistics import median
@@ -16,16 +16,21 @@ from time import perf_counter, process_time
 from typing import Any
 from unittest.mock import patch
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from harness.cosimulation.calls import Call
+from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.instance import Instance
-from harness.cosimulation.master import Loop, Scheme, prepared
-from harness.cosimulation.steps import interpreted
-from harness.cosimulation.system import BUILD_HELP, BUILDS, CONNECTIONS, PLANTS, System, chosen_build, loop
-from harness.cosimulation.wiring import type_of
+from harness.cosimulation.interface import type_of
+from harness.cosimulation.master import loaded
+from harness.cosimulation.steps import MakeSteps, Steps, interpreted
+from harness.cosimulation.system import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, System, chosen_build, loop
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
+
+from .timed import Timed
 
 STEP_SIZE = 1e-3
 MICRO = 1e6
@@ -102,53 +107,46 @@ class Stopwatch:
         return sum(map(len, self.laps.values())) * (self.outside + self.inside)
 
 
-def step_with_master(loop: Loop) -> None:
-    loop.run(Scheme.GAUSS_SEIDEL, "benchmark")
-
-
-def step_in_python(loop: Loop) -> None:
-    loop.run(Scheme.GAUSS_SEIDEL, "benchmark", interpreted)
-
-
-def step_with_fmpy(loop: Loop) -> None:
-    """The same steps with one call of FMU2Slave a variable."""
-    sources = {target: source for source, target in CONNECTIONS}
-    rows = loop.results
-    columns = rows.dtype.names or ()
+def with_fmpy(calls: Sequence[Call], row: bytearray, known: int) -> Steps:
+    """The same steps with one call of FMU2Slave a variable; nothing is recorded."""
+    sources = {target: source for source, target, _ in CONNECTIONS} | {port.name: port.name for port in INPUTS}
     plans = []
-    for instance in loop.instances:
-        inputs = []
-        for v in instance.interface.of_causality("input"):
-            source = sources.get(f"{instance.name}.{v.name}", f"{instance.name}.{v.name}")
-            if source in columns:
-                inputs.append((getattr(instance.slave, f"set{type_of(v)}"), v.valueReference, source))
+    for instance in dict.fromkeys(call.instance for call in calls):
+        inputs = [
+            (getattr(instance.slave, f"set{type_of(v)}"), v.valueReference, source)
+            for v in instance.interface.of_causality("input")
+            if (source := sources.get(f"{instance.name}.{v.name}"))
+        ]
         outputs = [
             (getattr(instance.slave, f"get{type_of(v)}"), v.valueReference, f"{instance.name}.{v.name}")
             for v in instance.interface.of_causality("output")
         ]
         plans.append((inputs, instance.slave.doStep, outputs))
-    values = {name: rows[name][0].item() for name in columns}
-    given = {name: rows[name].tolist() for name in signals(MANOEUVRES["drive"])}
-    for k in range(len(rows) - 1):
-        for name, samples in given.items():
-            values[name] = samples[k]
-        for inputs, do_step, outputs in plans:
-            for set_value, reference, name in inputs:
-                set_value([reference], [values[name]])
-            do_step(k * STEP_SIZE, STEP_SIZE)
-            for get_value, reference, name in outputs:
-                values[name] = get_value([reference])[0]
+    values: dict[str, Any] = {}
+
+    def steps(table: np.ndarray, numbers: range) -> None:
+        if numbers.start == 0:
+            values.update({name: table[name][0].item() for name in table.dtype.names or ()})
+        given = {port.name: table[port.name][numbers.start : numbers.stop].tolist() for port in INPUTS}
+        for k in numbers:
+            for name, samples in given.items():
+                values[name] = samples[k - numbers.start]
+            for inputs, do_step, outputs in plans:
+                for set_value, reference, name in inputs:
+                    set_value([reference], [values[name]])
+                do_step(k * STEP_SIZE, STEP_SIZE)
+                for get_value, reference, name in outputs:
+                    values[name] = get_value([reference])[0]
+
+    return steps
 
 
-def timed(
-    system: System, duration: float, step: Callable[[Loop], None], clock: Callable[[], float] = process_time
-) -> float:
-    """Microseconds per communication step, without loading and initialization."""
-    manoeuvre = MANOEUVRES["drive"]
-    with prepared(system, duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre)) as loop:
-        began = clock()
-        step(loop)
-        return (clock() - began) / (len(loop.table) - 1) * MICRO
+def timed(system: System, duration: float, make: MakeSteps, clock: Callable[[], float] = process_time) -> float:
+    """Microseconds per communication step."""
+    manoeuvre, steps = MANOEUVRES["drive"], Timed(make, clock)
+    with loaded(system, make_steps=steps) as running:
+        table = running.run(duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre), label="benchmark")
+    return steps.seconds / (len(table) - 1) * MICRO
 
 
 def measure(plant: str, build: str, duration: float, repetitions: int) -> Costs:
@@ -156,12 +154,12 @@ def measure(plant: str, build: str, duration: float, repetitions: int) -> Costs:
     system, costs = loop(plant, build=build), Costs()
     steps = round(duration / STEP_SIZE)
     for _ in range(repetitions):
-        costs.master.append(timed(system, duration, step_with_master))
-        costs.in_python.append(timed(system, duration, step_in_python))
-        costs.fmpy.append(timed(system, duration, step_with_fmpy))
+        costs.master.append(timed(system, duration, CompiledSteps if LIBRARY else interpreted))
+        costs.in_python.append(timed(system, duration, interpreted))
+        costs.fmpy.append(timed(system, duration, with_fmpy))
         watch = Stopwatch()
         with patch.object(Instance, "function", partialmethod(_watched, watch)):
-            total = timed(system, duration, step_in_python, perf_counter) - watch.cost / steps * MICRO
+            total = timed(system, duration, interpreted, perf_counter) - watch.cost / steps * MICRO
         spent = {key: seconds / steps * MICRO for key, seconds in watch.spent().items()}
         costs.added.append(total / sum(spent.values()) - 1.0)
         for key, value in spent.items():

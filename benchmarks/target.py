@@ -59,7 +59,7 @@ def recorded(manoeuvre: Manoeuvre, fmus: Path, control: bool = True) -> np.ndarr
     """
     every = round(T_S / STEP_SIZE)
     results = simulate(manoeuvre, control=control, step_size=STEP_SIZE, folder=fmus)[::every]
-    sources = {name: name for name in signals(manoeuvre)} | {target: source for source, target in CONNECTIONS}
+    sources = {name: name for name in signals(manoeuvre)} | {target: source for source, target, _ in CONNECTIONS}
     names = [variable.name for variable in variables(FMU.block.Input)]
     return np.column_stack([np.asarray(results[sources[f"controller.{name}"]], float) for name in names])
 

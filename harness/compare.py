@@ -4,8 +4,8 @@ The runs know nothing of each other and are spread over the cores; what comes ba
 of the cases, whatever finishes first.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import repeat
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,13 +14,13 @@ import numpy as np
 from .cosimulation.system import BUILD
 from .errors import DrivelineError
 from .manoeuvres.catalogue import MANOEUVRES
+from .many import run_many
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
 from .reports.csv_file import write_csv
 from .reports.figures import plot_drive, plot_step
 from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
-from .workers import workers
 
 CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
 
@@ -108,8 +108,8 @@ def run_cases(
     fmus: Path = BUILD,
     build: str | None = None,
     parameters: Mapping[str, float] | None = None,
-) -> Iterator[Outcome]:
-    """Runs the cases in parallel; yields their outcomes in the order of the cases.
+) -> list[Outcome]:
+    """Runs the cases in parallel; their outcomes in the order of the cases.
 
     Args:
         seed: of the noise of all runs.
@@ -118,10 +118,8 @@ def run_cases(
         build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
         parameters: `instance.variable` -> value, in all runs.
     """
-    with workers() as pool:
-        yield from pool.map(
-            run_case, todo, repeat(seed), repeat(folder), repeat(fmus), repeat(build), repeat(parameters)
-        )
+    run = partial(run_case, seed=seed, folder=folder, fmus=fmus, build=build, parameters=parameters)
+    return run_many(run, todo)
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

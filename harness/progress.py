@@ -1,26 +1,60 @@
-"""Progress of long runs, on a terminal only."""
+"""Progress of what takes long, on a terminal or in a notebook."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
 from time import monotonic
 
 QUIET = 1.0
 """Seconds that a run may take in silence."""
 
+_shown = False
+
 
 def chunks(length: int, label: str, size: int = 200) -> Iterator[range]:
-    """range(length) in pieces, shown on stderr as progress if it takes longer than a second."""
-    pieces = (range(k, min(k + size, length)) for k in range(0, length, size))
-    if not sys.stderr.isatty():
-        yield from pieces
-        return
-    # here and not above: importing them takes as long as a short run
-    from rich.console import Console
+    """range(length) in pieces, shown as progress."""
+    with progress(length, label) as done:
+        for k in range(0, length, size):
+            piece = range(k, min(k + size, length))
+            yield piece
+            done(piece.stop)
+
+
+@contextmanager
+def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
+    """What is called with the number of pieces that are done shows them on stderr, from the first second on.
+
+    Within it nothing else shows progress.
+    """
+    global _shown
+    outer, _shown = _shown, True
+    silent, began, update = outer or not _visible(), monotonic(), None
+    with ExitStack() as stack:
+
+        def done(count: int) -> None:
+            nonlocal update
+            if update is None and not silent and monotonic() - began > QUIET:
+                update = stack.enter_context(_bar(total, label))
+            if update:
+                update(count)
+
+        try:
+            yield done
+        finally:
+            _shown = outer
+
+
+def _visible() -> bool:
+    in_notebook = "ipykernel" in sys.modules and find_spec("ipywidgets") is not None
+    return sys.stderr.isatty() or in_notebook
+
+
+@contextmanager
+def _bar(total: int, label: str) -> Iterator[Callable[[int], None]]:
+    from rich.console import Console  # only a long run needs it
     from rich.progress import Progress
 
-    began = monotonic()
     with Progress(console=Console(file=sys.stderr), transient=True) as bar:
-        task = bar.add_task(label, total=length, visible=False)
-        for piece in pieces:
-            yield piece
-            bar.update(task, completed=piece.stop, visible=monotonic() - began > QUIET)
+        task = bar.add_task(label, total=total)
+        yield lambda count: bar.update(task, completed=count)

@@ -1,8 +1,8 @@
 """A recorded drive, driven by the simulated vehicle without and with damping."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Future
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.lib.recfunctions import repack_fields
 from .cosimulation.system import BUILD
 from .manoeuvres.manoeuvre import Manoeuvre
 from .manoeuvres.recording import Recording
+from .many import run_many
 from .metrics.damage import damage, require_counting
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
@@ -19,7 +20,6 @@ from .reports.csv_file import write_csv
 from .reports.figures import plot_replay
 from .reports.table import values, write_metrics
 from .simulate import simulate
-from .workers import workers
 
 KEPT = [
     "time",
@@ -85,16 +85,13 @@ def replay(
 ) -> tuple[Ride, Ride]:
     """The rides without and with damping, at the same time on two cores.
 
-    The one without damping runs in this process, where it can show its progress.
-
     Raises:
         MissingExtra: the package that counts load cycles is not installed.
     """
     require_counting()
-    with workers(1) as pool:
-        damped: Future[Ride] = pool.submit(ride, manoeuvre, recording, plant, True, seed, fmus, build, parameters)
-        undamped = ride(manoeuvre, recording, plant, False, seed, fmus, build, parameters)
-        return undamped, damped.result()
+    one = partial(ride, manoeuvre, recording, plant, seed=seed, fmus=fmus, build=build, parameters=parameters)
+    undamped, damped = run_many(one, (False, True), workers=2, label=recording.name)
+    return undamped, damped
 
 
 def records(rides: Sequence[Ride], recording: Recording, plant: str) -> list[dict[str, Any]]:

@@ -1,18 +1,21 @@
-"""One manoeuvre with one plant: the function that everything else runs the loop with."""
+"""One manoeuvre with one loop: the function that everything else runs the loop with."""
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from .cosimulation.master import Scheme, Source, run
-from .cosimulation.system import BUILD, PLANTS, loop
+from .cosimulation.row import Source
+from .cosimulation.runs import run
+from .cosimulation.system import BUILD, INPUTS, PARAMETERS, Block, Port, loop
+from .cosimulation.wires import Scheme
 from .manoeuvres.manoeuvre import Manoeuvre
 
 
 def simulate(
     manoeuvre: Manoeuvre,
-    plant: str | Path = PLANTS[0],
+    plant: Block | None = None,
     control: bool = True,
     parameters: Mapping[str, float] | None = None,
     step_size: float = 1e-3,
@@ -20,27 +23,34 @@ def simulate(
     seed: int = 1,
     folder: Path = BUILD,
     build: str | None = None,
+    *,
+    controller: Block | None = None,
+    motor: Block | None = None,
+    can: Block | None = None,
+    mapping: Mapping[str, str] | None = None,
 ) -> np.ndarray:
     """Drives the closed loop through a manoeuvre.
 
     Args:
-        plant: name of a plant of the project, or path of an FMU with the same interface.
+        plant, controller, motor, can: name of a block of the project, or path of an FMU; see
+            `harness.cosimulation.system.loop`.
         control: whether the damping control is enabled.
         parameters: `instance.variable` -> value, beside the start and the seeds that this sets.
         step_size: communication step in s.
         seed: of all noise and jitter.
         folder: of the built FMUs.
         build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
+        mapping: names of the loop -> names of an FMU, see `harness.cosimulation.mapping`.
 
     Returns:
-        Structured array, see `harness.cosimulation.master.run`.
+        Structured array, see `harness.cosimulation.master.Loop.run`.
 
     Raises:
-        WiringError: the plant or a parameter does not fit.
+        WiringError: a block or a parameter does not fit.
         SimulationError: an FMU refused a call.
     """
     return run(
-        loop(plant, folder, build),
+        loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping),
         duration=manoeuvre.duration,
         step_size=step_size,
         inputs=signals(manoeuvre, control),
@@ -52,14 +62,14 @@ def simulate(
 
 def signals(manoeuvre: Manoeuvre, control: bool = True) -> dict[str, Source]:
     """What the loop is given from outside during a manoeuvre."""
-    return {
-        "controller.T_driver": manoeuvre.T_driver,
-        "controller.enable": control,
-        "plant.T_brake": manoeuvre.T_brake,
-        "plant.slope": manoeuvre.slope,
-    }
+    return {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
 
 
 def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:
     """Parameters with which the loop starts a manoeuvre."""
-    return {"plant.v_0": manoeuvre.v_0, "plant.T_0": manoeuvre.T_0, "motor.seed": seed, "can.seed": seed}
+    return {port.name: _value(port, manoeuvre, seed=seed) for port in PARAMETERS}
+
+
+def _value(port: Port, manoeuvre: Manoeuvre, **settings: Any) -> Any:
+    """The setting of that name, or what the manoeuvre has under it."""
+    return settings[port.variable] if port.variable in settings else getattr(manoeuvre, port.variable)

@@ -17,8 +17,10 @@ from models.block.declaration import Boolean, Integer, Real, variables
 from models.block.runner import runner
 from models.block.types import Block
 
-from ..cosimulation.master import Scheme, Source, run
+from ..cosimulation.row import Source
+from ..cosimulation.runs import run
 from ..cosimulation.system import NATIVE, System, loop
+from ..cosimulation.wires import Scheme
 from ..manoeuvres.catalogue import KMH
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..simulate import signals, start

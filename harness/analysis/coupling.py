@@ -12,8 +12,9 @@ import numpy as np
 
 from models.controller.supervision import T_S
 
-from ..cosimulation.master import Scheme, run
+from ..cosimulation.runs import run
 from ..cosimulation.system import BUILD, loop
+from ..cosimulation.wires import Scheme
 from ..manoeuvres.catalogue import KMH
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from ..cosimulation.master import Scheme
+from ..cosimulation.wires import Scheme
 from ..reports.markdown import markdown_table
 from .coupling import SIGNALS, Comparison
 

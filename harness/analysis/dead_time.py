@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cosimulation.master import Scheme
 from ..cosimulation.system import BUILD
+from ..cosimulation.wires import Scheme
 from ..manoeuvres.signals import Signal
 from .coupling import NOISELESS, T_S, cosimulated, reference, short
 

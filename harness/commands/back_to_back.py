@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from itertools import product, repeat
+from itertools import product
 
 from ..cosimulation.system import BUILDS, PLANTS
 from ..manoeuvres.catalogue import MANOEUVRES
@@ -42,15 +42,14 @@ def run(args: argparse.Namespace) -> int:
     from ..analysis.back_to_back import compare_block, compare_loop, random_inputs
     from ..analysis.back_to_back_page import LoopRow, page
     from ..reports.files import write_text
-    from ..workers import workers
+    from ..many import run_many
 
     random = {
         name: compare_block(name, random_inputs(fmu.block, RANDOM_STEPS), args.fmus) for name, fmu in FMUS.items()
     }
-    plants, names = zip(*product(PLANTS, MANOEUVRES), strict=True)
-    with workers() as pool:
-        found = pool.map(compare_loop, plants, [MANOEUVRES[name] for name in names], repeat(args.fmus))
-        loops = [LoopRow(*row) for row in zip(plants, names, found, strict=True)]
+    cases = list(product(PLANTS, MANOEUVRES))
+    found = run_many(lambda case: compare_loop(case[0], MANOEUVRES[case[1]], args.fmus), cases)
+    loops = [LoopRow(plant, name, blocks) for (plant, name), blocks in zip(cases, found, strict=True)]
     path = args.output / "back_to_back.md"
     write_text(page(random, RANDOM_STEPS, loops), path)
     largest = max(max(d) for row in (random, *(row.blocks for row in loops)) for d in row.values())

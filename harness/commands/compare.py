@@ -49,25 +49,14 @@ def run(args: argparse.Namespace) -> int:
     plants = list(dict.fromkeys(args.plant or PLANTS))
     builds = {plant: built(plant, args.fmus, args.build) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from rich.console import Console
-    from rich.progress import track
-
     from ..compare import cases, run_cases, write_figures, write_tables
+    from ..progress import hidden
     from ..reports.terminal import print_table, runs_table
 
     out = Printer(args)
     todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
-    console = Console(stderr=True)
-    outcomes = list(
-        track(
-            run_cases(todo, args.seed, args.output / "runs", args.fmus, args.build, dict(args.parameters)),
-            description="simulating",
-            total=len(todo),
-            console=console,
-            transient=True,
-            disable=out.silent or not console.is_terminal,
-        )
-    )
+    with hidden(out.silent):
+        outcomes = run_cases(todo, args.seed, args.output / "runs", args.fmus, args.build, dict(args.parameters))
     if not out.silent:
         print_table(runs_table([outcome.row for outcome in outcomes]))
     out.say(f"{LEGEND}\n")

@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build)
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.master import Scheme
+    from ..cosimulation.wires import Scheme
     from ..reports.csv_file import write_csv
     from ..simulate import simulate
 

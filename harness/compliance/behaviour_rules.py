@@ -9,7 +9,7 @@ from typing import Any
 from fmpy.model_description import ModelVariable
 
 from ..cosimulation.instance import Instance, instantiated
-from ..cosimulation.wiring import Interface, type_of
+from ..cosimulation.interface import Interface, type_of
 
 Outputs = list[tuple[str, Any]]
 
@@ -82,6 +82,7 @@ class Host:
 def hosted(path: Path, name: str = "checked") -> Iterator[Host]:
     with instantiated(name, Interface(path)) as instance:
         yield Host(instance)
+        instance.call("terminate")
 
 
 def default_experiment(path: Path) -> Iterator[str]:

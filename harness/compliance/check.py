@@ -5,7 +5,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..cosimulation.wiring import Interface
+from ..cosimulation.interface import Interface
 from ..errors import DrivelineError
 from . import archive_rules, behaviour_rules, description_rules
 

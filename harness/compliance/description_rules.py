@@ -7,7 +7,7 @@ from pathlib import Path
 from fmpy.model_description import ModelVariable
 from fmpy.validation import validate_fmu
 
-from ..cosimulation.wiring import Interface, unit_of
+from ..cosimulation.interface import Interface, unit_of
 
 
 def standard(path: Path) -> list[str]:

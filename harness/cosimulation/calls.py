@@ -10,11 +10,11 @@ from functools import partial
 from operator import itemgetter
 from typing import Any, NamedTuple
 
-from fmpy.fmi2 import fmi2OK
+from fmpy.model_description import ModelVariable
 
 from .instance import Instance
+from .interface import type_of
 from .row import KINDS, Layout
-from .wiring import type_of
 
 
 class Call(NamedTuple):
@@ -22,71 +22,89 @@ class Call(NamedTuple):
 
     Attributes:
         run: makes the call.
+        changed: takes over the values to be set and tells whether they differ from those before; None: nothing is set.
         arguments: of the FMI function after the component, as ctypes objects.
         sources: of the values that are set, in bytes from the beginning of the row.
+        factors: what the FMU's values are multiplied by to be those of the row; empty: they are the same.
     """
 
     instance: Instance
     function: str
     run: Callable[[], int]
     arguments: tuple[Any, ...]
+    changed: Callable[[], bool] | None = None
     sources: Sequence[int] = ()
+    factors: Sequence[float] = ()
 
 
 def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout: Layout) -> list[Call]:
-    """Calls that set the inputs, one for each type; an unchanged set of values is not sent again.
+    """Calls that set the inputs, one for each type.
 
     Args:
-        sources: input of the instance -> column of the row that feeds it.
+        sources: `instance.variable` of an input -> column of the row that feeds it.
     """
     calls = []
-    for kind, (ctype, code, _) in KINDS.items():
-        fed = [v for v in instance.interface.of_causality("input") if v.name in sources and type_of(v) == kind]
-        if fed:
-            view: Any = memoryview(row).cast(code)
-            offsets = [layout.offset(sources[v.name]) for v in fed]
-            buffer = (ctype * len(fed))()
-            call = _bound(instance, f"fmi2Set{kind}", *_values([v.valueReference for v in fed], buffer))
-            send = _sender(call.run, view, [offset // view.itemsize for offset in offsets], buffer)
-            calls.append(call._replace(run=send, sources=offsets))
+    fed = [v for v in instance.interface.of_causality("input") if f"{instance.name}.{v.name}" in sources]
+    for kind, variables in _by_type(fed):
+        offsets = [layout.offset(sources[f"{instance.name}.{v.name}"]) for v in variables]
+        buffer = (KINDS[kind].ctype * len(variables))()
+        call = _access(instance, f"fmi2Set{kind}", variables, buffer)
+        changed = _change(memoryview(row).cast(KINDS[kind].code), offsets, buffer, call.factors)
+        calls.append(call._replace(changed=changed, sources=offsets))
     return calls
 
 
-def _sender(set_values: Callable[[], int], view: Any, places: Sequence[int], buffer: Any) -> Callable[[], int]:
+def _change(view: Any, offsets: Sequence[int], buffer: Any, factors: Sequence[float]) -> Callable[[], bool]:
+    places = [offset // view.itemsize for offset in offsets]
     pick = itemgetter(*places) if len(places) > 1 else lambda view: (view[places[0]],)
-    sent = None
 
-    def send() -> int:
-        nonlocal sent
+    def changed() -> bool:
         values = pick(view)
-        if values == sent:
-            return fmi2OK
-        sent = values
+        if factors:
+            values = tuple(value / factor for value, factor in zip(values, factors, strict=True))
+        if values == tuple(buffer):
+            return False
         buffer[:] = values
-        return set_values()
+        return True
 
-    return send
+    return changed
 
 
 def receives(instance: Instance, row: bytearray, layout: Layout) -> list[Call]:
     """Calls that read the outputs into the row, one for each type."""
     calls = []
-    for kind, (ctype, _, _) in KINDS.items():
-        outputs = [v for v in instance.interface.of_causality("output") if type_of(v) == kind]
-        if outputs:
-            first = layout.offset(f"{instance.name}.{outputs[0].name}")
-            place = (ctype * len(outputs)).from_buffer(row, first)
-            calls.append(_bound(instance, f"fmi2Get{kind}", *_values([v.valueReference for v in outputs], place)))
+    for kind, variables in _by_type(instance.interface.of_causality("output")):
+        first = layout.offset(f"{instance.name}.{variables[0].name}")
+        place = (KINDS[kind].ctype * len(variables)).from_buffer(row, first)
+        call = _access(instance, f"fmi2Get{kind}", variables, place)
+        calls.append(call._replace(run=_converting(call.run, place, call.factors)) if call.factors else call)
     return calls
 
 
-def _values(references: Sequence[int], place: Any) -> tuple[Any, ...]:
-    return (c_uint * len(references))(*references), c_size_t(len(references)), place
+def _converting(get_values: Callable[[], int], place: Any, factors: Sequence[float]) -> Callable[[], int]:
+    def get() -> int:
+        status = get_values()
+        place[:] = [value * factor for value, factor in zip(place, factors, strict=True)]
+        return status
+
+    return get
 
 
-def advance(instance: Instance, row: bytearray, step_size: float) -> Call:
-    """The call that makes one communication step from the time in the row."""
-    return _bound(instance, "fmi2DoStep", c_double.from_buffer(row), c_double(step_size), c_int(1))
+def advance(instance: Instance, row: bytearray, step_size: c_double) -> Call:
+    """The call that makes one communication step from the time in the row, of the size in s at that moment."""
+    return _bound(instance, "fmi2DoStep", c_double.from_buffer(row), step_size, c_int(1))
+
+
+def _by_type(variables: Sequence[ModelVariable]) -> list[tuple[str, list[ModelVariable]]]:
+    alike = [(kind, [v for v in variables if type_of(v) == kind]) for kind in KINDS]
+    return [(kind, group) for kind, group in alike if group]
+
+
+def _access(instance: Instance, function: str, variables: Sequence[ModelVariable], place: Any) -> Call:
+    references = (c_uint * len(variables))(*(v.valueReference for v in variables))
+    factors = [instance.interface.factors.get(v.name, 1.0) for v in variables]
+    call = _bound(instance, function, references, c_size_t(len(variables)), place)
+    return call._replace(factors=factors) if any(factor != 1.0 for factor in factors) else call
 
 
 def _bound(instance: Instance, function: str, *arguments: Any) -> Call:

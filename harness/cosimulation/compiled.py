@@ -9,8 +9,10 @@ from ctypes import CDLL, Structure, addressof, byref, c_char, c_double, c_int32,
 from importlib.util import find_spec
 from typing import Any
 
+import numpy as np
+
 from .calls import Call
-from .steps import Memory, Refusal
+from .steps import Refusal
 
 
 def _library() -> CDLL | None:
@@ -32,49 +34,48 @@ class CompiledCall(Structure):
         ("count", c_size_t),
         ("values", c_void_p),
         ("sources", c_void_p),
+        ("factors", c_void_p),
         ("real", c_int32),
-        ("step_size", c_double),
+        ("step_size", c_void_p),
     )
 
 
 class CompiledSteps:
     """The same as `harness.cosimulation.steps.interpreted`; only where there is a LIBRARY."""
 
-    def __init__(self, calls: Sequence[Call], memory: Memory) -> None:
+    def __init__(self, calls: Sequence[Call], row: bytearray, known: int) -> None:
         assert LIBRARY is not None
         self._make_steps = LIBRARY.make_steps
         self._make_steps.restype = c_size_t
         self._calls = calls
-        # the records hold bare addresses: of these, and of what the calls and the memory keep
+        # the records hold bare addresses: of these, and of what the calls keep
         self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
-        self._memory = memory
-        row = (c_char * len(memory.row)).from_buffer(memory.row)
-        self._arguments = (
-            (CompiledCall * len(calls))(*map(_record, calls, self._sources)),
+        self._factors = [(c_double * len(call.factors))(*call.factors) for call in calls]
+        self._loop = (
+            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors)),
             c_size_t(len(calls)),
-            row,
-            c_void_p(memory.table.ctypes.data),
+            (c_char * len(row)).from_buffer(row),
             c_size_t(len(row)),
-            c_size_t(memory.known),
+            c_size_t(known),
         )
 
-    def __call__(self, numbers: range) -> Refusal | None:
+    def __call__(self, table: np.ndarray, numbers: range) -> Refusal | None:
         refused, status = c_size_t(), c_int32()
-        step = self._make_steps(
-            *self._arguments, c_size_t(numbers.start), c_size_t(numbers.stop), byref(refused), byref(status)
-        )
+        place, first, last = c_void_p(table.ctypes.data), c_size_t(numbers.start), c_size_t(numbers.stop)
+        step = self._make_steps(*self._loop, place, first, last, byref(refused), byref(status))
         return None if step == numbers.stop else Refusal(self._calls[refused.value], status.value, step)
 
 
-def _record(call: Call, sources: Any) -> CompiledCall:
+def _record(call: Call, sources: Any, factors: Any) -> CompiledCall:
     record = CompiledCall(component=call.instance.component)
     function = cast(call.instance.slave.dll[call.function], c_void_p)
     if call.function == "fmi2DoStep":
-        record.do_step, record.step_size = function, call.arguments[1]
+        record.do_step, record.step_size = function, addressof(call.arguments[1])
         return record
     references, count, values = call.arguments
     record.access, record.count = function, count
     record.references, record.values = addressof(references), addressof(values)
     record.real = values._type_ is c_double
     record.sources = addressof(sources) if call.sources else None
+    record.factors = addressof(factors) if call.factors else None
     return record

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from ctypes import byref, c_void_p
 from itertools import count
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, cast
 
@@ -17,14 +18,18 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
     fmi2Fatal,
+    fmi2OK,
     fmi2Warning,
 )
 from fmpy.logging import addLoggerProxy
 
 from ..errors import SimulationError, WiringError
-from .wiring import Interface, type_of
+from .interface import Interface, type_of
 
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
+
+NOT_NEEDED = ("sources/", "documentation/")
+"""Folders of an FMU that only people and compilers read."""
 
 MESSAGES_KEPT = 20
 _logs: dict[int, deque[tuple[int, str]]] = {}
@@ -78,6 +83,18 @@ class Instance:
         except FMICallException as error:
             raise self.failure(error.function, error.status) from error
 
+    def reset(self) -> None:
+        """Brings it back to where it was after instantiation.
+
+        Raises:
+            SimulationError: it cannot; it is of no more use then.
+        """
+        if self.status >= fmi2Fatal:
+            raise SimulationError(f"{self.name} ({self.interface.path.name}) has ended with fatal; load it anew")
+        self.call("reset")
+        self.status = fmi2OK
+        self._log.clear()
+
     def function(self, name: str) -> Callable[..., int]:
         """The bare function of the shared library: its arguments must be ctypes objects."""
         return self.slave.dll[name]
@@ -107,10 +124,12 @@ class Instance:
         for name, value in values.items():
             variable = self.interface.variables[name]
             kind = type_of(variable)
-            self.call(f"set{kind}", [variable.valueReference], [_converted(self.name, name, kind, value)])
+            value = _typed(self.name, name, kind, value)
+            factor = self.interface.factors.get(name, 1.0)
+            self.call(f"set{kind}", [variable.valueReference], [value if factor == 1.0 else value / factor])
 
 
-def _converted(instance: str, name: str, kind: str, value: float) -> float:
+def _typed(instance: str, name: str, kind: str, value: float) -> float:
     whole = {"Real": False, "Integer": True, "Boolean": True}
     if kind not in whole:
         raise WiringError(f"{instance}.{name} is a {kind}; only numbers and truth values can be set")
@@ -122,21 +141,22 @@ def _converted(instance: str, name: str, kind: str, value: float) -> float:
 
 
 @contextmanager
-def instantiated(name: str, interface: Interface) -> Iterator[Instance]:
-    """The FMU as an instance of that name, terminated and freed at the end; its unpacked files vanish.
+def instantiated(name: str, interface: Interface, folder: Path | None = None) -> Iterator[Instance]:
+    """The FMU as an instance of that name, freed at the end; its unpacked files vanish.
+
+    Args:
+        folder: in which it is unpacked; None: that for temporary files.
 
     Raises:
         SimulationError: it cannot be loaded or instantiated.
     """
     key = next(_keys)
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
-    with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
+    with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as unpacked:
         try:
-            instance = _instantiate(name, interface, folder, key)
+            instance = _instantiate(name, interface, unpacked, key)
             try:
                 yield instance
-                if instance.status <= fmi2Warning:
-                    instance.call("terminate")
             finally:
                 # FMI forbids every further call after fmi2Fatal, fmi2FreeInstance too
                 if instance.status < fmi2Fatal:
@@ -149,7 +169,7 @@ def _instantiate(name: str, interface: Interface, folder: str, key: int) -> Inst
     path = interface.path
     if not folder.isascii():
         raise SimulationError(f"{path.name} cannot be unpacked to {folder}: FMUs need a plain ASCII folder")
-    fmpy.extract(str(path), unzipdir=folder)
+    fmpy.extract(str(path), unzipdir=folder, include=lambda name: not name.startswith(NOT_NEEDED))
     platforms = fmpy.supported_platforms(folder)
     if fmpy.platform not in platforms:
         has = ", ".join(platforms) or "none"

@@ -5,208 +5,179 @@ comes later gets what those before it put out at the end of the step. Jacobi giv
 outputs of the beginning of the step. What each does to the loop's dead time is in the documentation.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import logging
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from enum import Enum
-from math import floor, isfinite
+from ctypes import c_double
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from fmpy.fmi2 import fmi2Warning
-from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SimulationError, WiringError
 from ..progress import chunks
-from .calls import Call, advance, receives, sends
+from .calls import Call
 from .compiled import LIBRARY, CompiledSteps
 from .instance import Instance, instantiated
-from .row import Layout
-from .steps import Memory, Steps, interpreted
+from .row import Source, instants, sampled
+from .steps import MakeSteps, interpreted
 from .system import System
-from .wiring import Interface, check_interfaces
+from .wires import Scheme, Wires, wired
+from .wiring import Fit, fit, require, unknown
 
-Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
-"""An input from outside: a constant, a sample for each instant, or a function of the instants."""
-
-
-class Scheme(Enum):
-    """When an output reaches the inputs it feeds."""
-
-    GAUSS_SEIDEL = "gauss-seidel"
-    JACOBI = "jacobi"
-
-
-def run(
-    system: System,
-    duration: float,
-    step_size: float = 1e-3,
-    inputs: Mapping[str, Source] | None = None,
-    parameters: Mapping[str, float] | None = None,
-    scheme: Scheme = Scheme.GAUSS_SEIDEL,
-    label: str = "simulating",
-) -> np.ndarray:
-    """Runs a system of FMUs.
-
-    Args:
-        duration: in s; the run ends with the last whole step.
-        step_size: communication step in s.
-        inputs: `instance.variable` -> signal, held over each communication step.
-        parameters: `instance.variable` -> value.
-        label: of the progress display.
-
-    Returns:
-        Structured array with the rows of the instants k * step_size, k = 0, 1, ..., and the columns
-        `time`, each input (held from that instant on) and each output `instance.variable` (as the
-        FMU gives it at the end of the step).
-
-    Raises:
-        WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
-        SimulationError: an FMU refused a call.
-    """
-    with prepared(system, duration, step_size, inputs or {}, parameters or {}) as loop:
-        loop.run(scheme, label)
-        return loop.results
+LOG = logging.getLogger(__name__)
 
 
 @contextmanager
-def prepared(
+def loaded(
     system: System,
-    duration: float,
-    step_size: float,
-    inputs: Mapping[str, Source],
-    parameters: Mapping[str, float],
+    inputs: Iterable[str] = (),
+    parameters: Iterable[str] = (),
+    folder: Path | None = None,
+    make_steps: MakeSteps = CompiledSteps if LIBRARY else interpreted,
 ) -> Iterator["Loop"]:
-    """The loop before its first step; arguments and errors as for `run`. Afterwards all FMUs are gone."""
-    time = instants(duration, step_size)
-    interfaces = {name: Interface(path) for name, path in system.instances.items()}
-    check_interfaces(system, interfaces, inputs, parameters)
-    layout = Layout(interfaces, list(inputs))
-    table = np.zeros(len(time), layout.dtype)
-    table["time"] = time
-    for name, source in inputs.items():
-        table[name] = _sampled(name, source, time)
-    with ExitStack() as stack:
-        instances = [stack.enter_context(instantiated(*item)) for item in interfaces.items()]
-        loop = Loop(system, instances, layout, table, step_size)
-        loop.initialize(parameters)
-        yield loop
+    """The FMUs of a system, loaded and wired, for any number of runs. Afterwards they are gone.
 
-
-def instants(duration: float, step_size: float) -> NDArray[np.float64]:
-    """k * step_size for k = 0, 1, ... up to the duration, in s.
+    Args:
+        inputs, parameters: `instance.variable` of those that the runs will give, if they are known, so that
+            all that is wrong is named at once.
+        folder: in which the FMUs are unpacked; None: that for temporary files.
+        make_steps: CompiledSteps or interpreted; the results are the same.
 
     Raises:
-        WiringError: there is not one step to make.
+        WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
+        SimulationError: an FMU cannot be loaded.
     """
-    if not (isfinite(duration) and isfinite(step_size) and 0.0 < step_size <= duration):
-        raise WiringError(
-            f"a step of {step_size:g} s in a run of {duration:g} s: steps must be longer than 0 s and "
-            "not longer than the run"
-        )
-    return np.arange(floor(duration / step_size + 1e-6) + 1, dtype=np.float64) * step_size
-
-
-def _sampled(name: str, source: Source, time: NDArray[np.float64]) -> NDArray[np.generic]:
-    samples = np.asarray(source(time) if callable(source) else source)
-    if samples.shape not in ((), time.shape):
-        raise WiringError(f"{name} has {samples.shape} samples; the run has {len(time)} instants")
-    return samples
+    fitted = fit(system, inputs, parameters)
+    for name in fitted.absent:
+        LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
+    with ExitStack() as stack:
+        instances = [stack.enter_context(instantiated(*item, folder)) for item in fitted.interfaces.items()]
+        yield Loop(fitted, instances, make_steps)
 
 
 class Loop:
-    """Instances, the row of memory that connects them, and the table that the rows go to."""
+    """Loaded FMUs that run together, from the beginning each time."""
 
-    def __init__(
+    def __init__(self, fitted: Fit, instances: Sequence[Instance], make_steps: MakeSteps) -> None:
+        self._fitted = fitted
+        self._instances = instances
+        self._make_steps = make_steps
+        self._step_size = c_double()
+        self._wires: dict[tuple[str, ...], Wires] = {}
+        self._is_new = True
+
+    def reset(self) -> None:
+        """Brings all FMUs back to where they were when they had been loaded.
+
+        Raises:
+            SimulationError: one cannot; the loop is of no more use then.
+        """
+        if not self._is_new:
+            for instance in self._instances:
+                instance.reset()
+        self._is_new = True
+
+    def run(
         self,
-        system: System,
-        instances: Sequence[Instance],
-        layout: Layout,
-        table: np.ndarray,
-        step_size: float,
-    ) -> None:
-        self.instances = instances
-        self.table = table
-        self.columns = layout.results
-        self.known = layout.known
-        self.row = bytearray(layout.dtype.itemsize)
-        self.step_size = step_size
-        self.rounds = len(system.connections) + 2
-        sources = {target: source for source, target in system.connections}
-        given = (name for name in layout.dtype.names or () if layout.offset(name) < layout.known)
-        sources |= {name: name for name in given}
-        self.sends = [sends(i, _of(i.name, sources), self.row, layout) for i in instances]
-        self.steps = [[advance(i, self.row, step_size)] for i in instances]
-        self.receives = [receives(i, self.row, layout) for i in instances]
+        duration: float,
+        step_size: float = 1e-3,
+        inputs: Mapping[str, Source] | None = None,
+        parameters: Mapping[str, float] | None = None,
+        scheme: Scheme = Scheme.GAUSS_SEIDEL,
+        label: str = "simulating",
+    ) -> np.ndarray:
+        """Runs the FMUs from reset on, whatever the run before has done and however it has ended.
 
-    @property
-    def results(self) -> np.ndarray:
-        """The table with truth values as such."""
-        return self.table.astype(self.columns)
+        Args:
+            duration: in s; the run ends with the last whole step.
+            step_size: communication step in s.
+            inputs: `instance.variable` -> signal, held over each communication step.
+            parameters: `instance.variable` -> value.
+            label: of the progress display.
 
-    def initialize(self, parameters: Mapping[str, float]) -> None:
-        """Brings all instances from instantiation to the first step, with consistent outputs.
+        Returns:
+            Structured array with the rows of the instants k * step_size, k = 0, 1, ..., and the columns
+            `time`, each input (held from that instant on) and each output `instance.variable` (as the
+            FMU gives it at the end of the step).
+
+        Raises:
+            WiringError: inputs or parameters do not fit the FMUs.
+            SimulationError: an FMU refused a call.
+        """
+        time = instants(duration, step_size)
+        require(unknown(self._fitted, inputs or (), parameters or ()))
+        samples = self._present({name: sampled(name, source, time) for name, source in (inputs or {}).items()})
+        wires = self._wired(tuple(samples))
+        table = wires.layout.table(time, samples)
+        self.reset()
+        self._is_new = False
+        self._step_size.value = step_size
+        self._initialize(wires, table, self._present(parameters or {}))
+        for chunk in chunks(len(table) - 1, label):
+            refusal = wires.steps[scheme](table, chunk)
+            if refusal:
+                _check(refusal.call, refusal.status, f"at {time[refusal.step]:g} s")
+        for instance in self._instances:
+            instance.call("terminate")
+        return wires.layout.results(table)
+
+    def _present(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """What is given without what the FMUs do not have.
+
+        Raises:
+            WiringError: that is more than they do without it.
+        """
+        present = dict(given)
+        for name in self._fitted.absent.keys() & given.keys():
+            only, value = self._fitted.absent[name], present.pop(name)
+            if only is not None and np.any(value != only):
+                file = self._fitted.file(name)
+                raise WiringError(f"{name}: {file} does not have it and runs as if it were always {only:g}")
+        return present
+
+    def _wired(self, inputs: tuple[str, ...]) -> Wires:
+        """The calls for runs that give these inputs, bound when they are given for the first time."""
+        if inputs not in self._wires:
+            connections = self._fitted.system.connections
+            self._wires[inputs] = wired(self._instances, connections, inputs, self._step_size, self._make_steps)
+        return self._wires[inputs]
+
+    def _initialize(self, wires: Wires, table: np.ndarray, parameters: Mapping[str, float]) -> None:
+        """Brings all instances from instantiation to the first step, with consistent outputs in the first row.
 
         Raises:
             SimulationError: an FMU refuses, or the outputs do not settle: an algebraic loop.
         """
-        stop = float(self.table["time"][-1])
-        for instance in self.instances:
-            instance.set_parameters(_of(instance.name, parameters))
+        stop = float(table["time"][-1])
+        for instance in self._instances:
+            prefix = f"{instance.name}."
+            own = {name.removeprefix(prefix): parameters[name] for name in parameters if name.startswith(prefix)}
+            instance.set_parameters(own)
             instance.call("setupExperiment", startTime=0.0, stopTime=stop)
-        for instance in self.instances:
+        for instance in self._instances:
             instance.call("enterInitializationMode")
-        self._propagate()
-        for instance in self.instances:
+        self._propagate(wires, table)
+        for instance in self._instances:
             instance.call("exitInitializationMode")
 
-    def _propagate(self) -> None:
+    def _propagate(self, wires: Wires, table: np.ndarray) -> None:
         """Outputs to inputs until nothing changes; each round settles at least one connection."""
-        data = self.table.view(np.uint8).data
-        self.row[: self.known] = data[: self.known]
-        calls = _flat(step for pair in zip(self.sends, self.receives, strict=True) for step in pair)
+        data, row, known = table.view(np.uint8).data, wires.row, wires.layout.known
+        row[:] = bytes(len(row))
+        row[:known] = data[:known]
         before = None
-        for _ in range(self.rounds):
-            for call in calls:
+        for _ in range(len(self._fitted.system.connections) + 2):
+            for call in wires.hand_over:
+                if call.changed:
+                    call.changed()
                 _check(call, call.run(), "at the start")
-            if self.row == before:
-                data[: len(self.row)] = self.row
+            if row == before:
+                data[: len(row)] = row
                 return
-            before = bytes(self.row)
+            before = bytes(row)
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
-
-    def run(
-        self,
-        scheme: Scheme,
-        label: str,
-        make: Callable[[Sequence[Call], Memory], Steps] = CompiledSteps if LIBRARY else interpreted,
-    ) -> None:
-        """Makes all steps and fills the table.
-
-        Args:
-            make: CompiledSteps or interpreted; the results are the same.
-
-        Raises:
-            SimulationError: an FMU refused a call.
-        """
-        phases = (self.sends, self.steps, self.receives)
-        if scheme is Scheme.GAUSS_SEIDEL:
-            calls = _flat(phase for instance in zip(*phases, strict=True) for phase in instance)
-        else:
-            calls = _flat(instance for phase in phases for instance in phase)
-        steps = make(calls, Memory(self.row, self.known, self.table))
-        for chunk in chunks(len(self.table) - 1, label):
-            refusal = steps(chunk)
-            if refusal:
-                _check(refusal.call, refusal.status, f"at {self.table['time'][refusal.step]:g} s")
-
-
-def _flat(groups) -> list[Call]:
-    return [call for group in groups for call in group]
-
-
-def _of(instance: str, values: Mapping[str, object]) -> dict:
-    """The entries of `instance.variable` that belong to an instance, by variable."""
-    prefix = f"{instance}."
-    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
 
 
 def _check(call: Call, status: int, when: str) -> None:

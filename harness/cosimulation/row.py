@@ -4,14 +4,47 @@ A row begins with what is known in advance (time and the inputs from outside), t
 of each instance, type by type, so that one FMI call reads all of a type straight into their place.
 """
 
-from collections.abc import Mapping, Sequence
-from ctypes import c_double, c_int
+import sys
+from collections.abc import Callable, Collection, Mapping
+from ctypes import c_double, c_int, sizeof
+from math import floor, isfinite
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from fmpy.model_description import ModelVariable
+from numpy.typing import ArrayLike, NDArray
 
-from .wiring import Interface, type_of
+from ..errors import WiringError
+from .interface import Interface, type_of
+
+Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
+"""An input from outside: a constant, a sample for each instant, or a function of the instants."""
+
+
+def instants(duration: float, step_size: float) -> NDArray[np.float64]:
+    """k * step_size for k = 0, 1, ... up to the duration, in s.
+
+    Raises:
+        WiringError: there is not one step to make.
+    """
+    if not (isfinite(duration) and isfinite(step_size) and 0.0 < step_size <= duration):
+        raise WiringError(
+            f"a step of {step_size:g} s in a run of {duration:g} s: steps must be longer than 0 s and "
+            "not longer than the run"
+        )
+    return np.arange(floor(duration / step_size + 1e-6) + 1, dtype=np.float64) * step_size
+
+
+def sampled(name: str, source: Source, time: NDArray[np.float64]) -> NDArray[np.generic]:
+    """The samples of an input at the instants, or the one value that it has at all of them.
+
+    Raises:
+        WiringError: there are more or fewer samples than instants.
+    """
+    samples = np.asarray(source(time) if callable(source) else source)
+    if samples.shape not in ((), time.shape):
+        raise WiringError(f"{name} has {samples.shape} samples; the run has {len(time)} instants")
+    return samples
 
 
 class Kind(NamedTuple):
@@ -20,31 +53,27 @@ class Kind(NamedTuple):
     Attributes:
         ctype: in the calls.
         code: of the ctype, as in `struct` and numpy.
-        column: dtype of the results.
     """
 
     ctype: Any
     code: Literal["d", "i"]
-    column: type
 
 
-KINDS = {
-    "Real": Kind(c_double, "d", np.float64),
-    "Integer": Kind(c_int, "i", np.int32),
-    "Boolean": Kind(c_int, "i", np.bool_),
-}
+KINDS = {"Real": Kind(c_double, "d"), "Integer": Kind(c_int, "i"), "Boolean": Kind(c_int, "i")}
+
+TRUTH_BYTE = 0 if sys.byteorder == "little" else sizeof(c_int) - 1
+"""Which byte of a Boolean, a whole number that is 0 or 1, is the truth value."""
 
 
 class Layout:
     """The columns of a run.
 
     Attributes:
-        dtype: of a row, all booleans as whole numbers.
-        results: dtype of the results.
+        dtype: of a row, all Booleans as whole numbers.
         known: number of bytes at the beginning of a row that are known in advance.
     """
 
-    def __init__(self, interfaces: Mapping[str, Interface], inputs: Sequence[str]) -> None:
+    def __init__(self, interfaces: Mapping[str, Interface], inputs: Collection[str]) -> None:
         given = {name: type_of(_variable(name, interfaces)) for name in inputs}
         types = {"time": "Real"} | dict(sorted(given.items(), key=lambda item: list(KINDS).index(item[1])))
         first_output = len(types)
@@ -56,14 +85,32 @@ class Layout:
         names = list(types)
         formats = [KINDS[kind].code for kind in types.values()]
         self.dtype = np.dtype({"names": names, "formats": formats}, align=True)
-        fields = self.dtype.fields or {}
-        self._offsets = {str(name): int(field[1]) for name, field in fields.items()}
-        self.results = np.dtype([(name, KINDS[kind].column) for name, kind in types.items()])
-        self.known = self.offset(names[first_output]) if names[first_output:] else self.dtype.itemsize
+        offsets = [int(field[1]) for field in (self.dtype.fields or {}).values()]
+        self._offsets = dict(zip(names, offsets, strict=True))
+        self.known = offsets[first_output] if names[first_output:] else self.dtype.itemsize
+        self._truths = [name for name, kind in types.items() if kind == "Boolean"]
+        for place in map(names.index, self._truths):
+            formats[place], offsets[place] = "?", offsets[place] + TRUTH_BYTE
+        self._results = np.dtype(
+            {"names": names, "formats": formats, "offsets": offsets, "itemsize": self.dtype.itemsize}
+        )
 
     def offset(self, name: str) -> int:
         """First byte of a column in a row."""
         return self._offsets[name]
+
+    def table(self, time: NDArray[np.float64], inputs: Mapping[str, NDArray[np.generic]]) -> np.ndarray:
+        """A row for each instant, with what is known in advance; zeros for the rest."""
+        table = np.zeros(len(time), self.dtype)
+        for name, samples in {"time": time, **inputs}.items():
+            table[name] = samples
+        return table
+
+    def results(self, table: np.ndarray) -> np.ndarray:
+        """The same memory with the Booleans as such."""
+        for name in self._truths:
+            table[name] = table[name] != 0
+        return table.view(self._results)
 
 
 def _variable(name: str, interfaces: Mapping[str, Interface]) -> ModelVariable:

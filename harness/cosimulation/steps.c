@@ -22,8 +22,9 @@ typedef struct {
     size_t count;
     void *values;             /* that are set or got */
     const uint32_t *sources;  /* of what is set: bytes from the beginning of the row; null: nothing is set */
+    const double *factors;    /* the FMU's values times these are those of the row; null: they are the same */
     int32_t real;             /* the values are double, else int32_t */
-    double step_size;
+    const double *step_size;
 } Call;
 
 /* Whether the values of the row that feed the inputs have changed; then they are taken over. */
@@ -35,6 +36,9 @@ static int changed(const Call *call, const unsigned char *row)
         if (call->real) {
             double value;
             memcpy(&value, source, sizeof value);
+            if (call->factors) {
+                value /= call->factors[i];
+            }
             double *sent = (double *)call->values + i;
             different |= !(value == *sent);
             *sent = value;
@@ -49,23 +53,36 @@ static int changed(const Call *call, const unsigned char *row)
     return different;
 }
 
+/* The values that were got, in the units of the loop. */
+static void convert(const Call *call)
+{
+    double *values = call->values;
+    for (size_t i = 0; i < call->count; i++) {
+        values[i] *= call->factors[i];
+    }
+}
+
 static int32_t made(const Call *call, const unsigned char *row)
 {
     if (call->do_step) {
         double time;
         memcpy(&time, row, sizeof time);
-        return call->do_step(call->component, time, call->step_size, 1);
+        return call->do_step(call->component, time, *call->step_size, 1);
     }
     if (call->sources && !changed(call, row)) {
         return FMI2_OK;
     }
-    return call->access(call->component, call->references, call->count, call->values);
+    int32_t status = call->access(call->component, call->references, call->count, call->values);
+    if (call->factors && !call->sources) {
+        convert(call);
+    }
+    return status;
 }
 
 /* Makes the steps that begin with the rows first ... last - 1 of the table, and fills the rows after them.
  * Returns the number of the step that was not finished, or last; then refused and status tell the call. */
-EXPORT size_t make_steps(const Call *calls, size_t number, unsigned char *row, unsigned char *table, size_t size,
-                         size_t known, size_t first, size_t last, size_t *refused, int32_t *status)
+EXPORT size_t make_steps(const Call *calls, size_t number, unsigned char *row, size_t size, size_t known,
+                         unsigned char *table, size_t first, size_t last, size_t *refused, int32_t *status)
 {
     for (size_t k = first; k < last; k++) {
         unsigned char *now = table + k * size;

@@ -17,38 +17,32 @@ class Refusal(NamedTuple):
     step: int
 
 
-class Memory(NamedTuple):
-    """What the calls of a loop work on.
+Steps = Callable[[np.ndarray, range], Refusal | None]
+"""Makes the steps of these numbers, or those up to a refusal, and fills the rows of a table of all instants."""
 
-    Attributes:
-        row: the instant at work.
-        known: number of bytes at its beginning that come from the table; the others go there.
-        table: all instants.
-    """
-
-    row: bytearray
-    known: int
-    table: np.ndarray
+MakeSteps = Callable[[Sequence[Call], bytearray, int], Steps]
+"""Binds the calls of a step, the row of bytes that they work on, and how many bytes at its beginning are known
+in advance: they come from the table, the others go there."""
 
 
-Steps = Callable[[range], Refusal | None]
-"""Makes the steps of that numbers, or those up to a refusal."""
+def interpreted(calls: Sequence[Call], row: bytearray, known: int) -> Steps:
+    """The steps, each of which is these calls in this order; an unchanged set of values is not set again."""
+    pairs = [(call.changed, call.run) for call in calls]
+    size, now = len(row), memoryview(row)
+    computed = now[known:]
 
-
-def interpreted(calls: Sequence[Call], memory: Memory) -> Steps:
-    """The steps, each of which is these calls in this order."""
-    runs = [call.run for call in calls]
-    data, row, known = memory.table.view(np.uint8).data, memoryview(memory.row), memory.known
-    size, computed = len(row), row[memory.known :]
-
-    def steps(numbers: range) -> Refusal | None:
+    def steps(table: np.ndarray, numbers: range) -> Refusal | None:
+        data = table.view(np.uint8).data
         for k in numbers:
             start = k * size
-            row[:known] = data[start : start + known]
-            for run in runs:
+            now[:known] = data[start : start + known]
+            for pair in pairs:
+                changed, run = pair
+                if changed and not changed():
+                    continue
                 status = run()
                 if status > fmi2Warning:
-                    return Refusal(calls[runs.index(run)], status, k)
+                    return Refusal(calls[pairs.index(pair)], status, k)
             data[start + size + known : start + size + size] = computed
         return None
 

@@ -1,7 +1,7 @@
 """The loop as data: which FMUs there are, what is connected, and what a run gives and wants to see."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,21 +21,40 @@ BUILDS = ("python", NATIVE)
 BUILD_HELP = "native FMUs or those that run Python (default: native where all FMUs of the loop have that build)"
 """Of the option --build."""
 
-PLANTS = ("TwoMassDriveline", "ValidationVehicle")
+# of all orders this one comes nearest to the loop as one system: see docs/coupling.md
+PLACES = {
+    "motor": ("MotorTorqueLoop",),
+    "controller": ("DampingController",),
+    "can": ("WheelSpeedCan",),
+    "plant": ("TwoMassDriveline", "ValidationVehicle"),
+}
+"""The places of the loop in the order in which Gauss-Seidel steps them, and the project's FMUs for each, the
+first by default."""
+
+PLANTS = PLACES["plant"]
+
+Block = str | Path
+"""What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""
 
 
 class Connection(NamedTuple):
-    """An output feeds an input; both are written `instance.variable`."""
+    """An output feeds an input, both written `instance.variable`, in a unit (None: that of the output)."""
 
     source: str
     target: str
+    unit: str | None = None
 
 
-class Signal(NamedTuple):
-    """A variable that a run needs, `instance.variable`, and its unit (None: not a Real)."""
+class Port(NamedTuple):
+    """A variable `instance.variable` that a run gives or reads, and its unit (None: not a Real)."""
 
     name: str
     unit: str | None
+
+    @property
+    def variable(self) -> str:
+        """Its name without the instance."""
+        return self.name.partition(".")[2]
 
 
 @dataclass(frozen=True)
@@ -48,98 +67,152 @@ class System:
         inputs: what is fed from outside.
         parameters: what every run sets.
         outputs: what is evaluated after the run; other outputs are recorded too.
+        mapping: `instance.variable` of the loop -> variable of the FMU, see `harness.cosimulation.mapping`.
+        optional: inputs and parameters that an FMU may lack, and the value that it then stands for (None: any).
     """
 
     instances: Mapping[str, Path]
     connections: tuple[Connection, ...] = ()
-    inputs: tuple[Signal, ...] = ()
-    parameters: tuple[Signal, ...] = ()
-    outputs: tuple[Signal, ...] = ()
+    inputs: tuple[Port, ...] = ()
+    parameters: tuple[Port, ...] = ()
+    outputs: tuple[Port, ...] = ()
+    mapping: Mapping[str, str] = field(default_factory=dict)
+    optional: Mapping[str, float | None] = field(default_factory=dict)
+
+    @property
+    def ports(self) -> dict[str, list[Port]]:
+        """All that the FMUs must have, by causality."""
+        return {
+            "input": [*self.inputs, *(Port(connection.target, connection.unit) for connection in self.connections)],
+            "parameter": [*self.parameters],
+            "output": [*self.outputs, *(Port(connection.source, connection.unit) for connection in self.connections)],
+        }
+
+    def without(self, names: Collection[str]) -> "System":
+        """The system without the inputs and parameters of these names, and what feeds them."""
+        return replace(
+            self,
+            connections=tuple(connection for connection in self.connections if connection.target not in names),
+            inputs=tuple(port for port in self.inputs if port.name not in names),
+            parameters=tuple(port for port in self.parameters if port.name not in names),
+        )
 
 
 CONNECTIONS = (
-    Connection("controller.T_ref", "motor.T_ref"),
-    Connection("motor.T_mot", "plant.T_mot"),
-    Connection("plant.omega_1", "motor.omega_1"),
-    Connection("plant.omega_wheel_L", "can.omega_wheel_L"),
-    Connection("plant.omega_wheel_R", "can.omega_wheel_R"),
-    Connection("motor.omega_1_meas", "controller.omega_1_meas"),
-    Connection("motor.T_mot_est", "controller.T_mot_est"),
-    Connection("can.omega_2_can", "controller.omega_2_can"),
+    Connection("controller.T_ref", "motor.T_ref", "N.m"),
+    Connection("motor.T_mot", "plant.T_mot", "N.m"),
+    Connection("plant.omega_1", "motor.omega_1", "rad/s"),
+    Connection("plant.omega_wheel_L", "can.omega_wheel_L", "rad/s"),
+    Connection("plant.omega_wheel_R", "can.omega_wheel_R", "rad/s"),
+    Connection("motor.omega_1_meas", "controller.omega_1_meas", "rad/s"),
+    Connection("motor.T_mot_est", "controller.T_mot_est", "N.m"),
+    Connection("can.omega_2_can", "controller.omega_2_can", "rad/s"),
     Connection("can.valid", "controller.valid"),
     Connection("can.counter", "controller.counter"),
 )
 
 INPUTS = (
-    Signal("controller.T_driver", "N.m"),
-    Signal("controller.enable", None),
-    Signal("plant.T_brake", "N.m"),
-    Signal("plant.slope", "rad"),
+    Port("controller.T_driver", "N.m"),
+    Port("controller.enable", None),
+    Port("plant.T_brake", "N.m"),
+    Port("plant.slope", "rad"),
 )
 
 PARAMETERS = (
-    Signal("plant.v_0", "m/s"),
-    Signal("plant.T_0", "N.m"),
-    Signal("motor.seed", None),
-    Signal("can.seed", None),
+    Port("plant.v_0", "m/s"),
+    Port("plant.T_0", "N.m"),
+    Port("motor.seed", None),
+    Port("can.seed", None),
 )
 
 OUTPUTS = (
-    Signal("plant.omega_2", "rad/s"),
-    Signal("plant.T_gear", "N.m"),
-    Signal("plant.v", "m/s"),
-    Signal("plant.a_body", "m/s2"),
+    Port("controller.T_ref", "N.m"),
+    Port("plant.omega_1", "rad/s"),
+    Port("plant.omega_2", "rad/s"),
+    Port("plant.T_gear", "N.m"),
+    Port("plant.v", "m/s"),
+    Port("plant.a_body", "m/s2"),
 )
 
+OPTIONAL: Mapping[str, float | None] = {
+    "controller.enable": True,
+    "controller.T_mot_est": None,
+    "controller.omega_2_can": None,
+    "controller.valid": None,
+    "controller.counter": None,
+    "motor.seed": None,
+    "can.seed": None,
+}
+"""A controller need not use every measurement, and without `enable` it is always on; not every sensor has noise."""
 
-def loop(plant: str | Path = PLANTS[0], folder: Path = BUILD, build: str | None = None) -> System:
-    """The closed loop: controller, motor, the given plant and the wheel speeds over CAN.
+
+def loop(
+    plant: Block | None = None,
+    folder: Path = BUILD,
+    build: str | None = None,
+    *,
+    controller: Block | None = None,
+    motor: Block | None = None,
+    can: Block | None = None,
+    mapping: Mapping[str, str] | None = None,
+) -> System:
+    """The closed loop: controller, motor, plant and the wheel speeds over CAN.
 
     Args:
-        plant: one of PLANTS, or the path of an FMU with the same interface.
+        plant, controller, motor, can: one of PLACES, or the path of an FMU; None: the first of PLACES.
         folder: of the built FMUs.
         build: one of BUILDS; None: see `chosen_build`.
+        mapping: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in the place of the plant,
+            see `harness.cosimulation.mapping`.
 
     Raises:
-        WiringError: there is no such plant or build.
+        WiringError: there is no such block or build.
     """
+    blocks = {"plant": plant, "controller": controller, "motor": motor, "can": can}
     return System(
-        instances=_files(plant, folder, build or chosen_build(plant, folder)),
+        instances=_files(blocks, folder, build or _chosen_build(blocks, folder)),
         connections=CONNECTIONS,
         inputs=INPUTS,
         parameters=PARAMETERS,
         outputs=OUTPUTS,
+        mapping=dict(mapping or {}),
+        optional=OPTIONAL,
     )
 
 
-def chosen_build(plant: str | Path = PLANTS[0], folder: Path = BUILD) -> str:
+def chosen_build(
+    plant: Block | None = None,
+    folder: Path = BUILD,
+    *,
+    controller: Block | None = None,
+    motor: Block | None = None,
+    can: Block | None = None,
+) -> str:
     """The build that runs if none is asked for: native where all FMUs of the loop have that build.
 
     Raises:
-        WiringError: there is no such plant.
+        WiringError: there is no such block.
     """
-    native = _files(plant, folder, NATIVE)
+    return _chosen_build({"plant": plant, "controller": controller, "motor": motor, "can": can}, folder)
+
+
+def _chosen_build(blocks: Mapping[str, Block | None], folder: Path) -> str:
+    native = _files(blocks, folder, NATIVE)
     return NATIVE if all(path.is_file() for path in native.values()) else "python"
 
 
-def _files(plant: str | Path, folder: Path, build: str) -> dict[str, Path]:
+def _files(blocks: Mapping[str, Block | None], folder: Path, build: str) -> dict[str, Path]:
     if build not in BUILDS:
         raise WiringError(f"unknown build {build}; {nearest(build, BUILDS)}")
     if build == NATIVE:
         folder = folder / NATIVE
-    # of all orders this one comes nearest to the loop as one system: see docs/coupling.md
-    return {
-        "motor": folder / "MotorTorqueLoop.fmu",
-        "controller": folder / "DampingController.fmu",
-        "can": folder / "WheelSpeedCan.fmu",
-        "plant": _plant_file(plant, folder),
-    }
+    return {place: _file(place, blocks[place] or names[0], names, folder) for place, names in PLACES.items()}
 
 
-def _plant_file(plant: str | Path, folder: Path) -> Path:
-    if plant in PLANTS:
-        return folder / f"{plant}.fmu"
-    path = Path(plant)
+def _file(place: str, block: Block, names: Iterable[str], folder: Path) -> Path:
+    if str(block) in names:
+        return folder / f"{block}.fmu"
+    path = Path(block)
     if path.suffix == ".fmu":
         return path
-    raise WiringError(f"unknown plant {plant}; {nearest(str(plant), PLANTS)} (or give the path of a .fmu file)")
+    raise WiringError(f"unknown {place} {block}; {nearest(str(block), names)} (or give the path of a .fmu file)")

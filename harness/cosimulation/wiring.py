@@ -1,128 +1,111 @@
 """Whether FMUs fit together: names, causality, types and units, checked before anything runs."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
-from zipfile import BadZipFile
+from typing import NamedTuple
 
-from fmpy import read_model_description
-from fmpy.model_description import ModelDescription, ModelVariable
+from fmpy.model_description import ModelVariable
 
 from ..errors import WiringError
 from ..names import nearest
-from .system import Connection, Signal, System
+from . import mapping
+from .interface import Interface, type_of, unit_of
+from .system import Connection, Port, System
 
 
-class Interface:
-    """What an FMU shows to the outside.
+class Fit(NamedTuple):
+    """A system whose FMUs fit together.
 
     Attributes:
-        path: of the FMU.
-        description: as fmpy read it.
-        identifier: of the binary.
-        variables: by name, in the order of the description.
+        system: without what is absent.
+        interfaces: of the instances by their names, mapped.
+        absent: optional inputs and parameters that the FMUs do not have, and what they then stand for.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Reads the model description.
+    system: System
+    interfaces: Mapping[str, Interface]
+    absent: Mapping[str, float | None]
 
-        Raises:
-            WiringError: the file is no FMI 2.0 Co-Simulation FMU.
-        """
-        self.path = path
-        self.description = _read(path)
-        assert self.description.coSimulation is not None
-        self.identifier = str(self.description.coSimulation.modelIdentifier)
-        self.variables: dict[str, ModelVariable] = {v.name: v for v in self.description.modelVariables}
-
-    def of_causality(self, causality: str) -> list[ModelVariable]:
-        return [v for v in self.variables.values() if v.causality == causality]
+    def file(self, name: str) -> str:
+        """Of the FMU that a variable `instance.variable` belongs to."""
+        return self.interfaces[name.partition(".")[0]].path.name
 
 
-def _read(path: Path) -> ModelDescription:
-    if not path.is_file():
-        raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
-    try:
-        description = read_model_description(str(path), validate=False)
-    except (BadZipFile, KeyError) as error:
-        raise WiringError(f"{path} is not an FMU: {error}") from error
-    except Exception as error:  # fmpy raises bare exceptions
-        raise WiringError(f"the model description of {path} cannot be read: {error}") from error
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise WiringError(f"{path} is of FMI {description.fmiVersion}; only FMI 2.0 Co-Simulation runs here")
-    return description
-
-
-def unit_of(variable: ModelVariable) -> str | None:
-    """Unit of a variable, its own or that of its declared type."""
-    if variable.unit is None and variable.declaredType is not None:
-        return variable.declaredType.unit
-    return variable.unit
-
-
-def type_of(variable: ModelVariable) -> str:
-    """FMI type of a variable; an enumeration travels as an Integer."""
-    return "Integer" if variable.type == "Enumeration" else str(variable.type)
-
-
-def check_interfaces(
-    system: System, interfaces: Mapping[str, Interface], inputs: Iterable[str], parameters: Iterable[str]
-) -> None:
-    """Checks that the FMUs of a system have everything that its wiring and a run ask of them.
+def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = ()) -> Fit:
+    """Reads the FMUs of a system, maps their variables and checks that they fit.
 
     Args:
-        interfaces: of the instances, by their names.
-        inputs, parameters: `instance.variable` of all that the run gives.
+        inputs, parameters: `instance.variable` of all that a run gives.
 
     Raises:
         WiringError: lists everything that is missing, misnamed or of another type or unit.
     """
-    problems = list(_problems(system, interfaces, inputs, parameters))
-    if problems:
-        raise WiringError("\n".join(dict.fromkeys(problems)))
+    interfaces = {name: Interface(path) for name, path in system.instances.items()}
+    problems = list(mapping.apply(system, interfaces))
+    absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
+    found = Fit(system.without(absent), interfaces, absent)
+    require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
+    return found
 
 
-def _problems(
-    system: System, interfaces: Mapping[str, Interface], inputs: Iterable[str], parameters: Iterable[str]
-) -> Iterator[str]:
-    for connection in system.connections:
-        yield from _check_connection(connection, interfaces)
-    wanted = {"input": system.inputs, "parameter": system.parameters, "output": system.outputs}
-    for causality, signals in wanted.items():
-        for signal in signals:
-            yield from _check_signal(signal, causality, interfaces)
+def require(problems: Iterable[str]) -> None:
+    """Raises a WiringError that lists the problems if there are any, each once."""
+    if lines := list(dict.fromkeys(problems)):
+        raise WiringError("\n".join(lines))
+
+
+def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> Iterator[str]:
+    """What is wrong with the names that a run gives; those that are absent are not looked at."""
+    targets = {connection.target for connection in fitted.system.connections}
     for causality, names in {"input": inputs, "parameter": parameters}.items():
         for name in names:
-            yield from find(name, causality, interfaces)[1]
-    fed = [connection.target for connection in system.connections] + list(inputs)
-    for name in {name for name in fed if fed.count(name) > 1}:
-        yield f"{name} is fed more than once"
+            if name not in fitted.absent:
+                yield from find(name, causality, fitted.interfaces)[1]
+            if name in targets:
+                yield f"{name} is fed more than once"
 
 
-def _check_connection(connection: Connection, interfaces: Mapping[str, Interface]) -> Iterator[str]:
-    source, missing_source = find(connection.source, "output", interfaces)
-    target, missing_target = find(connection.target, "input", interfaces)
-    yield from missing_source + missing_target
-    if source is None or target is None:
-        return
-    if type_of(source) != type_of(target):
-        yield (
-            f"{connection.source} is {type_of(source)}, but {connection.target}, which it feeds, is {type_of(target)}"
-        )
-    elif unit_of(source) != unit_of(target):
-        yield (
-            f"{connection.source} is in {_unit(source)}, but {connection.target}, which it feeds, is in {_unit(target)}"
-        )
+def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:
+    instance, _, variable = name.partition(".")
+    interface = interfaces[instance]
+    return variable not in interface.variables and variable not in interface.refused
 
 
-def _check_signal(signal: Signal, causality: str, interfaces: Mapping[str, Interface]) -> Iterator[str]:
-    variable, missing = find(signal.name, causality, interfaces)
+def _misfits(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    for causality, ports in system.ports.items():
+        for port in ports:
+            yield from _check_port(port, causality, interfaces)
+    targets = [connection.target for connection in system.connections]
+    yield from (f"{name} is fed more than once" for name in targets if targets.count(name) > 1)
+    for connection in system.connections:
+        if connection.unit is None:
+            yield from _check_ends(connection, interfaces)
+
+
+def _check_port(port: Port, causality: str, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    variable, missing = find(port.name, causality, interfaces)
     yield from missing
-    if variable is None or signal.unit is None:
+    if variable is None or port.unit is None:
         return
     if variable.type != "Real":
-        yield f"{signal.name} is {type_of(variable)}; it must be Real, in {signal.unit}"
-    elif unit_of(variable) != signal.unit:
-        yield f"{signal.name} is in {_unit(variable)}; it must be in {signal.unit}"
+        yield f"{port.name} is {type_of(variable)}; it must be Real, in {port.unit}"
+    elif unit_of(variable) != port.unit:
+        yield (
+            f"{port.name} is in {_unit(variable)}; it must be in {port.unit} "
+            f"(--map {port.name}={variable.name} converts it)"
+        )
+
+
+def _check_ends(connection: Connection, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    """The ends must be alike if nothing is declared about them."""
+    source, _ = find(connection.source, "output", interfaces)
+    target, _ = find(connection.target, "input", interfaces)
+    if source is None or target is None:
+        return
+    feeds = f"but {connection.target}, which it feeds, is"
+    if type_of(source) != type_of(target):
+        yield f"{connection.source} is {type_of(source)}, {feeds} {type_of(target)}"
+    elif unit_of(source) != unit_of(target):
+        yield f"{connection.source} is in {_unit(source)}, {feeds} in {_unit(target)}"
 
 
 def _unit(variable: ModelVariable) -> str:
@@ -137,6 +120,8 @@ def find(name: str, causality: str, interfaces: Mapping[str, Interface]) -> tupl
     interface = interfaces[instance]
     file = interface.path.name
     variable = interface.variables.get(variable_name)
+    if variable_name in interface.refused:
+        return None, []
     if variable is None:
         known = [v.name for v in interface.of_causality(causality)]
         return None, [f"{name}: {file} has no {causality} {variable_name}; {nearest(variable_name, known)}"]

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 from scipy.ndimage import gaussian_filter1d
 
-from ..cosimulation.wiring import Interface
+from ..cosimulation.interface import Interface
 from ..errors import WiringError
 from .manoeuvre import Manoeuvre
 from .recording import Recording

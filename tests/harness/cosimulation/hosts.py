@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from harness.cosimulation.master import Scheme, run
+from harness.cosimulation.runs import run
 from harness.cosimulation.system import loop
+from harness.cosimulation.wires import Scheme
 
 STEPS, STEP_SIZE = 400, 1e-3
 T_DRIVER = 60.0

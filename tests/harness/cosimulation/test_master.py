@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 
-from harness.cosimulation.master import Scheme, instants, run
+from harness.cosimulation.row import instants
+from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, System
+from harness.cosimulation.wires import Scheme
 from harness.errors import SimulationError, WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.reports.csv_file import write_csv
@@ -157,7 +159,7 @@ def test_csv_gives_the_same_numbers_back(relay, tmp_path):
 def test_the_host_ends_with_exit_code_0(relay):
     script = (
         "from pathlib import Path\n"
-        "from harness.cosimulation.master import run\n"
+        "from harness.cosimulation.runs import run\n"
         "from harness.cosimulation.system import System\n"
         f"system = System({{'a': Path({str(relay)!r}), 'b': Path({str(relay)!r})}}, ())\n"
         "for _ in range(3): run(system, 0.01)\n"

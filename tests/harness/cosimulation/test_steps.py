@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.master import Scheme, prepared
+from harness.cosimulation.master import loaded
 from harness.cosimulation.steps import interpreted
 from harness.cosimulation.system import PLANTS, Connection, System, loop
+from harness.cosimulation.wires import Scheme
 from harness.errors import SimulationError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
@@ -21,13 +22,12 @@ TIPIN = replace(MANOEUVRES["tipin15"], duration=1.0)
 
 
 def both(system, duration, inputs, parameters=None, scheme=Scheme.GAUSS_SEIDEL, step_size=1e-3):
-    """The tables of the two kinds of steps, as bytes."""
-    tables = []
+    """The results of the two kinds of steps, as bytes."""
+    results = []
     for make in (CompiledSteps, interpreted):
-        with prepared(system, duration, step_size, inputs, parameters or {}) as run:
-            run.run(scheme, "test", make)
-            tables.append(run.table.tobytes())
-    return tables
+        with loaded(system, make_steps=make) as running:
+            results.append(running.run(duration, step_size, inputs, parameters, scheme).tobytes())
+    return results
 
 
 @pytest.fixture(scope="module")
@@ -64,21 +64,14 @@ def test_a_refusal_names_instance_function_time_and_reason(relay, make):
     """In the middle of the steps that are made at once, and of the calls of a step."""
     system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"),))
     message = r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.303 s with fatal: .*u = 303.0 is beyond the limit of 302.5"
-    with (
-        prepared(system, 0.5, 1e-3, {"a.u": lambda t: 1e3 * t}, {"b.limit": 302.5}) as run,
-        pytest.raises(SimulationError, match=message),
-    ):
-        run.run(Scheme.GAUSS_SEIDEL, "test", make)
+    with loaded(system, make_steps=make) as running, pytest.raises(SimulationError, match=message):
+        running.run(0.5, inputs={"a.u": lambda t: 1e3 * t}, parameters={"b.limit": 302.5})
 
 
 @pytest.mark.parametrize("make", [CompiledSteps, interpreted])
 def test_a_native_fmu_says_why_it_refuses(native, make):
     system = System({"motor": native / "MotorTorqueLoop.fmu"})
     T_ref = np.where(np.arange(501) < 250, 10.0, np.nan)
-    with (
-        prepared(system, 0.5, 1e-3, {"motor.T_ref": T_ref}, {}) as run,
-        pytest.raises(
-            SimulationError, match=r"^motor \(MotorTorqueLoop\.fmu\) answered fmi2SetReal at 0\.25 s .*T_ref"
-        ),
-    ):
-        run.run(Scheme.GAUSS_SEIDEL, "test", make)
+    message = r"^motor \(MotorTorqueLoop\.fmu\) answered fmi2SetReal at 0\.25 s .*T_ref"
+    with loaded(system, make_steps=make) as running, pytest.raises(SimulationError, match=message):
+        running.run(0.5, inputs={"motor.T_ref": T_ref})

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from harness.cosimulation import instance
-from harness.cosimulation.master import run
+from harness.cosimulation.interface import Interface, unit_of
+from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, System, chosen_build, loop
-from harness.cosimulation.wiring import Interface, unit_of
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
@@ -93,9 +93,9 @@ def in_unit(name, old, new):
 @pytest.mark.parametrize(
     ("name", "old", "new", "complaint"),
     [
-        ("omega_1", "rad/s", "rpm", r"plant\.omega_1 is in rpm, but motor\.omega_1, .* is in rad/s"),
-        ("T_mot", "N.m", "kN.m", r"motor\.T_mot is in N\.m, but plant\.T_mot, .* is in kN\.m"),
-        ("slope", "rad", "deg", r"plant\.slope is in deg; it must be in rad"),
+        ("omega_1", "rad/s", "rpm", r"plant\.omega_1 is in rpm; it must be in rad/s"),
+        ("T_mot", "N.m", "kN.m", r"plant\.T_mot is in kN\.m; it must be in N\.m"),
+        ("slope", "rad", "deg", r"plant\.slope is in deg; it must be in rad \(--map plant\.slope=slope converts it\)"),
         ("T_gear", "N.m", "kN.m", r"plant\.T_gear is in kN\.m; it must be in N\.m"),
         ("v_0", "m/s", "km/h", r"plant\.v_0 is in km/h; it must be in m/s"),
     ],

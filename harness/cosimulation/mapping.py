@@ -1,0 +1,82 @@
+"""What the loop calls a variable, and what the FMU that somebody else wrote calls it.
+
+`plant.T_gear=Shaft.tau` says that plant.T_gear is Shaft.tau of the FMU in the place of the plant. Its values
+are converted into the unit that the loop declares for that name, or into that of the SI where it declares
+none; a variable without a unit is taken to be in it already. Whatever else the FMU calls T_gear is hidden.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from copy import copy
+
+from fmpy.model_description import ModelVariable
+
+from ..errors import WiringError
+from ..names import nearest
+from .interface import Interface, unit_of
+from .system import System
+from .units import SI, factor
+
+
+def parsed(texts: Iterable[str]) -> dict[str, str]:
+    """The mapping of a system from texts such as `plant.T_gear=Shaft.tau`.
+
+    Raises:
+        WiringError: a text is not of that form, or a name of the loop stands for two variables.
+    """
+    mapping: dict[str, str] = {}
+    for text in texts:
+        name, _, theirs = (part.strip() for part in text.partition("="))
+        if not (theirs and all(name.partition("."))):
+            raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau")
+        if mapping.setdefault(name, theirs) != theirs:
+            raise WiringError(f"{name} cannot be both {mapping[name]} and {theirs}")
+    return mapping
+
+
+def apply(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    """Gives the variables of the interfaces the names and units of the loop; yields what does not fit."""
+    names: dict[str, dict[str, str]] = {instance: {} for instance in interfaces}
+    for name, theirs in system.mapping.items():
+        instance, _, ours = name.partition(".")
+        if instance in names:
+            names[instance][ours] = theirs
+        else:
+            yield f"{name}={theirs}: there is no instance {instance}; {nearest(instance, interfaces)}"
+    units = {port.name: port.unit for ports in system.ports.values() for port in ports}
+    for instance, interface in interfaces.items():
+        own = interface.variables
+        hidden = {*names[instance], *names[instance].values()}
+        interface.variables = {name: variable for name, variable in own.items() if name not in hidden}
+        for ours, theirs in names[instance].items():
+            problem = _missing_or_taken(theirs, ours, own, names[instance])
+            if problem is None:
+                interface.variables[ours] = copy(own[theirs])
+                interface.variables[ours].name = ours
+                problem = _convert(interface, ours, units.get(f"{instance}.{ours}", SI))
+            if problem:
+                interface.refused.add(ours)
+                yield f"{instance}.{ours}={theirs}: in {interface.path.name} {theirs} {problem}"
+
+
+def _missing_or_taken(theirs: str, ours: str, own: Mapping[str, ModelVariable], names: Mapping[str, str]) -> str | None:
+    if theirs not in own:
+        return f"does not exist; {nearest(theirs, own)}"
+    others = [other for other, same in names.items() if same == theirs and other != ours]
+    if others and own[theirs].causality != "output":
+        return f"is mapped to {' and '.join(others)} too; only an output can be two things"
+    return None
+
+
+def _convert(interface: Interface, name: str, wanted: str | None) -> str | None:
+    """Lets the values of a variable be converted into the wanted unit, if there is one; says what hinders it."""
+    variable = interface.variables[name]
+    unit = unit_of(variable)
+    if variable.type != "Real" or wanted is None:
+        return None
+    try:
+        if unit is not None:
+            interface.factors[name] = factor(unit, wanted)
+    except ValueError as reason:
+        return str(reason)
+    variable.unit = wanted
+    return None

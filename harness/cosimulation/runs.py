@@ -1,0 +1,99 @@
+"""Runs of systems that are loaded for one run, or once for many."""
+
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import SimulationError
+from .master import Loop, loaded
+from .row import Source
+from .system import System
+from .wires import Scheme
+
+MOST_KEPT = 8
+"""Systems that are kept loaded at a time."""
+
+
+def run(
+    system: System,
+    duration: float,
+    step_size: float = 1e-3,
+    inputs: Mapping[str, Source] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    scheme: Scheme = Scheme.GAUSS_SEIDEL,
+    label: str = "simulating",
+) -> np.ndarray:
+    """Loads a system of FMUs, unless it is kept loaded, and runs it; see `Loop.run` for arguments and results.
+
+    Raises:
+        WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
+        SimulationError: an FMU cannot be loaded, or refused a call.
+    """
+    names = inputs or (), parameters or ()
+    wanted = duration, step_size, inputs, parameters, scheme, label
+    if _kept is not None:
+        return _kept.loop(system, *names).run(*wanted)
+    with loaded(system, *names) as loop:
+        return loop.run(*wanted)
+
+
+@contextmanager
+def kept_loaded(folder: Path | None = None) -> Iterator[None]:
+    """Within it a system that has been run stays loaded for its next run. For one thread alone.
+
+    The results are the same. What was loaded last is kept; an FMU whose file has changed is loaded anew.
+
+    Args:
+        folder: in which the FMUs are unpacked; None: that for temporary files.
+    """
+    global _kept
+    outer, _kept = _kept, KeptLoops(folder)
+    try:
+        yield
+    finally:
+        kept, _kept = _kept, outer
+        kept.close()
+
+
+class KeptLoops:
+    """The loops that ran last."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self._folder = folder
+        self._loops: dict[Hashable, tuple[ExitStack, Loop]] = {}
+
+    def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop:
+        """The loop of a system after reset, or as `loaded` gives it."""
+        key = repr(system), *map(_version, system.instances.values())
+        stack, loop = self._loops.pop(key, (ExitStack(), None))
+        try:
+            if loop is not None:
+                loop.reset()
+        except SimulationError:
+            stack.close()
+            loop = None
+        if loop is None:
+            while len(self._loops) >= MOST_KEPT:
+                self._loops.pop(next(iter(self._loops)))[0].close()
+            loop = stack.enter_context(loaded(system, inputs, parameters, self._folder))
+        self._loops[key] = stack, loop
+        return loop
+
+    def close(self) -> None:
+        """Unloads them all."""
+        with ExitStack() as stack:
+            for loop, _ in self._loops.values():
+                stack.callback(loop.close)
+
+
+_kept: KeptLoops | None = None
+
+
+def _version(path: Path) -> Hashable:
+    """What changes with the content of a file."""
+    if not path.is_file():
+        return None
+    status = path.stat()
+    return path.absolute(), status.st_mtime_ns, status.st_size

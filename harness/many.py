@@ -1,0 +1,115 @@
+"""Many independent runs on all cores, from a script, a notebook or the command line.
+
+def settling(k_d: float) -> float:
+    results = simulate(tipin, "ValidationVehicle", parameters={"controller.k_d": k_d})
+    return evaluate(results, tipin).ts
+
+times = run_many(settling, np.linspace(0.0, 5.0, 1000))
+"""
+
+import atexit
+import gc
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import shorten
+from typing import Any, NoReturn, TypeVar
+
+from .cosimulation.runs import kept_loaded
+from .errors import DrivelineError, SimulationError
+from .progress import progress
+
+Case = TypeVar("Case")
+Answer = TypeVar("Answer")
+
+
+def run_many(
+    function: Callable[[Case], Answer], cases: Iterable[Case], workers: int | None = None, label: str = "simulating"
+) -> list[Answer]:
+    """What a function gives for each of the cases, in their order.
+
+    A system of FMUs that the function runs stays loaded for the next case.
+
+    Args:
+        workers: processes that share the cases; with 1 it is this process. None: one a core.
+        label: of the progress display.
+
+    Raises:
+        Exception: what the function raised first in the order of the cases; its message or a note names the case.
+        SimulationError: a worker crashed.
+    """
+    from loky import cpu_count  # only those who need processes load it
+
+    todo = list(cases)
+    count = min(workers or cpu_count(), len(todo))
+    answers = []
+    with progress(len(todo), label) as done:
+        for answer in _here(function, todo) if count <= 1 else _in_workers(function, todo, count):
+            answers.append(answer)
+            done(len(answers))
+    return answers
+
+
+def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Iterator[Answer]:
+    with kept_loaded():
+        for case in cases:
+            try:
+                answer = function(case)
+            except Exception as error:
+                _raise(error, case)
+            yield answer
+
+
+def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count: int) -> Iterator[Answer]:
+    """New interpreters (FMUs that run Python do not survive a fork); nothing of them is left at the end."""
+    from loky import ProcessPoolExecutor
+    from loky.process_executor import BrokenProcessPool
+
+    with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
+        pool = ProcessPoolExecutor(count, initializer=_begin, initargs=(Path(folder), function))
+        unfinished = True
+        try:
+            futures = [pool.submit(_answer, case) for case in cases]
+            for case, future in zip(cases, futures, strict=True):
+                try:
+                    answer = future.result()
+                except BrokenProcessPool as error:
+                    raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
+                except Exception as error:
+                    _raise(error, case)
+                yield answer
+            unfinished = False
+        finally:
+            pool.shutdown(kill_workers=unfinished)
+
+
+_function: Callable[[Any], Any]
+
+
+def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
+    """In a worker: systems stay loaded as long as it lives, and only the process that waits shows progress."""
+    global _function
+    _function = function
+    sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
+    kept = ExitStack()
+    kept.enter_context(kept_loaded(folder))
+    atexit.register(kept.close)
+    gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
+
+
+def _answer(case: Any) -> Any:
+    return _function(case)
+
+
+def _raise(error: Exception, case: object) -> NoReturn:
+    if isinstance(error, DrivelineError):
+        raise type(error)(f"{_text(case)}: {error}") from error
+    error.add_note(f"in {_text(case)}")
+    raise error
+
+
+def _text(case: object) -> str:
+    return f"case {shorten(str(case), 200, placeholder=' ...')}"
