@@ -1,4 +1,4 @@
-"""Many independent runs on all cores, from a script, a notebook or the command line.
+"""Many independent runs on all cores, from a script, a notebook or the command line:
 
 def settling(k_d: float) -> float:
     results = simulate(tipin, "ValidationVehicle", parameters={"controller.k_d": k_d})
@@ -11,8 +11,8 @@ import atexit
 import gc
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import ExitStack, closing
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import shorten
@@ -45,15 +45,16 @@ def run_many(
 
     todo = list(cases)
     count = min(workers or cpu_count(), len(todo))
+    source = _here(function, todo) if count <= 1 else _in_workers(function, todo, count)
     answers = []
-    with progress(len(todo), label) as done:
-        for answer in _here(function, todo) if count <= 1 else _in_workers(function, todo, count):
+    with closing(source), progress(len(todo), label) as done:
+        for answer in source:
             answers.append(answer)
             done(len(answers))
     return answers
 
 
-def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Iterator[Answer]:
+def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Generator[Answer, None, None]:
     with kept_loaded():
         for case in cases:
             try:
@@ -63,7 +64,7 @@ def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Iterator
             yield answer
 
 
-def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count: int) -> Iterator[Answer]:
+def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count: int) -> Generator[Answer, None, None]:
     """New interpreters (FMUs that run Python do not survive a fork); nothing of them is left at the end."""
     from loky import ProcessPoolExecutor
     from loky.process_executor import BrokenProcessPool

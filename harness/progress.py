@@ -12,13 +12,10 @@ QUIET = 1.0
 _shown = False
 
 
-def chunks(length: int, label: str, size: int = 200) -> Iterator[range]:
-    """range(length) in pieces, shown as progress."""
-    with progress(length, label) as done:
-        for k in range(0, length, size):
-            piece = range(k, min(k + size, length))
-            yield piece
-            done(piece.stop)
+def chunks(length: int, size: int = 200) -> Iterator[range]:
+    """range(length) in pieces between which progress can be shown."""
+    for k in range(0, length, size):
+        yield range(k, min(k + size, length))
 
 
 @contextmanager

@@ -1,8 +1,10 @@
 """Whether an FMU keeps the FMI 2.0 standard for Co-Simulation, and our rules beyond it."""
 
+import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from multiprocessing import get_context
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from ..cosimulation.interface import Interface
@@ -84,22 +86,25 @@ def _attempt(problems: Callable[[Path], Iterable[str]], path: Path) -> list[str]
 def _isolated(problems: Callable[[Path], Iterable[str]], path: Path) -> list[str]:
     context = get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
-    host = context.Process(target=_host, args=(problems, path, sender))
-    host.start()
-    sender.close()
-    try:
-        found = receiver.recv() if receiver.poll(TIME_LIMIT) else [f"no end after {TIME_LIMIT:g} s"]
-    except EOFError:
-        found = []
-    host.join(10.0)
-    if host.is_alive():
-        host.kill()
-        host.join()
+    # of a host that crashes nothing else would remove what it has unpacked
+    with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
+        host = context.Process(target=_host, args=(problems, path, folder, sender))
+        host.start()
+        sender.close()
+        try:
+            found = receiver.recv() if receiver.poll(TIME_LIMIT) else [f"no end after {TIME_LIMIT:g} s"]
+        except EOFError:
+            found = []
+        host.join(10.0)
+        if host.is_alive():
+            host.kill()
+            host.join()
     if host.exitcode:
         found.append(f"its host process ended with exit code {host.exitcode}")
     return found
 
 
-def _host(problems: Callable[[Path], Iterable[str]], path: Path, sender: Any) -> None:
+def _host(problems: Callable[[Path], Iterable[str]], path: Path, folder: str, sender: Any) -> None:
+    tempfile.tempdir = folder
     sender.send(_attempt(problems, path))
     sender.close()

@@ -45,17 +45,24 @@ def apply(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
     units = {port.name: port.unit for ports in system.ports.values() for port in ports}
     for instance, interface in interfaces.items():
         own = interface.variables
-        hidden = {*names[instance], *names[instance].values()}
-        interface.variables = {name: variable for name, variable in own.items() if name not in hidden}
+        interface.variables = dict(_renamed(own, names[instance]))
         for ours, theirs in names[instance].items():
             problem = _missing_or_taken(theirs, ours, own, names[instance])
-            if problem is None:
-                interface.variables[ours] = copy(own[theirs])
-                interface.variables[ours].name = ours
-                problem = _convert(interface, ours, units.get(f"{instance}.{ours}", SI))
+            problem = problem or _convert(interface, ours, units.get(f"{instance}.{ours}", SI))
             if problem:
                 interface.refused.add(ours)
                 yield f"{instance}.{ours}={theirs}: in {interface.path.name} {theirs} {problem}"
+
+
+def _renamed(own: Mapping[str, ModelVariable], names: Mapping[str, str]) -> Iterator[tuple[str, ModelVariable]]:
+    for theirs, variable in own.items():
+        mapped = [ours for ours, same in names.items() if same == theirs]
+        for ours in mapped:
+            renamed = copy(variable)
+            renamed.name = ours
+            yield ours, renamed
+        if not mapped and theirs not in names:
+            yield theirs, variable
 
 
 def _missing_or_taken(theirs: str, ours: str, own: Mapping[str, ModelVariable], names: Mapping[str, str]) -> str | None:

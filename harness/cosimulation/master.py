@@ -16,7 +16,7 @@ import numpy as np
 from fmpy.fmi2 import fmi2Warning
 
 from ..errors import SimulationError, WiringError
-from ..progress import chunks
+from ..progress import chunks, progress
 from .calls import Call
 from .compiled import LIBRARY, CompiledSteps
 from .instance import Instance, instantiated
@@ -115,10 +115,13 @@ class Loop:
         self._is_new = False
         self._step_size.value = step_size
         self._initialize(wires, table, self._present(parameters or {}))
-        for chunk in chunks(len(table) - 1, label):
-            refusal = wires.steps[scheme](table, chunk)
-            if refusal:
-                _check(refusal.call, refusal.status, f"at {time[refusal.step]:g} s")
+        steps = wires.steps[scheme]
+        with progress(len(table) - 1, label) as done:
+            for chunk in chunks(len(table) - 1):
+                refusal = steps(table, chunk)
+                if refusal:
+                    _check(refusal.call, refusal.status, f"at {time[refusal.step]:g} s")
+                done(chunk.stop)
         for instance in self._instances:
             instance.call("terminate")
         return wires.layout.results(table)

@@ -47,7 +47,7 @@ def factor(unit: str, wanted: str) -> float:
 def _registry() -> Any:
     import pint  # takes half a second, which only those who convert should pay
 
-    registry = pint.UnitRegistry()
+    registry = pint.UnitRegistry(on_redefinition="ignore")
     registry.define("radian = [angle] = rad")
     return registry
 

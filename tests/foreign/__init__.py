@@ -1,9 +1,11 @@
 """FMUs that are not ours, and ours after somebody has tampered with them."""
 
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from zipfile import ZipFile
+from zlib import crc32
 
 from pythonfmu.builder import FmuBuilder
 
@@ -11,6 +13,14 @@ DESCRIPTION = "modelDescription.xml"
 
 
 RELAY = Path(__file__).with_name("relay.py")
+CAR = Path(__file__).with_name("car.py")
+
+UNITS = {
+    "T_mot": "N.m", "T_brake": "N.m", "slope": "rad", "v_0": "m/s", "T_0": "N.m", "m": "kg", "omega_1": "rad/s",
+    "omega_2": "rad/s", "omega_wheel_L": "rad/s", "omega_wheel_R": "rad/s", "T_gear": "N.m", "v": "m/s",
+    "a_body": "m/s2",
+}  # fmt: skip
+"""Of the variables of car.py, if nothing else is said."""
 
 
 def build_relay(folder: Path, script: Path = RELAY) -> Path:
@@ -25,6 +35,29 @@ def build_relay(folder: Path, script: Path = RELAY) -> Path:
     finally:
         sys.modules.pop(script.stem, None)
         sys.path[:] = before
+
+
+def build_car(folder: Path, **theirs: tuple[str, str, float]) -> Path:
+    """Builds the FMU of car.py.
+
+    Args:
+        theirs: name in the loop -> its name, its unit ("": none), and the factor of that unit to the SI.
+    """
+    folder.mkdir(exist_ok=True)
+    names = {ours: (name, factor) for ours, (name, _, factor) in theirs.items()}
+    # PythonFMU takes two scripts of one name in a process for the same
+    script = folder / f"car_{crc32(repr(names).encode())}.py"
+    script.write_text(CAR.read_text().replace("NAMES = {}", f"NAMES = {names!r}"))
+    units = {name: unit for name, unit in UNITS.items() if name not in theirs}
+    units |= {name: unit for name, unit, _ in theirs.values()}
+
+    def with_units(xml: str) -> str:
+        for name, unit in units.items():
+            if unit:
+                xml = re.sub(rf'(name="{re.escape(name)}"[^>]*>\s*<Real)', rf'\1 unit="{unit}"', xml)
+        return xml
+
+    return tampered(build_relay(folder, script), folder / "Theirs.fmu", with_units)
 
 
 def tampered(fmu: Path, copy: Path, change: Callable[[str], str], **added: bytes) -> Path:

@@ -1,6 +1,7 @@
 """The compliance checks: nothing to find in our FMUs, every planted fault found."""
 
 import re
+import tempfile
 from itertools import islice
 from zipfile import ZipFile
 
@@ -89,13 +90,18 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_in_the_behaviour_is_found(tmp_path, fault):
+def test_a_fault_in_the_behaviour_is_found_and_leaves_nothing_behind(tmp_path, fault, monkeypatch):
     old, new, finding = FAULTS[fault]
     script = tmp_path / "relay.py"
     text = RELAY.read_text()
     assert old in text
     script.write_text(text.replace(old, new))
-    assert finding in "\n".join(findings(build_relay(tmp_path, script)))
+    relay = build_relay(tmp_path, script)
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    assert finding in "\n".join(findings(relay))
+    assert list(temporary.iterdir()) == []
 
 
 def test_a_binary_that_is_not_there_is_found(tmp_path):

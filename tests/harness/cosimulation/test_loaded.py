@@ -1,0 +1,108 @@
+"""A loop that is loaded once: every run is that of a freshly loaded one, whatever the run before has done."""
+
+import tempfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.cosimulation.master import loaded
+from harness.cosimulation.runs import run
+from harness.cosimulation.system import PLANTS, Connection, System, loop
+from harness.cosimulation.wires import Scheme
+from harness.errors import SimulationError, WiringError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import signals, start
+from tests.foreign import build_relay
+
+TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)
+LAUNCH = replace(MANOEUVRES["launch"], duration=0.3)
+
+
+@pytest.fixture(scope="module")
+def relay(tmp_path_factory):
+    return build_relay(tmp_path_factory.mktemp("relay"))
+
+
+def drive(running, manoeuvre=TIPIN, step_size=1e-3, scheme=Scheme.GAUSS_SEIDEL, **changes):
+    parameters = start(manoeuvre) | {name.replace("__", "."): value for name, value in changes.items()}
+    return running.run(manoeuvre.duration, step_size, signals(manoeuvre), parameters, scheme)
+
+
+@pytest.mark.parametrize("build", ["native", "python"])
+@pytest.mark.parametrize("plant", PLANTS)
+def test_a_further_run_is_that_of_a_fresh_loop(both_built, plant, build):
+    system = loop(plant, both_built, build)
+    with loaded(system) as running:
+        fresh = drive(running)
+        drive(running, LAUNCH, 2e-3, Scheme.JACOBI, plant__phi_B=0.3, motor__seed=7, controller__k_d=0.0)
+        np.testing.assert_array_equal(drive(running), fresh)
+    with loaded(system) as running:
+        other = drive(running, LAUNCH)
+    with loaded(system) as running:
+        drive(running)
+        np.testing.assert_array_equal(drive(running, LAUNCH), other)
+
+
+def test_a_loop_whose_run_was_refused_stays_usable(both_built):
+    system = loop(PLANTS[0], both_built, "native")
+    too_large = replace(TIPIN, slope=lambda t: np.where(t < 0.5, 0.0, 0.6))
+    with loaded(system) as running:
+        fresh = drive(running)
+        with pytest.raises(SimulationError, match=r"phi_B = -1"):
+            drive(running, plant__phi_B=-1.0)
+        np.testing.assert_array_equal(drive(running), fresh)
+        with pytest.raises(SimulationError, match=r"^plant .* at 0\.5 s .*slope = 0\.6"):
+            drive(running, too_large)
+        np.testing.assert_array_equal(drive(running), fresh)
+        with pytest.raises(WiringError, match="no parameter phi_b; did you mean phi_B"):
+            drive(running, plant__phi_b=0.1)
+        with pytest.raises(WiringError, match="steps must be longer than 0 s"):
+            drive(running, step_size=0.0)
+        np.testing.assert_array_equal(drive(running), fresh)
+
+
+def test_inputs_of_the_run_before_are_forgotten(relay):
+    """And those that are the same as before are set again: reset has put them back to their start."""
+    with loaded(System({"a": relay})) as running:
+        for inputs, expected in (({"a.u": 5.0}, 5.0), ({"a.u": 5.0}, 5.0), ({}, 0.0), ({"a.u": 5.0, "a.n": 1}, 5.0)):
+            results = running.run(0.01, inputs=inputs)
+            assert (results["a.y"][1:] == expected).all()
+            assert ("a.u" in (results.dtype.names or ())) == ("a.u" in inputs)
+
+
+def test_each_run_has_its_own_results(relay):
+    with loaded(System({"a": relay})) as running:
+        first = running.run(0.01, inputs={"a.u": 1.0})
+        running.run(0.01, inputs={"a.u": 2.0})
+    assert (first["a.u"] == 1.0).all()
+    assert (first["a.y"][1:] == 1.0).all()
+
+
+def test_a_message_is_about_the_run_that_was_refused(relay):
+    with loaded(System({"a": relay})) as running:
+        with pytest.raises(WiringError, match=r"a\.count = 0\.5: it must be a whole number"):
+            running.run(0.01, parameters={"a.count": 0.5})
+        running.run(0.01)
+        with pytest.raises(SimulationError) as refusal:
+            running.run(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0})
+    assert str(refusal.value).count("is beyond") == 1
+
+
+def test_a_loop_that_has_ended_with_fatal_says_that_it_must_be_loaded_anew(relay):
+    system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"),))
+    with loaded(system) as running:
+        with pytest.raises(SimulationError, match="with fatal"):
+            running.run(0.01, inputs={"a.u": 3.0}, parameters={"b.limit": 2.0})
+        with pytest.raises(SimulationError, match=r"b \(Relay\.fmu\) has ended with fatal; load it anew"):
+            running.run(0.01)
+    assert (run(system, 0.01, inputs={"a.u": 3.0})["b.y"][1:] == 3.0).all()
+
+
+def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with loaded(System({"a": relay, "b": relay})) as running:
+        for _ in range(3):
+            running.run(0.01)
+        assert len(list(tmp_path.iterdir())) == 2
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,74 @@
+"""Progress is for people who wait: on a terminal, after a while, one at a time."""
+
+import io
+from contextlib import redirect_stderr
+
+import pytest
+
+from harness.progress import chunks, progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture(autouse=True)
+def time_does_not_matter(monkeypatch):
+    monkeypatch.setattr("harness.progress.QUIET", -1.0)
+    monkeypatch.setenv("TERM", "xterm")
+
+
+def make(label, steps=2):
+    with progress(steps, label) as done:
+        for step in range(steps):
+            done(step + 1)
+
+
+def test_pieces_cover_everything_once():
+    assert [*map(list, chunks(5, 2))] == [[0, 1], [2, 3], [4]]
+    assert list(chunks(0)) == []
+
+
+def test_a_long_run_is_shown_on_a_terminal():
+    with redirect_stderr(Terminal()) as shown:
+        make("tip-in")
+    assert "tip-in" in shown.getvalue()
+
+
+def test_a_short_run_is_not_shown(monkeypatch):
+    monkeypatch.setattr("harness.progress.QUIET", float("inf"))
+    with redirect_stderr(Terminal()) as shown:
+        make("tip-in")
+    assert shown.getvalue() == ""
+
+
+def test_a_file_gets_no_progress():
+    with redirect_stderr(io.StringIO()) as written:
+        make("tip-in")
+    assert written.getvalue() == ""
+
+
+def test_only_the_outer_one_is_shown():
+    with redirect_stderr(Terminal()) as shown, progress(2, "cases") as done:
+        for number in (1, 2):
+            make("tip-in")
+            done(number)
+    assert "cases" in shown.getvalue()
+    assert "tip-in" not in shown.getvalue()
+    with redirect_stderr(Terminal()) as shown:
+        make("tip-in")
+    assert "tip-in" in shown.getvalue()
+
+
+def test_an_error_ends_the_display():
+    def fail():
+        with progress(2, "first") as done:
+            done(1)
+            raise KeyError
+
+    with redirect_stderr(Terminal()) as shown:
+        with pytest.raises(KeyError) as _kept:
+            fail()
+        make("second")
+    assert "second" in shown.getvalue()
