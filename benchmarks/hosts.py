@@ -26,7 +26,8 @@ from harness.cosimulation.master import loaded
 from harness.cosimulation.steps import MakeSteps, interpreted
 from harness.cosimulation.system import PLANTS, System, loop
 from harness.cosimulation.wires import Scheme
-from harness.manoeuvres.catalogue import Manoeuvre, lines
+from harness.manoeuvres.manoeuvre import Manoeuvre
+from harness.manoeuvres.signals import lines
 from harness.simulate import signals
 
 from . import plain_loop

@@ -49,7 +49,7 @@ def further_runs(plant: str, count: int) -> tuple[list[float], list[float]]:
 
 def tip_in(plant: str, seed: int) -> float:
     """Settling time in s."""
-    return evaluate(simulate(TIPIN, plant, seed=seed), TIPIN).ts
+    return evaluate(simulate(TIPIN, plant, seed=seed), TIPIN).settling_time
 
 
 def many(plant: str, runs: int) -> tuple[float, float]:

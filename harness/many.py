@@ -1,10 +1,13 @@
-"""Many independent runs on all cores, from a script, a notebook or the command line:
+"""Many independent runs on all cores, from a script, a notebook or the command line.
 
+```python
 def settling(k_d: float) -> float:
     results = simulate(tipin, "ValidationVehicle", parameters={"controller.k_d": k_d})
-    return evaluate(results, tipin).ts
+    return evaluate(results, tipin).settling_time
+
 
 times = run_many(settling, np.linspace(0.0, 5.0, 1000))
+```
 """
 
 import atexit

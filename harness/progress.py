@@ -9,7 +9,7 @@ from time import monotonic
 QUIET = 1.0
 """Seconds that a run may take in silence."""
 
-_shown = False
+_hidden = False
 
 
 def chunks(length: int, size: int = 200) -> Iterator[range]:
@@ -24,22 +24,28 @@ def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
 
     Within it nothing else shows progress.
     """
-    global _shown
-    outer, _shown = _shown, True
-    silent, began, update = outer or not _visible(), monotonic(), None
-    with ExitStack() as stack:
+    silent, began, show = _hidden or not _visible(), monotonic(), None
+    with hidden(), ExitStack() as stack:
 
         def done(count: int) -> None:
-            nonlocal update
-            if update is None and not silent and monotonic() - began > QUIET:
-                update = stack.enter_context(_bar(total, label))
-            if update:
-                update(count)
+            nonlocal show
+            if show is None and not silent and monotonic() - began > QUIET:
+                show = stack.enter_context(_bar(total, label))
+            if show:
+                show(count)
 
-        try:
-            yield done
-        finally:
-            _shown = outer
+        yield done
+
+
+@contextmanager
+def hidden(wanted: bool = True) -> Iterator[None]:
+    """Within it nothing shows progress, if that is wanted."""
+    global _hidden
+    outer, _hidden = _hidden, _hidden or wanted
+    try:
+        yield
+    finally:
+        _hidden = outer
 
 
 def _visible() -> bool:

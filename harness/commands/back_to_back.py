@@ -41,8 +41,8 @@ def run(args: argparse.Namespace) -> int:
 
     from ..analysis.back_to_back import compare_block, compare_loop, random_inputs
     from ..analysis.back_to_back_page import LoopRow, page
-    from ..reports.files import write_text
     from ..many import run_many
+    from ..reports.files import write_text
 
     random = {
         name: compare_block(name, random_inputs(fmu.block, RANDOM_STEPS), args.fmus) for name, fmu in FMUS.items()

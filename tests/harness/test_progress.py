@@ -5,7 +5,7 @@ from contextlib import redirect_stderr
 
 import pytest
 
-from harness.progress import chunks, progress
+from harness.progress import chunks, hidden, progress
 
 
 class Terminal(io.StringIO):
@@ -72,3 +72,16 @@ def test_an_error_ends_the_display():
             fail()
         make("second")
     assert "second" in shown.getvalue()
+
+
+def test_what_is_hidden_is_not_shown():
+    with redirect_stderr(Terminal()) as shown:
+        with hidden():
+            make("first")
+        with hidden(False):
+            make("second")
+        with hidden(), hidden(False):
+            make("third")
+    assert "first" not in shown.getvalue()
+    assert "second" in shown.getvalue()
+    assert "third" not in shown.getvalue()
