@@ -44,6 +44,7 @@ bench: $(READY) ## cost per communication step, side by side and in other hosts,
 	$(BIN)/python -m benchmarks.step_cost
 	$(BIN)/python -m benchmarks.start_up
 	$(BIN)/python -m benchmarks.hosts
+	$(BIN)/python -m benchmarks.many_runs
 
 docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build

@@ -1,6 +1,7 @@
 """Every block of the loop can be another one; what it need not have, it may lack."""
 
 import logging
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +14,7 @@ from harness.cosimulation.system import CONNECTIONS, OPTIONAL, PLACES, PLANTS, c
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, simulate, start
+from tests import ROOT
 from tests.foreign import RELAY, build_relay, tampered
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=1.2)
@@ -105,3 +107,17 @@ def test_a_motor_without_noise_has_no_seed(built, tmp_path):
     assert results["motor.T_mot"][-1] > 50.0
     with pytest.raises(WiringError, match="no parameter sed; did you mean seed"):
         simulate(SHORT, folder=built, motor=built / "MotorTorqueLoop.fmu", parameters={"motor.sed": 1})
+
+
+def test_the_page_says_what_each_place_needs():
+    page = (ROOT / "docs" / "simulate.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1:-1] for line in page.splitlines() if line.startswith("| `")]
+    told = {}
+    for place, *cells in rows:
+        for causality, cell in zip(("input", "output", "parameter"), cells, strict=True):
+            needed, _, optional = cell.partition("(")
+            for text, may_lack in ((needed, False), (optional, True)):
+                for name, unit in re.findall(r"`(\w+)` ?([\w./]*)", text):
+                    told[f"{place.strip(' `')}.{name}"] = causality, unit or None, may_lack
+    ports = [(causality, port) for causality, ports in loop().ports.items() for port in ports]
+    assert told == {port.name: (causality, port.unit, port.name in OPTIONAL) for causality, port in ports}
