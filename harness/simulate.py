@@ -8,14 +8,14 @@ import numpy as np
 
 from .cosimulation.row import Source
 from .cosimulation.runs import run
-from .cosimulation.system import BUILD, INPUTS, PARAMETERS, Block, Port, loop
+from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, loop
 from .cosimulation.wires import Scheme
 from .manoeuvres.manoeuvre import Manoeuvre
 
 
 def simulate(
     manoeuvre: Manoeuvre,
-    plant: Block | None = None,
+    plant: NameOrFile | None = None,
     control: bool = True,
     parameters: Mapping[str, float] | None = None,
     step_size: float = 1e-3,
@@ -24,9 +24,9 @@ def simulate(
     folder: Path = BUILD,
     build: str | None = None,
     *,
-    controller: Block | None = None,
-    motor: Block | None = None,
-    can: Block | None = None,
+    controller: NameOrFile | None = None,
+    motor: NameOrFile | None = None,
+    can: NameOrFile | None = None,
     mapping: Mapping[str, str] | None = None,
 ) -> np.ndarray:
     """Drives the closed loop through a manoeuvre.

@@ -81,7 +81,7 @@ def _convert(interface: Interface, name: str, wanted: str | None) -> str | None:
     if variable.type != "Real" or wanted is None:
         return None
     try:
-        if unit is not None:
+        if unit:
             interface.factors[name] = factor(unit, wanted)
     except ValueError as reason:
         return str(reason)

@@ -33,7 +33,7 @@ first by default."""
 
 PLANTS = PLACES["plant"]
 
-Block = str | Path
+NameOrFile = str | Path
 """What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""
 
 
@@ -147,13 +147,13 @@ OPTIONAL: Mapping[str, float | None] = {
 
 
 def loop(
-    plant: Block | None = None,
+    plant: NameOrFile | None = None,
     folder: Path = BUILD,
     build: str | None = None,
     *,
-    controller: Block | None = None,
-    motor: Block | None = None,
-    can: Block | None = None,
+    controller: NameOrFile | None = None,
+    motor: NameOrFile | None = None,
+    can: NameOrFile | None = None,
     mapping: Mapping[str, str] | None = None,
 ) -> System:
     """The closed loop: controller, motor, plant and the wheel speeds over CAN.
@@ -181,12 +181,12 @@ def loop(
 
 
 def chosen_build(
-    plant: Block | None = None,
+    plant: NameOrFile | None = None,
     folder: Path = BUILD,
     *,
-    controller: Block | None = None,
-    motor: Block | None = None,
-    can: Block | None = None,
+    controller: NameOrFile | None = None,
+    motor: NameOrFile | None = None,
+    can: NameOrFile | None = None,
 ) -> str:
     """The build that runs if none is asked for: native where all FMUs of the loop have that build.
 
@@ -196,12 +196,12 @@ def chosen_build(
     return _chosen_build({"plant": plant, "controller": controller, "motor": motor, "can": can}, folder)
 
 
-def _chosen_build(blocks: Mapping[str, Block | None], folder: Path) -> str:
+def _chosen_build(blocks: Mapping[str, NameOrFile | None], folder: Path) -> str:
     native = _files(blocks, folder, NATIVE)
     return NATIVE if all(path.is_file() for path in native.values()) else "python"
 
 
-def _files(blocks: Mapping[str, Block | None], folder: Path, build: str) -> dict[str, Path]:
+def _files(blocks: Mapping[str, NameOrFile | None], folder: Path, build: str) -> dict[str, Path]:
     if build not in BUILDS:
         raise WiringError(f"unknown build {build}; {nearest(build, BUILDS)}")
     if build == NATIVE:
@@ -209,7 +209,7 @@ def _files(blocks: Mapping[str, Block | None], folder: Path, build: str) -> dict
     return {place: _file(place, blocks[place] or names[0], names, folder) for place, names in PLACES.items()}
 
 
-def _file(place: str, block: Block, names: Iterable[str], folder: Path) -> Path:
+def _file(place: str, block: NameOrFile, names: Iterable[str], folder: Path) -> Path:
     if str(block) in names:
         return folder / f"{block}.fmu"
     path = Path(block)

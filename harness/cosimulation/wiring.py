@@ -66,8 +66,8 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
 
 def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:
     instance, _, variable = name.partition(".")
-    interface = interfaces[instance]
-    return variable not in interface.variables and variable not in interface.refused
+    interface = interfaces.get(instance)
+    return interface is not None and variable not in interface.variables.keys() | interface.refused
 
 
 def _misfits(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
