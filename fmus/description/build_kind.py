@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from importlib.metadata import version
 
+from ..protocol import LOG_CATEGORIES, LOG_DISCARD
+
 
 @dataclass(frozen=True)
 class BuildKind:
@@ -25,9 +27,6 @@ class BuildKind:
     source_files: tuple[str, ...] = ()
 
 
-DISCARDED = {"logStatusDiscard": "a step that was refused, and why; nothing has changed"}
-
-
 def python_kind() -> BuildKind:
     """The build with PythonFMU."""
     return BuildKind(
@@ -38,7 +37,7 @@ def python_kind() -> BuildKind:
             "canNotUseMemoryManagementFunctions": "true",
             "providesDirectionalDerivative": "false",
         },
-        log_categories=DISCARDED,
+        log_categories={LOG_DISCARD: LOG_CATEGORIES[LOG_DISCARD]},
         needs="""The model is Python code inside this file, on the
 standard library alone. The host process must be a Python of version 3.11 or later, or have loaded
 libpython with its symbols visible (on Linux: LD_PRELOAD).""",

@@ -4,47 +4,34 @@ from typing import Any
 
 from models.block.types import Block, SampledBlock
 
+from ..symbol import Symbol
 
-class Symbol:
-    """A value that remembers which variables it was computed from.
 
-    It follows the protocol of `models.block.operators`; both values of a `where` count.
-    """
+class Dependent(Symbol):
+    """A value that remembers which variables it was computed from; both values of a `where` count."""
 
     def __init__(self, sources: frozenset[str] = frozenset()) -> None:
         self.sources = sources
 
-    def _joined(self, *others: Any) -> "Symbol":
-        return Symbol(self.sources.union(*(sources(other) for other in others)))
-
-    def __bool__(self) -> bool:
-        raise TypeError("a model function branches on data; it must call `where` of models.block.operators")
-
-    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = _joined
-    __truediv__ = __rtruediv__ = __pow__ = __rpow__ = _joined
-    __mod__ = __rmod__ = _joined
-    __lt__ = __le__ = __gt__ = __ge__ = _joined
-    __eq__ = __ne__ = _joined  # pyright: ignore[reportAssignmentType]
-    where = logical_and = logical_or = logical_not = _joined
-    __neg__ = __pos__ = __abs__ = sin = cos = atan = tanh = sqrt = log = floor = _joined
-    __hash__ = object.__hash__
+    def after(self, operation: str, *operands: Any) -> "Dependent":
+        return Dependent(frozenset().union(*map(sources, operands)))
 
 
 def sources(value: Any) -> frozenset[str]:
     """Names of the variables that a value was computed from; none for a number."""
-    return value.sources if isinstance(value, Symbol) else frozenset()
+    return value.sources if isinstance(value, Dependent) else frozenset()
 
 
 def _symbols(record: type, named: bool) -> Any:
     """A record of symbols, which are their own sources or have none."""
     fields = record._fields  # pyright: ignore[reportAttributeAccessIssue]
-    return record(*(Symbol(frozenset({name}) if named else frozenset()) for name in fields))
+    return record(*(Dependent(frozenset({name}) if named else frozenset()) for name in fields))
 
 
 def _without_sources(value: Any) -> Any:
     """The same state with a symbol without sources in the place of every number."""
     if not isinstance(value, tuple):
-        return Symbol()
+        return Dependent()
     items = [_without_sources(item) for item in value]
     make = getattr(type(value), "_make", tuple)
     return make(items)

@@ -8,18 +8,20 @@ from pathlib import Path
 from models.block.types import ContinuousBlock
 
 from ..archive import guid_of, write_archive
-from ..description.build_kind import DISCARDED, BuildKind
+from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
 from ..fmu import Fmu
+from ..protocol import LOG_CATEGORIES
 from .compiler import host_binaries
+from .shared_header import shared_header
 from .source import block_sources, variables_source
 from .tableau import step_header
 
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 
-FOR_ALL = ("fmi2.c", "messages.c", "state.c", "values.c", "instance.h", "operators.h", "state.h", "variables.h")
+FOR_ALL = ("fmi2.c", "messages.c", "run.c", "state.c", "values.c", "instance.h", "operators.h", "variables.h")
 FOR_CONTINUOUS = ("continuous.c", "integrator.c", "integrator.h")
 FOR_SAMPLED = ("sampled.c",)
 
@@ -58,7 +60,7 @@ def c_sources(fmu: Fmu) -> dict[str, bytes]:
     names = FOR_ALL + (FOR_CONTINUOUS if isinstance(fmu.block, ContinuousBlock) else FOR_SAMPLED)
     sources = {name: (C_FILES / name).read_bytes() for name in names}
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob("fmi2*.h")}
-    generated = block_sources(fmu) | {"variables.c": variables_source(fmu, "")}
+    generated = block_sources(fmu) | {"variables.c": variables_source(fmu, ""), "shared.h": shared_header()}
     if isinstance(fmu.block, ContinuousBlock):
         generated["dop853.h"] = step_header()
     return sources | {name: text.encode() for name, text in generated.items()}
@@ -75,7 +77,7 @@ def native_kind(fmu: Fmu, sources: Mapping[str, bytes]) -> BuildKind:
             "canNotUseMemoryManagementFunctions": "false",
             "providesDirectionalDerivative": "true" if continuous else "false",
         },
-        log_categories={"logStatusError": "a call that was refused, and why; nothing has changed"} | DISCARDED,
+        log_categories=LOG_CATEGORIES,
         needs=NEEDS,
         source_files=tuple(sorted(name for name in sources if name.endswith(".c"))),
         **({"inputs": MOVING} if continuous else {}),

@@ -161,7 +161,8 @@ def _row(variable: Variable) -> str:
     numbers = ", ".join(_number(value) for value in (low, high, start))
     place = f"offsetof(Values, {FIELD[variable.causality]}.{variable.name})"
     kinds = f"{variable.fmi_type.upper()}, {variable.causality.upper()}"
-    return f'    {{"{variable.name}", "{variable.unit}", "{variable.allowed()}", {kinds}, {place}, {numbers}}},'
+    unit = f" {variable.unit}" if variable.unit else ""
+    return f'    {{"{variable.name}", "{unit}", "{variable.allowed()}", {kinds}, {place}, {numbers}}},'
 
 
 def _number(value: Any) -> str:

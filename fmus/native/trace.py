@@ -13,7 +13,7 @@ import casadi
 
 from models.block.types import Block, ContinuousBlock, SampledBlock
 
-from .symbol import Symbol, expression
+from .symbol import CasadiSymbol, expression
 
 
 class Traced(NamedTuple):
@@ -83,7 +83,7 @@ def leaves(value: Any) -> list[Any]:
 def _symbols(name: str, template: Any) -> Any:
     """A symbol in the place of every number."""
     if not isinstance(template, tuple):
-        return Symbol(casadi.SX.sym(name))
+        return CasadiSymbol(casadi.SX.sym(name))
     make = getattr(type(template), "_make", tuple)
     return make([_symbols(name, item) for item in template])
 

@@ -2,39 +2,18 @@
 
 import math
 from collections.abc import Callable
-from enum import IntEnum
 from typing import Any
 
 from models.block.runner import Runner, runner
 
+from .. import protocol
+from ..protocol import Mode
 from . import snapshot
+from .refusal import Refused
 from .repairs import dismiss_guard, fmi_call
-from .values import Refused, Values
+from .values import Values
 
 FMI_DISCARD = 2
-
-TIME_TOLERANCE = 1e-6
-"""In s: how far the host's time may be from the FMU's."""
-
-LONGEST_COMMUNICATION_STEP = 1000.0
-"""In s: a longer communication step is a mistake of the host, and would keep it waiting for ever."""
-
-
-class Mode(IntEnum):
-    """Where an instance is in the sequence of calls."""
-
-    INSTANTIATED = 0
-    INITIALIZATION = 1
-    STEPPING = 2
-    TERMINATED = 3
-
-
-MODE_NAMES = (
-    "before initialization mode",
-    "in initialization mode",
-    "after initialization",
-    "after fmi2Terminate",
-)
 
 SETTABLE = (("input", "parameter"), ("input", "parameter"), ("input",), ())
 """Causalities that can be set in each mode."""
@@ -96,7 +75,12 @@ class BlockSlave:
 
     def _require(self, mode: Mode, function: str) -> None:
         if self.mode != mode:
-            raise Refused(f"{function} is refused {MODE_NAMES[self.mode]}; its place is {MODE_NAMES[mode]}")
+            raise Refused(
+                protocol.WRONG_MODE,
+                function=function,
+                mode=protocol.MODE_NAMES[self.mode],
+                place=protocol.MODE_NAMES[mode],
+            )
 
     def _enter(self, mode: Mode) -> None:
         self.mode = mode
@@ -106,7 +90,7 @@ class BlockSlave:
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         self._require(Mode.INSTANTIATED, "fmi2SetupExperiment")
         if not math.isfinite(start_time):
-            raise Refused(f"startTime = {start_time!r} s is refused; allowed is any finite number")
+            raise Refused(protocol.BAD_START_TIME, time=start_time)
         self.start_time = self.time = start_time
 
     @fmi_call
@@ -131,7 +115,7 @@ class BlockSlave:
         try:
             self._check_step(current_time, step_size)
         except Refused as refusal:
-            self.log(str(refusal), FMI_DISCARD, "logStatusDiscard")
+            self.log(str(refusal), FMI_DISCARD, protocol.LOG_DISCARD)
             return False
         assert self.runner
         before = self.runner.x
@@ -144,16 +128,10 @@ class BlockSlave:
 
     def _check_step(self, current_time: float, step_size: float) -> None:
         self._require(Mode.STEPPING, "fmi2DoStep")
-        if not 0.0 < step_size <= LONGEST_COMMUNICATION_STEP:
-            raise Refused(
-                f"communicationStepSize = {step_size!r} s is refused; "
-                f"allowed is above 0 to {LONGEST_COMMUNICATION_STEP:g} s"
-            )
-        if not abs(current_time - self.time) <= TIME_TOLERANCE:
-            raise Refused(
-                f"currentCommunicationPoint = {current_time!r} s is refused; "
-                f"{self.block.name} has been computed up to {self.time!r} s"
-            )
+        if not 0.0 < step_size <= protocol.LONGEST_COMMUNICATION_STEP:
+            raise Refused(protocol.BAD_STEP_SIZE, size=step_size, longest=protocol.LONGEST_COMMUNICATION_STEP)
+        if not abs(current_time - self.time) <= protocol.TIME_TOLERANCE:
+            raise Refused(protocol.BAD_TIME, time=current_time, model=self.block.name, reached=self.time)
 
     @fmi_call
     def _get_fmu_state(self) -> bytes:
@@ -164,10 +142,7 @@ class BlockSlave:
 
     @fmi_call
     def _set_fmu_state(self, state: bytes) -> None:
-        try:
-            mode, start_time, time, u, p, memory = snapshot.unpack(type(self).__module__, state)
-        except ValueError as error:
-            raise Refused(f"the FMU state is refused: {error}") from error
+        mode, start_time, time, u, p, memory = snapshot.unpack(type(self).__module__, state)
         self.values.restore(u, p)
         self.start_time, self.time, self.runner = start_time, time, None
         if memory:

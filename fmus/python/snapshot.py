@@ -4,6 +4,9 @@ import json
 import zlib
 from typing import Any
 
+from ..protocol import DAMAGED_STATE, FOREIGN_STATE
+from .refusal import Refused
+
 
 def pack(build: str, content: tuple[Any, ...]) -> bytes:
     """The bytes of nested tuples of numbers, for the build of that name.
@@ -18,14 +21,14 @@ def unpack(build: str, state: bytes) -> list[Any]:
     """What `pack` was given, with lists in the place of tuples.
 
     Raises:
-        ValueError: the bytes are damaged, or come from another build.
+        Refused: the bytes are damaged, or come from another build.
     """
     checksum, body = state[:8], state[8:]
     if checksum != b"%08x" % zlib.crc32(body):
-        raise ValueError("its bytes are damaged")
+        raise Refused(DAMAGED_STATE)
     origin, content = json.loads(body)
     if origin != build:
-        raise ValueError(f"it was saved by {origin}, this is {build}")
+        raise Refused(FOREIGN_STATE, origin=origin, build=build)
     return content
 
 

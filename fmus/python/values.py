@@ -4,14 +4,9 @@ from typing import Any
 
 from models.block.types import ContinuousBlock
 
+from .. import protocol
 from ..description.variables import Variable, interface
-
-
-class Refused(Exception):
-    """A call that changes nothing; the text is what the host logs (the binary takes the repr)."""
-
-    def __repr__(self) -> str:
-        return str(self)
+from .refusal import Refused
 
 
 class Values:
@@ -91,21 +86,19 @@ class Values:
         wrong = next(r for r in references if r not in self.of_type[fmi_type])
         last = len(self.variables) - 1
         if not 0 <= wrong <= last:
-            raise Refused(f"value reference {wrong} is unknown; {self.block.name} has 0 to {last}")
+            unsigned = wrong % 2**32  # as the host gave it; the binary makes it signed
+            raise Refused(protocol.UNKNOWN_REFERENCE, reference=unsigned, model=self.block.name, last=last)
         variable = self.variables[wrong]
-        raise Refused(f"{variable.name} is of type {variable.fmi_type}, not {fmi_type}")
+        raise Refused(protocol.WRONG_TYPE, name=variable.name, type=variable.fmi_type, asked=fmi_type)
 
     def _judge(self, variable: Variable, value: Any) -> None:
         """Raises Refused, unless the variable is an input of a block that copes with any value."""
         name = variable.name
         if variable.causality == "output":
-            raise Refused(f"{name} is an output and cannot be set")
+            raise Refused(protocol.OUTPUT_SET, name=name)
         if variable.reference not in self._bounds:
-            raise Refused(
-                f"{name} = {value!r} is refused; a parameter can be set until initialization mode is left, "
-                "an input until fmi2Terminate, and both again after fmi2Reset"
-            )
+            raise Refused(protocol.SET_TOO_LATE, name=name, value=value)
         if variable.causality == "input" and self.block.tolerates_bad_input:
             return
         unit = f" {variable.unit}" if variable.unit else ""
-        raise Refused(f"{name} = {value!r}{unit} is refused; allowed is {variable.allowed()}")
+        raise Refused(protocol.BAD_VALUE, name=name, value=value, unit=unit, allowed=variable.allowed())

@@ -12,6 +12,9 @@ from typing import Any, NamedTuple
 from .dop853 import A, B
 from .types import ContinuousBlock
 
+STEP_TOLERANCE = 1e-9
+"""In steps: a duration this little above whole steps takes no further one."""
+
 LOCATION_TOLERANCE = 1e-13
 """Time in s within which a crossing is located; it moves the state by less than rounding does."""
 
@@ -82,7 +85,7 @@ class Integrator:
             x, u, p: State, Input and Parameters of the block.
             duration: any time >= 0 in s, divided into equal steps no longer than block.step_size.
         """
-        steps = max(1, math.ceil(duration / self.step_size - 1e-9))
+        steps = max(1, math.ceil(duration / self.step_size - STEP_TOLERANCE))
         sides = self._sides(x, u, p)
         for _ in range(steps):
             x = self._advance_through(x, u, p, duration / steps, sides)

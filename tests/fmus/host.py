@@ -35,7 +35,8 @@ class Host:
         self.fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
 
     def _keep(self, _environment, _name, _status, _category, message):
-        self.message = message.decode()
+        """Without the line that PythonFMU puts before a message of ours."""
+        self.message = message.decode().rpartition("\n")[2]
 
     def names(self, causality):
         return [v.name for v in self.variables.values() if v.causality == causality]

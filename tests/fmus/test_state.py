@@ -1,6 +1,7 @@
 """A saved state restores everything: the run that follows is the same, bit by bit."""
 
 import math
+import re
 
 import pytest
 
@@ -66,28 +67,51 @@ def test_a_state_saved_before_initialization_restores_that_mode(built, tmp_path)
         host.initialize(tau=0.02)
 
 
-@pytest.mark.parametrize("place", [0, 9, -20])
-def test_a_damaged_state_is_refused_and_changes_nothing(built, tmp_path, place):
+def serialized(host):
+    return bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
+
+
+def restore(host, saved):
+    host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(saved))
+
+
+def with_a_wrong_bit(place):
+    return lambda saved: saved[:place] + bytes([saved[place] ^ 1]) + saved[place:][1:]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        *map(with_a_wrong_bit, (0, 9, 100, -20)),
+        lambda saved: saved[:-1],
+        lambda saved: saved[:3],
+        lambda saved: saved * 2,
+    ],
+)
+def test_a_damaged_state_is_refused_and_changes_nothing(built, tmp_path, damage):
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize(T_ref=40.0)
         host.step(0.0, 0.01)
         before = host.outputs()
-        saved = bytearray(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
-        saved[place] ^= 1
-        state = host.fmu.deSerializeFMUstate(bytes(saved))
-        assert "its bytes are damaged" in host.refuses(host.fmu.setFMUstate, state)
+        message = host.refuses(restore, host, damage(serialized(host)))
+        assert message == "the FMU state is refused: its bytes are damaged"
         assert host.outputs() == before
         host.step(0.01, 0.01)
 
 
-def test_a_state_of_another_fmu_is_refused(built, tmp_path):
+def test_a_state_of_another_fmu_is_refused_and_both_are_named(built, tmp_path):
     with (
         opened(built / "MotorTorqueLoop.fmu", tmp_path / "motor") as motor,
         opened(built / "WheelSpeedCan.fmu", tmp_path / "can") as can,
     ):
-        state = motor.fmu.deSerializeFMUstate(can.fmu.serializeFMUstate(can.fmu.getFMUstate()))
-        message = motor.refuses(motor.fmu.setFMUstate, state)
-        assert "saved by driveline_wheel_speed_can" in message
+        sentence = r"the FMU state is refused: it was saved by (\S+), this is (\S+)"
+        to_motor, to_can = (
+            re.fullmatch(sentence, to.refuses(restore, to, serialized(of))) for to, of in ((motor, can), (can, motor))
+        )
+        assert to_motor
+        assert to_can
+        assert to_motor.groups() == to_can.groups()[::-1]
+        assert to_motor[1] != to_motor[2]
 
 
 @pytest.mark.parametrize("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, math.inf, 3, True])

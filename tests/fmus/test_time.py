@@ -161,24 +161,67 @@ def test_time_counts_from_the_start_time(built, tmp_path):
         assert tuple(host.outputs().values()) == tuple(block.output(x, u, p))
 
 
-@pytest.mark.parametrize("step_size", [0.0, -0.001, 1e300, math.nan, math.inf])
-def test_a_step_that_is_not_positive_or_endless_is_discarded(built, tmp_path, step_size):
+@pytest.mark.parametrize(
+    ("samples", "shown", "made"),
+    [(0.9989, 0, 1), (0.9991, 1, 1), (1.0009, 1, 1), (1.0011, 1, 2)],
+    ids="just before, as good as there, as good as not over, just over".split(", "),
+)
+def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built, tmp_path, samples, shown, made):
+    """After a step of so many samples: ticks whose result shows, ticks that took the inputs of that step."""
+    block = FMUS["DampingController"].block
+    assert isinstance(block, SampledBlock)
+    first, then = (block.Input(T_driver=torque) for torque in (20.0, 60.0))
+    p = block.Parameters()
+    states = [block.start(block.Input(), p)]
+    for k in range(4):
+        states.append(block.update(states[k], first if k < made else then, p))
+    with opened(built / "DampingController.fmu", tmp_path) as host:
+        host.initialize()
+        host.set(T_driver=first.T_driver)
+        host.step(0.0, samples * T_S)
+        assert tuple(host.outputs().values()) == tuple(block.output(states[shown], first, p))
+        host.set(T_driver=then.T_driver)
+        host.step(samples * T_S, (4.0 - samples) * T_S)
+        assert tuple(host.outputs().values()) == tuple(block.output(states[4], then, p))
+
+
+@pytest.mark.parametrize("step_size", [0.0, -0.001, math.nextafter(1000.0, math.inf), 1e300, math.nan, math.inf])
+def test_a_step_that_is_not_positive_or_too_long_is_discarded(built, tmp_path, step_size):
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize(T_ref=50.0)
         before = host.outputs()
         message = host.refuses(host.step, 0.0, step_size)
-        assert f"communicationStepSize = {step_size!r} s is refused" in message
+        assert message == f"communicationStepSize = {step_size!r} s is refused; allowed is above 0 to 1000 s"
         assert host.outputs() == before
         host.step(0.0, 0.001)
 
 
-@pytest.mark.parametrize("time", [0.0, 0.0011, math.nan])
+@pytest.mark.parametrize("step_size", [5e-324, 1000.0])
+def test_the_shortest_and_the_longest_step_are_allowed(built, tmp_path, step_size):
+    """Shown by a step that is refused for its time, which is looked at after its size."""
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        assert "currentCommunicationPoint = 7.0 s" in host.refuses(host.step, 7.0, step_size)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.0011, 0.001 - 1.01e-6, 0.001 + 1.01e-6, math.nan])
 def test_a_step_from_another_time_is_discarded(built, tmp_path, time):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         host.initialize()
         host.step(0.0, 0.001)
-        assert "has been computed up to 0.001 s" in host.refuses(host.step, time, 0.001)
+        message = host.refuses(host.step, time, 0.001)
+        reached = "WheelSpeedCan has been computed up to 0.001 s"
+        assert message == f"currentCommunicationPoint = {time!r} s is refused; {reached}"
         host.step(0.001, 0.001)
+
+
+@pytest.mark.parametrize("difference", [-0.99e-6, 0.99e-6])
+def test_the_time_of_a_host_may_be_a_microsecond_off(built, tmp_path, difference):
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        host.initialize()
+        host.step(0.0, 0.001)
+        host.step(0.001 + difference, 0.001)
+        assert f"computed up to {0.001 + difference + 0.001!r} s" in host.refuses(host.step, 0.0, 0.001)
 
 
 def test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on(built, tmp_path):
@@ -193,7 +236,7 @@ def test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on(built, t
         assert "fmi2SetupExperiment is refused" in host.refuses(host.fmu.setupExperiment)
         host.step(0.0, 0.001)
         host.fmu.terminate()
-        assert "after fmi2Terminate" in host.refuses(host.step, 0.001, 0.001)
+        assert "fmi2DoStep is refused after termination" in host.refuses(host.step, 0.001, 0.001)
         assert "T_ref = 1.0 is refused; " in host.refuses(host.set, T_ref=1.0)
         host.fmu.reset()
         host.initialize()

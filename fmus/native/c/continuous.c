@@ -6,11 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-void advance(Memory *memory, double end, double duration)
+void advance(Memory *memory, double elapsed, double duration)
 {
     Values *values = &memory->values;
     const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p};
-    (void)end;
+    (void)elapsed;
     integrate(&problem, duration, &memory->x);
     if (memory->moving) {
         Input room;
@@ -20,40 +20,32 @@ void advance(Memory *memory, double end, double duration)
     }
 }
 
-/* An input's place in a record of rates of the inputs. */
-static real *rate_of_input(Input *du, const Variable *variable)
-{
-    return (real *)(void *)((char *)du + (variable->offset - offsetof(Values, u)));
-}
-
-fmi2Status check_moving_inputs(Instance *instance, double duration)
+Status check_moving_inputs(Instance *instance, double duration)
 {
     Memory *memory = &instance->memory;
     for (unsigned k = 0; memory->moving && k < variable_count && variables[k].causality == INPUT; k++) {
         const Variable *variable = &variables[k];
-        const double end = *place_of(&memory->values, variable) + duration * *rate_of_input(&memory->du, variable);
+        const double end = *place_of(&memory->values, variable) + duration * *rate_of(&memory->du, variable);
         char text[NUMBER_LENGTH];
         if (!(end >= variable->minimum && end <= variable->maximum))
             return refuse(
                 instance,
-                "%s = %s%s%s at the end of the step is refused; allowed is %s",
+                "%s = %s%s at the end of the step is refused; allowed is %s",
                 variable->name,
                 write_number(text, end),
-                *variable->unit ? " " : "",
                 variable->unit,
                 variable->allowed);
     }
-    return fmi2OK;
+    return OK;
 }
 
-fmi2Status set_input_rates(
-    Instance *instance, const fmi2ValueReference references[], size_t count, const fmi2Real rates[])
+Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[])
 {
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = variable_of(instance, references[k], REAL);
         char text[NUMBER_LENGTH];
         if (!variable)
-            return fmi2Error;
+            return ERROR;
         if (variable->causality != INPUT)
             return refuse(instance, "%s is not an input and has no input derivative", variable->name);
         if (!(fabs(rates[k]) <= DBL_MAX))
@@ -64,13 +56,12 @@ fmi2Status set_input_rates(
                 variable->name);
     }
     for (size_t k = 0; k < count; k++)
-        *rate_of_input(&instance->memory.du, &variables[references[k]]) = rates[k];
+        *rate_of(&instance->memory.du, &variables[references[k]]) = rates[k];
     instance->memory.moving = instance->memory.moving || count > 0;
-    return fmi2OK;
+    return OK;
 }
 
-fmi2Status get_output_rates(
-    Instance *instance, const fmi2ValueReference references[], size_t count, fmi2Real rates[])
+Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[])
 {
     const Memory *memory = &instance->memory;
     const Values *values = &memory->values;
@@ -79,7 +70,7 @@ fmi2Status get_output_rates(
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = variable_of(instance, references[k], REAL);
         if (!variable)
-            return fmi2Error;
+            return ERROR;
         if (variable->causality != OUTPUT)
             return refuse(instance, "%s is not an output and has no output derivative", variable->name);
     }
@@ -87,12 +78,12 @@ fmi2Status get_output_rates(
     output_rate(&memory->x, &values->u, &values->p, &dx, &memory->du, &changes.y);
     for (size_t k = 0; k < count; k++)
         rates[k] = *place_of(&changes, &variables[references[k]]);
-    return fmi2OK;
+    return OK;
 }
 
 /* Whether a variable can take part in a directional derivative as unknown (an output) or as known (an input, and
 until initialization mode is left a parameter); else it is refused. */
-static int is_differentiable(const Instance *instance, fmi2ValueReference reference, int unknown)
+static int is_differentiable(const Instance *instance, Reference reference, int unknown)
 {
     const Variable *variable = variable_of(instance, reference, REAL);
     if (!variable)
@@ -110,14 +101,14 @@ static int is_differentiable(const Instance *instance, fmi2ValueReference refere
     return 0;
 }
 
-fmi2Status get_directional_derivative(
-    Instance *instance,
-    const fmi2ValueReference unknown[],
+Status get_directional_derivative(
+    const Instance *instance,
+    const Reference unknown[],
     size_t unknowns,
-    const fmi2ValueReference known[],
+    const Reference known[],
     size_t knowns,
-    const fmi2Real change[],
-    fmi2Real result[])
+    const double change[],
+    double result[])
 {
     const Memory *memory = &instance->memory;
     const Values *values = &memory->values;
@@ -127,10 +118,10 @@ fmi2Status get_directional_derivative(
     memset(&dx, 0, sizeof dx);
     for (size_t k = 0; k < unknowns; k++)
         if (!is_differentiable(instance, unknown[k], 1))
-            return fmi2Error;
+            return ERROR;
     for (size_t k = 0; k < knowns; k++) {
         if (!is_differentiable(instance, known[k], 0))
-            return fmi2Error;
+            return ERROR;
         *place_of(&changes, &variables[known[k]]) += change[k];
     }
     if (memory->mode == INITIALIZATION)
@@ -139,5 +130,5 @@ fmi2Status get_directional_derivative(
         output_rate(&memory->x, &values->u, &values->p, &dx, &changes.u, &changes.y);
     for (size_t k = 0; k < unknowns; k++)
         result[k] = *place_of(&changes, &variables[unknown[k]]);
-    return fmi2OK;
+    return OK;
 }

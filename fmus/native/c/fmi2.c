@@ -1,16 +1,17 @@
-/* The functions of FMI 2.0 for co-simulation, which see to it that calls come in an order that makes sense. */
+/* The adapter to FMI 2.0 for co-simulation, and the only file that knows it. It keeps the callbacks of the host and sees
+to it that calls come in an order that makes sense; what they do is done by the instance. */
+#include "fmi2Functions.h"
 #include "instance.h"
-#include "state.h"
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
 
-/* In s: how far the host's time may be from the FMU's. */
-#define TIME_TOLERANCE 1e-6
-
-/* In s: a longer communication step is a mistake of the host, and would keep it waiting for ever. */
-#define LONGEST_COMMUNICATION_STEP 1000.0
+/* An instance as the host has it. */
+typedef struct {
+    Instance instance;
+    fmi2CallbackFunctions callbacks;
+    int logged[ERROR + 1]; /* by status: whether the host is told */
+    char name[];
+} Component;
 
 enum { ANY_MODE = INSTANTIATED | INITIALIZATION | STEPPING | TERMINATED };
 
@@ -24,28 +25,79 @@ const char *fmi2GetVersion(void)
     return fmi2Version;
 }
 
-/* The instance, if there is one and it is in one of the modes; else NULL. */
-static Instance *ready(fmi2Component component, unsigned modes, const char *function)
+static fmi2Status in_fmi(Status status)
 {
-    Instance *instance = component;
-    return instance && in_mode(instance, modes, function) ? instance : NULL;
+    return status == OK ? fmi2OK : status == DISCARD ? fmi2Discard : fmi2Error;
 }
 
-static fmi2Status refuse_null(const Instance *instance, const char *function)
+/* The instance, if there is one in one of the modes and the call is complete; else NULL. */
+static Instance *ready(fmi2Component c, unsigned modes, int complete, const char *function)
 {
-    return refuse(instance, "%s: an argument is NULL", function);
+    Component *component = c;
+    if (!component || !in_mode(&component->instance, modes, function))
+        return NULL;
+    if (complete)
+        return &component->instance;
+    refuse(&component->instance, "%s: an argument is NULL", function);
+    return NULL;
+}
+
+/* ---- messages ---- */
+
+static const char *const categories_of[] = {[OK] = "", [DISCARD] = LOG_DISCARD, [ERROR] = LOG_ERROR};
+
+/* Calls the logger, which takes the message for a format. */
+static void say(const fmi2CallbackFunctions *callbacks, fmi2String name, Status status, const char *message)
+{
+    char escaped[2 * MESSAGE_LENGTH], *at = escaped;
+    if (!callbacks->logger)
+        return;
+    for (; *message; *at++ = *message++)
+        if (*message == '%')
+            *at++ = '%';
+    *at = '\0';
+    callbacks->logger(callbacks->componentEnvironment, name, in_fmi(status), categories_of[status], escaped);
+}
+
+static void log_for(void *listener, Status status, const char *message)
+{
+    const Component *component = listener;
+    if (component->logged[status])
+        say(&component->callbacks, component->name, status, message);
+}
+
+/* The status whose messages are of a category; OK if there is none. */
+static Status status_of(fmi2String category)
+{
+    for (Status status = DISCARD; category && status <= ERROR; status++)
+        if (strcmp(category, categories_of[status]) == 0)
+            return status;
+    return OK;
+}
+
+fmi2Status fmi2SetDebugLogging(
+    fmi2Component c, fmi2Boolean loggingOn, size_t nCategories, const fmi2String categories[])
+{
+    Component *component = c;
+    const Instance *instance = ready(c, ANY_MODE, nCategories == 0 || categories, __func__);
+    if (!instance)
+        return fmi2Error;
+    for (size_t k = 0; k < nCategories; k++)
+        if (status_of(categories[k]) == OK)
+            return in_fmi(refuse(
+                instance,
+                "log category %s is unknown; there are " LOG_ERROR " and " LOG_DISCARD,
+                categories[k] ? categories[k] : "NULL"));
+    for (size_t k = 0; k < nCategories; k++)
+        component->logged[status_of(categories[k])] = loggingOn;
+    if (nCategories == 0)
+        component->logged[DISCARD] = component->logged[ERROR] = loggingOn;
+    return fmi2OK;
 }
 
 /* ---- creation and destruction ---- */
 
-static void make_new(Memory *memory)
-{
-    memset(memory, 0, sizeof *memory);
-    set_start_values(memory);
-    memory->mode = INSTANTIATED;
-}
-
-/* Why an FMU cannot be instantiated so; NULL if it can. */
+/* Why there cannot be such an instance; NULL if there can. */
 static const char *objection(fmi2String name, fmi2Type type, fmi2String guid, const fmi2CallbackFunctions *callbacks)
 {
     if (!name || !*name)
@@ -73,57 +125,25 @@ fmi2Component fmi2Instantiate(
     if (!functions)
         return NULL;
     const char *why = objection(instanceName, fmuType, fmuGUID, functions);
-    if (why) {
-        log_without_instance(functions, instanceName, why);
+    Component *component = why ? NULL : functions->allocateMemory(1, sizeof *component + strlen(instanceName) + 1);
+    if (!component) {
+        say(functions, instanceName ? instanceName : "", ERROR, why ? why : "fmi2Instantiate: no memory");
         return NULL;
     }
-    Instance *instance = functions->allocateMemory(1, sizeof *instance);
-    char *name = functions->allocateMemory(strlen(instanceName) + 1, 1);
-    if (!instance || !name) {
-        if (instance)
-            functions->freeMemory(instance);
-        if (name)
-            functions->freeMemory(name);
-        log_without_instance(functions, instanceName, "fmi2Instantiate: no memory");
-        return NULL;
-    }
-    instance->callbacks = *functions;
-    instance->name = strcpy(name, instanceName);
-    for (int k = 0; k < LOG_CATEGORIES; k++)
-        instance->logged[k] = loggingOn;
-    make_new(&instance->memory);
-    return instance;
+    const Host host = {functions->allocateMemory, log_for, component};
+    component->instance.host = host;
+    component->callbacks = *functions;
+    component->logged[DISCARD] = component->logged[ERROR] = loggingOn;
+    strcpy(component->name, instanceName);
+    begin(&component->instance);
+    return component;
 }
 
 void fmi2FreeInstance(fmi2Component c)
 {
-    Instance *instance = c;
-    if (!instance)
-        return;
-    const fmi2CallbackFreeMemory free_memory = instance->callbacks.freeMemory;
-    free_memory(instance->name);
-    free_memory(instance);
-}
-
-fmi2Status fmi2SetDebugLogging(
-    fmi2Component c, fmi2Boolean loggingOn, size_t nCategories, const fmi2String categories[])
-{
-    Instance *instance = ready(c, ANY_MODE, "fmi2SetDebugLogging");
-    if (!instance)
-        return fmi2Error;
-    if (nCategories > 0 && !categories)
-        return refuse_null(instance, "fmi2SetDebugLogging");
-    for (size_t k = 0; k < nCategories; k++)
-        if (category_of(categories[k]) < 0)
-            return refuse(
-                instance,
-                "log category %s is unknown; there are logStatusError and logStatusDiscard",
-                categories[k] ? categories[k] : "NULL");
-    for (int k = 0; k < LOG_CATEGORIES && nCategories == 0; k++)
-        instance->logged[k] = loggingOn;
-    for (size_t k = 0; k < nCategories; k++)
-        instance->logged[category_of(categories[k])] = loggingOn;
-    return fmi2OK;
+    Component *component = c;
+    if (component)
+        component->callbacks.freeMemory(component);
 }
 
 /* ---- initialization, end, beginning again ---- */
@@ -140,126 +160,69 @@ fmi2Status fmi2SetupExperiment(
     (void)tolerance;
     (void)stopTimeDefined;
     (void)stopTime;
-    Instance *instance = ready(c, INSTANTIATED, "fmi2SetupExperiment");
-    char text[NUMBER_LENGTH];
-    if (!instance)
-        return fmi2Error;
-    if (!(fabs(startTime) <= DBL_MAX))
-        return refuse(
-            instance, "startTime = %s s is refused; allowed is any finite number", write_number(text, startTime));
-    instance->memory.start_time = instance->memory.time = startTime;
-    return fmi2OK;
+    Instance *instance = ready(c, INSTANTIATED, 1, __func__);
+    return instance ? in_fmi(set_start_time(instance, startTime)) : fmi2Error;
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component c)
-{
-    Instance *instance = ready(c, INSTANTIATED, "fmi2EnterInitializationMode");
-    if (!instance)
-        return fmi2Error;
-    instance->memory.mode = INITIALIZATION;
-    return fmi2OK;
-}
+/* A function without arguments that is allowed in some modes and cannot fail. */
+#define CHANGE(function, modes, change)                   \
+    fmi2Status function(fmi2Component c)                  \
+    {                                                     \
+        Instance *instance = ready(c, modes, 1, __func__); \
+        if (!instance)                                    \
+            return fmi2Error;                             \
+        change;                                           \
+        return fmi2OK;                                    \
+    }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component c)
-{
-    Instance *instance = ready(c, INITIALIZATION, "fmi2ExitInitializationMode");
-    if (!instance)
-        return fmi2Error;
-    Memory *memory = &instance->memory;
-    start(&memory->values.u, &memory->values.p, &memory->x);
-    memory->coming = memory->x;
-    memory->mode = STEPPING;
-    return fmi2OK;
-}
-
-fmi2Status fmi2Terminate(fmi2Component c)
-{
-    Instance *instance = ready(c, STEPPING, "fmi2Terminate");
-    if (!instance)
-        return fmi2Error;
-    instance->memory.mode = TERMINATED;
-    return fmi2OK;
-}
-
-fmi2Status fmi2Reset(fmi2Component c)
-{
-    Instance *instance = ready(c, ANY_MODE, "fmi2Reset");
-    if (!instance)
-        return fmi2Error;
-    make_new(&instance->memory);
-    return fmi2OK;
-}
+CHANGE(fmi2EnterInitializationMode, INSTANTIATED, instance->memory.mode = INITIALIZATION)
+CHANGE(fmi2ExitInitializationMode, INITIALIZATION, leave_initialization(instance))
+CHANGE(fmi2Terminate, STEPPING, instance->memory.mode = TERMINATED)
+CHANGE(fmi2Reset, ANY_MODE, begin(instance))
 
 /* ---- values ---- */
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
-{
-    return c ? get_values(c, REAL, vr, nvr, value) : fmi2Error;
-}
+#define VALUES(Type, TYPE)                                                                                             \
+    fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[])           \
+    {                                                                                                                  \
+        Instance *instance = ready(c, ANY_MODE, 1, __func__);                                                          \
+        return instance ? in_fmi(get_values(instance, TYPE, vr, nvr, value)) : fmi2Error;                              \
+    }                                                                                                                  \
+    fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##Type value[])     \
+    {                                                                                                                  \
+        Instance *instance = ready(c, ANY_MODE, 1, __func__);                                                          \
+        return instance ? in_fmi(set_values(instance, TYPE, vr, nvr, value)) : fmi2Error;                              \
+    }
 
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[])
-{
-    return c ? get_values(c, INTEGER, vr, nvr, value) : fmi2Error;
-}
-
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[])
-{
-    return c ? get_values(c, BOOLEAN, vr, nvr, value) : fmi2Error;
-}
-
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[])
-{
-    return c ? get_values(c, STRING, vr, nvr, value) : fmi2Error;
-}
-
-fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[])
-{
-    return c ? set_values(c, REAL, vr, nvr, value) : fmi2Error;
-}
-
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[])
-{
-    return c ? set_values(c, INTEGER, vr, nvr, value) : fmi2Error;
-}
-
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[])
-{
-    return c ? set_values(c, BOOLEAN, vr, nvr, value) : fmi2Error;
-}
-
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[])
-{
-    return c ? set_values(c, STRING, vr, nvr, value) : fmi2Error;
-}
+VALUES(Real, REAL)
+VALUES(Integer, INTEGER)
+VALUES(Boolean, BOOLEAN)
+VALUES(String, STRING)
 
 /* ---- saved states ---- */
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
-    const Instance *instance = ready(c, ANY_MODE, "fmi2GetFMUstate");
-    if (!instance)
-        return fmi2Error;
-    return FMUstate ? get_state(instance, FMUstate) : refuse_null(instance, "fmi2GetFMUstate");
+    const Instance *instance = ready(c, ANY_MODE, FMUstate != NULL, __func__);
+    return instance ? in_fmi(get_state(instance, FMUstate)) : fmi2Error;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
 {
-    Instance *instance = ready(c, ANY_MODE, "fmi2SetFMUstate");
+    Instance *instance = ready(c, ANY_MODE, FMUstate != NULL, __func__);
     if (!instance)
         return fmi2Error;
-    if (!FMUstate)
-        return refuse_null(instance, "fmi2SetFMUstate");
-    memcpy(&instance->memory, FMUstate, sizeof instance->memory);
+    set_state(instance, FMUstate);
     return fmi2OK;
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
-    const Instance *instance = ready(c, ANY_MODE, "fmi2FreeFMUstate");
-    if (!instance)
+    const Component *component = c;
+    if (!component)
         return fmi2Error;
     if (FMUstate && *FMUstate) {
-        instance->callbacks.freeMemory(*FMUstate);
+        component->callbacks.freeMemory(*FMUstate);
         *FMUstate = NULL;
     }
     return fmi2OK;
@@ -267,34 +230,23 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
 {
-    const Instance *instance = ready(c, ANY_MODE, "fmi2SerializedFMUstateSize");
-    if (!instance)
+    if (!ready(c, ANY_MODE, FMUstate && size, __func__))
         return fmi2Error;
-    if (!FMUstate || !size)
-        return refuse_null(instance, "fmi2SerializedFMUstateSize");
-    *size = sizeof(SavedState);
+    *size = serialized_size();
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[], size_t size)
 {
-    const Instance *instance = ready(c, ANY_MODE, "fmi2SerializeFMUstate");
-    if (!instance)
-        return fmi2Error;
-    if (!FMUstate || !serializedState)
-        return refuse_null(instance, "fmi2SerializeFMUstate");
-    return serialize_state(instance, FMUstate, serializedState, size);
+    const Instance *instance = ready(c, ANY_MODE, FMUstate && serializedState, __func__);
+    return instance ? in_fmi(serialize_state(instance, FMUstate, serializedState, size)) : fmi2Error;
 }
 
 fmi2Status fmi2DeSerializeFMUstate(
     fmi2Component c, const fmi2Byte serializedState[], size_t size, fmi2FMUstate *FMUstate)
 {
-    const Instance *instance = ready(c, ANY_MODE, "fmi2DeSerializeFMUstate");
-    if (!instance)
-        return fmi2Error;
-    if (!FMUstate || !serializedState)
-        return refuse_null(instance, "fmi2DeSerializeFMUstate");
-    return deserialize_state(instance, serializedState, size, FMUstate);
+    const Instance *instance = ready(c, ANY_MODE, FMUstate && serializedState, __func__);
+    return instance ? in_fmi(deserialize_state(instance, serializedState, size, FMUstate)) : fmi2Error;
 }
 
 /* ---- rates of change ---- */
@@ -308,13 +260,12 @@ fmi2Status fmi2GetDirectionalDerivative(
     const fmi2Real dvKnown[],
     fmi2Real dvUnknown[])
 {
-    const unsigned modes = INITIALIZATION | STEPPING | TERMINATED;
-    Instance *instance = ready(c, modes, "fmi2GetDirectionalDerivative");
+    const int complete = (nUnknown == 0 || (vUnknown_ref && dvUnknown)) && (nKnown == 0 || (vKnown_ref && dvKnown));
+    const Instance *instance = ready(c, INITIALIZATION | STEPPING | TERMINATED, complete, __func__);
     if (!instance)
         return fmi2Error;
-    if ((nUnknown > 0 && !(vUnknown_ref && dvUnknown)) || (nKnown > 0 && !(vKnown_ref && dvKnown)))
-        return refuse_null(instance, "fmi2GetDirectionalDerivative");
-    return get_directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown);
+    return in_fmi(
+        get_directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown));
 }
 
 /* Whether all orders of derivatives are 1; else they are refused. */
@@ -335,12 +286,10 @@ fmi2Status fmi2SetRealInputDerivatives(
     const fmi2Integer order[],
     const fmi2Real value[])
 {
-    Instance *instance = ready(c, INSTANTIATED | INITIALIZATION | STEPPING, "fmi2SetRealInputDerivatives");
-    if (!instance)
-        return fmi2Error;
-    if (nvr > 0 && !(vr && order && value))
-        return refuse_null(instance, "fmi2SetRealInputDerivatives");
-    return orders_are_one(instance, order, nvr) ? set_input_rates(instance, vr, nvr, value) : fmi2Error;
+    const int complete = nvr == 0 || (vr && order && value);
+    Instance *instance = ready(c, INSTANTIATED | INITIALIZATION | STEPPING, complete, __func__);
+    const int allowed = instance && orders_are_one(instance, order, nvr);
+    return allowed ? in_fmi(set_input_rates(instance, vr, nvr, value)) : fmi2Error;
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(
@@ -350,33 +299,13 @@ fmi2Status fmi2GetRealOutputDerivatives(
     const fmi2Integer order[],
     fmi2Real value[])
 {
-    Instance *instance = ready(c, STEPPING | TERMINATED, "fmi2GetRealOutputDerivatives");
-    if (!instance)
-        return fmi2Error;
-    if (nvr > 0 && !(vr && order && value))
-        return refuse_null(instance, "fmi2GetRealOutputDerivatives");
-    return orders_are_one(instance, order, nvr) ? get_output_rates(instance, vr, nvr, value) : fmi2Error;
+    const int complete = nvr == 0 || (vr && order && value);
+    const Instance *instance = ready(c, STEPPING | TERMINATED, complete, __func__);
+    const int allowed = instance && orders_are_one(instance, order, nvr);
+    return allowed ? in_fmi(get_output_rates(instance, vr, nvr, value)) : fmi2Error;
 }
 
 /* ---- steps ---- */
-
-static fmi2Status check_step(Instance *instance, double time, double step_size)
-{
-    char text[NUMBER_LENGTH], reached[NUMBER_LENGTH];
-    if (!(step_size > 0.0 && step_size <= LONGEST_COMMUNICATION_STEP))
-        return discard(
-            instance,
-            "communicationStepSize = %s s is refused; allowed is above 0 to 1000 s",
-            write_number(text, step_size));
-    if (!(fabs(time - instance->memory.time) <= TIME_TOLERANCE))
-        return discard(
-            instance,
-            "currentCommunicationPoint = %s s is refused; %s has been computed up to %s s",
-            write_number(text, time),
-            model_name,
-            write_number(reached, instance->memory.time));
-    return check_moving_inputs(instance, step_size);
-}
 
 fmi2Status fmi2DoStep(
     fmi2Component c,
@@ -385,90 +314,35 @@ fmi2Status fmi2DoStep(
     fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
     (void)noSetFMUStatePriorToCurrentPoint;
-    Instance *instance = ready(c, STEPPING, "fmi2DoStep");
-    if (!instance)
-        return fmi2Error;
-    Memory *memory = &instance->memory;
-    memory->last_step = check_step(instance, currentCommunicationPoint, communicationStepSize);
-    if (memory->last_step == fmi2OK) {
-        const double end = currentCommunicationPoint + communicationStepSize;
-        advance(memory, end, communicationStepSize);
-        memory->time = end;
-        memory->outputs_known = 0;
-    }
-    return (fmi2Status)memory->last_step;
+    Instance *instance = ready(c, STEPPING, 1, __func__);
+    return instance ? in_fmi(make_step(instance, currentCommunicationPoint, communicationStepSize)) : fmi2Error;
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c)
 {
-    const Instance *instance = c;
-    return instance ? refuse(instance, "fmi2CancelStep is refused; every step ends before fmi2DoStep returns") : fmi2Error;
+    const Instance *instance = ready(c, ANY_MODE, 1, __func__);
+    if (instance)
+        refuse(instance, "fmi2CancelStep is refused; every step ends before fmi2DoStep returns");
+    return fmi2Error;
 }
 
 /* ---- status ---- */
 
-/* The instance, if the status can be asked for; the value cannot be stored where `value` is NULL. */
-static Instance *asked(fmi2Component c, const void *value, const char *function)
-{
-    Instance *instance = ready(c, STEPPING | TERMINATED, function);
-    if (instance && !value) {
-        refuse_null(instance, function);
-        return NULL;
+/* A function that answers one kind of question about the status and discards the others. */
+#define ANSWER(function, Type, known, answer)                                                                          \
+    fmi2Status function(fmi2Component c, const fmi2StatusKind s, Type *value)                                          \
+    {                                                                                                                  \
+        const Instance *instance = ready(c, STEPPING | TERMINATED, value != NULL, __func__);                           \
+        if (!instance)                                                                                                 \
+            return fmi2Error;                                                                                          \
+        if (!(known))                                                                                                  \
+            return in_fmi(discard(instance, "%s has no answer for the kind %d of status", __func__, (int)s));          \
+        *value = answer;                                                                                               \
+        return fmi2OK;                                                                                                 \
     }
-    return instance;
-}
 
-static fmi2Status discard_kind(const Instance *instance, const char *function, fmi2StatusKind kind)
-{
-    return discard(instance, "%s has no answer for the kind %d of status", function, (int)kind);
-}
-
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value)
-{
-    const Instance *instance = asked(c, value, "fmi2GetStatus");
-    if (!instance)
-        return fmi2Error;
-    if (s != fmi2DoStepStatus)
-        return discard_kind(instance, "fmi2GetStatus", s);
-    *value = (fmi2Status)instance->memory.last_step;
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
-{
-    const Instance *instance = asked(c, value, "fmi2GetRealStatus");
-    if (!instance)
-        return fmi2Error;
-    if (s != fmi2LastSuccessfulTime)
-        return discard_kind(instance, "fmi2GetRealStatus", s);
-    *value = instance->memory.time;
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value)
-{
-    const Instance *instance = asked(c, value, "fmi2GetIntegerStatus");
-    return instance ? discard_kind(instance, "fmi2GetIntegerStatus", s) : fmi2Error;
-}
-
-fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value)
-{
-    const Instance *instance = asked(c, value, "fmi2GetBooleanStatus");
-    if (!instance)
-        return fmi2Error;
-    if (s != fmi2Terminated)
-        return discard_kind(instance, "fmi2GetBooleanStatus", s);
-    *value = fmi2False; /* the FMU itself never asks for the end of a run */
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value)
-{
-    const Instance *instance = asked(c, value, "fmi2GetStringStatus");
-    if (!instance)
-        return fmi2Error;
-    if (s != fmi2PendingStatus)
-        return discard_kind(instance, "fmi2GetStringStatus", s);
-    *value = ""; /* nothing is ever pending */
-    return fmi2OK;
-}
+ANSWER(fmi2GetStatus, fmi2Status, s == fmi2DoStepStatus, in_fmi((Status)instance->memory.last_step))
+ANSWER(fmi2GetRealStatus, fmi2Real, s == fmi2LastSuccessfulTime, instance->memory.time)
+ANSWER(fmi2GetIntegerStatus, fmi2Integer, 0, 0)
+ANSWER(fmi2GetBooleanStatus, fmi2Boolean, s == fmi2Terminated, fmi2False) /* the FMU never asks for the end of a run */
+ANSWER(fmi2GetStringStatus, fmi2String, s == fmi2PendingStatus, "")       /* nothing is ever pending */

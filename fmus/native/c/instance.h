@@ -1,19 +1,30 @@
-/* One instance of the FMU. There is nothing outside instances, so several run side by side. */
+/* One instance of a block at work, whatever standard its host speaks: an adapter (fmi2.c) translates.
+
+There is nothing outside instances, so several run side by side. */
 #ifndef INSTANCE_H
 #define INSTANCE_H
 
 #include "block.h"
-#include "fmi2Functions.h"
+#include "shared.h"
 #include "variables.h"
 
 #include <stdint.h>
 
-#if defined __GNUC__
-#pragma GCC visibility push(hidden)
-#endif
+/* How a call ended. Of a refused one the host was told why, and nothing has changed. */
+typedef enum { OK, DISCARD, ERROR } Status; /* DISCARD: a step or question that the host can do without */
 
 /* Where an instance is in the sequence of calls. */
 typedef enum { INSTANTIATED = 1, INITIALIZATION = 2, STEPPING = 4, TERMINATED = 8 } Mode;
+
+/* A variable's place in `variables`. */
+typedef unsigned Reference;
+
+/* What an instance needs of its host. */
+typedef struct {
+    void *(*allocate)(size_t count, size_t size); /* NULL if there is no memory */
+    void (*log)(void *listener, Status status, const char *message);
+    void *listener;
+} Host;
 
 /* All that a saved state holds; whole multiples of 8 bytes, so that it has no gaps. */
 typedef struct {
@@ -27,50 +38,62 @@ typedef struct {
     int64_t mode;
     int64_t moving;        /* whether du is not zero */
     int64_t outputs_known;
-    int64_t last_step;     /* status of the last fmi2DoStep */
+    int64_t last_step;     /* status of the last step */
 } Memory;
 
-enum { LOG_ERROR, LOG_DISCARD, LOG_CATEGORIES };
-
 typedef struct {
-    fmi2CallbackFunctions callbacks;
-    int logged[LOG_CATEGORIES];
-    char *name;
+    Host host;
     Memory memory;
 } Instance;
 
-/* messages.c */
-enum { NUMBER_LENGTH = 40 };
-char *write_number(char text[NUMBER_LENGTH], double value); /* as Python's repr */
-fmi2Status refuse(const Instance *instance, const char *format, ...);  /* logs; fmi2Error */
-fmi2Status discard(const Instance *instance, const char *format, ...); /* logs; fmi2Discard */
-void log_without_instance(const fmi2CallbackFunctions *callbacks, fmi2String name, const char *message);
-int category_of(const char *name); /* -1 for an unknown one */
-int in_mode(const Instance *instance, unsigned modes, const char *function); /* else it is refused */
+#if defined __GNUC__
+#pragma GCC visibility push(hidden)
+#define LIKE_PRINTF __attribute__((format(printf, 2, 3)))
+#else
+#define LIKE_PRINTF
+#endif
 
-/* values.c */
+/* messages.c */
+enum { NUMBER_LENGTH = 40, MESSAGE_LENGTH = 1000 };
+char *write_number(char text[NUMBER_LENGTH], double value); /* as Python's repr */
+LIKE_PRINTF Status refuse(const Instance *instance, const char *format, ...);  /* tells the host; ERROR */
+LIKE_PRINTF Status discard(const Instance *instance, const char *format, ...); /* tells the host; DISCARD */
+
+/* run.c */
+void begin(Instance *instance); /* as new, with the same host */
+int in_mode(const Instance *instance, unsigned modes, const char *function); /* else the function is refused */
+Status set_start_time(Instance *instance, double start_time);
+void leave_initialization(Instance *instance);
+Status make_step(Instance *instance, double time, double step_size);
+
+/* values.c; the values are double for REAL, else int */
 void set_start_values(Memory *memory);
-fmi2Status get_values(Instance *instance, Type type, const fmi2ValueReference references[], size_t count, void *values);
-fmi2Status set_values(
-    Instance *instance, Type type, const fmi2ValueReference references[], size_t count, const void *values);
-const Variable *variable_of(const Instance *instance, fmi2ValueReference reference, Type type); /* NULL if refused */
+Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
+Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
+const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
 double *place_of(Values *values, const Variable *variable);
+double *rate_of(Input *du, const Variable *input);
+
+/* state.c */
+Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */
+void set_state(Instance *instance, const void *state);
+size_t serialized_size(void);
+Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size);
+Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state);
 
 /* continuous.c or sampled.c */
-void advance(Memory *memory, double end, double duration);
-fmi2Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
-fmi2Status set_input_rates(
-    Instance *instance, const fmi2ValueReference references[], size_t count, const fmi2Real rates[]);
-fmi2Status get_output_rates(
-    Instance *instance, const fmi2ValueReference references[], size_t count, fmi2Real rates[]);
-fmi2Status get_directional_derivative(
-    Instance *instance,
-    const fmi2ValueReference unknown[],
+void advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
+Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
+Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
+Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);
+Status get_directional_derivative(
+    const Instance *instance,
+    const Reference unknown[],
     size_t unknowns,
-    const fmi2ValueReference known[],
+    const Reference known[],
     size_t knowns,
-    const fmi2Real change[],
-    fmi2Real result[]);
+    const double change[],
+    double result[]);
 
 #if defined __GNUC__
 #pragma GCC visibility pop

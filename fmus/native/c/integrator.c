@@ -2,8 +2,10 @@
 
 Between the zeros of its event indicators a block is smooth and the method has order 8. When an indicator
 changes sign within a step, the step is shortened so that it ends just behind the zero; an excursion that
-leaves and comes back within one step is found from the slopes at both ends. The same as integrator.py, operation by operation. */
+leaves and comes back within one step is found from the slopes at both ends. The same as integrator.py, operation by
+operation. */
 #include "integrator.h"
+#include "shared.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,15 +48,6 @@ static void begin(const Problem *problem, double t, const Vector x, Start *from)
 }
 
 #if INDICATORS
-
-/* Time in s within which a crossing is located; it moves the state by less than rounding does. */
-#define LOCATION_TOLERANCE 1e-13
-
-/* Time in s over which the slope of an event indicator is taken. */
-#define PROBE 1e-7
-
-/* Crossings located in one step; what rests on a zero may cross it without end. */
-#define MOST_CROSSINGS 16
 
 static void indicators_at(const Problem *problem, double t, const Vector x, real z[INDICATORS])
 {
@@ -207,7 +200,7 @@ static void advance_through(const Problem *problem, double t, double h, Vector x
 void integrate(const Problem *problem, double duration, State *state)
 {
     real *x = (real *)state;
-    const double steps = fmax(1.0, ceil(duration / LONGEST_STEP - 1e-9));
+    const double steps = fmax(1.0, ceil(duration / LONGEST_STEP - STEP_TOLERANCE));
     const double h = duration / steps;
 #if INDICATORS
     int sides[INDICATORS];

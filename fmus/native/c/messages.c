@@ -1,4 +1,4 @@
-/* What the FMU tells its host, through the logger of the host alone. */
+/* What an instance tells its host. */
 #include "instance.h"
 
 #include <float.h>
@@ -8,100 +8,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGE_LENGTH = 1000, DIGITS = 17 };
+enum { DIGITS = 17 };
 
-static const char *const category_names[LOG_CATEGORIES] = {"logStatusError", "logStatusDiscard"};
-
-int category_of(const char *name)
-{
-    for (int k = 0; name && k < LOG_CATEGORIES; k++)
-        if (strcmp(name, category_names[k]) == 0)
-            return k;
-    return -1;
-}
-
-/* The logger takes the message for a format. */
-static void write_percent_signs_twice(char escaped[2 * MESSAGE_LENGTH], const char *message)
-{
-    while (*message) {
-        if (*message == '%')
-            *escaped++ = '%';
-        *escaped++ = *message++;
-    }
-    *escaped = '\0';
-}
-
-static void log_message(
-    const fmi2CallbackFunctions *callbacks, fmi2String name, fmi2Status status, int category, const char *message)
-{
-    char escaped[2 * MESSAGE_LENGTH];
-    write_percent_signs_twice(escaped, message);
-    callbacks->logger(callbacks->componentEnvironment, name, status, category_names[category], escaped);
-}
-
-void log_without_instance(const fmi2CallbackFunctions *callbacks, fmi2String name, const char *message)
-{
-    if (callbacks->logger)
-        log_message(callbacks, name ? name : "", fmi2Error, LOG_ERROR, message);
-}
-
-static void log_format(const Instance *instance, fmi2Status status, int category, const char *format, va_list arguments)
+static void tell(const Instance *instance, Status status, const char *format, va_list arguments)
 {
     char message[MESSAGE_LENGTH];
-    if (!instance->callbacks.logger || !instance->logged[category])
-        return;
     vsnprintf(message, sizeof message, format, arguments);
-    log_message(&instance->callbacks, instance->name, status, category, message);
+    instance->host.log(instance->host.listener, status, message);
 }
 
-fmi2Status refuse(const Instance *instance, const char *format, ...)
+Status refuse(const Instance *instance, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    log_format(instance, fmi2Error, LOG_ERROR, format, arguments);
+    tell(instance, ERROR, format, arguments);
     va_end(arguments);
-    return fmi2Error;
+    return ERROR;
 }
 
-fmi2Status discard(const Instance *instance, const char *format, ...)
+Status discard(const Instance *instance, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    log_format(instance, fmi2Discard, LOG_DISCARD, format, arguments);
+    tell(instance, DISCARD, format, arguments);
     va_end(arguments);
-    return fmi2Discard;
+    return DISCARD;
 }
 
-static const char *mode_name(unsigned mode)
-{
-    switch (mode) {
-    case INSTANTIATED:
-        return "before initialization mode";
-    case INITIALIZATION:
-        return "in initialization mode";
-    case STEPPING:
-        return "after initialization";
-    default:
-        return "after fmi2Terminate";
-    }
-}
-
-int in_mode(const Instance *instance, unsigned modes, const char *function)
-{
-    const unsigned mode = (unsigned)instance->memory.mode;
-    if (mode & modes)
-        return 1;
-    const unsigned first = modes & (~modes + 1U);
-    refuse(instance, "%s is refused %s; its place is %s", function, mode_name(mode), mode_name(first));
-    return 0;
-}
-
-/* Shortest digits that read back as the same number; returns the power of ten of the first digit. */
+/* The fewest digits that read back as the same number; returns the power of ten of the first digit. */
 static int shortest_digits(char digits[DIGITS + 1], double value)
 {
     char text[NUMBER_LENGTH];
     for (int precision = 0; precision < DIGITS; precision++) {
         snprintf(text, sizeof text, "%.*e", precision, value);
+        if (strtod(text, NULL) == value)
+            break;
+        char *last = strchr(text, 'e') - 1; /* a power of two has more room above, so that one more may do */
+        *last = (char)(*last + (*last < '9'));
         if (strtod(text, NULL) == value)
             break;
     }

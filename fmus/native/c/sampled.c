@@ -3,15 +3,11 @@
 
 #include <math.h>
 
-/* In sample times: a tick this close to a communication point is at it. Hosts that add up their step sizes
-   instead of counting are off by 1e-8 s after a quarter of an hour. */
-#define TICK_TOLERANCE 1e-3
-
-/* All ticks before `end` that have not been made; tick k is due at start_time + k SAMPLE_TIME. */
-void advance(Memory *memory, double end, double duration)
+/* The ticks up to the end of the step that have not been made; tick k is due k SAMPLE_TIME after the start. The same
+as runner.py, operation by operation. */
+void advance(Memory *memory, double elapsed, double duration)
 {
-    (void)duration;
-    const double samples = (end - memory->start_time) / SAMPLE_TIME;
+    const double samples = (elapsed + duration) / SAMPLE_TIME;
     const double due = ceil(samples - TICK_TOLERANCE);
     const Values *values = &memory->values;
     for (; memory->ticks < due; memory->ticks += 1.0) {
@@ -22,20 +18,19 @@ void advance(Memory *memory, double end, double duration)
         memory->x = memory->coming;
 }
 
-fmi2Status check_moving_inputs(Instance *instance, double duration)
+Status check_moving_inputs(Instance *instance, double duration)
 {
     (void)instance;
     (void)duration;
-    return fmi2OK;
+    return OK;
 }
 
-static fmi2Status refuse_rates(const Instance *instance, const char *what)
+static Status refuse_rates(const Instance *instance, const char *what)
 {
     return refuse(instance, "%s is a sampled block and has no %s", model_name, what);
 }
 
-fmi2Status set_input_rates(
-    Instance *instance, const fmi2ValueReference references[], size_t count, const fmi2Real rates[])
+Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[])
 {
     (void)references;
     (void)count;
@@ -43,8 +38,7 @@ fmi2Status set_input_rates(
     return refuse_rates(instance, "input derivatives");
 }
 
-fmi2Status get_output_rates(
-    Instance *instance, const fmi2ValueReference references[], size_t count, fmi2Real rates[])
+Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[])
 {
     (void)references;
     (void)count;
@@ -52,14 +46,14 @@ fmi2Status get_output_rates(
     return refuse_rates(instance, "output derivatives");
 }
 
-fmi2Status get_directional_derivative(
-    Instance *instance,
-    const fmi2ValueReference unknown[],
+Status get_directional_derivative(
+    const Instance *instance,
+    const Reference unknown[],
     size_t unknowns,
-    const fmi2ValueReference known[],
+    const Reference known[],
     size_t knowns,
-    const fmi2Real change[],
-    fmi2Real result[])
+    const double change[],
+    double result[])
 {
     (void)unknown;
     (void)unknowns;

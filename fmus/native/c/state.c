@@ -1,24 +1,41 @@
 /* Saved states: copies of the instance's memory, and their form as bytes. */
-#include "state.h"
+#include "instance.h"
 
 #include <string.h>
 
-fmi2Status get_state(const Instance *instance, fmi2FMUstate *state)
+/* What goes before the memory in the bytes of a state: whether they are whole, and which build they are of. */
+typedef struct {
+    uint32_t checksum;
+    char guid[44];
+} Head;
+
+/* Copies the memory into a state, which is made if there is none yet. */
+static Status keep(const Instance *instance, const Memory *memory, void **state)
 {
     if (!*state)
-        *state = instance->callbacks.allocateMemory(1, sizeof(Memory));
+        *state = instance->host.allocate(1, sizeof *memory);
     if (!*state)
         return refuse(instance, "no memory for a state of the FMU");
-    memcpy(*state, &instance->memory, sizeof(Memory));
-    return fmi2OK;
+    memcpy(*state, memory, sizeof *memory);
+    return OK;
+}
+
+Status get_state(const Instance *instance, void **state)
+{
+    return keep(instance, &instance->memory, state);
+}
+
+void set_state(Instance *instance, const void *state)
+{
+    memcpy(&instance->memory, state, sizeof instance->memory);
 }
 
 /* CRC-32 of IEEE 802.3 over all but the checksum itself. */
-static uint32_t checksum_of(const SavedState *saved)
+static uint32_t checksum_of(const void *bytes, size_t size)
 {
-    const unsigned char *byte = (const unsigned char *)saved->guid, *end = (const unsigned char *)(saved + 1);
+    const unsigned char *byte = bytes, *end = byte + size;
     uint32_t sum = 0xFFFFFFFFU;
-    for (; byte < end; byte++) {
+    for (byte += sizeof sum; byte < end; byte++) {
         sum ^= *byte;
         for (int bit = 0; bit < 8; bit++)
             sum = (sum >> 1) ^ (0xEDB88320U & (0U - (sum & 1U)));
@@ -26,40 +43,48 @@ static uint32_t checksum_of(const SavedState *saved)
     return ~sum;
 }
 
-fmi2Status serialize_state(const Instance *instance, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
+size_t serialized_size(void)
 {
-    SavedState saved;
-    if (size < sizeof saved)
-        return refuse(
-            instance, "size = %lu is refused; a state takes %lu bytes", (unsigned long)size, (unsigned long)sizeof saved);
-    memset(&saved, 0, sizeof saved);
-    strncpy(saved.guid, model_guid, sizeof saved.guid - 1);
-    memcpy(&saved.memory, state, sizeof saved.memory);
-    saved.checksum = checksum_of(&saved);
-    memcpy(bytes, &saved, sizeof saved);
-    return fmi2OK;
+    return sizeof(Head) + sizeof(Memory);
 }
 
-fmi2Status deserialize_state(const Instance *instance, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
+Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size)
 {
-    SavedState saved;
-    if (size != sizeof saved)
+    const size_t needed = serialized_size();
+    if (size < needed)
         return refuse(
-            instance,
-            "the FMU state is refused: it has %lu bytes, one of this FMU has %lu",
-            (unsigned long)size,
-            (unsigned long)sizeof saved);
-    memcpy(&saved, bytes, sizeof saved);
-    const int64_t mode = saved.memory.mode;
-    const int known = mode == INSTANTIATED || mode == INITIALIZATION || mode == STEPPING || mode == TERMINATED;
-    if (saved.checksum != checksum_of(&saved) || !known)
-        return refuse(instance, "the FMU state is refused: its bytes are damaged");
-    if (strncmp(saved.guid, model_guid, sizeof saved.guid) != 0)
-        return refuse(instance, "the FMU state is refused: it was saved by another build than %s", model_guid);
-    if (!*state)
-        *state = instance->callbacks.allocateMemory(1, sizeof(Memory));
-    if (!*state)
-        return refuse(instance, "no memory for a state of the FMU");
-    memcpy(*state, &saved.memory, sizeof saved.memory);
-    return fmi2OK;
+            instance, "size = %lu is refused; a state takes %lu bytes", (unsigned long)size, (unsigned long)needed);
+    Head head;
+    memset(&head, 0, sizeof head);
+    strncpy(head.guid, model_guid, sizeof head.guid - 1);
+    memcpy(bytes, &head, sizeof head);
+    memcpy((char *)bytes + sizeof head, state, sizeof(Memory));
+    head.checksum = checksum_of(bytes, needed);
+    memcpy(bytes, &head.checksum, sizeof head.checksum);
+    return OK;
+}
+
+static int is_mode(int64_t mode)
+{
+    return mode == INSTANTIATED || mode == INITIALIZATION || mode == STEPPING || mode == TERMINATED;
+}
+
+Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state)
+{
+    Head head;
+    Memory memory;
+    if (size < sizeof head)
+        return refuse(instance, DAMAGED_STATE);
+    memcpy(&head, bytes, sizeof head);
+    head.guid[sizeof head.guid - 1] = '\0';
+    if (head.checksum != checksum_of(bytes, size))
+        return refuse(instance, DAMAGED_STATE);
+    if (strcmp(head.guid, model_guid) != 0)
+        return refuse(instance, FOREIGN_STATE(head.guid, model_guid));
+    if (size != serialized_size())
+        return refuse(instance, DAMAGED_STATE);
+    memcpy(&memory, (const char *)bytes + sizeof head, sizeof memory);
+    if (!is_mode(memory.mode))
+        return refuse(instance, DAMAGED_STATE);
+    return keep(instance, &memory, state);
 }

@@ -1,9 +1,19 @@
-/* Values by value reference, checked when they are set and computed when they are asked for. */
+/* Values by reference, checked when they are set and computed when they are asked for. */
 #include "instance.h"
 
 #include <string.h>
 
 static const char *const type_names[] = {"Real", "Integer", "Boolean", "String"};
+
+double *place_of(Values *values, const Variable *variable)
+{
+    return (double *)(void *)((char *)values + variable->offset);
+}
+
+double *rate_of(Input *du, const Variable *input)
+{
+    return (double *)(void *)((char *)du + (input->offset - offsetof(Values, u)));
+}
 
 void set_start_values(Memory *memory)
 {
@@ -11,23 +21,31 @@ void set_start_values(Memory *memory)
         *place_of(&memory->values, &variables[k]) = variables[k].start;
 }
 
-double *place_of(Values *values, const Variable *variable)
-{
-    return (double *)(void *)((char *)values + variable->offset);
-}
-
-const Variable *variable_of(const Instance *instance, fmi2ValueReference reference, Type type)
+const Variable *variable_of(const Instance *instance, Reference reference, Type type)
 {
     if (reference >= variable_count) {
-        refuse(
-            instance, "value reference %u is unknown; %s has 0 to %u", reference, model_name, variable_count - 1);
+        refuse(instance, UNKNOWN_REFERENCE(reference, model_name, variable_count - 1));
         return NULL;
     }
     const Variable *variable = &variables[reference];
     if (variable->type == type)
         return variable;
-    refuse(instance, "%s is of type %s, not %s", variable->name, type_names[variable->type], type_names[type]);
+    refuse(instance, WRONG_TYPE(variable->name, type_names[variable->type], type_names[type]));
     return NULL;
+}
+
+/* Whether there are arrays, and references to variables of one type in them; else they are refused. */
+static int are_of_type(
+    const Instance *instance, Type type, const Reference references[], size_t count, const void *values)
+{
+    if (count > 0 && !(references && values)) {
+        refuse(instance, "%u values of type %s, but an array is NULL", (unsigned)count, type_names[type]);
+        return 0;
+    }
+    for (size_t k = 0; k < count; k++)
+        if (!variable_of(instance, references[k], type))
+            return 0;
+    return 1;
 }
 
 /* Before the end of initialization mode the outputs are those of the state that would be started from. */
@@ -43,40 +61,27 @@ static void compute_outputs(Memory *memory)
     memory->outputs_known = 1;
 }
 
-static int has_arrays(
-    const Instance *instance, Type type, const fmi2ValueReference references[], size_t count, const void *values)
-{
-    if (count == 0 || (references && values))
-        return 1;
-    refuse(instance, "%u values of type %s, but an array is NULL", (unsigned)count, type_names[type]);
-    return 0;
-}
-
-fmi2Status get_values(Instance *instance, Type type, const fmi2ValueReference references[], size_t count, void *values)
+Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values)
 {
     Memory *memory = &instance->memory;
-    if (!has_arrays(instance, type, references, count, values))
-        return fmi2Error;
+    if (!are_of_type(instance, type, references, count, values))
+        return ERROR;
     for (size_t k = 0; k < count; k++) {
-        const Variable *variable = variable_of(instance, references[k], type);
-        if (!variable)
-            return fmi2Error;
+        const Variable *variable = &variables[references[k]];
         if (variable->causality == OUTPUT && !memory->outputs_known)
             compute_outputs(memory);
-    }
-    for (size_t k = 0; k < count; k++) {
-        const double value = *place_of(&memory->values, &variables[references[k]]);
+        const double value = *place_of(&memory->values, variable);
         if (type == REAL)
-            ((fmi2Real *)values)[k] = value;
+            ((double *)values)[k] = value;
         else
-            ((fmi2Integer *)values)[k] = (fmi2Integer)value;
+            ((int *)values)[k] = (int)value;
     }
-    return fmi2OK;
+    return OK;
 }
 
 static double value_at(Type type, const void *values, size_t k)
 {
-    return type == REAL ? ((const fmi2Real *)values)[k] : ((const fmi2Integer *)values)[k];
+    return type == REAL ? ((const double *)values)[k] : ((const int *)values)[k];
 }
 
 static const char *write_value(char text[NUMBER_LENGTH], Type type, double value)
@@ -92,55 +97,39 @@ static const char *write_value(char text[NUMBER_LENGTH], Type type, double value
 /* Whether a variable can be set to a value now; else it is refused. */
 static int is_allowed(const Instance *instance, const Variable *variable, double value)
 {
-    char text[NUMBER_LENGTH];
-    const char *name = variable->name;
     const int64_t mode = instance->memory.mode;
-    if (variable->causality == OUTPUT) {
-        refuse(instance, "%s is an output and cannot be set", name);
-        return 0;
-    }
-    if (mode == TERMINATED || (mode == STEPPING && variable->causality == PARAMETER)) {
+    const int late = mode == TERMINATED || (mode == STEPPING && variable->causality == PARAMETER);
+    const int good = value >= variable->minimum && value <= variable->maximum;
+    const char *name = variable->name;
+    char text[NUMBER_LENGTH];
+    if (variable->causality == OUTPUT)
+        refuse(instance, OUTPUT_SET(name));
+    else if (late)
+        refuse(instance, SET_TOO_LATE(name, write_value(text, variable->type, value)));
+    else if (good || (variable->causality == INPUT && copes_with_bad_input))
+        return 1;
+    else
         refuse(
             instance,
-            "%s = %s is refused; a parameter can be set until initialization mode is left, "
-            "an input until fmi2Terminate, and both again after fmi2Reset",
-            name,
-            write_value(text, variable->type, value));
-        return 0;
-    }
-    if (value >= variable->minimum && value <= variable->maximum)
-        return 1;
-    if (variable->causality == INPUT && copes_with_bad_input)
-        return 1;
-    refuse(
-        instance,
-        "%s = %s%s%s is refused; allowed is %s",
-        name,
-        write_value(text, variable->type, value),
-        *variable->unit ? " " : "",
-        variable->unit,
-        variable->allowed);
+            BAD_VALUE(name, write_value(text, variable->type, value), variable->unit, variable->allowed));
     return 0;
 }
 
-fmi2Status set_values(
-    Instance *instance, Type type, const fmi2ValueReference references[], size_t count, const void *values)
+Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values)
 {
     Memory *memory = &instance->memory;
-    if (!has_arrays(instance, type, references, count, values))
-        return fmi2Error;
-    for (size_t k = 0; k < count; k++) {
-        const Variable *variable = variable_of(instance, references[k], type);
-        if (!variable || !is_allowed(instance, variable, value_at(type, values, k)))
-            return fmi2Error;
-    }
+    if (!are_of_type(instance, type, references, count, values))
+        return ERROR;
+    for (size_t k = 0; k < count; k++)
+        if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
+            return ERROR;
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
         const double value = value_at(type, values, k);
         *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : value;
-        if (variable->causality == INPUT && memory->moving)
-            *(double *)(void *)((char *)&memory->du + (variable->offset - offsetof(Values, u))) = 0.0;
+        if (variable->causality == INPUT)
+            *rate_of(&memory->du, variable) = 0.0;
     }
     memory->outputs_known = 0;
-    return fmi2OK;
+    return OK;
 }

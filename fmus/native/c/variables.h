@@ -1,4 +1,4 @@
-/* The variables of the block as FMI shows them, numbered by value reference. */
+/* The variables of the block as its host sees them, numbered by value reference. */
 #ifndef VARIABLES_H
 #define VARIABLES_H
 
@@ -18,7 +18,7 @@ typedef enum { INPUT, OUTPUT, PARAMETER } Causality;
 
 typedef struct {
     const char *name;
-    const char *unit;    /* empty for none */
+    const char *unit;    /* after a space; empty for none */
     const char *allowed; /* what values it may have, in words */
     Type type;
     Causality causality;

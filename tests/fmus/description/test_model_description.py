@@ -8,7 +8,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from fmus.catalogue import FMUS
-from fmus.description.dependencies import Symbol, initial_dependencies, output_dependencies
+from fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
 from fmus.description.units import base_exponents
 from fmus.description.variables import interface
 
@@ -121,7 +121,7 @@ def test_an_output_changes_only_with_what_it_is_said_to_depend_on(name):
 
 def test_a_model_that_branches_on_data_is_caught():
     with pytest.raises(TypeError, match="must call `where`"):
-        max(Symbol(), Symbol())
+        max(Dependent(), Dependent())
 
 
 @every_fmu

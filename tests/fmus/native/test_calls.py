@@ -182,24 +182,6 @@ def test_messages_are_given_out_by_category(native, tmp_path):
         assert messages() == [True, True]
 
 
-@pytest.mark.parametrize(
-    ("damage", "said"),
-    [(lambda s: s[:-1], "bytes, one of this FMU has"), (lambda s: bytes([s[0] ^ 1]) + s[1:], "damaged")]
-    + [(lambda s, k=k: s[:k] + bytes([s[k] ^ 1]) + s[k + 1 :], "damaged") for k in (10, 100, -8)],
-)
-def test_a_damaged_state_is_refused_and_changes_nothing(native, tmp_path, damage, said):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(T_ref=40.0)
-        host.step(0.0, 0.01)
-        before = host.outputs()
-        state = host.fmu.getFMUstate()
-        saved = bytes(host.fmu.serializeFMUstate(state))
-        host.fmu.freeFMUstate(state)
-        assert said in host.refuses(host.fmu.deSerializeFMUstate, damage(saved))
-        assert host.outputs() == before
-        host.step(0.01, 0.01)
-
-
 @pytest.mark.parametrize("name", FMUS)
 def test_a_reset_instance_is_as_new(native, tmp_path, name):
     with opened(native / f"{name}.fmu", tmp_path) as host:

@@ -1,0 +1,74 @@
+/* A run: from its start through its steps to its end. */
+#include "instance.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+void begin(Instance *instance)
+{
+    memset(&instance->memory, 0, sizeof instance->memory);
+    set_start_values(&instance->memory);
+    instance->memory.mode = INSTANTIATED;
+}
+
+/* The name of the first of some modes. */
+static const char *mode_name(unsigned modes)
+{
+    static const char *const names[] = MODE_NAMES;
+    int k = 0;
+    while (!(modes >> k & 1U))
+        k++;
+    return names[k];
+}
+
+int in_mode(const Instance *instance, unsigned modes, const char *function)
+{
+    const unsigned mode = (unsigned)instance->memory.mode;
+    if (mode & modes)
+        return 1;
+    refuse(instance, WRONG_MODE(function, mode_name(mode), mode_name(modes)));
+    return 0;
+}
+
+Status set_start_time(Instance *instance, double start_time)
+{
+    char text[NUMBER_LENGTH];
+    if (!(fabs(start_time) <= DBL_MAX))
+        return refuse(instance, BAD_START_TIME(write_number(text, start_time)));
+    instance->memory.start_time = instance->memory.time = start_time;
+    return OK;
+}
+
+void leave_initialization(Instance *instance)
+{
+    Memory *memory = &instance->memory;
+    start(&memory->values.u, &memory->values.p, &memory->x);
+    memory->coming = memory->x;
+    memory->mode = STEPPING;
+}
+
+static Status check_step(Instance *instance, double time, double step_size)
+{
+    const double reached = instance->memory.time;
+    char text[NUMBER_LENGTH], text_reached[NUMBER_LENGTH];
+    if (!(step_size > 0.0 && step_size <= LONGEST_COMMUNICATION_STEP))
+        return discard(instance, BAD_STEP_SIZE(write_number(text, step_size), LONGEST_COMMUNICATION_STEP));
+    if (!(fabs(time - reached) <= TIME_TOLERANCE))
+        return discard(
+            instance, BAD_TIME(write_number(text, time), model_name, write_number(text_reached, reached)));
+    return check_moving_inputs(instance, step_size);
+}
+
+Status make_step(Instance *instance, double time, double step_size)
+{
+    Memory *memory = &instance->memory;
+    const Status status = check_step(instance, time, step_size);
+    memory->last_step = status;
+    if (status == OK) {
+        advance(memory, time - memory->start_time, step_size);
+        memory->time = time + step_size;
+        memory->outputs_known = 0;
+    }
+    return status;
+}

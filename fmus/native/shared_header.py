@@ -1,0 +1,76 @@
+"""shared.h: the limits, tolerances, names and sentences of Python, for C."""
+
+import ast
+import inspect
+import json
+from itertools import pairwise
+from string import Formatter
+from types import ModuleType
+from typing import Any
+
+from models.block import integrator, runner
+
+from .. import protocol
+
+HEADER = """/* What Python and C share, written by build_fmus.py from {modules}.
+
+A sentence takes its fields as text that is a format for printf and what goes into it. */
+#ifndef SHARED_H
+#define SHARED_H
+
+{definitions}
+
+#endif
+"""
+
+CONVERSIONS = {"": "%s", "d": "%u", "g": "%g"}
+"""For printf, by the format of a field; a field without one is text when it comes to C."""
+
+
+def shared_header() -> str:
+    """shared.h: every number, text and tuple of texts that those modules name in capitals."""
+    modules = (protocol, runner, integrator)
+    return HEADER.format(
+        modules=", ".join(module.__name__ for module in modules),
+        definitions="\n\n".join(text for module in modules for text in _definitions(module)),
+    )
+
+
+def _definitions(module: ModuleType) -> list[str]:
+    meanings = _meanings(module)
+    found = [(name, definition(name, value)) for name, value in vars(module).items() if name.isupper()]
+    return [f"/* {meanings[name]} */\n{text}" if name in meanings else text for name, text in found if text]
+
+
+def _meanings(module: ModuleType) -> dict[str, str]:
+    """What a module says below the assignment of a name."""
+    meanings = {}
+    for statements in pairwise(ast.parse(inspect.getsource(module)).body):
+        match statements:
+            case ast.Assign([ast.Name(name)]), ast.Expr(ast.Constant(str() as text)):
+                meanings[name] = inspect.cleandoc(text)
+    return meanings
+
+
+def definition(name: str, value: Any) -> str:
+    """The #define of a value; empty for one that is not for C."""
+    match value:
+        case int() | float():
+            return f"#define {name} {value!r}"
+        case str():
+            return _sentence(name, value)
+        case (str(), *_):
+            return f"#define {name} {{{', '.join(map(json.dumps, value))}}}"
+    return ""
+
+
+def _sentence(name: str, template: str) -> str:
+    """A macro whose parameters are the fields of the template."""
+    text, arguments = "", []
+    for literal, field, conversion, _ in Formatter().parse(template):
+        text += literal.replace("%", "%%")
+        if field is not None:
+            text += CONVERSIONS[conversion or ""]
+            arguments.append(field)
+    parameters = f"({', '.join(dict.fromkeys(arguments))})" if arguments else ""
+    return f"#define {name}{parameters} {', '.join([json.dumps(text), *arguments])}"

@@ -1,0 +1,52 @@
+"""What an FMU allows its host and how it refuses the rest: the same in both builds.
+
+Python takes the names in capitals from here, C from a header that is made of them (native/shared_header.py).
+A sentence is a format with named fields; `!r` is a number as Python writes it, `:d` a whole one from 0 on. What
+only one build can refuse is said where it is refused.
+"""
+
+from enum import IntEnum
+
+TIME_TOLERANCE = 1e-6
+"""In s: how far the host's time may be from the FMU's."""
+
+LONGEST_COMMUNICATION_STEP = 1000.0
+"""In s: a longer communication step is a mistake of the host, and would keep it waiting for ever."""
+
+
+class Mode(IntEnum):
+    """Where an instance is in the sequence of calls."""
+
+    INSTANTIATED = 0
+    INITIALIZATION = 1
+    STEPPING = 2
+    TERMINATED = 3
+
+
+MODE_NAMES = ("before initialization mode", "in initialization mode", "after initialization", "after termination")
+"""In the order of the modes."""
+
+LOG_ERROR, LOG_DISCARD = "logStatusError", "logStatusDiscard"
+
+LOG_CATEGORIES = {
+    LOG_ERROR: "a call that was refused, and why; nothing has changed",
+    LOG_DISCARD: "a step that was refused, and why; nothing has changed",
+}
+
+WRONG_MODE = "{function} is refused {mode}; its place is {place}"
+
+BAD_START_TIME = "startTime = {time!r} s is refused; allowed is any finite number"
+BAD_STEP_SIZE = "communicationStepSize = {size!r} s is refused; allowed is above 0 to {longest:g} s"
+BAD_TIME = "currentCommunicationPoint = {time!r} s is refused; {model} has been computed up to {reached!r} s"
+
+UNKNOWN_REFERENCE = "value reference {reference:d} is unknown; {model} has 0 to {last:d}"
+WRONG_TYPE = "{name} is of type {type}, not {asked}"
+OUTPUT_SET = "{name} is an output and cannot be set"
+SET_TOO_LATE = (
+    "{name} = {value!r} is refused; a parameter can be set until initialization mode is left, "
+    "an input until termination, and both again after a reset"
+)
+BAD_VALUE = "{name} = {value!r}{unit} is refused; allowed is {allowed}"
+
+DAMAGED_STATE = "the FMU state is refused: its bytes are damaged"
+FOREIGN_STATE = "the FMU state is refused: it was saved by {origin}, this is {build}"

@@ -1,0 +1,117 @@
+"""Both builds refuse the same call with the same sentence."""
+
+import math
+import re
+from collections.abc import Callable
+from string import Formatter
+from typing import Any, NamedTuple
+
+import pytest
+
+from fmus import protocol
+from tests.fmus.host import Host, opened
+
+Call = Callable[[Host], Any]
+
+
+def set_by(verb: str, **values: Any) -> Call:
+    return lambda host: getattr(host.fmu, verb)([host.variables[n].valueReference for n in values], [*values.values()])
+
+
+def get_by(verb: str, reference: int) -> Call:
+    return lambda host: getattr(host.fmu, verb)([reference])
+
+
+def step(time: float, step_size: float) -> Call:
+    return lambda host: host.step(time, step_size)
+
+
+def initialized(call: Call) -> Call:
+    return lambda host: (host.initialize(start_time=1.0), call(host))
+
+
+def terminated(call: Call) -> Call:
+    return initialized(lambda host: (host.fmu.terminate(), call(host)))
+
+
+def restored(change: Callable[[bytes], bytes]) -> Call:
+    return lambda host: host.fmu.setFMUstate(
+        host.fmu.deSerializeFMUstate(change(bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))))
+    )
+
+
+class Refusal(NamedTuple):
+    """A call, and the name of the sentence with which it is refused."""
+
+    sentence: str
+    call: Call
+    fmu: str = "MotorTorqueLoop"
+
+
+REFUSALS = [
+    *(
+        Refusal("BAD_VALUE", set_by("setReal", T_ref=value))
+        for value in (math.nan, -math.inf, 1e300, 2000.0000000000002)
+    ),
+    *(Refusal("BAD_VALUE", set_by("setReal", g_T=value)) for value in (-5e-324, math.inf)),
+    *(Refusal("BAD_VALUE", set_by("setInteger", seed=value)) for value in (-1, 1_000_001, -(2**31))),
+    Refusal("BAD_VALUE", initialized(set_by("setReal", T_ref=0.0, omega_1=1e9))),
+    Refusal("SET_TOO_LATE", initialized(set_by("setReal", tau=0.01))),
+    Refusal("SET_TOO_LATE", initialized(set_by("setInteger", seed=7))),
+    *(
+        Refusal("SET_TOO_LATE", initialized(set_by("setBoolean", recorded_load=value)), "TwoMassDriveline")
+        for value in (True, False)
+    ),
+    Refusal("SET_TOO_LATE", terminated(set_by("setReal", T_ref=1e-7))),
+    Refusal("SET_TOO_LATE", terminated(set_by("setInteger", counter=-3)), "DampingController"),
+    Refusal("OUTPUT_SET", set_by("setReal", T_mot=1.0)),
+    Refusal("OUTPUT_SET", terminated(set_by("setReal", T_mot=math.nan))),
+    Refusal("WRONG_TYPE", set_by("setReal", T_ref=math.nan, seed=1.0)),
+    Refusal("WRONG_TYPE", set_by("setInteger", T_ref=1)),
+    Refusal("WRONG_TYPE", set_by("setBoolean", tau=True)),
+    Refusal("WRONG_TYPE", set_by("setString", T_mot="1")),
+    *(Refusal("WRONG_TYPE", get_by(f"get{kind}", 0)) for kind in ("Integer", "Boolean", "String")),
+    Refusal("UNKNOWN_REFERENCE", get_by("getReal", 14)),
+    Refusal("UNKNOWN_REFERENCE", get_by("getBoolean", 2**32 - 1)),
+    Refusal("WRONG_MODE", step(0.0, 0.001)),
+    Refusal("WRONG_MODE", terminated(step(1.0, 0.001))),
+    Refusal("WRONG_MODE", lambda host: host.fmu.exitInitializationMode()),
+    Refusal("WRONG_MODE", initialized(lambda host: host.fmu.setupExperiment())),
+    Refusal("WRONG_MODE", initialized(lambda host: host.fmu.enterInitializationMode())),
+    Refusal("WRONG_MODE", terminated(lambda host: host.fmu.terminate())),
+    *(
+        Refusal("BAD_START_TIME", lambda host, time=time: host.fmu.setupExperiment(startTime=time))
+        for time in (math.nan, math.inf)
+    ),
+    *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size))) for size in (0.0, -0.0, 1000.0000000000001, math.nan)),
+    *(Refusal("BAD_TIME", initialized(step(time, 1e-3))) for time in (0.1 + 0.2, -math.inf)),
+    Refusal("DAMAGED_STATE", restored(lambda saved: saved[:-1])),
+    Refusal("DAMAGED_STATE", restored(lambda saved: b"\xff" * 5)),
+]
+
+
+def said(folder, unpacked, refusal):
+    with opened(folder / f"{refusal.fmu}.fmu", unpacked) as host:
+        return host.refuses(refusal.call, host)
+
+
+@pytest.fixture(scope="module")
+def unpacked(tmp_path_factory):
+    return {build: tmp_path_factory.mktemp(build) for build in ("python", "native")}
+
+
+@pytest.mark.parametrize("refusal", REFUSALS, ids=lambda refusal: refusal.sentence)
+def test_both_builds_say_the_same(built, native, unpacked, refusal):
+    in_python = said(built, unpacked["python"] / refusal.fmu, refusal)
+    in_c = said(native, unpacked["native"] / refusal.fmu, refusal)
+    assert in_c == in_python
+    parts = Formatter().parse(getattr(protocol, refusal.sentence))
+    assert re.fullmatch("".join(re.escape(text) + (".+" if field else "") for text, field, _, _ in parts), in_c)
+
+
+def test_every_sentence_is_said():
+    sentences = {
+        name for name, text in vars(protocol).items() if isinstance(text, str) and " " in text and name.isupper()
+    }
+    elsewhere = {"FOREIGN_STATE"}  # names the builds, see test_state.py
+    assert {refusal.sentence for refusal in REFUSALS} | elsewhere == sentences
