@@ -1,4 +1,4 @@
-"""The C source of a block: block.h and block.c, and variables.c with what the FMI functions know of it."""
+"""The C source of a block: block.h and block.c, and variables.c with what a host sees of it."""
 
 import re
 from typing import Any
@@ -124,7 +124,7 @@ def _lvalues(name: str, records: dict[str, Any]) -> list[str]:
     return [path.replace(f"{name}.", f"{name}->", 1) for path in paths(name, record)]
 
 
-VARIABLES = """/* {name}: its variables as FMI shows them, written by build_fmus.py from {module}. */
+VARIABLES = """/* {name}: its variables as its host sees them, written by build_fmus.py from {module}. */
 #include "variables.h"
 
 #include <stddef.h>

@@ -164,7 +164,7 @@ def test_time_counts_from_the_start_time(built, tmp_path):
 @pytest.mark.parametrize(
     ("samples", "shown", "made"),
     [(0.9989, 0, 1), (0.9991, 1, 1), (1.0009, 1, 1), (1.0011, 1, 2)],
-    ids="just before, as good as there, as good as not over, just over".split(", "),
+    ids=["just before", "as good as there", "as good as not over", "just over"],
 )
 def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built, tmp_path, samples, shown, made):
     """After a step of so many samples: ticks whose result shows, ticks that took the inputs of that step."""

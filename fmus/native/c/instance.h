@@ -1,4 +1,4 @@
-/* One instance of a block at work, whatever standard its host speaks: an adapter (fmi2.c) translates.
+/* One instance of a block at work, whatever standard its host speaks: an adapter translates.
 
 There is nothing outside instances, so several run side by side. */
 #ifndef INSTANCE_H

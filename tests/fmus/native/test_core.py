@@ -1,0 +1,16 @@
+"""The C is a core, and an adapter of the standard around it: another version of the standard is another adapter."""
+
+import pytest
+
+pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+from fmus.catalogue import FMUS
+from fmus.native.packaging import c_sources
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_the_adapter_alone_knows_fmi(name):
+    sources = c_sources(FMUS[name])
+    assert {"run.c", "shared.h", "variables.c", "operators.h"} <= set(sources)
+    knowing = {file for file, text in sources.items() if b"fmi" in text.lower()}
+    assert knowing == {"fmi2.c", "fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"}

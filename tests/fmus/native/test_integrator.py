@@ -1,0 +1,106 @@
+"""The integrator in C: what is said of the one in Python, of the same blocks, and the same numbers.
+
+It is compiled with functions of a block that call back into Python.
+"""
+
+import ctypes
+import subprocess
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+from fmus.native.compiler import FLAGS, host_compiler
+from fmus.native.packaging import C_FILES
+from fmus.native.shared_header import shared_header
+from fmus.native.tableau import step_header
+from models import two_mass_driveline as driveline
+from models.block.integrator import Integrator
+from models.block.types import ContinuousBlock
+from tests.models.block.test_integrator import *  # noqa: F403
+from tests.models.block.test_integrator import LIVELY, MakeIntegrator, P
+
+BLOCK = """
+typedef double real;
+typedef struct {{ real x[{states}]; }} State;
+typedef struct {{ real none; }} Input, Parameters;
+#define INDICATORS {indicators}
+extern double LONGEST_STEP;
+extern void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
+extern void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);
+"""
+
+RUN = """
+#include "integrator.h"
+double LONGEST_STEP;
+void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
+void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);
+void run(double duration, State *x);
+void run(double duration, State *x)
+{
+    const Problem problem = {0, 0, 0};
+    integrate(&problem, duration, x);
+}
+"""
+
+Numbers = ctypes.POINTER(ctypes.c_double)
+Function = ctypes.CFUNCTYPE(None, Numbers, ctypes.c_void_p, ctypes.c_void_p, Numbers)
+
+
+def compiled(folder: Path, states: int, indicators: int) -> ctypes.CDLL:
+    """integrator.c for blocks of that size."""
+    folder.joinpath("block.h").write_text(BLOCK.format(states=states, indicators=indicators))
+    folder.joinpath("run.c").write_text(RUN)
+    folder.joinpath("dop853.h").write_text(step_header())
+    folder.joinpath("shared.h").write_text(shared_header())
+    command = [host_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC", "-I.", f"-I{C_FILES}", "run.c"]
+    subprocess.run([*command, C_FILES / "integrator.c", "-o", "integrator.so", "-lm"], cwd=folder, check=True)
+    return ctypes.CDLL(str(folder / "integrator.so"))
+
+
+class CompiledIntegrator:
+    """`advance` of the integrator, as C does it."""
+
+    def __init__(self, library: Callable[[int, int], ctypes.CDLL], block: ContinuousBlock) -> None:
+        self._library, self._block = library, block
+
+    def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
+        make, size = self._block.State._make, len(x)
+
+        def called(function: Callable[..., Any]) -> Any:
+            def call(x: Any, _u: Any, _p: Any, result: Any) -> None:
+                for k, value in enumerate(function(make(x[:size]), u, p)):
+                    result[k] = value
+
+            return Function(call)
+
+        library = self._library(size, len(self._block.event_indicators(x, u, p)))
+        functions = {name: called(getattr(self._block, name)) for name in ("derivative", "event_indicators")}
+        for name, function in functions.items():
+            ctypes.c_void_p.in_dll(library, name).value = ctypes.cast(function, ctypes.c_void_p).value
+        ctypes.c_double.in_dll(library, "LONGEST_STEP").value = self._block.step_size
+        values = (ctypes.c_double * size)(*x)
+        library.run(ctypes.c_double(duration), values)
+        return make(values)
+
+
+@pytest.fixture(scope="module")
+def integrator(tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
+    """What those tests call the integrator of a block."""
+    library = cache(lambda *sizes: compiled(tmp_path_factory.mktemp("integrator"), *sizes))
+    return lambda block: CompiledIntegrator(library, block)
+
+
+@given(T_mot=st.floats(-200.0, 200.0), v=st.floats(-20.0, 20.0), duration=st.floats(1e-5, 0.05))
+def test_it_is_that_of_python_bit_by_bit(integrator: MakeIntegrator, T_mot: float, v: float, duration: float) -> None:
+    u, x = driveline.Input(T_mot=T_mot, T_brake=200.0), LIVELY._replace(v=v)
+    p = P._replace(recorded_load=False)
+    assert integrator(driveline.BLOCK).advance(x, u, p, duration) == Integrator(driveline.BLOCK).advance(
+        x, u, p, duration
+    )
