@@ -81,11 +81,12 @@ def timing(block: Block) -> str:
 
 
 def tables(block: Block) -> Iterator[tuple[str, list[tuple[str, ...]]]]:
-    """Title and rows of the table of inputs, of outputs and of parameters; the first row is the heading."""
+    """Title and rows of the tables of inputs, outputs, parameters, if there are any; the first row is the heading."""
     for causality in ("input", "output", "parameter"):
         heading = ("Name", "Unit", "Meaning", "Start", "Allowed")
         rows = [_cells(v) for v in interface(block) if v.causality == causality]
-        yield f"{causality.capitalize()}s", [heading[: len(rows[0])], *rows]
+        if rows:
+            yield f"{causality.capitalize()}s", [heading[: len(rows[0])], *rows]
 
 
 def _prose(docstring: str) -> str:

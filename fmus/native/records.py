@@ -1,9 +1,13 @@
 """The records of a block as C structs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from models.block.declaration import Real, Variable, variables
+from models.block.types import Block
+
+RECORDS = {"u": "Input", "p": "Parameters", "y": "Output", "x": "State"}
+"""What C calls the records of a block, by their letters."""
 
 
 class Names(NamedTuple):
@@ -15,6 +19,13 @@ class Names(NamedTuple):
 
 
 IN_FMU = Names()
+
+
+def records_of(block: Block) -> dict[str, Any]:
+    """One of each record of a block, by their letters."""
+    u, p = block.Input(), block.Parameters()
+    x = block.start(u, p)
+    return {"u": u, "p": p, "y": block.output(x, u, p), "x": x}
 
 
 def c_type(value: Any, names: Names) -> str:
@@ -42,32 +53,47 @@ def paths(name: str, value: Any) -> Iterator[str]:
             yield from paths(f"{name}[{k}]", item)
 
 
-def structs(record: tuple[Any, ...], names: Names = IN_FMU) -> Iterator[str]:
-    """The struct of a record, after those of the records in it."""
-    inner = {type(value): value for item in record for value in _records(item)}
-    for value in inner.values():
-        yield from structs(value, names)
+def structs(records: Mapping[str, Any], names: Names = IN_FMU) -> Iterator[str]:
+    """The structs of a block's records, each after those of the records in it, which have the names of their classes.
+
+    Raises:
+        ValueError: records of two classes would have one name.
+    """
+    written: dict[str, type] = {}
+    for letter, record in records.items():
+        for name, value in (*((type(inner).__name__, inner) for inner in _inner(record)), (RECORDS[letter], record)):
+            if name not in written:
+                yield _struct(name, value, names)
+            elif written[name] is not type(value):
+                raise ValueError(f"{name} is the name of two records; to C names are all that tells them apart")
+            written[name] = type(value)
+
+
+def _inner(value: Any) -> Iterator[Any]:
+    """The records with numbers in them that a record or a tuple holds, each after those that it holds."""
+    for item in value:
+        if isinstance(item, tuple):
+            yield from _inner(item)
+            if hasattr(item, "_fields") and any(paths("", item)):
+                yield item
+
+
+def _struct(name: str, record: Any, names: Names) -> str:
     declared = {variable.name: _comment(variable) for variable in variables(type(record))}
     fields = [
-        (f"{c_type(value, names)} {name}{extent(value)};", declared.get(name) or _meaning(value))
-        for name, value in zip(record._fields, record, strict=True)  # pyright: ignore[reportAttributeAccessIssue]
+        (f"{c_type(value, names)} {field}{extent(value)};", declared.get(field) or _meaning(value))
+        for field, value in zip(record._fields, record, strict=True)
+        if any(paths(field, value))
     ]
+    fields = fields or [(f"{names.real} none;", "in C a struct is not empty")]
     width = max(len(field) for field, _ in fields)
     lines = "\n".join(f"    {field:{width}}  /* {comment} */" for field, comment in fields)
-    yield f"typedef struct {{\n{lines}\n}} {names.struct}{type(record).__name__};"
+    return f"typedef struct {{\n{lines}\n}} {names.struct}{name};"
 
 
-def _records(value: Any) -> Iterator[Any]:
-    """Named tuples directly in an element of a record, one of each type."""
-    if hasattr(value, "_fields"):
-        yield value
-    elif isinstance(value, tuple):
-        yield from _records(value[0])
-
-
-def _meaning(value: Any) -> str:
+def _meaning(record: Any) -> str:
     """The first sentence of what a record within a record says of itself."""
-    return (type(value).__doc__ or "").split(".")[0]
+    return " ".join((type(record).__doc__ or "").partition(".")[0].split())
 
 
 def _comment(variable: Variable) -> str:

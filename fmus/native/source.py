@@ -8,12 +8,9 @@ from models.block.types import SampledBlock
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 from .arithmetic import Graph
-from .records import IN_FMU, Names, paths, structs
+from .records import IN_FMU, RECORDS, Names, paths, records_of, structs
 from .statements import DOUBLE, Precision, Statements
 from .trace import Traced, trace
-
-RECORDS = {"x": "State", "u": "Input", "p": "Parameters", "y": "Output", "next": "State"}
-"""Type of the argument or result of each name; a rate of change has that of what changes."""
 
 MEANINGS = {
     "start": "The state at the start, with the inputs of that instant.",
@@ -64,16 +61,13 @@ SOURCE = """/* {name}: arithmetic, written by build_fmus.py from {module}. */
 def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
     """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI."""
     block = fmu.block
-    u, p = block.Input(), block.Parameters()
-    x = block.start(u, p)
-    records = {"x": x, "u": u, "p": p, "y": block.output(x, u, p), "next": x}
-    traced = trace(block)
+    records, traced = records_of(block), trace(block)
     about = {"name": fmu.name, "description": block.description, "module": fmu.module}
     header = HEADER.format(
         **about,
         equations=fmu.equations.replace("*/", "* /").strip(),
         precision=precision,
-        structs="\n\n".join(text for record in "upyx" for text in structs(records[record])),
+        structs="\n\n".join(structs(records)),
         constants="\n".join(_constants(fmu, traced)),
         prototypes="\n".join(f"/* {MEANINGS[each.name]} */\n{head(each)};" for each in traced),
     )
@@ -92,8 +86,9 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
     ]
 
 
-def _record(name: str) -> str:
-    return RECORDS[name if name in RECORDS else name.removeprefix("d")]
+def _letter(name: str) -> str:
+    """The letter of the record that an argument or result is one of; a rate of change is one of what changes."""
+    return "x" if name == "next" else name.removeprefix("d")
 
 
 WIDTH = 118
@@ -102,14 +97,18 @@ WIDTH = 118
 
 def head(each: Traced, names: Names = IN_FMU) -> str:
     """The head of a function in C."""
-    arguments = [f"const {names.struct}{_record(name)} *{name}" for name in each.arguments]
-    result = f"{names.real} z[]" if each.result == "z" else f"{names.struct}{_record(each.result)} *{each.result}"
+
+    def pointer(name: str) -> str:
+        return f"{names.struct}{RECORDS[_letter(name)]} *{name}"
+
+    arguments = [f"const {pointer(name)}" for name in each.arguments]
+    result = f"{names.real} z[]" if each.result == "z" else pointer(each.result)
     line = f"void {names.function}{each.name}({', '.join([*arguments, result])})"
     return line if len(line) <= WIDTH else line.replace("(", "(\n    ").replace(", ", ",\n    ")
 
 
 def function(each: Traced, records: dict[str, Any], precision: Precision, names: Names = IN_FMU) -> str:
-    """A function in C; `records` holds one of each record that it reads or writes, by their names in RECORDS."""
+    """A function in C; `records` holds one of each record of its block, by their letters."""
     inputs = [_lvalues(name, records) for name in each.arguments]
     size = each.function.size1_out(0)
     outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
@@ -120,8 +119,7 @@ def function(each: Traced, records: dict[str, Any], precision: Precision, names:
 
 
 def _lvalues(name: str, records: dict[str, Any]) -> list[str]:
-    record = records[name if name in records else name.removeprefix("d")]
-    return [path.replace(f"{name}.", f"{name}->", 1) for path in paths(name, record)]
+    return [path.replace(f"{name}.", f"{name}->", 1) for path in paths(name, records[_letter(name)])]
 
 
 VARIABLES = """/* {name}: its variables as its host sees them, written by build_fmus.py from {module}. */

@@ -12,7 +12,7 @@ from models.block.types import SampledBlock
 
 from ..damping_controller import FMU
 from ..fmu import Fmu
-from .records import Names, structs
+from .records import Names, records_of, structs
 from .source import MEANINGS, function, head
 from .statements import DOUBLE, SINGLE, Precision, constant
 from .trace import trace
@@ -68,10 +68,7 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
         raise ValueError(f"{fmu.name} is a continuous block; only sampled ones run on a target")
     file = fmu.module.rpartition(".")[2]
     names = Names(precision.real, fmu.name, f"{file}_")
-    u, p = block.Input(), block.Parameters()
-    x = block.start(u, p)
-    records = {"x": x, "u": u, "p": p, "y": block.output(x, u, p), "next": x}
-    traced = trace(block)
+    records, traced = records_of(block), trace(block)
     about = {"description": block.description, "module": fmu.module, "file": file, **names._asdict()}
     header = HEADER.format(
         **about,
@@ -79,14 +76,14 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
         guard=f"{file.upper()}_H",
         macro=file.upper(),
         sample_time=constant(block.sample_time, precision),
-        structs="\n\n".join(text for record in "upyx" for text in structs(records[record], names)),
+        structs="\n\n".join(structs(records, names)),
         enumerations="\n\n".join(_enumerations(block.Output, names)),
         prototypes="\n".join(f"/* {MEANINGS[each.name]} */\n{head(each, names)};" for each in traced),
     )
     source = SOURCE.format(
         **about,
         parameters="\n".join(
-            f"    .{name} = {constant(float(value), precision)}," for name, value in p._asdict().items()
+            f"    .{name} = {constant(float(value), precision)}," for name, value in records["p"]._asdict().items()
         ),
         functions="\n\n".join(function(each, records, precision, names) for each in traced),
     )

@@ -107,8 +107,9 @@ static double excursion(int n, const Problem *problem, const Start *from, double
 
 /* Shortest step (to LOCATION_TOLERANCE) that ends beyond zero n; one of length `far` does.
 
-Regula falsi as modified by Illinois: when the same end moves twice, the value at the other counts half. Three
-steps without halving the bracket (an indicator on whose zero a block at rest lies is flat there) are followed by a bisection. */
+The Illinois variant of regula falsi (M. Dowell, P. Jarratt, BIT 11, 1971): when the same end moves twice, the value at
+the other counts half. Three steps without halving the bracket (an indicator on whose zero a block at rest lies is flat
+there) are followed by a bisection. */
 static double locate(int n, const Problem *problem, const Start *from, double far, int side)
 {
     double near = 0.0;
