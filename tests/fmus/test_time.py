@@ -173,7 +173,7 @@ def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built,
     first, then = (block.Input(T_driver=torque) for torque in (20.0, 60.0))
     p = block.Parameters()
     states = [block.start(block.Input(), p)]
-    for k in range(4):
+    for k in range(2):
         states.append(block.update(states[k], first if k < made else then, p))
     with opened(built / "DampingController.fmu", tmp_path) as host:
         host.initialize()
@@ -181,8 +181,8 @@ def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built,
         host.step(0.0, samples * T_S)
         assert tuple(host.outputs().values()) == tuple(block.output(states[shown], first, p))
         host.set(T_driver=then.T_driver)
-        host.step(samples * T_S, (4.0 - samples) * T_S)
-        assert tuple(host.outputs().values()) == tuple(block.output(states[4], then, p))
+        host.step(samples * T_S, (2.0 - samples) * T_S)
+        assert tuple(host.outputs().values()) == tuple(block.output(states[2], then, p))
 
 
 @pytest.mark.parametrize("step_size", [0.0, -0.001, math.nextafter(1000.0, math.inf), 1e300, math.nan, math.inf])

@@ -1,6 +1,7 @@
 """Calls out of place, arguments that make no sense, messages: answered with an error, never with a crash."""
 
 import ctypes
+import zlib
 
 import pytest
 from fmpy.fmi1 import FMICallException
@@ -180,6 +181,15 @@ def test_messages_are_given_out_by_category(native, tmp_path):
             host.fmu.setDebugLogging, True, ["logEvents"]
         )
         assert messages() == [True, True]
+
+
+@pytest.mark.parametrize("change", [lambda body: body[:-32] + bytes([3]) + body[-31:], lambda body: body + bytes(8)])
+def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checksum(native, tmp_path, change):
+    """With a mode that does not exist; with more in it than there is."""
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        body = change(bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:])
+        forged = zlib.crc32(body).to_bytes(4, "little") + body
+        assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, forged)
 
 
 @pytest.mark.parametrize("name", FMUS)

@@ -4,6 +4,7 @@ It is compiled with functions of a block that call back into Python.
 """
 
 import ctypes
+import math
 import subprocess
 from collections.abc import Callable
 from functools import cache
@@ -24,7 +25,7 @@ from models import two_mass_driveline as driveline
 from models.block.integrator import Integrator
 from models.block.types import ContinuousBlock
 from tests.models.block.test_integrator import *  # noqa: F403
-from tests.models.block.test_integrator import LIVELY, MakeIntegrator, P
+from tests.models.block.test_integrator import LIVELY, Body, MakeIntegrator, Nothing, P, block
 
 BLOCK = """
 typedef double real;
@@ -104,3 +105,21 @@ def test_it_is_that_of_python_bit_by_bit(integrator: MakeIntegrator, T_mot: floa
     assert integrator(driveline.BLOCK).advance(x, u, p, duration) == Integrator(driveline.BLOCK).advance(
         x, u, p, duration
     )
+
+
+@given(at=st.floats(0.001, 0.099), slope=st.floats(0.0, 100.0), power=st.sampled_from([0, 1, 3, 9]))
+def test_it_looks_for_a_crossing_where_python_does(
+    integrator: MakeIntegrator, at: float, slope: float, power: int
+) -> None:
+    def looked_at(make: MakeIntegrator) -> list[float]:
+        seen = []
+
+        def indicator(x: Body) -> float:
+            seen.append(x.x)
+            return math.copysign(abs(x.x - at) ** power, x.x - at)
+
+        curved = block(lambda x, u, p: Body(1.0 + slope * x.x, 0.0, 0.0), indicator)
+        make(curved).advance(Body(0.0, 0.0, 0.0), Nothing(), Nothing(), 0.1)
+        return seen
+
+    assert set(looked_at(integrator)) == set(looked_at(Integrator))

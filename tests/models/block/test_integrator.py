@@ -192,6 +192,17 @@ def test_a_step_begun_by_rounding_alone_is_not_made(integrator: MakeIntegrator, 
     assert evaluations(integrator, moving, Body(0.0, 0.0, 0.0), steps * moving.step_size)[1] == 12 * made
 
 
+def test_what_is_left_of_a_step_behind_a_crossing_is_made_down_to_a_tenth_of_a_picosecond(
+    integrator: MakeIntegrator,
+) -> None:
+    draw, missing = random.Random(1), []
+    passing = integrator(block(lambda x, u, p: Body(1.0, 0.0, 0.0), lambda x: math.copysign(1.0, x.x - at)))
+    for _ in range(100):
+        at = 0.1 - draw.uniform(0.0, 4e-13)
+        missing.append(0.1 - passing.advance(Body(0.0, 0.0, 0.0), Nothing(), Nothing(), 0.1).x)
+    assert 0.6e-13 < max(missing) < 1.001e-13
+
+
 @pytest.mark.parametrize(("kinks", "exact"), [(16, True), (17, False)])
 def test_sixteen_crossings_are_located_in_one_step(integrator: MakeIntegrator, kinks: int, exact: bool) -> None:
     """`beyond` is the integral of the height above the last of them."""
