@@ -14,7 +14,7 @@ void advance(Memory *memory, double elapsed, double duration)
         memory->x = memory->coming;
         update(&memory->x, &values->u, &values->p, &memory->coming);
     }
-    if (due - samples <= TICK_TOLERANCE)
+    if (memory->ticks - samples <= TICK_TOLERANCE)
         memory->x = memory->coming;
 }
 

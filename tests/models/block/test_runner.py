@@ -1,5 +1,9 @@
-"""How time passes: a sampled block ticks at k T_s whatever the steps, and a run goes on where it was taken up."""
+"""How time passes: a sampled block ticks at k T_s whatever the steps, and a run goes on where it was taken up.
 
+tests/fmus/native/test_runner.py has the same said of the ticks in C.
+"""
+
+from collections.abc import Callable
 from typing import Annotated, NamedTuple
 
 import pytest
@@ -18,9 +22,9 @@ class Number(NamedTuple):
     n: Annotated[float, Real("1", "a number")] = 0.0
 
 
-def counter(T_s: float) -> Runner:
-    """At its start: adds its input once every tick."""
-    block = SampledBlock(
+def counting(T_s: float) -> SampledBlock:
+    """Adds its input once every tick."""
+    return SampledBlock(
         name="Counter",
         description="Sum over the ticks",
         module=__name__,
@@ -33,7 +37,18 @@ def counter(T_s: float) -> Runner:
         update=lambda x, u, p: Number(x.n + u.n),
         sample_time=T_s,
     )
-    return runner(block, Number(), Number(100.0))
+
+
+START = Number(), Number(100.0)
+"""Input and parameters of a counter that begins at 100."""
+
+Counter = Callable[[float], Runner]
+
+
+@pytest.fixture(scope="module")
+def counter() -> Counter:
+    """Makes the runner of a counter with a sample time."""
+    return lambda T_s: runner(counting(T_s), *START)
 
 
 def shown(running: Runner) -> float:
@@ -49,19 +64,19 @@ def ticks(running: Runner) -> float:
 ONE = Number(1.0)
 
 
-def test_a_run_starts_with_the_state_of_the_start() -> None:
+def test_a_run_starts_with_the_state_of_the_start(counter: Counter) -> None:
     running = counter(1.0)
     assert (running.elapsed, running.x, shown(running)) == (0.0, Number(100.0), 100.0)
 
 
-def test_the_first_tick_is_made_in_the_first_step_with_its_inputs() -> None:
+def test_the_first_tick_is_made_in_the_first_step_with_its_inputs(counter: Counter) -> None:
     running = counter(1.0)
     running.advance(ONE, 0.25)
     running.advance(Number(50.0), 0.5)
     assert (shown(running), ticks(running)) == (100.0, 1.0)
 
 
-def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later() -> None:
+def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later(counter: Counter) -> None:
     running, seen = counter(1.0), []
     for k in range(8):
         running.advance(Number(10.0**k), 0.5)
@@ -69,7 +84,7 @@ def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sam
     assert seen == [0.0, 1.0, 1.0, 101.0, 101.0, 10101.0, 10101.0, 1010101.0]
 
 
-def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held() -> None:
+def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter: Counter) -> None:
     running = counter(1.0)
     running.advance(ONE, 1.5)
     running.advance(Number(10.0), 5.0)
@@ -78,7 +93,9 @@ def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held() -> None:
 
 
 @pytest.mark.parametrize("samples", [1.0, 7.0, 300.0])
-def test_a_tick_within_a_thousandth_of_a_sample_behind_the_end_of_a_step_is_at_it(samples: float) -> None:
+def test_a_tick_within_a_thousandth_of_a_sample_behind_the_end_of_a_step_is_at_it(
+    counter: Counter, samples: float
+) -> None:
     """What was computed a sample before shows, and the tick itself is left to the step that begins there."""
     at, before = counter(1.0), counter(1.0)
     at.advance(ONE, samples - 0.9e-3)
@@ -88,7 +105,9 @@ def test_a_tick_within_a_thousandth_of_a_sample_behind_the_end_of_a_step_is_at_i
 
 
 @pytest.mark.parametrize("samples", [1.0, 7.0, 300.0])
-def test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_it(samples: float) -> None:
+def test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_it(
+    counter: Counter, samples: float
+) -> None:
     at, after = counter(1.0), counter(1.0)
     at.advance(ONE, samples + 0.9e-3)
     after.advance(ONE, samples + 1.1e-3)
@@ -97,7 +116,7 @@ def test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_i
 
 
 @given(steps=st.lists(st.floats(1e-3, 20.0), min_size=1, max_size=30), T_s=st.sampled_from([0.001, 0.002, 0.5, 3.0]))
-def test_ticks_do_not_depend_on_the_steps(steps: list[float], T_s: float) -> None:
+def test_ticks_do_not_depend_on_the_steps(counter: Counter, steps: list[float], T_s: float) -> None:
     pieces, whole = counter(T_s), counter(T_s)
     for step in steps:
         pieces.advance(ONE, step * T_s)
@@ -105,7 +124,7 @@ def test_ticks_do_not_depend_on_the_steps(steps: list[float], T_s: float) -> Non
     assert pieces.memory == whole.memory
 
 
-def test_a_clock_put_back_makes_no_tick_twice() -> None:
+def test_a_clock_put_back_makes_no_tick_twice(counter: Counter) -> None:
     running, seen = counter(1.0), []
     running.advance(ONE, 1.002)
     running.elapsed = 0.995
@@ -116,7 +135,7 @@ def test_a_clock_put_back_makes_no_tick_twice() -> None:
     assert ticks(running) == 2.0
 
 
-def test_a_clock_put_forward_skips_no_tick() -> None:
+def test_a_clock_put_forward_skips_no_tick(counter: Counter) -> None:
     running = counter(1.0)
     running.advance(ONE, 0.5)
     running.elapsed = 3.25
