@@ -5,7 +5,7 @@ Sensor noise would otherwise rattle the motor of a standing car in its gap.
 
 from typing import Any
 
-from ..block.operators import clip, logical_and, minimum, where
+from ..block.operators import logical_and, maximum, minimum, where
 
 
 def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
@@ -28,4 +28,4 @@ def share(quiet: Any, p: Any) -> Any:
 
     Written so that it is exactly 1 at complete rest, whatever the rounding.
     """
-    return clip(1.0 - (longest(p) - quiet) / p.t_fade, 0.0, 1.0)
+    return maximum(1.0 - (longest(p) - quiet) / p.t_fade, 0.0)
