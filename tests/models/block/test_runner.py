@@ -84,11 +84,12 @@ def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sam
     assert seen == [0.0, 1.0, 1.0, 101.0, 101.0, 10101.0, 10101.0, 1010101.0]
 
 
-def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter: Counter) -> None:
-    running = counter(1.0)
-    running.advance(ONE, 1.5)
-    running.advance(Number(10.0), 5.0)
-    assert (running.elapsed, shown(running)) == (6.5, 100.0 + 1.0 + 1.0 + 4.0 * 10.0)
+@pytest.mark.parametrize("T_s", [0.25, 1.0, 4.0])
+def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter: Counter, T_s: float) -> None:
+    running = counter(T_s)
+    running.advance(ONE, 1.5 * T_s)
+    running.advance(Number(10.0), 5.0 * T_s)
+    assert (running.elapsed, shown(running)) == (6.5 * T_s, 100.0 + 1.0 + 1.0 + 4.0 * 10.0)
     assert ticks(running) == 2.0 + 5.0 * 10.0
 
 
