@@ -24,8 +24,7 @@ from rich.table import Table
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.master import loaded
 from harness.cosimulation.steps import MakeSteps, interpreted
-from harness.cosimulation.system import PLANTS, System, loop
-from harness.cosimulation.wires import Scheme
+from harness.cosimulation.system import PLANTS, Scheme, System, loop
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.signals import lines
 from harness.simulate import signals

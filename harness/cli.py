@@ -15,6 +15,7 @@ from typing import NoReturn
 
 from .errors import DrivelineError
 from .names import nearest
+from .progress import hidden
 
 COMMANDS = {
     "build": "build the FMUs",
@@ -128,7 +129,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     args = parser().parse_args(arguments)
     try:
-        return command(args.command).run(args)
+        with hidden(getattr(args, "quiet", False) or getattr(args, "json", False)):
+            return command(args.command).run(args)
     except BrokenPipeError:
         # the reader has gone; nothing may be flushed to it at exit either
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

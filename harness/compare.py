@@ -4,14 +4,13 @@ The runs know nothing of each other and are spread over the cores; what comes ba
 of the cases, whatever finishes first.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .cosimulation.system import BUILD
 from .errors import DrivelineError
 from .manoeuvres.catalogue import MANOEUVRES
 from .many import run_many
@@ -78,48 +77,22 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(
-    case: Case,
-    seed: int,
-    folder: Path,
-    fmus: Path = BUILD,
-    build: str | None = None,
-    parameters: Mapping[str, float] | None = None,
-) -> Outcome:
-    """Simulates a case, writes its signals at the controller's samples to `folder` and evaluates it."""
+def run_case(case: Case, output: Path, **settings: Any) -> Outcome:
+    """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
-    results = simulate(
-        manoeuvre,
-        plant=case.plant,
-        control=case.control,
-        parameters=parameters,
-        seed=seed,
-        folder=fmus,
-        build=build,
-    )
-    write_csv(at_samples(results), folder / f"{case.file_name}.csv")
+    results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings)
+    write_csv(at_samples(results), output / f"{case.file_name}.csv")
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
-def run_cases(
-    todo: Sequence[Case],
-    seed: int,
-    folder: Path,
-    fmus: Path = BUILD,
-    build: str | None = None,
-    parameters: Mapping[str, float] | None = None,
-) -> list[Outcome]:
+def run_cases(todo: Sequence[Case], output: Path, **settings: Any) -> list[Outcome]:
     """Runs the cases in parallel; their outcomes in the order of the cases.
 
     Args:
-        seed: of the noise of all runs.
-        folder: for the CSV files.
-        fmus: folder of the built FMUs.
-        build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
-        parameters: `instance.variable` -> value, in all runs.
+        output: folder for the CSV files.
+        settings: of all runs, further arguments of `harness.simulate.simulate`.
     """
-    run = partial(run_case, seed=seed, folder=folder, fmus=fmus, build=build, parameters=parameters)
-    return run_many(run, todo)
+    return run_many(partial(run_case, output=output, **settings), todo)
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

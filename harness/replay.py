@@ -1,6 +1,6 @@
 """A recorded drive, driven by the simulated vehicle without and with damping."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
-from .cosimulation.system import BUILD
 from .manoeuvres.manoeuvre import Manoeuvre
 from .manoeuvres.recording import Recording
 from .many import run_many
@@ -48,20 +47,9 @@ class Ride:
     signals: np.ndarray
 
 
-def ride(
-    manoeuvre: Manoeuvre,
-    recording: Recording,
-    plant: str,
-    control: bool,
-    seed: int = 1,
-    fmus: Path = BUILD,
-    build: str | None = None,
-    parameters: Mapping[str, float] | None = None,
-) -> Ride:
+def ride(manoeuvre: Manoeuvre, recording: Recording, plant: str, control: bool, **settings: Any) -> Ride:
     """Simulates the manoeuvre of a recording and evaluates it against the recording."""
-    results = simulate(
-        manoeuvre, plant=plant, control=control, parameters=parameters, seed=seed, folder=fmus, build=build
-    )
+    results = simulate(manoeuvre, plant=plant, control=control, **settings)
     signals = repack_fields(at_samples(results)[KEPT])
     metrics = evaluate(signals, manoeuvre)
     recorded = np.interp(signals["time"], recording.time - recording.time[0], recording.v)
@@ -74,22 +62,17 @@ def ride(
     return Ride(control, worth, signals)
 
 
-def replay(
-    manoeuvre: Manoeuvre,
-    recording: Recording,
-    plant: str,
-    seed: int = 1,
-    fmus: Path = BUILD,
-    build: str | None = None,
-    parameters: Mapping[str, float] | None = None,
-) -> tuple[Ride, Ride]:
+def replay(manoeuvre: Manoeuvre, recording: Recording, plant: str, **settings: Any) -> tuple[Ride, Ride]:
     """The rides without and with damping, at the same time on two cores.
+
+    Args:
+        settings: of both, further arguments of `harness.simulate.simulate`.
 
     Raises:
         MissingExtra: the package that counts load cycles is not installed.
     """
     require_counting()
-    one = partial(ride, manoeuvre, recording, plant, seed=seed, fmus=fmus, build=build, parameters=parameters)
+    one = partial(ride, manoeuvre, recording, plant, **settings)
     undamped, damped = run_many(one, (False, True), workers=2, label=recording.name)
     return undamped, damped
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from .cosimulation.row import Source
 from .cosimulation.runs import run
-from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, loop
-from .cosimulation.wires import Scheme
+from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, loop
 from .manoeuvres.manoeuvre import Manoeuvre
 
 

@@ -19,8 +19,7 @@ from models.block.types import Block
 
 from ..cosimulation.row import Source
 from ..cosimulation.runs import run
-from ..cosimulation.system import NATIVE, System, loop
-from ..cosimulation.wires import Scheme
+from ..cosimulation.system import NATIVE, Scheme, System, loop
 from ..manoeuvres.catalogue import KMH
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..simulate import signals, start

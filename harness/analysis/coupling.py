@@ -13,8 +13,7 @@ import numpy as np
 from models.controller.supervision import T_S
 
 from ..cosimulation.runs import run
-from ..cosimulation.system import BUILD, loop
-from ..cosimulation.wires import Scheme
+from ..cosimulation.system import BUILD, Scheme, loop
 from ..manoeuvres.catalogue import KMH
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from ..cosimulation.wires import Scheme
+from ..cosimulation.system import Scheme
 from ..reports.markdown import markdown_table
 from .coupling import SIGNALS, Comparison
 

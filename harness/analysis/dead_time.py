@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cosimulation.system import BUILD
-from ..cosimulation.wires import Scheme
+from ..cosimulation.system import BUILD, Scheme
 from ..manoeuvres.signals import Signal
 from .coupling import NOISELESS, T_S, cosimulated, reference, short
 

@@ -7,7 +7,7 @@ from ..cosimulation.system import PLANTS
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
 from ..reports.table import legend
-from .options import NAMED, add_loop, add_output, add_plant, add_printing, built
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, settings
 from .printing import Printer
 
 LEGEND = legend(Metrics)
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help=f"only this manoeuvre (repeatable); default: {', '.join(COMPARED)}",
     )
-    add_plant(parser, action="append", help=f"only this plant, {NAMED} (repeatable)")
+    add_plant(parser, several=True)
     add_loop(parser)
     add_output(parser, "results/compare", "tables, figures and the signals of every run")
     add_printing(parser, table=True)
@@ -47,16 +47,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     plants = list(dict.fromkeys(args.plant or PLANTS))
-    builds = {plant: built(plant, args.fmus, args.build) for plant in plants}
+    builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
-    from ..progress import hidden
     from ..reports.terminal import print_table, runs_table
 
     out = Printer(args)
     todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
-    with hidden(out.silent):
-        outcomes = run_cases(todo, args.seed, args.output / "runs", args.fmus, args.build, dict(args.parameters))
+    outcomes = run_cases(todo, args.output / "runs", **settings(args))
     if not out.silent:
         print_table(runs_table([outcome.row for outcome in outcomes]))
     out.say(f"{LEGEND}\n")

@@ -1,47 +1,59 @@
 """The options that several commands have, each with its check, and how they are read."""
 
 import argparse
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 from shlex import quote
 from typing import Any
 
-from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLANTS, chosen_build, loop
+from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, chosen_build, loop
 from ..errors import DrivelineError
 
 LARGEST_SEED = 2**31 - 1
 """Of an FMI Integer."""
 
-NAMED = f"{' or '.join(PLANTS)}, or an FMU with the same interface"
-"""What --plant takes."""
+OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
+"""The blocks of the loop beside the plant, and what they are."""
 
-PLANT_COMPLETION = {
-    "bash": "_driveline_plants",
-    "zsh": "_driveline_plants",
-    "preamble": {
-        "bash": f"""\
-_driveline_plants() {{
-  compgen -W "{" ".join(PLANTS)}" -- $1
+
+def add_plant(parser: argparse.ArgumentParser, several: bool = False, default: str = PLANTS[0]) -> None:
+    """--plant; `several` can be given, or one with a default."""
+    block = f"{' or '.join(PLANTS)}, or an FMU with the same interface"
+    if several:
+        action = parser.add_argument(
+            "--plant", metavar="NAME|FILE", action="append", help=f"only this plant, {block} (repeatable)"
+        )
+    else:
+        action = parser.add_argument(
+            "--plant", metavar="NAME|FILE", default=default, help=f"{block} (default: %(default)s)"
+        )
+    action.complete = _names_or_fmus(PLANTS)  # type: ignore[attr-defined]
+
+
+def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
+    """What shtab is told to complete one of the names or the path of an FMU."""
+    function = f"_driveline_{names[0]}"
+    return {
+        "bash": function,
+        "zsh": function,
+        "preamble": {
+            "bash": f"""\
+{function}() {{
+  compgen -W "{" ".join(names)}" -- $1
   compgen -f -X "!*.fmu" -- $1
   compgen -d -- $1
 }}""",
-        "zsh": f"""\
-_driveline_plants() {{
-  _alternative "names:plant:({" ".join(PLANTS)})" "files:FMU:_files -g '*.fmu'"
+            "zsh": f"""\
+{function}() {{
+  _alternative "names:block:({" ".join(names)})" "files:FMU:_files -g '*.fmu'"
 }}""",
-    },
-}
-"""For shtab: the names of the plants, or files."""
-
-
-def add_plant(parser: argparse.ArgumentParser, **settings: Any) -> None:
-    """--plant, with further settings of the argument."""
-    action = parser.add_argument("--plant", metavar="NAME|FILE", **settings)
-    action.complete = PLANT_COMPLETION  # type: ignore[attr-defined]
+        },
+    }
 
 
 def add_loop(parser: argparse.ArgumentParser) -> None:
-    """What every run of the loop can be given: parameters, seed and the FMUs."""
+    """What every run of the loop can be given beside the plant; `settings` reads it."""
     parser.add_argument(
         "--set",
         action="append",
@@ -51,12 +63,24 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
         metavar="INSTANCE.PARAMETER=VALUE",
         help="sets a parameter, in SI units (repeatable)",
     )
-    parser.add_argument("--seed", type=seed, default=1, help="of the sensor noise (default: %(default)s)")
+    for place, meaning in OTHERS.items():
+        names = PLACES[place]
+        action = parser.add_argument(
+            f"--{place}",
+            metavar="NAME|FILE",
+            default=names[0],
+            help=f"{meaning}: an FMU in the place of %(default)s",
+        )
+        action.complete = _names_or_fmus(names)  # type: ignore[attr-defined]
     parser.add_argument(
-        "--build",
-        choices=BUILDS,
-        help=BUILD_HELP,
+        "--map",
+        action="append",
+        default=[],
+        metavar="INSTANCE.NAME=THEIRS",
+        help="what an FMU calls a variable of the loop, as in plant.T_gear=Shaft.tau; units are converted (repeatable)",
     )
+    parser.add_argument("--seed", type=seed, default=1, help="of the sensor noise (default: %(default)s)")
+    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     add_fmus(parser)
 
 
@@ -138,15 +162,38 @@ def folder(text: str) -> Path:
     return path
 
 
-def built(plant: str, folder: Path, build: str | None = None) -> str:
-    """The build that runs with that plant, which is the one asked for if there is one.
+def blocks(args: argparse.Namespace) -> dict[str, str]:
+    """The blocks of the loop beside the plant."""
+    return {place: getattr(args, place) for place in OTHERS}
+
+
+def settings(args: argparse.Namespace) -> dict[str, Any]:
+    """What the options of `add_loop` say, as arguments of `harness.simulate.simulate`.
 
     Raises:
-        WiringError: there is no such plant.
+        WiringError: a text of --map is not of the form that it must have.
+    """
+    from ..cosimulation.mapping import parsed
+
+    return {
+        "parameters": dict(args.parameters),
+        "seed": args.seed,
+        "folder": args.fmus,
+        "build": args.build,
+        "mapping": parsed(args.map),
+        **blocks(args),
+    }
+
+
+def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:
+    """The build that runs with that plant and the other blocks, which is the one asked for if there is one.
+
+    Raises:
+        WiringError: there is no such block.
         DrivelineError: FMUs of the project are missing; says which command makes them.
     """
-    build = build or chosen_build(plant, folder)
-    missing = [path for path in loop(plant, folder, build).instances.values() if not path.is_file()]
+    build = build or chosen_build(plant, folder, **others)
+    missing = [path for path in loop(plant, folder, build, **others).instances.values() if not path.is_file()]
     if missing and missing[0].is_relative_to(folder):
         where = "" if folder == BUILD else f" --output {quote(str(folder))}"
         only = f" --build {NATIVE}" if build == NATIVE else ""

@@ -8,7 +8,7 @@ from ..errors import DrivelineError
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
-from .options import NAMED, add_loop, add_output, add_plant, add_printing, built, seconds
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, seconds, settings
 from .printing import Printer
 
 LEGEND = legend(RideMetrics)
@@ -40,7 +40,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     file = parser.add_argument("recording", type=Path, metavar="RECORDING.csv", help="the recorded drive")
     file.complete = "file"  # type: ignore[attr-defined]
-    add_plant(parser, default=PLANTS[1], help=f"{NAMED} (default: %(default)s)")
+    add_plant(parser, default=PLANTS[1])
     parser.add_argument(
         "--held",
         type=seconds,
@@ -55,8 +55,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     if not args.recording.is_file():
         raise DrivelineError(f"there is no recording {args.recording}")
-    build = built(args.plant, args.fmus, args.build)
+    build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
+    from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
     from ..manoeuvres.road import RoadLoad, road
     from ..replay import records, replay, write
@@ -64,16 +65,17 @@ def run(args: argparse.Namespace) -> int:
 
     out = Printer(args)
     recording = read_recording(args.recording)
-    path = loop(args.plant, args.fmus, build).instances["plant"]
-    parameters = dict(args.parameters)
-    manoeuvre = road(recording, RoadLoad.of_fmu(path, parameters), args.held)
-    out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {path.stem}, {build} FMUs, without and with damping")
-    rides = replay(manoeuvre, recording, args.plant, args.seed, args.fmus, build, parameters)
+    given, plant = settings(args), Path(args.plant).stem
+    system = loop(args.plant, args.fmus, build, mapping=given["mapping"], **blocks(args))
+    load = RoadLoad.of_plant(fit(system).interfaces["plant"], given["parameters"])
+    manoeuvre = road(recording, load, args.held)
+    out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {plant}, {build} FMUs, without and with damping")
+    rides = replay(manoeuvre, recording, args.plant, **given)
     if not out.silent:
-        print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{path.stem} on {recording.name}"))
+        print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{plant} on {recording.name}"))
     out.say(f"{LEGEND}\n")
-    files = write(rides, recording, path.stem, args.output)
+    files = write(rides, recording, plant, args.output)
     for file in files:
         out.say(f"written: {file}")
-    out.document({"runs": records(rides, recording, path.stem), "files": files})
+    out.document({"runs": records(rides, recording, plant), "files": files})
     return 0

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
-from ..cosimulation.system import PLANTS
+from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import MANOEUVRES
-from .options import NAMED, add_loop, add_output, add_plant, add_printing, built, seconds
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, seconds, settings
 from .printing import Printer
 
 DESCRIPTION = """\
@@ -14,8 +14,9 @@ Runs the closed loop of controller, motor, plant and CAN bus through one manoeuv
 output of every FMU as CSV, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the
 output folder.
 
-The instances are controller, motor, plant and can. Another vehicle model takes the place of the plant
-by one word: the path of an FMU with the same inputs, outputs and the parameters v_0 and T_0.
+The instances are controller, motor, plant and can. An FMU of your own takes the place of any of them by
+one word, its path. The plant has the inputs and outputs of ours and the parameters v_0 and T_0; what an
+FMU calls otherwise, --map renames.
 """
 
 WIDTH = max(map(len, MANOEUVRES))
@@ -25,14 +26,14 @@ examples:
   driveline simulate --manoeuvre tipin15
   driveline simulate --plant ValidationVehicle --control off --manoeuvre launch
   driveline simulate --plant my_vehicle.fmu --output results/mine
+  driveline simulate --plant theirs.fmu --map plant.T_gear=Shaft.tau --map plant.omega_1=Motor.n
+  driveline simulate --controller my_controller.fmu
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
   driveline simulate --step 0.0005 --scheme jacobi
   driveline simulate --manoeuvre launch --plot
 
 manoeuvres:
 """ + "\n".join(f"  {m.name:{WIDTH}}  {m.description} ({m.duration:g} s)" for m in MANOEUVRES.values())
-
-SCHEMES = ("gauss-seidel", "jacobi")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="one of those below (default: %(default)s)",
     )
-    add_plant(parser, default=PLANTS[0], help=f"{NAMED} (default: %(default)s)")
+    add_plant(parser)
     parser.add_argument("--control", choices=("on", "off"), default="on", help="active damping (default: %(default)s)")
     add_loop(parser)
     parser.add_argument(
@@ -51,8 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--scheme",
-        choices=SCHEMES,
-        default=SCHEMES[0],
+        choices=[scheme.value for scheme in Scheme],
+        default=Scheme.GAUSS_SEIDEL.value,
         help="one FMU after the other, or all with the outputs of the beginning of the step (default: %(default)s)",
     )
     add_output(parser, "results/simulate", "the signals and the figure")
@@ -61,9 +62,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    build = built(args.plant, args.fmus, args.build)
+    build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.wires import Scheme
     from ..reports.csv_file import write_csv
     from ..simulate import simulate
 
@@ -75,12 +75,9 @@ def run(args: argparse.Namespace) -> int:
         manoeuvre,
         plant=args.plant,
         control=args.control == "on",
-        parameters=dict(args.parameters),
         step_size=args.step,
         scheme=Scheme(args.scheme),
-        seed=args.seed,
-        folder=args.fmus,
-        build=build,
+        **settings(args),
     )
     took = perf_counter() - began
     out.say(

@@ -22,8 +22,8 @@ from .compiled import LIBRARY, CompiledSteps
 from .instance import Instance, instantiated
 from .row import Source, instants, sampled
 from .steps import MakeSteps, interpreted
-from .system import System
-from .wires import Scheme, Wires, wired
+from .system import Scheme, System
+from .wires import Wires, wired
 from .wiring import Fit, fit, require, unknown
 
 LOG = logging.getLogger(__name__)

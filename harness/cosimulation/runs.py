@@ -9,8 +9,7 @@ import numpy as np
 from ..errors import SimulationError
 from .master import Loop, loaded
 from .row import Source
-from .system import System
-from .wires import Scheme
+from .system import Scheme, System
 
 MOST_KEPT = 8
 """Systems that are kept loaded at a time."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
@@ -35,6 +36,13 @@ PLANTS = PLACES["plant"]
 
 NameOrFile = str | Path
 """What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""
+
+
+class Scheme(Enum):
+    """When an output reaches the inputs it feeds."""
+
+    GAUSS_SEIDEL = "gauss-seidel"
+    JACOBI = "jacobi"
 
 
 class Connection(NamedTuple):

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from ctypes import c_double
-from enum import Enum
 from itertools import chain
 from typing import NamedTuple
 
@@ -10,14 +9,7 @@ from .calls import Call, advance, receives, sends
 from .instance import Instance
 from .row import Layout
 from .steps import MakeSteps, Steps
-from .system import Connection
-
-
-class Scheme(Enum):
-    """When an output reaches the inputs it feeds."""
-
-    GAUSS_SEIDEL = "gauss-seidel"
-    JACOBI = "jacobi"
+from .system import Connection, Scheme
 
 
 class Wires(NamedTuple):

@@ -8,7 +8,6 @@ the recorded one as far as the vehicle resembles the recorded car.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -47,23 +46,26 @@ class RoadLoad:
     c_wa: float
 
     @classmethod
-    def of_fmu(cls, path: Path, parameters: Mapping[str, float] | None = None) -> Self:
-        """The start values of the parameters of these names in the FMU of a plant.
+    def of_plant(cls, plant: Interface, parameters: Mapping[str, float] | None = None) -> Self:
+        """The start values of the parameters of these names.
 
         Args:
             parameters: `plant.name` -> value, which a run sets instead; others are ignored.
 
         Raises:
-            WiringError: the FMU lacks one of them.
+            WiringError: the plant lacks one of them.
         """
-        variables = Interface(path).variables.values()
-        starts = {v.name: float(v.start) for v in variables if v.type == "Real" and v.start}
+        starts = {
+            name: float(variable.start) * plant.factors.get(name, 1.0)
+            for name, variable in plant.variables.items()
+            if variable.type == "Real" and variable.start
+        }
         starts |= {name.removeprefix("plant."): value for name, value in (parameters or {}).items()}
         names = [field.name for field in fields(cls)]
         missing = [name for name in names if name not in starts]
         if missing:
             raise WiringError(
-                f"{path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(names)} "
+                f"{plant.path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(names)} "
                 f"of the vehicle to work out the brakes"
             )
         return cls(*(starts[name] for name in names))

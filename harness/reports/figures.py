@@ -70,7 +70,7 @@ DRIVE_PANELS = (
     Panel(
         "torque in N·m",
         (
-            Line("rim", r"$T_{rim}/i$, wheel torque", VERMILION),
+            Line("plant.T_rim", r"$T_{rim}/i$, wheel torque", VERMILION),
             Line("motor.T_mot", r"$T_{mot}$, motor", BLUE),
             Line("controller.T_driver", r"$T_{driver}$, demand", BLACK, "--", 0.8),
         ),
@@ -198,22 +198,22 @@ def _compare(
 
 
 def draw(axes: Axes, panel: Panel, run: np.ndarray, shown: np.ndarray) -> None:
-    """The lines of a panel, at the instants that are shown."""
+    """The lines of a panel, at the instants that are shown, less those that FMUs of others do not have."""
     for line in panel.lines:
-        axes.plot(
-            run["time"][shown],
-            _signal(run, line.column)[shown],
-            color=line.color,
-            ls=line.style,
-            lw=line.width,
-            label=line.label,
-        )
+        if line.column in (run.dtype.names or ()):
+            axes.plot(
+                run["time"][shown],
+                _signal(run, line.column)[shown],
+                color=line.color,
+                ls=line.style,
+                lw=line.width,
+                label=line.label,
+            )
 
 
 def _signal(run: np.ndarray, column: str) -> np.ndarray:
-    if column == "rim":
-        return run["plant.T_rim"] / _gear_ratio(run)
-    return run[column]
+    """A column; the torque at the rims as seen from the motor."""
+    return run[column] / _gear_ratio(run) if column == "plant.T_rim" else run[column]
 
 
 def _gear_ratio(run: np.ndarray) -> float:

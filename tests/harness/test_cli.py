@@ -13,6 +13,7 @@ from harness.cosimulation.system import PLANTS
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics
 from tests import ROOT
+from tests.foreign import build_car
 
 
 def answer(capsys, *arguments):
@@ -109,6 +110,7 @@ def test_completion_knows_commands_options_and_manoeuvres(capsys, shell):
         ("driveline replay --plant Val", {"ValidationVehicle"}),
         ("driveline check my", {"my.fmu"}),
         ("driveline simulate --plant my", {"my.fmu"}),
+        ("driveline compare --motor Mot", {"MotorTorqueLoop"}),
     ],
 )
 def test_bash_completes_words(capsys, tmp_path, typed, offered):
@@ -172,6 +174,28 @@ def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):
     assert {path.name for path in folder.iterdir()} == {
         f"TwoMassDriveline_tipin15_on.{kind}" for kind in ("csv", "png", "pdf")
     }
+
+
+def test_an_fmu_of_somebody_else_takes_its_place_under_its_own_names(simulate, tmp_path):
+    car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0), v=("speed", "km/h", 1 / 3.6))
+    renamed = ("--map", "plant.T_gear=Shaft.tau", "--map", "plant.v=speed")
+    (code, _, err), folder = simulate("--plant", str(car), *renamed, "--build", "python")
+    assert (code, err) == (0, "")
+    signals = read_csv(folder / "Theirs_tipin15_on.csv")
+    assert signals["plant.v"][0] == pytest.approx(15 / 3.6)
+    (code, _, err), _ = simulate("--plant", str(car), "--map", "plant.T_gear", "--build", "python")
+    assert code == 2
+    assert "plant.T_gear=Shaft.tau" in err
+
+
+@pytest.mark.parametrize("place", ["controller", "motor", "can"])
+def test_every_block_can_be_named(simulate, built, place):
+    names = {"controller": "DampingController", "motor": "MotorTorqueLoop", "can": "WheelSpeedCan"}
+    (code, _, err), _ = simulate(f"--{place}", str(built / f"{names[place]}.fmu"), "--step", "0.002")
+    assert (code, err) == (0, "")
+    (code, _, err), _ = simulate(f"--{place}", names[place][:-1])
+    assert code == 2
+    assert f"did you mean {names[place]}" in err
 
 
 def test_a_refused_parameter_is_named_with_exit_code_1(simulate):

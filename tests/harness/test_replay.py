@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from harness.cli import main
+from harness.cosimulation.interface import Interface
 from harness.manoeuvres.recording import read_recording
 from harness.manoeuvres.road import RoadLoad, road
 from harness.manoeuvres.town_drive import PATH
@@ -34,8 +35,8 @@ def replayed(built, short_drive, tmp_path_factory):
     """Folder of a replay of the short drive."""
     folder = tmp_path_factory.mktemp("replay")
     recording = read_recording(short_drive)
-    manoeuvre = road(recording, RoadLoad.of_fmu(built / "ValidationVehicle.fmu"), held=0.5)
-    rides = replay(manoeuvre, recording, "ValidationVehicle", fmus=built)
+    manoeuvre = road(recording, RoadLoad.of_plant(Interface(built / "ValidationVehicle.fmu")), held=0.5)
+    rides = replay(manoeuvre, recording, "ValidationVehicle", folder=built)
     write(rides, recording, "ValidationVehicle", folder)
     return folder
 
@@ -68,8 +69,8 @@ def test_figure_and_signals_every_10_ms_are_written(replayed):
 
 def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands(built):
     recording = read_recording(PATH)
-    manoeuvre = road(recording, RoadLoad.of_fmu(built / "TwoMassDriveline.fmu"))
-    result = ride(manoeuvre, recording, "TwoMassDriveline", control=False, fmus=built)
+    manoeuvre = road(recording, RoadLoad.of_plant(Interface(built / "TwoMassDriveline.fmu")))
+    result = ride(manoeuvre, recording, "TwoMassDriveline", control=False, folder=built)
     # the brakes leave out 300 N, so the car stops a little later than the recorded one
     assert result.metrics.speed_error_rms < 0.25 * np.sqrt(np.mean(recording.v**2))
     at_the_light = (result.signals["time"] > 29.0) & (result.signals["time"] < 32.5)
@@ -79,9 +80,9 @@ def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands(bu
 @pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")
 def test_a_real_car_pulls_away_in_simulation_too(built):
     recording = read_recording(TRIP)
-    load = RoadLoad.of_fmu(built / "ValidationVehicle.fmu")
+    load = RoadLoad.of_plant(Interface(built / "ValidationVehicle.fmu"))
     manoeuvre = replace(road(recording, load), duration=10.0)
-    signals = ride(manoeuvre, recording, "ValidationVehicle", control=False, fmus=built).signals
+    signals = ride(manoeuvre, recording, "ValidationVehicle", control=False, folder=built).signals
     assert np.abs(signals["plant.v"][signals["time"] < 2.0]).max() < 1e-3
     assert signals["plant.v"][-1] > 1.0
 

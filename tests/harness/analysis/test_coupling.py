@@ -7,7 +7,7 @@ from harness.analysis import coupling
 from harness.analysis.coupling import MANOEUVRES, NOISELESS, PLANTS, SIGNALS, T_S, compare, cosimulated, reference
 from harness.analysis.coupling_page import page
 from harness.analysis.dead_time import dead_times, lateness
-from harness.cosimulation.wires import Scheme
+from harness.cosimulation.system import Scheme
 
 every_scheme = pytest.mark.parametrize("scheme", Scheme)
 IN_CONTACT = MANOEUVRES[0]

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import loop
-from harness.cosimulation.wires import Scheme
+from harness.cosimulation.system import Scheme, loop
 
 STEPS, STEP_SIZE = 400, 1e-3
 T_DRIVER = 60.0

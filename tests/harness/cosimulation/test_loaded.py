@@ -8,8 +8,7 @@ import pytest
 
 from harness.cosimulation.master import loaded
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import PLANTS, Connection, System, loop
-from harness.cosimulation.wires import Scheme
+from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
 from harness.errors import SimulationError, WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
@@ -77,6 +76,14 @@ def test_each_run_has_its_own_results(relay):
         running.run(0.01, inputs={"a.u": 2.0})
     assert (first["a.u"] == 1.0).all()
     assert (first["a.y"][1:] == 1.0).all()
+
+
+@pytest.mark.parametrize("value", [0.5, 2.0**31, -(2.0**31), float("nan"), float("inf")])
+def test_what_an_integer_does_not_hold_is_refused(relay, value):
+    with loaded(System({"a": relay})) as running:
+        running.run(0.01, parameters={"a.count": 2.0**31 - 1})
+        with pytest.raises(WiringError, match=rf"a\.count = {value:g}: it must be a whole number".replace("+", r"\+")):
+            running.run(0.01, parameters={"a.count": value})
 
 
 def test_a_message_is_about_the_run_that_was_refused(relay):

@@ -11,8 +11,7 @@ from fmpy.util import read_csv
 
 from harness.cosimulation.row import instants
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import PLANTS, Connection, System
-from harness.cosimulation.wires import Scheme
+from harness.cosimulation.system import PLANTS, Connection, Scheme, System
 from harness.errors import SimulationError, WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.reports.csv_file import write_csv

@@ -8,8 +8,7 @@ import pytest
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.master import loaded
 from harness.cosimulation.steps import interpreted
-from harness.cosimulation.system import PLANTS, Connection, System, loop
-from harness.cosimulation.wires import Scheme
+from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
 from harness.errors import SimulationError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start

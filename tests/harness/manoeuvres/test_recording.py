@@ -1,8 +1,11 @@
 """Recorded drives: what is read, what is refused and where, and the road made of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from harness.cosimulation.interface import Interface
 from harness.manoeuvres.recording import RecordingError, read_recording
 from harness.manoeuvres.road import RoadLoad, brake_torque, road
 from tests import ROOT
@@ -118,8 +121,16 @@ def test_brakes_take_what_the_motor_pushes_too_much():
 
 def test_the_brakes_know_the_vehicle_as_the_run_sets_it(built):
     given = {"plant.m": 1900.0, "can.r": 0.4}
-    load = RoadLoad.of_fmu(built / "ValidationVehicle.fmu", given)
-    assert (load.m, load.r) == (1900.0, RoadLoad.of_fmu(built / "ValidationVehicle.fmu").r)
+    plant = Interface(built / "ValidationVehicle.fmu")
+    assert RoadLoad.of_plant(plant, given) == replace(RoadLoad.of_plant(plant), m=1900.0)
+
+
+def test_what_is_mapped_is_in_the_units_of_the_loop(built):
+    file = built / "ValidationVehicle.fmu"
+    # as if somebody else had given the mass in tonnes
+    plant = Interface(file)
+    plant.factors["m"] = 1000.0
+    assert RoadLoad.of_plant(plant).m == 1000.0 * RoadLoad.of_plant(Interface(file)).m
 
 
 def test_a_standing_car_is_held_until_its_driver_drives():

@@ -134,6 +134,12 @@ def test_the_same_runs_give_the_same_figures(plot, name, results, tmp_path):
     assert {file.suffix for file in files[0]} == {".png", ".pdf"}
 
 
+def test_what_another_controller_does_not_show_is_not_drawn(results, tmp_path):
+    shown = [name for name in results.dtype.names if name not in ("controller.T_gear_hat", "controller.T_damp")]
+    files = plot_step([results[shown]] * 2, MANOEUVRES["tipin15"], "Plant", tmp_path / "run")
+    assert all(file.stat().st_size > 0 for file in files)
+
+
 def test_a_replay_shorter_than_the_close_up_is_drawn(results, tmp_path):
     recorded = (np.array([0.0, 2.0]), np.array([1.0, 2.0]))
     assert all(file.exists() for file in plot_replay([results, results], recorded, "drive", tmp_path / "run"))
