@@ -5,10 +5,13 @@ from pathlib import Path
 
 from .builds import BUILDS, PLATFORMS, build_fmus
 from .catalogue import FMUS
+from .options import add_parameter_files
 
 DESCRIPTION = """\
 Builds the FMI 2.0 co-simulation FMUs of the loop, which the other commands run. The same sources give
 the same files, byte by byte.
+
+A vehicle file and the gains that `driveline design` makes of it become start values: the FMUs are that car.
 
 The native builds go into the folder native/ in that of the others. They need the extra `native` and a
 C compiler; where one of them is missing, they are left out unless they are asked for.
@@ -26,6 +29,7 @@ examples:
   {program} --output /srv/fmus         somewhere else
   {program} --build native             only the native ones
   {program} my_vehicle.py              the block in a file of your own, see docs/native.md
+  {program} --vehicle car.toml --parameters gains.toml
   {program} --platform all             native ones for Linux, Windows and macOS (extra `cross`)
 """
 
@@ -37,6 +41,7 @@ def add_arguments(parser: ArgumentParser, folder: Path) -> None:
     parser.add_argument(
         "--platform", choices=PLATFORMS, default="host", help="of the native build (default: %(default)s)"
     )
+    add_parameter_files(parser)
     parser.add_argument("--output", type=Path, default=folder, metavar="FOLDER", help="(default: %(default)s)")
     parser.add_argument("--quiet", action="store_true", help="print only what goes wrong")
 
@@ -47,6 +52,6 @@ def run(args: Namespace) -> None:
     Raises:
         BuildError: see `fmus.builds.build_fmus`.
     """
-    for path in build_fmus(args.names, args.output, args.build, args.platform):
+    for path in build_fmus(args.names, args.output, args.build, args.platform, args.vehicle, args.parameters):
         if not args.quiet:
             print(f"{path}  {path.stat().st_size / 1024:.0f} kB")

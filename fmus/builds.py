@@ -24,7 +24,14 @@ class NotPossible(BuildError):
     """Something that a build needs is missing; the text says what."""
 
 
-def build_fmus(names: Sequence[str], folder: Path, builds: str | None = None, platform: str = "host") -> Iterator[Path]:
+def build_fmus(
+    names: Sequence[str],
+    folder: Path,
+    builds: str | None = None,
+    platform: str = "host",
+    vehicle: Path | None = None,
+    parameters: Path | None = None,
+) -> Iterator[Path]:
     """Builds FMUs, one after the other; yields the path of each file.
 
     Args:
@@ -33,11 +40,14 @@ def build_fmus(names: Sequence[str], folder: Path, builds: str | None = None, pl
         folder: for the files; the native ones go to NATIVE_FOLDER in it.
         builds: one of BUILDS; None for each that is possible here.
         platform: of the native builds, one of PLATFORMS.
+        vehicle, parameters: files with start values of the car's and of the controller's parameters.
 
     Raises:
-        BuildError: a name is unknown, a build is not possible here, or a block of the user's own cannot be built.
+        BuildError: a name is unknown, a build is not possible here, a file is refused, or a block of the user's own
+            cannot be built.
     """
     from .catalogue import FMUS
+    from .parameter_files import read_files
 
     fmus = [_named(name) for name in dict.fromkeys(names or FMUS)]
     own = [fmu for fmu in fmus if fmu not in FMUS.values()]
@@ -45,9 +55,10 @@ def build_fmus(names: Sequence[str], folder: Path, builds: str | None = None, pl
         raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
     of_the_project = builders(builds, platform) if len(own) < len(fmus) else []
     of_own = [_guarded(builder) for builder in builders("native", platform)] if own else []
+    start_values = read_files(vehicle, parameters, own)
     for fmu in fmus:
         for build in of_own if fmu in own else of_the_project:
-            yield build(fmu, folder)
+            yield build(fmu.started_with(start_values), folder)
 
 
 def _named(name: str) -> Fmu:

@@ -1,9 +1,11 @@
 """What an FMU shows of a block."""
 
 import sys
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
 
-from models.block.types import Block
+from models.block.types import Block, with_start_values
 
 
 @dataclass(frozen=True)
@@ -13,11 +15,13 @@ class Fmu:
     Attributes:
         block: what it runs.
         stop_time, step_size: in s, of the experiment that a tool proposes.
+        start_values: of the parameters whose start values are not those that the block was declared with.
     """
 
     block: Block
     stop_time: float
     step_size: float = 0.001
+    start_values: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -32,3 +36,9 @@ class Fmu:
     def equations(self) -> str:
         """Docstring of that module."""
         return sys.modules[self.module].__doc__ or ""
+
+    def started_with(self, values: Mapping[str, Any]) -> Self:
+        """The FMU with those of the start values, by name, whose parameters it has."""
+        own = {name: values[name] for name in self.block.Parameters._fields if name in values}
+        block = with_start_values(self.block, own) if own else self.block
+        return replace(self, block=block, start_values={**self.start_values, **own})

@@ -11,7 +11,10 @@ from models.block.declaration import Enumeration, variables
 from models.block.types import SampledBlock
 
 from ..damping_controller import FMU
+from ..errors import ParameterFileError
 from ..fmu import Fmu
+from ..options import add_parameter_files
+from ..parameter_files import read_files
 from .records import Names, records_of, structs
 from .source import MEANINGS, function, head
 from .statements import DOUBLE, SINGLE, Precision, constant
@@ -115,9 +118,14 @@ def main() -> None:
     )
     parser.add_argument("--output", type=Path, default=Path("build/target"), help="folder (default: build/target)")
     parser.add_argument("--precision", choices=PRECISIONS, default="float", help="of its arithmetic (default: float)")
+    add_parameter_files(parser)
     arguments = parser.parse_args()
+    try:
+        fmu = FMU.started_with(read_files(arguments.vehicle, arguments.parameters))
+    except ParameterFileError as refusal:
+        parser.error(str(refusal))
     arguments.output.mkdir(parents=True, exist_ok=True)
-    for name, text in target_sources(FMU, PRECISIONS[arguments.precision]).items():
+    for name, text in target_sources(fmu, PRECISIONS[arguments.precision]).items():
         path = arguments.output / name
         path.write_text(text, encoding="utf-8")
         print(path)

@@ -26,6 +26,12 @@ class {name}(BlockSlave, Fmi2Slave):
     block = BLOCK
 '''
 
+OTHER_START_VALUES = """
+from .models.block.types import with_start_values
+
+{name}.block = with_start_values(BLOCK, {start_values})
+"""
+
 SCRIPT_TEXT = '''"""Main script of the FMU {name}; its text is run once for every instance."""
 
 from {package} import {name}
@@ -115,7 +121,7 @@ def _is_ours(module: str) -> bool:
 
 def package_name(fmu: Fmu, files: dict[str, bytes]) -> str:
     """Name of the package, unique to the content of its files."""
-    digest = hashlib.sha256(fmu.name.encode())
+    digest = hashlib.sha256(package_text(fmu, ""))
     for path, content in sorted(files.items()):
         digest.update(f"\0{path}\0{len(content)}\0".encode() + content)
     return f"driveline_{fmu.module.rpartition('.')[2]}_{digest.hexdigest()[:16]}"
@@ -123,7 +129,9 @@ def package_name(fmu: Fmu, files: dict[str, bytes]) -> str:
 
 def package_text(fmu: Fmu, pythonfmu: str) -> bytes:
     """`__init__.py` of the package, which takes its base class from the package `pythonfmu`."""
-    return PACKAGE_TEXT.format(name=fmu.name, module=fmu.module, pythonfmu=pythonfmu).encode()
+    text = PACKAGE_TEXT + OTHER_START_VALUES if fmu.start_values else PACKAGE_TEXT
+    start_values = dict(fmu.start_values)
+    return text.format(name=fmu.name, module=fmu.module, pythonfmu=pythonfmu, start_values=start_values).encode()
 
 
 def script_text(fmu: Fmu, package: str) -> bytes:

@@ -1,42 +1,71 @@
-"""`driveline design`: computes the controller's gains and stores them as its default parameters."""
+"""`driveline design`: computes the gains of the controller for a car."""
 
 import argparse
-import os
+from importlib.metadata import version
 from pathlib import Path
 
-NAME = "design"
-HELP = "compute the gains of the controller"
-
-STORED = Path("models/controller/gains.toml")
+from ..errors import DrivelineError
+from .options import add_printing
+from .printing import Printer
 
 DESCRIPTION = """\
-Solves the Riccati equations of the estimator and of the damping law for the weights stated in
-harness/analysis/design.py and writes the result to models/controller/gains.toml, from where the
-DampingController takes its default parameters. Run it in the root of the repository after a change of
-the weights or of the design model, then `driveline build`.
+Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its
+unit and meaning, or writes them to a file that the other commands take as --parameters. What the vehicle
+file does not name is that of the default car. docs/control.md says how the gains come about.
 """
 
 EXAMPLES = """\
 examples:
-  driveline design             store the gains
-  driveline design --show      only print them
+  driveline design --vehicle examples/cars/van.toml --output van_gains.toml
+  driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
+  driveline design                                          the gains for the default car, only printed
 """
+
+COMMENT = """\
+Gains of the DampingController for {car}, by `driveline design` (driveline-damping {version}).
+Drive train: {alone.frequency:.2f} Hz; damped: {damped.frequency:.2f} Hz, damping ratio {damped.damping_ratio:.2f}."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--show", action="store_true", help="print the gains and store nothing")
+    for option, meaning in (("--vehicle", "the car (default: that of all blocks)"), ("--output", "for the gains")):
+        action = parser.add_argument(option, type=Path, metavar="FILE.toml", help=meaning)
+        action.complete = "file"  # type: ignore[attr-defined]
+    add_printing(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    # here and not above: only the design needs the models
-    from ..analysis.design import design, stored
+    # here and not above: mistakes and help are answered without them
+    from fmus.errors import ParameterFileError
 
-    text = stored(design())
-    if args.show:
-        print(text, end="")
-        return 0
-    partial = STORED.with_suffix(".part")
-    partial.write_text(text)
-    os.replace(partial, STORED)
-    print(f"{STORED}  the build of DampingController takes its defaults from there")
+    from ..reports.files import write_text
+
+    try:
+        text = designed(args.vehicle)
+    except ParameterFileError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+    out = Printer(args)
+    if args.output is None:
+        out.say(text.rstrip())
+    else:
+        write_text(text, args.output)
+        out.say(f"gains: {args.output}")
     return 0
+
+
+def designed(vehicle: Path | None = None) -> str:
+    """The file of gains for the car of a vehicle file, by default for the default car.
+
+    Raises:
+        ParameterFileError: the vehicle file is refused.
+        DesignError: there is no controller for this car.
+    """
+    from fmus.parameter_files import read_vehicle
+
+    from ..analysis.closed_loop import swing
+    from ..analysis.design import design, gains_file, records
+
+    plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
+    gains = design(plant, motor, can)
+    alone, damped = swing(plant, motor, gains)
+    car = vehicle.name if vehicle else "the default car"
+    return gains_file(gains, COMMENT.format(car=car, version=version("driveline-damping"), alone=alone, damped=damped))

@@ -9,6 +9,7 @@ variable, its checks, the tables of the documentation) is read from here with `v
 
 import math
 from collections import namedtuple
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, get_type_hints
 
@@ -89,10 +90,25 @@ def merged(name: str, *records: Any) -> Any:
     """
     fields: dict[str, tuple[Any, Any]] = {}
     for record in records:
-        for field, hint in get_type_hints(record, include_extras=True).items():
-            declared = hint, record._field_defaults[field]
+        for field, declared in _fields(record).items():
             if fields.setdefault(field, declared) != declared:
                 raise TypeError(f"{record.__module__}.{record.__name__}.{field} is declared otherwise elsewhere")
+    return _record(name, fields)
+
+
+def with_defaults(record: Any, values: Mapping[str, Any]) -> Any:
+    """A NamedTuple class like this one with other start values, by the names of its fields."""
+    fields = {field: (hint, values.get(field, start)) for field, (hint, start) in _fields(record).items()}
+    return _record(record.__name__, fields)
+
+
+def _fields(record: Any) -> dict[str, tuple[Any, Any]]:
+    """Declaration and start value of each field."""
+    hints = get_type_hints(record, include_extras=True)
+    return {field: (hint, record._field_defaults[field]) for field, hint in hints.items()}
+
+
+def _record(name: str, fields: Mapping[str, tuple[Any, Any]]) -> Any:
     made = namedtuple(name, fields, defaults=[start for _, start in fields.values()])
     made.__annotations__ = {field: hint for field, (hint, _) in fields.items()}
     return made

@@ -12,9 +12,11 @@ and its output at k T_s <= t < (k+1) T_s is that of x(k): what it computes from 
 appears at (k+1) T_s.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+from .declaration import with_defaults
 
 
 def no_event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
@@ -77,3 +79,10 @@ class SampledBlock(_Block):
 
 
 Block = ContinuousBlock | SampledBlock
+
+AnyBlock = TypeVar("AnyBlock", bound=_Block)
+
+
+def with_start_values(block: AnyBlock, values: Mapping[str, Any]) -> AnyBlock:
+    """The block with other start values of the parameters of these names."""
+    return replace(block, Parameters=with_defaults(block.Parameters, values))
