@@ -39,9 +39,12 @@ Owners = Mapping[str, Collection[tuple[str, Variable]]]
 """For each parameter the FMUs that have it, and how each declares it."""
 
 
-def read_files(vehicle: Path | None, parameters: Path | None, own: Iterable[Fmu] = ()) -> dict[str, Any]:
+def read_files(
+    vehicle: Path | None, parameters: Path | None, own: Iterable[Fmu] = (), others: Collection[str] = ()
+) -> dict[str, Any]:
     """The entries of both files, of which either may be absent; see `read_vehicle` and `read_parameters`."""
-    return (read_vehicle(vehicle, own) if vehicle else {}) | (read_parameters(parameters) if parameters else {})
+    of_car = read_vehicle(vehicle, own, others) if vehicle else {}
+    return of_car | (read_parameters(parameters) if parameters else {})
 
 
 def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = ()) -> dict[str, Any]:

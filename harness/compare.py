@@ -4,7 +4,7 @@ The runs know nothing of each other and are spread over the cores; what comes ba
 of the cases, whatever finishes first.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,6 +22,9 @@ from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
 
 CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
+
+Settings = Mapping[str, Mapping[str, Any]]
+"""By plant, further arguments of `harness.simulate.simulate`."""
 
 
 class Case(NamedTuple):
@@ -77,22 +80,22 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(case: Case, output: Path, **settings: Any) -> Outcome:
+def run_case(case: Case, output: Path, settings: Settings) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
-    results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings)
+    results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings.get(case.plant, {}))
     write_csv(at_samples(results), output / f"{case.file_name}.csv")
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
-def run_cases(todo: Sequence[Case], output: Path, **settings: Any) -> list[Outcome]:
+def run_cases(todo: Sequence[Case], output: Path, settings: Settings) -> list[Outcome]:
     """Runs the cases in parallel; their outcomes in the order of the cases.
 
     Args:
         output: folder for the CSV files.
-        settings: of all runs, further arguments of `harness.simulate.simulate`.
+        settings: of the runs with each plant.
     """
-    return run_many(partial(run_case, output=output, **settings), todo)
+    return run_many(partial(run_case, output=output, settings=settings), todo)
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

@@ -19,7 +19,7 @@ ROOMS = {
     "fmus.description": {"fmus", "models.block"},
     "fmus.python": {"fmus", "fmus.description", "models.block"},
     "fmus.native": {"fmus", "fmus.description", "models.block"},
-    "fmus": {"fmus.python", "fmus.native", "models", "models.block"},
+    "fmus": {"fmus.description", "fmus.python", "fmus.native", "models", "models.block"},
     "": {"fmus"},
     "harness.cosimulation": {"harness"},
     "harness.manoeuvres": COSIMULATION,
@@ -27,7 +27,8 @@ ROOMS = {
     "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
     "harness.analysis": COSIMULATION
-    | {"harness.manoeuvres", "harness.reports", "fmus", "models", "models.block", "models.controller"},
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
+    | {"models", "models.block", "models.controller"},
     "harness": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"},
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"},

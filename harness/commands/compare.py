@@ -54,7 +54,8 @@ def run(args: argparse.Namespace) -> int:
 
     out = Printer(args)
     todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
-    outcomes = run_cases(todo, args.output / "runs", **settings(args))
+    given = {plant: settings(args, plant, build) for plant, build in builds.items()}
+    outcomes = run_cases(todo, args.output / "runs", given)
     if not out.silent:
         print_table(runs_table([outcome.row for outcome in outcomes]))
     out.say(f"{LEGEND}\n")

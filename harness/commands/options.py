@@ -7,7 +7,9 @@ from pathlib import Path
 from shlex import quote
 from typing import Any
 
-from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, chosen_build, loop
+from fmus.options import add_parameter_files
+
+from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, System, chosen_build, loop
 from ..errors import DrivelineError
 
 LARGEST_SEED = 2**31 - 1
@@ -59,10 +61,11 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         type=assignment,
-        dest="parameters",
+        dest="assignments",
         metavar="INSTANCE.PARAMETER=VALUE",
-        help="sets a parameter, in SI units (repeatable)",
+        help="sets a parameter, in SI units, whatever the files say (repeatable)",
     )
+    add_parameter_files(parser)
     for place, meaning in OTHERS.items():
         names = PLACES[place]
         action = parser.add_argument(
@@ -167,22 +170,43 @@ def blocks(args: argparse.Namespace) -> dict[str, str]:
     return {place: getattr(args, place) for place in OTHERS}
 
 
-def settings(args: argparse.Namespace) -> dict[str, Any]:
-    """What the options of `add_loop` say, as arguments of `harness.simulate.simulate`.
+def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]:
+    """What the options of `add_loop` say for a plant and a build, as arguments of `harness.simulate.simulate`.
 
     Raises:
         WiringError: a text of --map is not of the form that it must have.
+        DrivelineError: a file of parameters is refused.
     """
     from ..cosimulation.mapping import parsed
 
+    mapping = parsed(args.map)
+    system = loop(plant, args.fmus, build, mapping=mapping, **blocks(args))
     return {
-        "parameters": dict(args.parameters),
+        "parameters": _from_files(args, system) | dict(args.assignments),
         "seed": args.seed,
         "folder": args.fmus,
-        "build": args.build,
-        "mapping": parsed(args.map),
+        "build": build,
+        "mapping": mapping,
         **blocks(args),
     }
+
+
+def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
+    """`instance.parameter` -> value: what --vehicle and --parameters name, for every instance that has it."""
+    if args.vehicle is None and args.parameters is None:
+        return {}
+    from fmus.errors import ParameterFileError
+    from fmus.parameter_files import for_instances, read_files
+
+    from ..cosimulation.wiring import fit
+
+    interfaces = fit(system).interfaces
+    names = {name: {v.name for v in interfaces[name].of_causality("parameter")} for name in interfaces}
+    try:
+        values = read_files(args.vehicle, args.parameters, others=set().union(*names.values()))
+    except ParameterFileError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+    return for_instances(values, names)
 
 
 def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:

@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
 
     out = Printer(args)
     recording = read_recording(args.recording)
-    given, plant = settings(args), Path(args.plant).stem
+    given, plant = settings(args, args.plant, build), Path(args.plant).stem
     system = loop(args.plant, args.fmus, build, mapping=given["mapping"], **blocks(args))
     load = RoadLoad.of_plant(fit(system).interfaces["plant"], given["parameters"])
     manoeuvre = road(recording, load, args.held)

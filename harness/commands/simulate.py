@@ -28,6 +28,7 @@ examples:
   driveline simulate --plant my_vehicle.fmu --output results/mine
   driveline simulate --plant theirs.fmu --map plant.T_gear=Shaft.tau --map plant.omega_1=Motor.n
   driveline simulate --controller my_controller.fmu
+  driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
   driveline simulate --step 0.0005 --scheme jacobi
   driveline simulate --manoeuvre launch --plot
@@ -77,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
         control=args.control == "on",
         step_size=args.step,
         scheme=Scheme(args.scheme),
-        **settings(args),
+        **settings(args, args.plant, build),
     )
     took = perf_counter() - began
     out.say(

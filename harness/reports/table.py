@@ -28,12 +28,13 @@ SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.colum
 
 
 def cells(row: Row) -> list[str]:
-    """What the table says of a run; a metric that has no meaning for it is a dash."""
-    numbers = (_number(metric.of(row.metrics), column) for metric, column in SHOWN)
+    """What the table says of a run."""
+    numbers = (number(metric.of(row.metrics), column) for metric, column in SHOWN)
     return [row.manoeuvre, "on" if row.control else "off", *numbers]
 
 
-def _number(value: float, column: Column) -> str:
+def number(value: float, column: Column) -> str:
+    """A metric as a table shows it; one that has no meaning is a dash."""
     # adding zero turns a rounded -0 into 0
     return "-" if isnan(value) else f"{round(value * column.factor, column.decimals) + 0.0:.{column.decimals}f}"
 

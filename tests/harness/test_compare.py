@@ -32,7 +32,9 @@ def test_an_unknown_plant_is_answered_with_the_nearest(capsys):
 def compared(built, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
-    outcomes = list(run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", folder=built))
+    outcomes = list(
+        run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", {plant: {"folder": built} for plant in PLANTS})
+    )
     write_tables(outcomes, folder)
     write_figures(outcomes, folder)
     return folder

@@ -1,0 +1,82 @@
+"""What a design is worth: a car without damping, with the gains of the default car, and with its own."""
+
+from dataclasses import asdict
+from enum import Enum
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from fmus.catalogue import FMUS
+from fmus.parameter_files import for_instances, read_vehicle
+
+from ..cosimulation.system import BUILD
+from ..manoeuvres.catalogue import MANOEUVRES
+from ..metrics.evaluate import evaluate
+from ..metrics.record import Metrics
+from ..simulate import simulate
+from .design import design, records
+
+
+class Gains(Enum):
+    """What the controller is given; the car that its estimator works with is always the true one."""
+
+    NONE = "no damping"
+    DEFAULT = "default gains"
+    OWN = "own gains"
+
+
+class Trial(NamedTuple):
+    """A car by its vehicle file (None: the default car), a plant and a manoeuvre by name, and the gains."""
+
+    vehicle: Path | None
+    plant: str
+    manoeuvre: str
+    gains: Gains
+
+
+@cache
+def own_gains(vehicle: Path | None) -> dict[str, float]:
+    """The gains designed for the car of a vehicle file."""
+    return design(*records(read_vehicle(vehicle) if vehicle else {}))
+
+
+def parameters(trial: Trial) -> dict[str, float]:
+    """Parameters of the loop, `instance.name` -> value."""
+    blocks = {
+        "plant": trial.plant,
+        "motor": "MotorTorqueLoop",
+        "can": "WheelSpeedCan",
+        "controller": "DampingController",
+    }
+    values = read_vehicle(trial.vehicle) if trial.vehicle else {}
+    if trial.gains is Gains.OWN:
+        values = values | own_gains(trial.vehicle)
+    names = {instance: FMUS[name].block.Parameters._fields for instance, name in blocks.items()}
+    return for_instances(values, names)
+
+
+def measured(
+    trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), folder: Path = BUILD, build: str | None = None
+) -> Metrics:
+    """The metrics of a trial, each the mean over the seeds of the noise.
+
+    Args:
+        folder, build: see `harness.simulate.simulate`.
+    """
+    manoeuvre = MANOEUVRES[trial.manoeuvre]
+    runs = [
+        simulate(
+            manoeuvre,
+            plant=trial.plant,
+            control=trial.gains is not Gains.NONE,
+            parameters=parameters(trial),
+            seed=seed,
+            folder=folder,
+            build=build,
+        )
+        for seed in seeds
+    ]
+    found = [asdict(evaluate(results, manoeuvre)) for results in runs]
+    return Metrics(**{name: float(np.mean([metrics[name] for metrics in found])) for name in found[0]})

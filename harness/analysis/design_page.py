@@ -1,0 +1,91 @@
+"""Writes docs/design.md, what the design is worth on several cars: `python -m harness.analysis.design_page`."""
+
+from collections.abc import Iterator, Mapping
+from itertools import product
+from pathlib import Path
+
+from fmus.parameter_files import read_vehicle
+
+from ..cosimulation.system import PLANTS
+from ..metrics.declaration import declared
+from ..metrics.record import Metrics
+from ..reports.files import write_text
+from ..reports.markdown import markdown_table
+from ..reports.table import number
+from ..workers import workers
+from .cars import Gains, Trial, measured, own_gains
+from .closed_loop import swing
+from .design import design, records
+
+ROOT = Path(__file__).parents[2]
+CARS = (None, *sorted((ROOT / "examples" / "cars").glob("*.toml")))
+MANOEUVRES = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "drive", "creep")
+COLUMNS = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "response_delay", "withheld_time")
+SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column and metric.name in COLUMNS]
+
+PAGE = """\
+# The design on other cars
+
+Made by `python -m harness.analysis.design_page`; do not edit.
+
+Cars from `examples/cars/` and the default car, each {gains}. The estimator is told the true car every time.
+Means over the noise of three seeds. [control.md](control.md) says how the gains come about.
+
+{cars}
+"""
+
+CAR = """\
+## {name}
+
+{frequency:.1f} Hz without damping; damping ratio in contact {default:.2f} with the default gains, {own:.2f} with its own
+(linear, without tyre).
+
+{table}
+"""
+
+Found = Mapping[Trial, Metrics]
+
+
+def page(found: Found) -> str:
+    """The page as Markdown."""
+    gains = " / ".join(f"with {each.value}" for each in Gains).replace("with no", "without")
+    return PAGE.format(gains=gains, cars="\n".join(_car(vehicle, found) for vehicle in CARS)).rstrip() + "\n"
+
+
+def _car(vehicle: Path | None, found: Found) -> str:
+    plant, motor, _ = records(read_vehicle(vehicle) if vehicle else {})
+    default = design() | {"lambda_v": own_gains(vehicle)["lambda_v"]}
+    alone, damped = swing(plant, motor, own_gains(vehicle))
+    headings = ["plant", "manoeuvre", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
+    return CAR.format(
+        name=vehicle.name if vehicle else "The default car",
+        frequency=alone.frequency,
+        default=swing(plant, motor, default)[1].damping_ratio,
+        own=damped.damping_ratio,
+        table=markdown_table(headings, _rows(vehicle, found), labels=2),
+    )
+
+
+def _rows(vehicle: Path | None, found: Found) -> Iterator[list[str]]:
+    shown = [gains for gains in Gains if vehicle or gains is not Gains.OWN]
+    for plant, manoeuvre in product(PLANTS, MANOEUVRES):
+        results = [found[Trial(vehicle, plant, manoeuvre, gains)] for gains in shown]
+        cells = (" / ".join(number(metric.of(each), column) for each in results) for metric, column in SHOWN)
+        yield [plant, manoeuvre, *cells]
+
+
+def main() -> None:
+    trials = [
+        Trial(vehicle, plant, manoeuvre, gains)
+        for vehicle, plant, manoeuvre, gains in product(CARS, PLANTS, MANOEUVRES, Gains)
+        if vehicle or gains is not Gains.OWN
+    ]
+    with workers() as pool:
+        found = dict(zip(trials, pool.map(measured, trials), strict=True))
+    path = ROOT / "docs" / "design.md"
+    write_text(page(found), path)
+    print(path)
+
+
+if __name__ == "__main__":
+    main()
