@@ -12,6 +12,8 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from models.block.declaration import Real
+
 from .catalogue import FMUS
 from .description.variables import LARGEST, Variable, interface
 from .errors import ParameterFileError
@@ -57,10 +59,9 @@ def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = 
     Raises:
         ParameterFileError: names the lines with what is not known, no number or out of range.
     """
-    everything = _owners([*FMUS.values(), *own])
-    of_car = _of_car(own)
-    set_elsewhere = {name: OF_CONTROLLER for name in everything if name not in of_car} | OF_A_RUN
-    return _read(path, {name: everything[name] for name in of_car}, others, set_elsewhere)
+    everything, of_car = _owners([*FMUS.values(), *own]), _of_car(own)
+    of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
+    return _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
 
 
 def read_parameters(path: Path) -> dict[str, Any]:
@@ -69,9 +70,9 @@ def read_parameters(path: Path) -> dict[str, Any]:
     Raises:
         ParameterFileError: as for `read_vehicle`.
     """
-    of_car = _of_car()
-    of_controller = {name: owners for name, owners in _owners(FMUS.values()).items() if name not in of_car}
-    return _read(path, of_controller, (), dict.fromkeys(of_car, OF_CAR) | OF_A_RUN)
+    everything, of_car = _owners(FMUS.values()), dict.fromkeys(_of_car(), OF_CAR)
+    of_controller = {name: everything[name] for name in everything if name not in of_car}
+    return _read(path, of_controller, (), of_car | OF_A_RUN)
 
 
 def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[str]]) -> dict[str, Any]:
@@ -83,6 +84,12 @@ def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[
     return {
         f"{instance}.{name}": values[name] for instance, names in instances.items() for name in values if name in names
     }
+
+
+def units() -> dict[str, str]:
+    """The unit of every entry that our own blocks have and that is a Real; "1" for none."""
+    declared = {name: owners[0][1].declaration for name, owners in _owners(FMUS.values()).items()}
+    return {name: declaration.unit for name, declaration in declared.items() if isinstance(declaration, Real)}
 
 
 def _of_car(own: Iterable[Fmu] = ()) -> list[str]:
@@ -116,7 +123,7 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
             if name in set_elsewhere:
                 raise ParameterFileError(f"{name} does not belong here: {set_elsewhere[name]}")
             if name not in known and name not in others:
-                raise ParameterFileError(f"{name} is not known{_nearest(name, [*known, *others])}")
+                raise ParameterFileError(f"{name} is not known{_nearest(name, {*known, *others})}")
             values[name] = _value(name, entry, known.get(name, ()))
         except ParameterFileError as problem:
             problems.append(f"{path}, line {_line(text, name)}: {problem}")
@@ -143,7 +150,7 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
 
 
 def _nearest(name: str, known: Collection[str]) -> str:
-    near = get_close_matches(name, known, n=3)
+    near = get_close_matches(name, sorted(known), n=3)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
 

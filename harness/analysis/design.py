@@ -73,16 +73,20 @@ class Weights:
     longest_landing: float = 0.806373
 
 
+SAMPLES = 4000
+"""After so many samples the periodic gains have settled to a share of 1e-7."""
+
 PLANT, MOTOR, CAN, WEIGHTS = Plant(), Motor(), Can(), Weights()
 """The default car, and the weights."""
 
 
 def records(vehicle: Mapping[str, Any]) -> tuple[Plant, Motor, Can]:
     """A car by the entries of its vehicle file; what these do not name is that of the default car."""
-    plant, motor, can = (
-        record(**{name: vehicle[name] for name in record._fields if name in vehicle}) for record in (Plant, Motor, Can)
-    )
-    return plant, motor, can
+
+    def of(record: Any) -> Any:
+        return record(**{name: vehicle[name] for name in record._fields if name in vehicle})
+
+    return of(Plant), of(Motor), of(Can)
 
 
 class DriveTrain(NamedTuple):
@@ -225,7 +229,7 @@ def both_speed_gains(
     F[5:, 4:-1] = np.eye(delay - 1)
     H_1, H_2 = np.eye(size)[0], np.eye(size)[-1]
     P, gains, L_2 = np.eye(size), [], np.zeros(size)
-    for k in range(400 * cycle):
+    for k in range(SAMPLES):
         P = F @ P @ F.T + noise
         P, L_1 = _measured(P, H_1, R_1)
         gains = [*gains[1 - cycle :], L_1[:4]]

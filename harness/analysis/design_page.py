@@ -7,12 +7,12 @@ from pathlib import Path
 from fmus.parameter_files import read_vehicle
 
 from ..cosimulation.system import PLANTS
+from ..many import run_many
 from ..metrics.declaration import declared
 from ..metrics.record import Metrics
 from ..reports.files import write_text
 from ..reports.markdown import markdown_table
 from ..reports.table import number
-from ..workers import workers
 from .cars import Gains, Trial, measured, own_gains
 from .closed_loop import swing
 from .design import design, records
@@ -28,8 +28,9 @@ PAGE = """\
 
 Made by `python -m harness.analysis.design_page`; do not edit.
 
-Cars from `examples/cars/` and the default car, each {gains}. The estimator is told the true car every time.
-Means over the noise of three seeds. [control.md](control.md) says how the gains come about.
+The default car and those of `examples/cars/`, driven without damping / with the gains of the default car / with gains
+designed for the car itself ([control.md](control.md) says how). The estimator is told the true car in either case.
+Means over the noise of three seeds.
 
 {cars}
 """
@@ -37,8 +38,8 @@ Means over the noise of three seeds. [control.md](control.md) says how the gains
 CAR = """\
 ## {name}
 
-{frequency:.1f} Hz without damping; damping ratio in contact {default:.2f} with the default gains, {own:.2f} with its own
-(linear, without tyre).
+The drive train swings at {frequency:.1f} Hz. In contact, linear and without tyre, its damping ratio is {default:.2f}
+with the default gains{own}.
 
 {table}
 """
@@ -48,40 +49,43 @@ Found = Mapping[Trial, Metrics]
 
 def page(found: Found) -> str:
     """The page as Markdown."""
-    gains = " / ".join(f"with {each.value}" for each in Gains).replace("with no", "without")
-    return PAGE.format(gains=gains, cars="\n".join(_car(vehicle, found) for vehicle in CARS)).rstrip() + "\n"
+    return PAGE.format(cars="\n".join(_car(vehicle, found) for vehicle in CARS)).rstrip() + "\n"
 
 
 def _car(vehicle: Path | None, found: Found) -> str:
     plant, motor, _ = records(read_vehicle(vehicle) if vehicle else {})
-    default = design() | {"lambda_v": own_gains(vehicle)["lambda_v"]}
     alone, damped = swing(plant, motor, own_gains(vehicle))
     headings = ["plant", "manoeuvre", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
     return CAR.format(
         name=vehicle.name if vehicle else "The default car",
         frequency=alone.frequency,
-        default=swing(plant, motor, default)[1].damping_ratio,
-        own=damped.damping_ratio,
+        default=swing(plant, motor, design())[1].damping_ratio,
+        own=f" and {damped.damping_ratio:.2f} with its own" if vehicle else "",
         table=markdown_table(headings, _rows(vehicle, found), labels=2),
     )
 
 
 def _rows(vehicle: Path | None, found: Found) -> Iterator[list[str]]:
-    shown = [gains for gains in Gains if vehicle or gains is not Gains.OWN]
     for plant, manoeuvre in product(PLANTS, MANOEUVRES):
-        results = [found[Trial(vehicle, plant, manoeuvre, gains)] for gains in shown]
+        results = [found[Trial(vehicle, plant, manoeuvre, gains)] for gains in _shown(vehicle)]
         cells = (" / ".join(number(metric.of(each), column) for each in results) for metric, column in SHOWN)
         yield [plant, manoeuvre, *cells]
+
+
+def _shown(vehicle: Path | None) -> list[Gains]:
+    """The default car's own gains are the default ones."""
+    return [gains for gains in Gains if vehicle or gains is not Gains.OWN]
 
 
 def main() -> None:
     trials = [
         Trial(vehicle, plant, manoeuvre, gains)
-        for vehicle, plant, manoeuvre, gains in product(CARS, PLANTS, MANOEUVRES, Gains)
-        if vehicle or gains is not Gains.OWN
+        for plant in PLANTS
+        for vehicle in CARS
+        for manoeuvre in MANOEUVRES
+        for gains in _shown(vehicle)
     ]
-    with workers() as pool:
-        found = dict(zip(trials, pool.map(measured, trials), strict=True))
+    found = dict(zip(trials, run_many(measured, trials), strict=True))
     path = ROOT / "docs" / "design.md"
     write_text(page(found), path)
     print(path)

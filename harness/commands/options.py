@@ -192,20 +192,34 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
 
 
 def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
-    """`instance.parameter` -> value: what --vehicle and --parameters name, for every instance that has it."""
+    """`instance.parameter` -> value: what --vehicle and --parameters name, for every instance that has it.
+
+    Raises:
+        DrivelineError: a file is refused.
+        WiringError: an FMU that is not ours has a parameter of the same name in another unit.
+    """
     if args.vehicle is None and args.parameters is None:
         return {}
     from fmus.errors import ParameterFileError
-    from fmus.parameter_files import for_instances, read_files
+    from fmus.parameter_files import for_instances, read_files, units
 
-    from ..cosimulation.wiring import fit
+    from ..cosimulation.interface import unit_of
+    from ..cosimulation.wiring import fit, require
 
-    interfaces = fit(system).interfaces
-    names = {name: {v.name for v in interfaces[name].of_causality("parameter")} for name in interfaces}
+    owned = {name: interface.of_causality("parameter") for name, interface in fit(system).interfaces.items()}
+    names = {instance: {variable.name for variable in variables} for instance, variables in owned.items()}
     try:
         values = read_files(args.vehicle, args.parameters, others=set().union(*names.values()))
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
+    meant = {name: unit for name, unit in units().items() if name in values}
+    require(
+        f"{instance}.{variable.name} is in {unit_of(variable)}; the file gives it in {meant[variable.name]} "
+        f"(--map {instance}.{variable.name}={variable.name} converts it)"
+        for instance, variables in owned.items()
+        for variable in variables
+        if variable.name in meant and unit_of(variable) not in (None, meant[variable.name])
+    )
     return for_instances(values, names)
 
 

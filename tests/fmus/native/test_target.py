@@ -115,6 +115,20 @@ def test_the_command_writes_header_and_source(tmp_path: Path) -> None:
     assert "double" not in (tmp_path / "c" / "damping_controller.c").read_text(encoding="utf-8")
 
 
+def test_the_command_takes_the_car_and_its_gains(tmp_path: Path) -> None:
+    gains = tmp_path / "gains.toml"
+    gains.write_text("k_d = 4.0\n", encoding="utf-8")
+    command = [sys.executable, "-m", "fmus.native.target", "--output", str(tmp_path), "--parameters", str(gains)]
+    subprocess.run([*command, "--vehicle", "examples/cars/van.toml"], check=True, cwd=ROOT)
+    text = (tmp_path / "damping_controller.c").read_text(encoding="utf-8")
+    for line in (".k_d = 4.0f,", ".T_max = 250.0f,", ".phi_B = 0.314f,", ".omega_w = 4.25f,"):
+        assert line in text
+    gains.write_text("J_1 = 0.05\n", encoding="utf-8")
+    refused = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert refused.returncode == 2
+    assert "line 1: J_1 does not belong here" in refused.stderr
+
+
 def test_only_sampled_blocks_run_on_a_target() -> None:
     with pytest.raises(ValueError, match="TwoMassDriveline is a continuous block"):
         target_sources(CONTINUOUS, SINGLE)

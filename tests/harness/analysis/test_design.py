@@ -1,19 +1,40 @@
-"""The gains are those of the design, and the design is what it says."""
+"""The stored gains are those of the design, and the design is what it says of itself."""
+
+from dataclasses import replace
+from math import pi, sqrt
 
 import numpy as np
 import pytest
 
-from harness.analysis.design import PLANT, WEIGHTS, damping_gain, design, process_noise, stored, transition
-from harness.commands.design import STORED
-from models.controller.torque_estimator import Estimate, corrected_by_motor_speed, integrated
+from harness.analysis.closed_loop import closed_loop, modes, swing
+from harness.analysis.design import (
+    CAN,
+    MOTOR,
+    PLANT,
+    WEIGHTS,
+    DesignError,
+    design,
+    drive_train,
+    landing_torque,
+    motor_speed_gains,
+    process_noise,
+    records,
+    transition,
+)
+from harness.commands.design import designed
+from models.block.declaration import variables
 from models.damping_controller import BLOCK
+from tests import ROOT
 
 STORED_DIGITS = 1e-5
 """Six digits are stored."""
 
+SECOND_CAR = {"J_1": 0.09, "J_2": 0.45, "C": 210.0, "phi_B": 0.06, "i": 10.5, "m": 2200.0, "r": 0.34}
+
 
 def test_the_stored_gains_are_those_of_the_design() -> None:
-    assert STORED.read_text() == stored(design()), "run `driveline design`"
+    stored = ROOT / "models" / "controller" / "gains.toml"
+    assert stored.read_text(encoding="utf-8") == designed(), f"driveline design --output {stored}"
 
 
 def test_the_controller_takes_its_defaults_from_the_design() -> None:
@@ -27,33 +48,124 @@ def test_the_model_of_the_design_is_that_of_the_plant() -> None:
     assert (p.J_1, p.J_2, p.C, p.phi_B) == (PLANT.J_1, PLANT.J_2, PLANT.C, PLANT.phi_B)
 
 
-def test_the_estimator_with_its_gains_is_stable_in_contact() -> None:
-    p = BLOCK.Parameters()
-    contact = Estimate(0.0, 0.0, 2.0 * p.phi_B, 0.0)
-    columns = []
-    for row in np.eye(4):
-        e = integrated(Estimate(*(np.array(contact) + 1e-3 * row).tolist()), 0.0, 0.002, p)
-        still = integrated(contact, 0.0, 0.002, p)
-        columns.append(
-            (
-                np.array(corrected_by_motor_speed(e, 0.0, 0.0, p))
-                - np.array(corrected_by_motor_speed(still, 0.0, 0.0, p))
-            )
-            / 1e-3
-        )
-    assert np.abs(np.linalg.eigvals(np.array(columns).T)).max() < 1.0
+def test_a_car_is_the_default_car_where_its_file_says_nothing() -> None:
+    plant, motor, can = records({"J_1": 0.09, "tau": 0.004, "d_max": 0.03, "k_s": 3e4})
+    assert plant == PLANT._replace(J_1=0.09)
+    assert motor == MOTOR._replace(tau=0.004)
+    assert can == CAN._replace(d_max=0.03)
 
 
-def test_more_weight_on_the_relative_speed_damps_more() -> None:
-    from dataclasses import replace
+@pytest.mark.parametrize("scale", [0.4, 2.5])
+def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float) -> None:
+    """All inertias, stiffness and torques larger by one factor: the same motions, torques larger by that factor."""
+    plant = PLANT._replace(J_1=scale * PLANT.J_1, J_2=scale * PLANT.J_2, C=scale * PLANT.C, m=scale * PLANT.m)
+    gains, default = design(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
+    with_torque = {"k_d", "T_land", *(f"{L}_T_l" for L in ("L", "Lw", "L_can"))}
+    for name, value in gains.items():
+        assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
 
-    gains = [damping_gain(replace(WEIGHTS, damping=weight)) for weight in (1.0, 2.0, 4.0)]
-    assert gains == sorted(gains)
-    assert gains[0] == pytest.approx(1.0, rel=0.1), "the cheap-control limit of a lightly damped oscillator"
+
+def test_the_vehicle_takes_its_share_of_the_gear_torque() -> None:
+    """With a wheel share of 1 the estimated wheels move as one with the vehicle."""
+    train = drive_train(PLANT, MOTOR, replace(WEIGHTS, wheel_share=1.0))
+    assert train.M == pytest.approx(1450.0 * 0.29**2 / 9.0**2)
+    assert (1.0 - train.lambda_v) / PLANT.J_2 == pytest.approx(1.0 / (PLANT.J_2 + train.M))
+    assert train.omega_0 / (2.0 * pi) == pytest.approx(swing(PLANT, MOTOR, design())[0].frequency, rel=1e-6)
+
+
+def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_the_phase() -> None:
+    stiff, soft = design(PLANT._replace(C=2.0 * PLANT.C)), design(PLANT._replace(C=0.5 * PLANT.C))
+    default, slow_motor = design(), design(PLANT._replace(C=0.5 * PLANT.C), MOTOR._replace(tau=2.0 * MOTOR.tau))
+    assert stiff["k_d"] == pytest.approx(default["k_d"] * sqrt(2.0), rel=STORED_DIGITS)
+    assert soft["k_d"] == pytest.approx(default["k_d"], rel=STORED_DIGITS), "the dead time is the same"
+    assert slow_motor["k_d"] == pytest.approx(default["k_d"] * sqrt(0.5), rel=STORED_DIGITS), "and here it is longer"
+
+
+def test_the_washout_gives_back_the_same_share_of_a_step_for_every_car() -> None:
+    for plant in (PLANT, PLANT._replace(C=0.5 * PLANT.C), PLANT._replace(J_1=0.1)):
+        gains = design(plant)
+        assert gains["omega_w"] * gains["k_d"] / plant.C == pytest.approx(WEIGHTS.washout)
+
+
+def test_the_landing_withholds_what_it_may_and_ends_as_hard_as_it_may() -> None:
+    train = drive_train(PLANT, MOTOR, WEIGHTS)
+    T_d = WEIGHTS.demand * MOTOR.T_max
+
+    def withheld(T: float, phi_B: float) -> float:
+        return (1.0 - T / T_d) * sqrt(4.0 * phi_B * PLANT.J_1 / T)
+
+    def peak(T: float, phi_B: float) -> float:
+        return T + 2.0 * sqrt(PLANT.C * phi_B * T)
+
+    narrow, wide = 0.5 * PLANT.phi_B, 2.0 * PLANT.phi_B
+    soft, hard = (landing_torque(PLANT._replace(phi_B=gap), MOTOR, train, WEIGHTS) for gap in (narrow, wide))
+    assert withheld(soft, narrow) == pytest.approx(WEIGHTS.landing / train.omega_v)
+    assert peak(soft, narrow) < WEIGHTS.impact * MOTOR.T_max
+    assert peak(hard, wide) == pytest.approx(WEIGHTS.impact * MOTOR.T_max)
+    assert withheld(hard, wide) > WEIGHTS.landing / train.omega_v
+    assert landing_torque(PLANT._replace(phi_B=0.0), MOTOR, train, WEIGHTS) == 0.0, "there is no gap to cross"
+
+
+def test_an_older_message_corrects_less() -> None:
+    late = CAN._replace(d_min=0.02, d_max=0.04)
+    assert design(can=late)["T_age"] == pytest.approx(design()["T_age"] + 0.017)
+    assert 0.0 < design(can=late)["L_can_omega_2"] < design()["L_can_omega_2"]
+
+
+def test_more_damping_is_asked_for_by_a_larger_damping_ratio() -> None:
+    ratios = [0.5, 0.6, 0.7]
+    found = [swing(PLANT, MOTOR, design(weights=replace(WEIGHTS, damping_ratio=ratio)))[1] for ratio in ratios]
+    assert [mode.damping_ratio for mode in found] == sorted(mode.damping_ratio for mode in found)
 
 
 def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
-    p = BLOCK.Parameters()
-    A = transition(p)
+    A = transition(PLANT, 0.9)
     assert A[3].tolist() == [0.0, 0.0, 0.0, 1.0]
-    assert np.all(np.linalg.eigvalsh(process_noise(WEIGHTS)) > 0.0)
+    assert np.all(np.linalg.eigvalsh(process_noise(PLANT, MOTOR, WEIGHTS)) > 0.0)
+
+
+@pytest.mark.parametrize(
+    "car", [{}, SECOND_CAR, {"phi_B": 0.0}, {"C": 58.7, "m": 900.0}, {"phi_B": 0.314, "m": 3500.0}]
+)
+def test_the_loop_is_stable_in_contact_and_swings_less_than_without_damping(car: dict[str, float]) -> None:
+    plant, motor, can = records(car)
+    gains = design(plant, motor, can)
+    poles = np.abs(np.linalg.eigvals(closed_loop(plant, motor, gains)))
+    assert np.sort(poles)[-2] < 1.0, "all but one,"
+    assert poles.max() == pytest.approx(1.0), "the speed of the car"
+    alone, damped = swing(plant, motor, gains)
+    assert alone.damping_ratio == pytest.approx(0.0, abs=1e-6)
+    assert damped.damping_ratio > 0.4
+
+
+def test_without_feedback_the_loop_has_the_modes_of_its_parts() -> None:
+    found = modes(closed_loop(PLANT, MOTOR, design() | {"k_d": 0.0, "k_T": 0.0}))
+    wheels = PLANT.J_2 + PLANT.m * PLANT.r**2 / PLANT.i**2
+    omega_0 = sqrt(PLANT.C * (1.0 / PLANT.J_1 + 1.0 / wheels))
+    expected = [(omega_0 / (2.0 * pi), 0.0), (1.0 / (2.0 * pi * MOTOR.tau), sqrt(0.5))]
+    for frequency, damping_ratio in expected:
+        near = min(found, key=lambda mode: abs(mode.frequency - frequency))
+        assert near == pytest.approx((frequency, damping_ratio), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("car", "said"),
+    [
+        ({"tau": 0.03}, r"T_pred would be 0\.04243; the controller takes 0 to 0\.02 s"),
+        ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.064 s"),
+        ({"J_1": 2.0}, r"k_d would be .*; the controller takes 0 to 20 N\.m\.s/rad"),
+        ({"sigma_omega": 0.0, "q_omega": 0.0}, "a motor speed without error leaves nothing to estimate"),
+    ],
+)
+def test_what_the_controller_cannot_be_set_to_is_said(car: dict[str, float], said: str) -> None:
+    with pytest.raises(DesignError, match=said):
+        design(*records(car))
+
+
+def test_a_filter_that_does_not_exist_shows_its_matrices() -> None:
+    with pytest.raises(DesignError, match=r"(?s)no stationary Kalman filter.*A =\n\[\[2\."):
+        motor_speed_gains(2.0 * np.eye(4), np.zeros((4, 4)), 1.0)
+
+
+def test_every_designed_parameter_is_one_of_the_controller() -> None:
+    assert design().keys() <= {variable.name for variable in variables(BLOCK.Parameters)}

@@ -1,0 +1,194 @@
+"""FMUs built for a car of one's own: the start values are those of its files, and it runs as if they had been set."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fmpy import read_model_description
+
+from fmus.builds import build_fmus
+from fmus.catalogue import FMUS
+from fmus.errors import BuildError
+from fmus.parameter_files import for_instances, read_files
+from fmus.python.packaging import build
+from harness.cosimulation.system import NATIVE
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import simulate
+from models.block.declaration import variables
+from models.block.types import with_start_values
+from tests import ROOT
+from tests.fmus.host import opened
+
+CAR = ROOT / "examples" / "cars" / "mid_size.toml"
+GAINS = "k_d = 4.0\nT_land = 70.0\n"
+
+
+@pytest.fixture(scope="module")
+def gains(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("gains") / "gains.toml"
+    path.write_text(GAINS, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def of_python(gains: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the FMUs for the car that run Python."""
+    folder = tmp_path_factory.mktemp("car")
+    list(build_fmus((), folder, "python", vehicle=CAR, parameters=gains))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def compiled(gains: Path, native_builder: object, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with the native FMUs for the car in its folder native."""
+    folder = tmp_path_factory.mktemp("native_car")
+    list(build_fmus((), folder, "native", vehicle=CAR, parameters=gains))
+    return folder
+
+
+def start_values(path: Path) -> dict[str, float]:
+    described = read_model_description(str(path)).modelVariables
+    return {v.name: float(v.start) for v in described if v.causality == "parameter" and v.type == "Real"}
+
+
+def loop_parameters(gains: Path) -> dict[str, Any]:
+    places = {"plant": 0, "motor": 2, "can": 3, "controller": 4}
+    blocks = [fmu.block.Parameters._fields for fmu in FMUS.values()]
+    return for_instances(read_files(CAR, gains), {place: blocks[k] for place, k in places.items()})
+
+
+def check_start_values(folder: Path, gains: Path) -> None:
+    values = read_files(CAR, gains)
+    for name, fmu in FMUS.items():
+        declared = {v.name: v.start for v in variables(fmu.block.Parameters)}
+        found = start_values(folder / f"{name}.fmu")
+        assert found == {key: values.get(key, declared[key]) for key in found}, name
+        assert any(key in values for key in found), name
+
+
+def check_runs(folder: Path, default: Path, build: str, gains: Path) -> None:
+    """The loop of FMUs for the car is that of the default FMUs with the parameters set, bit by bit."""
+    tipin = MANOEUVRES["tipin15"]
+    own = simulate(tipin, folder=folder, build=build)
+    same = simulate(tipin, folder=default, build=build, parameters=loop_parameters(gains))
+    other = simulate(tipin, folder=default, build=build)
+    assert np.array_equal(own, same)
+    assert not np.array_equal(own["plant.T_gear"], other["plant.T_gear"])
+
+
+def test_start_values_of_the_fmus_that_run_python(of_python: Path, gains: Path) -> None:
+    check_start_values(of_python, gains)
+
+
+def test_start_values_of_the_native_fmus(compiled: Path, gains: Path) -> None:
+    check_start_values(compiled / NATIVE, gains)
+
+
+def test_fmus_that_run_python_run_as_if_the_parameters_had_been_set(of_python: Path, built: Path, gains: Path) -> None:
+    check_runs(of_python, built, "python", gains)
+
+
+def test_native_fmus_run_as_if_the_parameters_had_been_set(compiled: Path, both_built: Path, gains: Path) -> None:
+    check_runs(compiled, both_built, NATIVE, gains)
+
+
+def test_fmus_for_two_cars_live_in_one_process(of_python: Path, built: Path, tmp_path: Path) -> None:
+    name = "MotorTorqueLoop"
+    with (
+        opened(of_python / f"{name}.fmu", tmp_path / "own") as own,
+        opened(built / f"{name}.fmu", tmp_path / "default") as default,
+    ):
+        assert (own.get("tau"), default.get("tau")) == (0.0025, 0.003)
+        own.initialize(T_ref=1000.0)
+        default.initialize(T_ref=1000.0)
+        assert (own.get("T_mot"), default.get("T_mot")) == (250.0, 180.0)
+
+
+def test_the_same_files_give_the_same_bytes_and_no_files_the_default(of_python: Path, built: Path, gains: Path) -> None:
+    name = "WheelSpeedCan"
+    again = build(FMUS[name].started_with(read_files(CAR, gains)), of_python / "again")
+    assert again.read_bytes() == (of_python / f"{name}.fmu").read_bytes()
+    assert FMUS[name].started_with({}) == FMUS[name]
+    default = build(FMUS[name].started_with({"k_d": 4.0}), of_python / "default")
+    assert default.read_bytes() == (built / f"{name}.fmu").read_bytes(), "which has no such parameter"
+
+
+def test_a_block_with_other_start_values_declares_the_same() -> None:
+    block = FMUS["DampingController"].block
+    changed = with_start_values(block, {"k_d": 4.0})
+    before, after = variables(block.Parameters), variables(changed.Parameters)
+    assert [v._replace(start=None) for v in after] == [v._replace(start=None) for v in before]
+    assert {v.name: v.start for v in after} == {v.name: v.start for v in before} | {"k_d": 4.0}
+    assert changed.Parameters() == block.Parameters()._replace(k_d=4.0)
+
+
+@pytest.mark.parametrize("option", ["vehicle", "parameters"])
+def test_a_refused_file_builds_nothing(option: str, tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text("mass = 3\n", encoding="utf-8")
+    files: dict[str, Any] = {option: wrong}
+    with pytest.raises(BuildError, match="line 1: mass is not known"):
+        list(build_fmus(["MotorTorqueLoop"], tmp_path / "out", "python", **files))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_block_of_the_users_own_takes_its_start_values_too(
+    native_builder: Callable[..., Path], tmp_path: Path
+) -> None:
+    (tmp_path / "small_lag.py").write_text(OWN, encoding="utf-8")
+    (tmp_path / "car.toml").write_text("tau = 0.005\nslack = 0.25\n", encoding="utf-8")
+    (made,) = build_fmus([str(tmp_path / "small_lag.py")], tmp_path, vehicle=tmp_path / "car.toml")
+    assert start_values(made) == {"tau": 0.005, "slack": 0.25}
+
+
+OWN = '''"""A first-order lag.
+
+    tau dy/dt = u - y
+"""
+
+from typing import Annotated, NamedTuple
+
+from fmus.fmu import Fmu
+from models.block.declaration import Real
+from models.block.types import ContinuousBlock
+
+
+class Parameters(NamedTuple):
+    tau: Annotated[float, Real("s", "time constant", 1e-3, 1.0)] = 0.1
+    slack: Annotated[float, Real("1", "of no effect", 0.0, 1.0)] = 0.0
+
+
+class Input(NamedTuple):
+    u: Annotated[float, Real("1", "input")] = 0.0
+
+
+class State(NamedTuple):
+    y: Annotated[float, Real("1", "state")]
+
+
+class Output(NamedTuple):
+    y: Annotated[float, Real("1", "output")]
+
+
+def start(u, p):
+    return State(0.0)
+
+
+def derivative(x, u, p):
+    return State((u.u - x.y) / p.tau)
+
+
+def output(x, u, p):
+    return Output(x.y + 0.0 * p.slack)
+
+
+FMU = Fmu(
+    ContinuousBlock(
+        name="SmallLag", description="Lag", module=__name__, Parameters=Parameters, Input=Input, State=State,
+        Output=Output, start=start, output=output, derivative=derivative, step_size=0.001,
+    ),
+    stop_time=1.0,
+)
+'''

@@ -1,0 +1,60 @@
+"""`driveline design`: gains for a car, printed or written."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from fmus.parameter_files import read_parameters, read_vehicle
+from harness.analysis.design import design, records
+from harness.cli import main
+from tests import ROOT
+
+VAN = ROOT / "examples" / "cars" / "van.toml"
+
+
+def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "--vehicle", str(VAN)]) == 0
+    text = capsys.readouterr().out
+    lines = text.splitlines()
+    assert lines[0].startswith(
+        "# Gains of the DampingController for van.toml, by `driveline design` (driveline-damping"
+    )
+    assert lines[1] == "# Drive train: 6.97 Hz; damped: 7.11 Hz, damping ratio 0.56."
+    expected = design(*records(read_vehicle(VAN)))
+    assert tomllib.loads(text) == pytest.approx(expected, rel=1e-5)
+    assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)
+
+
+def test_the_gains_are_written_to_a_file_that_the_other_commands_take(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "new" / "gains.toml"
+    assert main(["design", "--vehicle", str(VAN), "--output", str(path)]) == 0
+    assert capsys.readouterr().out == f"gains: {path}\n"
+    assert read_parameters(path)["k_d"] == pytest.approx(design(*records(read_vehicle(VAN)))["k_d"], rel=1e-5)
+    assert [file.name for file in path.parent.iterdir()] == ["gains.toml"]
+
+
+def test_nothing_depends_on_the_working_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["design"]) == 0
+    stored = (ROOT / "models" / "controller" / "gains.toml").read_text(encoding="utf-8")
+    assert capsys.readouterr().out == stored
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("J1 = 0.09\n", "line 1: J1 is not known"), ("tau = 0.05\n", "T_pred would be 0.07071; the controller takes")],
+)
+def test_a_car_without_a_controller_is_answered_with_exit_code_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, said: str
+) -> None:
+    car, gains = tmp_path / "car.toml", tmp_path / "gains.toml"
+    car.write_text(text, encoding="utf-8")
+    assert main(["design", "--vehicle", str(car), "--output", str(gains)]) == 2
+    assert said in capsys.readouterr().err
+    assert not gains.exists()
