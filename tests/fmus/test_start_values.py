@@ -50,7 +50,7 @@ def compiled(gains: Path, native_builder: object, tmp_path_factory: pytest.TempP
 
 def start_values(path: Path) -> dict[str, float]:
     described = read_model_description(str(path)).modelVariables
-    return {v.name: float(v.start) for v in described if v.causality == "parameter" and v.type == "Real"}
+    return {v.name: float(v.start or "nan") for v in described if v.causality == "parameter" and v.type == "Real"}
 
 
 def loop_parameters(gains: Path) -> dict[str, Any]:
