@@ -14,7 +14,7 @@ from .. import protocol
 
 HEADER = """/* What Python and C share, written by build_fmus.py from {modules}.
 
-A sentence takes its fields as text that is a format for printf and what goes into it. */
+A sentence is a macro that makes of its fields, as text, a format for printf and what goes into it. */
 #ifndef SHARED_H
 #define SHARED_H
 

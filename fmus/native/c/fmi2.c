@@ -1,5 +1,5 @@
-/* The adapter to FMI 2.0 for co-simulation, and the only file that knows it. It keeps the callbacks of the host and sees
-to it that calls come in an order that makes sense; what they do is done by the instance. */
+/* The adapter to FMI 2.0 for co-simulation, and the only file that knows it. It keeps the callbacks of the host and
+sees to it that calls come in an order that makes sense; what they do is done by the instance. */
 #include "fmi2Functions.h"
 #include "instance.h"
 
@@ -41,8 +41,6 @@ static Instance *ready(fmi2Component c, unsigned modes, int complete, const char
     refuse(&component->instance, "%s: an argument is NULL", function);
     return NULL;
 }
-
-/* ---- messages ---- */
 
 static const char *const categories_of[] = {[OK] = "", [DISCARD] = LOG_DISCARD, [ERROR] = LOG_ERROR};
 
@@ -95,8 +93,6 @@ fmi2Status fmi2SetDebugLogging(
     return fmi2OK;
 }
 
-/* ---- creation and destruction ---- */
-
 /* Why there cannot be such an instance; NULL if there can. */
 static const char *objection(fmi2String name, fmi2Type type, fmi2String guid, const fmi2CallbackFunctions *callbacks)
 {
@@ -146,8 +142,6 @@ void fmi2FreeInstance(fmi2Component c)
         component->callbacks.freeMemory(component);
 }
 
-/* ---- initialization, end, beginning again ---- */
-
 fmi2Status fmi2SetupExperiment(
     fmi2Component c,
     fmi2Boolean toleranceDefined,
@@ -180,8 +174,6 @@ CHANGE(fmi2ExitInitializationMode, INITIALIZATION, leave_initialization(instance
 CHANGE(fmi2Terminate, STEPPING, instance->memory.mode = TERMINATED)
 CHANGE(fmi2Reset, ANY_MODE, begin(instance))
 
-/* ---- values ---- */
-
 #define VALUES(Type, TYPE)                                                                                             \
     fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[])           \
     {                                                                                                                  \
@@ -198,8 +190,6 @@ VALUES(Real, REAL)
 VALUES(Integer, INTEGER)
 VALUES(Boolean, BOOLEAN)
 VALUES(String, STRING)
-
-/* ---- saved states ---- */
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
@@ -248,8 +238,6 @@ fmi2Status fmi2DeSerializeFMUstate(
     const Instance *instance = ready(c, ANY_MODE, FMUstate && serializedState, __func__);
     return instance ? in_fmi(deserialize_state(instance, serializedState, size, FMUstate)) : fmi2Error;
 }
-
-/* ---- rates of change ---- */
 
 fmi2Status fmi2GetDirectionalDerivative(
     fmi2Component c,
@@ -305,8 +293,6 @@ fmi2Status fmi2GetRealOutputDerivatives(
     return allowed ? in_fmi(get_output_rates(instance, vr, nvr, value)) : fmi2Error;
 }
 
-/* ---- steps ---- */
-
 fmi2Status fmi2DoStep(
     fmi2Component c,
     fmi2Real currentCommunicationPoint,
@@ -325,8 +311,6 @@ fmi2Status fmi2CancelStep(fmi2Component c)
         refuse(instance, "fmi2CancelStep is refused; every step ends before fmi2DoStep returns");
     return fmi2Error;
 }
-
-/* ---- status ---- */
 
 /* A function that answers one kind of question about the status and discards the others. */
 #define ANSWER(function, Type, known, answer)                                                                          \
