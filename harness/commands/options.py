@@ -214,11 +214,11 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
         raise DrivelineError(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}
     require(
-        f"{instance}.{variable.name} is in {unit_of(variable)}; the file gives it in {meant[variable.name]} "
-        f"(--map {instance}.{variable.name}={variable.name} converts it)"
+        f"{name} is in {unit_of(v)}; the file gives it in {meant[v.name]} (--map {name}={v.name} converts it)"
         for instance, variables in owned.items()
-        for variable in variables
-        if variable.name in meant and unit_of(variable) not in (None, meant[variable.name])
+        for v in variables
+        if (name := f"{instance}.{v.name}") not in system.mapping
+        and unit_of(v) not in (None, meant.get(v.name, unit_of(v)))
     )
     return for_instances(values, names)
 

@@ -1,0 +1,88 @@
+"""A car and its gains on the command line: where the entries of the files go, and what is refused."""
+
+import pytest
+
+from harness.cli import main, parser
+from harness.commands.options import settings
+from harness.errors import DrivelineError, WiringError
+from tests import ROOT
+from tests.foreign import build_car
+
+VAN = str(ROOT / "examples" / "cars" / "van.toml")
+
+
+@pytest.fixture
+def given(built):
+    """What options of `driveline simulate` give the loop as parameters."""
+
+    def parameters(*options, plant="TwoMassDriveline"):
+        args = parser().parse_args(["simulate", "--plant", str(plant), "--fmus", str(built), *options])
+        return settings(args, str(plant), "python")["parameters"]
+
+    return parameters
+
+
+@pytest.fixture
+def gains(tmp_path):
+    path = tmp_path / "gains.toml"
+    path.write_text("k_d = 3.6\nT_damp_max = 80\n", encoding="utf-8")
+    return str(path)
+
+
+def test_the_entries_reach_every_block_that_has_them(given, gains):
+    parameters = given("--vehicle", VAN, "--parameters", gains)
+    of_i = {name: value for name, value in parameters.items() if name.endswith(".i")}
+    of_T_max = {name: value for name, value in parameters.items() if name.endswith(".T_max")}
+    assert of_i == {"plant.i": 12.0, "can.i": 12.0}
+    assert of_T_max == {"motor.T_max": 250.0, "controller.T_max": 250.0}
+    assert (parameters["controller.k_d"], parameters["controller.T_damp_max"]) == (3.6, 80.0)
+    assert "plant.k_s" not in parameters
+
+
+def test_each_plant_gets_what_it_has(given):
+    parameters = given("--vehicle", VAN, plant="ValidationVehicle")
+    assert parameters["plant.k_s"] == 58600.0
+    assert "plant.C" not in parameters
+    assert parameters["controller.C"] == 150.0
+
+
+def test_what_is_set_goes_before_the_files(given, gains):
+    parameters = given("--vehicle", VAN, "--parameters", gains, "--set", "plant.i=10", "--set", "controller.k_d=1")
+    assert (parameters["plant.i"], parameters["can.i"], parameters["controller.k_d"]) == (10.0, 12.0, 1.0)
+
+
+def test_without_files_only_what_is_set_is_given(given):
+    assert given("--set", "plant.i=10") == {"plant.i": 10.0}
+
+
+def test_a_refused_file_is_answered_with_its_line(given, gains):
+    with pytest.raises(DrivelineError, match=r"gains\.toml, line 1: k_d does not belong here"):
+        given("--vehicle", gains)
+
+
+def test_somebody_elses_plant_may_have_parameters_of_its_own(given, tmp_path):
+    plant = build_car(tmp_path / "car", m=("mass", "kg", 1.0))
+    (tmp_path / "car.toml").write_text("mass = 2200\nJ_1 = 0.09\n", encoding="utf-8")
+    parameters = given("--vehicle", str(tmp_path / "car.toml"), plant=plant)
+    assert parameters == {"plant.mass": 2200.0, "controller.J_1": 0.09}
+
+
+def test_a_parameter_of_the_same_name_in_another_unit_is_refused_unless_it_is_mapped(given, tmp_path):
+    plant = build_car(tmp_path / "car", m=("m", "t", 1e3))
+    with pytest.raises(
+        WiringError, match=r"plant\.m is in t; the file gives it in kg \(--map plant\.m=m converts it\)"
+    ):
+        given("--vehicle", VAN, plant=plant)
+    assert given("--vehicle", VAN, "--map", "plant.m=m", plant=plant)["plant.m"] == 3500.0
+
+
+def test_a_comparison_gives_each_plant_its_own(both_built, tmp_path):
+    options = ("--vehicle", VAN, "--manoeuvre", "tipin15", "--fmus", str(both_built), "--output", str(tmp_path))
+    assert main(["compare", *options, "--quiet"]) == 0
+    assert len(list((tmp_path / "runs").iterdir())) == 4
+
+
+@pytest.mark.parametrize("command", [["simulate"], ["compare"], ["replay", "trip.csv"], ["build"]])
+def test_every_command_that_runs_or_builds_the_loop_takes_both_files(command, gains):
+    args = parser().parse_args([*command, "--vehicle", VAN, "--parameters", gains])
+    assert (str(args.vehicle), str(args.parameters)) == (VAN, gains)
