@@ -51,6 +51,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline coupling --output docs
 	$(BIN)/driveline back-to-back --output docs
 	$(BIN)/python -m fmus.description.blocks_page
+	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline compare
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \

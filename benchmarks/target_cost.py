@@ -42,6 +42,7 @@ Made by `python -m benchmarks.target_cost`; do not edit.
 ```sh
 python -m fmus.native.target --output build/target                      # single precision
 python -m fmus.native.target --output build/target --precision double
+python -m fmus.native.target --vehicle car.toml --parameters gains.toml    # for a car, see control.md
 ```
 
 writes `damping_controller.h` and `damping_controller.c`: C99 that needs no more of the library than `fabsf`, allocates

@@ -1,10 +1,11 @@
 """What a design is worth: a car without damping, with the gains of the default car, and with its own."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from enum import Enum
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -42,19 +43,18 @@ def own_gains(vehicle: Path | None) -> dict[str, float]:
     return design(*records(read_vehicle(vehicle) if vehicle else {}))
 
 
-def parameters(trial: Trial) -> dict[str, float]:
-    """Parameters of the loop, `instance.name` -> value."""
-    blocks = {
-        "plant": trial.plant,
-        "motor": "MotorTorqueLoop",
-        "can": "WheelSpeedCan",
-        "controller": "DampingController",
-    }
+def loop_parameters(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
+    """Entries of parameter files as parameters of the loop with a plant of ours, `instance.name` -> value."""
+    blocks = {"plant": plant, "motor": "MotorTorqueLoop", "can": "WheelSpeedCan", "controller": "DampingController"}
+    return for_instances(values, {place: FMUS[name].block.Parameters._fields for place, name in blocks.items()})
+
+
+def parameters(trial: Trial) -> dict[str, Any]:
+    """What a trial gives the loop."""
     values = read_vehicle(trial.vehicle) if trial.vehicle else {}
     if trial.gains is Gains.OWN:
         values = values | own_gains(trial.vehicle)
-    names = {instance: FMUS[name].block.Parameters._fields for instance, name in blocks.items()}
-    return for_instances(values, names)
+    return loop_parameters(values, trial.plant)
 
 
 def measured(

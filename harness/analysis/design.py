@@ -247,9 +247,10 @@ def _measured(P: np.ndarray, H: np.ndarray, R: float) -> tuple[np.ndarray, np.nd
 def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights) -> dict[str, float]:
     """The parameters of the damping law.
 
-    k_d damps J_1 dv/dt = -k_d v - ... with at least the damping ratio, and crosses over at k_d/J_1. After a step dT
-    of the torque the twist has changed by dT/C; the washout, fed with k_d times its rate, gives back
-    omega_w k_d/C of the step, and k_T/omega_w is the time that k_T takes from the impulse.
+    In contact k_d damps the drive train with the ratio k_d/(2 J_1 omega_0). Above the resonance, where J_1 alone
+    is left, the loop crosses over at k_d/J_1, and there the dead time takes the phase T_dead k_d/J_1. After a step
+    dT of the torque the twist has changed by dT/C; the washout of k_d times its rate gives omega_w k_d/C of the
+    step back, that of k_T takes its impulse away for k_T/omega_w.
     """
     k_d = plant.J_1 * max(2.0 * weights.damping_ratio * train.omega_0, weights.phase / train.T_dead)
     omega_w = weights.washout * plant.C / k_d
