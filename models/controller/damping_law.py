@@ -10,11 +10,13 @@ from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import clip, logical_and, minimum, where
+from ..vehicle import CAR, HalfGap
 from .gains import GAINS
 from .parts import Motion
 
 
 class Parameters(NamedTuple):
+    phi_B: HalfGap = CAR.phi_B
     T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02)] = GAINS["T_pred"]
     k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0)] = GAINS["k_d"]
     k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0)] = GAINS["k_gap"]

@@ -31,7 +31,7 @@ class Parameters(NamedTuple):
     T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
-    t_frozen: Annotated[float, Real("s", "a speed unchanged for so long is frozen", 0.01, 10.0)] = 0.1
+    t_frozen: Annotated[float, Real("s", "a speed or torque unchanged for so long is frozen", 0.01, 10.0)] = 0.1
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
     T_rest: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_rest: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
@@ -111,7 +111,7 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
     """A controller as a block: its parameters are those of the estimator, of the law and of the supervision.
 
     Args:
-        name, description, module: see `Block`.
+        name, description, module: see `models.block.types`.
     """
 
     def start(u: Input, p: Any) -> State:
