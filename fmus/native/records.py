@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from models.block.declaration import Real, Variable, variables
+from models.block.declaration import Quantity, Real, variables
 from models.block.types import Block
 
 RECORDS = {"u": "Input", "p": "Parameters", "y": "Output", "x": "State"}
@@ -96,7 +96,7 @@ def _meaning(record: Any) -> str:
     return " ".join((type(record).__doc__ or "").partition(".")[0].split())
 
 
-def _comment(variable: Variable) -> str:
-    declaration = variable.declaration
+def _comment(quantity: Quantity) -> str:
+    declaration = quantity.declaration
     unit = declaration.unit if isinstance(declaration, Real) else "1"
     return declaration.description if unit == "1" else f"{unit}: {declaration.description}"

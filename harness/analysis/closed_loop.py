@@ -25,7 +25,7 @@ class Mode(NamedTuple):
     damping_ratio: float
 
 
-def drive_train(plant: Plant, motor: Motor) -> tuple[np.ndarray, np.ndarray]:
+def sampled_drive_train(plant: Plant, motor: Motor) -> tuple[np.ndarray, np.ndarray]:
     """Matrices (5, 5) and (5,) over a sample: omega_1, omega_2, phi, T_mot, dT_mot, driven by a held T_ref."""
     wheels = plant.J_2 + plant.m * plant.r**2 / plant.i**2
     A = np.zeros((6, 6))
@@ -40,7 +40,7 @@ def drive_train(plant: Plant, motor: Motor) -> tuple[np.ndarray, np.ndarray]:
 
 def closed_loop(plant: Plant, motor: Motor, gains: Mapping[str, float]) -> np.ndarray:
     """Matrix (12, 12) of one sample of the loop: drive train, T_ref, estimate, last T_mot, washout."""
-    F, G = drive_train(plant, motor)
+    F, G = sampled_drive_train(plant, motor)
     A, ahead = (transition(plant, gains["lambda_v"], h) for h in (T_S, gains["T_pred"]))
     pushed = {h: np.array([h, 0.0, 0.5 * h * h, 0.0]) / plant.J_1 for h in (T_S, gains["T_pred"])}
     L = np.array([gains[f"L_{state}"] for state in STATES])

@@ -1,8 +1,8 @@
 """The whole loop as one system: the solution that co-simulation approximates.
 
 Motor and plant are integrated together, the sampled blocks tick exactly at their instants with the
-values of that instant, and every torque between two instants is the true one. Used to measure the
-coupling error of the master and to design the controller; it runs the models themselves.
+values of that instant, and every torque between two instants is the true one. The coupling error and
+the dead time of the master are measured against it; it runs the models themselves.
 """
 
 from collections import namedtuple
@@ -29,7 +29,7 @@ Signals = Callable[[int], tuple[float, float, float]]
 
 
 @cache
-def drive_train(plant: ContinuousBlock) -> ContinuousBlock:
+def motor_and_plant(plant: ContinuousBlock) -> ContinuousBlock:
     """Motor and plant as one continuous block; its input is that of the plant with T_ref for T_mot."""
     split = len(MOTOR.State._fields)
     State = namedtuple("State", [f"motor_{n}" for n in MOTOR.State._fields] + list(plant.State._fields))
@@ -66,7 +66,7 @@ def run(
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     enable: bool = True,
 ) -> np.ndarray:
-    """Simulate the loop.
+    """Runs the loop from the start of its blocks.
 
     Args:
         plant: one of PLANTS.
@@ -82,7 +82,7 @@ def run(
     blocks: dict[str, Block] = {"controller": CONTROLLER, "motor": MOTOR, "plant": plant, "can": CAN}
     p = {name: block.Parameters(**(parameters or {}).get(name, {})) for name, block in blocks.items()}
     u = plant.Input(*signals(0))
-    driven = runner(drive_train(plant), u, (p["motor"], p["plant"]))
+    driven = runner(motor_and_plant(plant), u, (p["motor"], p["plant"]))
     motor, seen = driven.output(u)
     can = runner(CAN, wheels(seen), p["can"])
     controller = runner(CONTROLLER, sensed(u.T_mot, motor, can.output(None), enable), p["controller"])

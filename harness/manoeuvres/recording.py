@@ -16,7 +16,7 @@ GAP_LIMIT = 3.0
 
 
 @dataclass(frozen=True)
-class Column:
+class RecordedColumn:
     """A quantity that a recording must contain: the names and units it may have in the file."""
 
     names: tuple[str, ...]
@@ -28,10 +28,10 @@ class Column:
 
 
 COLUMNS = {
-    "time": Column(("Time", "t"), {"s": 1.0, "ms": 1e-3, "min": 60.0}),
-    "v": Column(("Velocity", "Speed", "Vehicle Speed"), {"km/h": 1 / 3.6, "m/s": 1.0, "mph": 0.44704}),
-    "elevation": Column(("Elevation", "Altitude", "Height"), {"m": 1.0, "km": 1e3, "ft": 0.3048}),
-    "T_mot": Column(("Motor Torque", "Torque"), {"Nm": 1.0, "N.m": 1.0, "kNm": 1e3}),
+    "time": RecordedColumn(("Time", "t"), {"s": 1.0, "ms": 1e-3, "min": 60.0}),
+    "v": RecordedColumn(("Velocity", "Speed", "Vehicle Speed"), {"km/h": 1 / 3.6, "m/s": 1.0, "mph": 0.44704}),
+    "elevation": RecordedColumn(("Elevation", "Altitude", "Height"), {"m": 1.0, "km": 1e3, "ft": 0.3048}),
+    "T_mot": RecordedColumn(("Motor Torque", "Torque"), {"Nm": 1.0, "N.m": 1.0, "kNm": 1e3}),
 }
 
 
@@ -82,7 +82,7 @@ def read_recording(path: Path) -> Recording:
     return Recording(path.stem, **signals)
 
 
-def _find(path: Path, header: list[str], column: Column) -> tuple[int, float]:
+def _find(path: Path, header: list[str], column: RecordedColumn) -> tuple[int, float]:
     """Where a quantity stands in the rows, and the factor that turns it into SI units."""
     allowed = {name.casefold() for name in column.names}
     found = [(k, unit) for k, (name, unit) in enumerate(_named(header)) if name.casefold() in allowed]

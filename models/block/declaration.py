@@ -53,7 +53,7 @@ class Enumeration:
 Declaration = Real | Integer | Boolean | Enumeration
 
 
-class Variable(NamedTuple):
+class Quantity(NamedTuple):
     """One declared quantity: its name, its declaration, its start value (None if it has none)."""
 
     name: str
@@ -61,13 +61,13 @@ class Variable(NamedTuple):
     start: Any
 
 
-def variables(record: Any) -> tuple[Variable, ...]:
+def variables(record: Any) -> tuple[Quantity, ...]:
     """The declared quantities of a NamedTuple class, in the order of its fields.
 
-    A field that is a record itself is none: that has declared its own.
+    A field that is itself a record is left out; it declares its own quantities.
 
     Raises:
-        TypeError: a field carries no declaration and is no record.
+        TypeError: a field has no declaration and is not a record.
     """
     hints = get_type_hints(record, include_extras=True)
     defaults = record._field_defaults
@@ -78,7 +78,7 @@ def variables(record: Any) -> tuple[Variable, ...]:
             continue
         if not declared:
             raise TypeError(f"{record.__module__}.{record.__name__}.{name} has no declaration")
-        found.append(Variable(name, declared[0], defaults.get(name)))
+        found.append(Quantity(name, declared[0], defaults.get(name)))
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from models import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
 from models.block import operators
-from models.block.declaration import Boolean, Integer, Real, Variable, variables
+from models.block.declaration import Boolean, Integer, Quantity, Real, variables
 from models.block.runner import runner
 from models.block.types import Block
 
@@ -88,7 +88,7 @@ def numbers(value: Any) -> list[float]:
     return [float(unpacked(value))]
 
 
-def drawn(variable: Variable, rng: np.random.Generator) -> Any:
+def drawn(variable: Quantity, rng: np.random.Generator) -> Any:
     """A value for an input: moderate, and within its bounds."""
     match variable.declaration:
         case Real(minimum=low, maximum=high):
