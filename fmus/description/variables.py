@@ -3,8 +3,7 @@
 from typing import Any, NamedTuple
 
 from models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
-
-LARGEST = 1.7976931348623157e308
+from models.block.operators import LARGEST
 
 
 class Variable(NamedTuple):

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from models.controller.torque_estimator import Estimate
+
 from ..cosimulation.system import BUILD, Scheme
 from ..manoeuvres.signals import Signal
 from .coupling import NOISELESS, T_S, cosimulated, reference, short
@@ -20,9 +22,8 @@ PLANT = "TwoMassDriveline"
 OPEN = NOISELESS | {"controller.k_d": 0.0, "controller.k_T": 0.0, "controller.e_max": 1000.0}
 """The estimator takes its signals however far off they are, and nothing is done with what it finds."""
 
-STATES = ("omega_1", "omega_2", "phi", "T_l")
-NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw") for state in STATES}
-NO_WHEEL_SPEED = {f"controller.L_can_{state}": 0.0 for state in STATES}
+NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw") for state in Estimate._fields}
+NO_WHEEL_SPEED = {f"controller.L_can_{state}": 0.0 for state in Estimate._fields}
 NO_TORQUE = {"controller.J_1": 10.0}
 WHEEL_SPEED_HELD = NO_WHEEL_SPEED | {
     "controller.L_can_omega_2": 1.0,

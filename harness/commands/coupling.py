@@ -3,7 +3,7 @@
 import argparse
 from itertools import product
 
-from ..cosimulation.system import PLANTS, loop
+from ..cosimulation.system import PLANTS, Scheme, loop
 from .options import add_fmus, add_output, add_printing, built
 from .printing import Printer
 
@@ -36,13 +36,12 @@ def run(args: argparse.Namespace) -> int:
     for plant in PLANTS:
         built(plant, args.fmus)
     # here and not above: only this measurement needs the models
-    from ..analysis.coupling import MANOEUVRES, Scheme, compare
-    from ..analysis.coupling import PLANTS as MODELS
+    from ..analysis.coupling import MANOEUVRES, compare
     from ..analysis.coupling_page import page
     from ..analysis.dead_time import dead_times
     from ..reports.files import write_text
 
-    cases = product(MODELS, MANOEUVRES, Scheme)
+    cases = [(plant, manoeuvre, scheme) for plant in PLANTS for manoeuvre in MANOEUVRES for scheme in Scheme]
     text = page(
         [compare(plant, manoeuvre, scheme, folder=args.fmus) for plant, manoeuvre, scheme in cases],
         {(s, h): dead_times(s, h, args.fmus) for s, h in product(Scheme, DEAD_TIME_STEPS)},

@@ -83,8 +83,8 @@ class KeptLoops:
     def close(self) -> None:
         """Unloads them all."""
         with ExitStack() as stack:
-            for loop, _ in self._loops.values():
-                stack.callback(loop.close)
+            for unloading, _ in self._loops.values():
+                stack.callback(unloading.close)
 
 
 _kept: KeptLoops | None = None

@@ -9,8 +9,12 @@ neither may raise.
 """
 
 import math
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any
+
+LARGEST = sys.float_info.max
+"""The largest finite number."""
 
 
 def where(condition: Any, value: Any, otherwise: Any) -> Any:
@@ -82,7 +86,7 @@ def logical_not(a: Any) -> Any:
 
 def is_finite(x: Any) -> Any:
     """False for NaN and both infinities; written with comparisons, so that it traces."""
-    return abs(x) <= 1.7976931348623157e308
+    return abs(x) <= LARGEST
 
 
 def sin(x: Any) -> Any:
