@@ -5,17 +5,18 @@ import tempfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.metadata import distribution
+from importlib.metadata import distribution, version
 from pathlib import Path, PurePosixPath
 from types import ModuleType
 
 from pythonfmu.builder import FmuBuilder
 
 from ..archive import guid_of, write_archive
-from ..description.build_kind import python_kind
+from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
 from ..fmu import Fmu
+from ..protocol import LOG_CATEGORIES, LOG_DISCARD
 from .bundle import bundle, package_name, package_text, script_text
 
 SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
@@ -32,6 +33,23 @@ def build(fmu: Fmu, folder: Path) -> Path:
     target = folder / f"{fmu.name}.fmu"
     write_archive(files, target)
     return target
+
+
+def python_kind() -> BuildKind:
+    """What the build with PythonFMU says of itself."""
+    return BuildKind(
+        tool=f"PythonFMU {version('pythonfmu')}",
+        capabilities={
+            "canInterpolateInputs": "false",
+            "maxOutputDerivativeOrder": "0",
+            "canNotUseMemoryManagementFunctions": "true",
+            "providesDirectionalDerivative": "false",
+        },
+        log_categories={LOG_DISCARD: LOG_CATEGORIES[LOG_DISCARD]},
+        needs="""The model is Python code inside this file, on the
+standard library alone. The host process must be a Python of version 3.11 or later, or have loaded
+libpython with its symbols visible (on Linux: LD_PRELOAD).""",
+    )
 
 
 def _resources_and_binaries(fmu: Fmu) -> dict[str, bytes]:
