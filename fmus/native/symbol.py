@@ -21,7 +21,7 @@ def _remainder(x: casadi.SX, y: casadi.SX) -> casadi.SX:
 
 
 OPERATIONS = {"neg": operator.neg, "pos": operator.pos, "fmod": _remainder}
-"""Those that are no functions of CasADi."""
+"""Those that are not functions of CasADi."""
 
 
 class CasadiSymbol(Symbol):

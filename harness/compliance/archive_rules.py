@@ -20,7 +20,7 @@ def archive(path: Path) -> Iterator[str]:
             broken = file.testzip()
             entries = file.infolist()
     except BadZipFile as error:
-        yield f"it is no zip archive: {error}"
+        yield f"it is not a zip archive: {error}"
         return
     if broken:
         yield f"{broken} is damaged"

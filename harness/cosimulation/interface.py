@@ -25,7 +25,7 @@ class Interface:
         """Reads the model description.
 
         Raises:
-            WiringError: the file is no FMI 2.0 Co-Simulation FMU.
+            WiringError: the file is not an FMI 2.0 Co-Simulation FMU.
         """
         self.path = path
         self.description = _read(path)

@@ -16,7 +16,7 @@ NUMBER_WIDTH = 5
 
 
 def print_table(table: Table) -> None:
-    """Prints a table, wide enough where stdout is no terminal with a width of its own."""
+    """Prints a table, wide enough where stdout is not a terminal, which has a width of its own."""
     console = Console()
     (console if console.is_terminal else Console(width=max(console.width, 120))).print(table)
 
