@@ -1,5 +1,6 @@
 """What several tests share."""
 
+import tempfile
 from shutil import copytree
 
 import pytest
@@ -47,4 +48,13 @@ def both_built(built, native, tmp_path_factory):
     folder = tmp_path_factory.mktemp("both")
     copytree(built, folder, dirs_exist_ok=True)
     copytree(native, folder / native.name)
+    return folder
+
+
+@pytest.fixture
+def unpacked(tmp_path, monkeypatch):
+    """Folder for temporary files, in which FMUs are unpacked."""
+    folder = tmp_path / "unpacked"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
     return folder

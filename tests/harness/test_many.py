@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,15 +22,6 @@ CASES = [
     for plant in ("TwoMassDriveline", "ValidationVehicle")
     for build in ("native", "python")
 ]
-
-
-@pytest.fixture
-def unpacked(tmp_path, monkeypatch):
-    """Folder for temporary files."""
-    folder = tmp_path / "unpacked"
-    folder.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    return folder
 
 
 def in_folder(fmus):

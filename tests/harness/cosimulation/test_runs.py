@@ -1,6 +1,5 @@
 """Systems that are kept loaded from one run to the next."""
 
-import tempfile
 from shutil import copyfile
 
 import numpy as np
@@ -16,15 +15,6 @@ from tests.foreign import build_relay
 @pytest.fixture(scope="module")
 def relay(tmp_path_factory):
     return build_relay(tmp_path_factory.mktemp("relay"))
-
-
-@pytest.fixture
-def unpacked(tmp_path, monkeypatch):
-    """Folder in which FMUs are unpacked."""
-    folder = tmp_path / "unpacked"
-    folder.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    return folder
 
 
 def files(folder):
