@@ -10,8 +10,17 @@ from pathlib import Path
 def complete(path: Path) -> Iterator[Path]:
     """A path to write to; what is there at the end of the block becomes the file at `path`, after an error nothing.
 
-    The folder is made if absent.
+    The folder is made if absent. A link stays one, and so does what is no file: /dev/stdout is written to.
+
+    Raises:
+        IsADirectoryError: there is a folder of that name.
     """
+    if path.is_dir():
+        raise IsADirectoryError(f"{path} is a folder; a file is needed")
+    if path.exists() and not path.is_file():
+        yield path
+        return
+    path = path.resolve()
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:

@@ -3,7 +3,9 @@
 import csv
 import io
 import math
+import os
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics, RideMetrics
 from harness.reports.figures import plot_drive, plot_replay, plot_step
-from harness.reports.files import complete
+from harness.reports.files import complete, write_text
 from harness.reports.table import SHOWN, Row, cells, legend, values, write_markdown, write_metrics
 from harness.reports.terminal import rides_table, runs_table
 
@@ -143,3 +145,31 @@ def test_what_another_controller_does_not_show_is_not_drawn(results, tmp_path):
 def test_a_replay_shorter_than_the_close_up_is_drawn(results, tmp_path):
     recorded = (np.array([0.0, 2.0]), np.array([1.0, 2.0]))
     assert all(file.exists() for file in plot_replay([results, results], recorded, "drive", tmp_path / "run"))
+
+
+def test_a_file_that_is_written_through_a_link_leaves_the_link(tmp_path):
+    file, link = tmp_path / "gains.toml", tmp_path / "link.toml"
+    file.touch()
+    link.symlink_to(file)
+    write_text("k_d = 1\n", link)
+    assert link.is_symlink()
+    assert file.read_text() == "k_d = 1\n"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with names here")
+def test_what_is_no_file_is_written_to_and_not_replaced(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_text("k_d = 1\n", pipe)
+        assert os.read(reader, 100) == b"k_d = 1\n"
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
+
+
+def test_a_folder_is_not_written_to_as_a_file(tmp_path):
+    for folder in (tmp_path, Path()):
+        with pytest.raises(IsADirectoryError, match="is a folder"):
+            write_text("k_d = 1\n", folder)
