@@ -111,9 +111,9 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
     if not path.is_file():
         raise ParameterFileError(f"there is no file {path}")
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
         entries = tomllib.loads(text)
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, brackets in brackets
         raise ParameterFileError(f"{path} is not TOML: {error}") from error
     values, problems = {}, []
     for name, entry in entries.items():

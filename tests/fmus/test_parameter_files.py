@@ -115,6 +115,15 @@ def test_a_file_that_is_absent_or_no_text_is_named(tmp_path: Path) -> None:
     assert "is not TOML" in refusal(read_vehicle, tmp_path / "car.toml")
 
 
+@pytest.mark.parametrize("text", [f"J_1 = {'1' * 5000}\n", f"J_1 = {'[' * 5000}\n"])
+def test_what_python_cannot_read_is_no_toml_either(written: Callable[[str], Path], text: str) -> None:
+    assert "is not TOML" in refusal(read_vehicle, written(text))
+
+
+def test_a_file_may_begin_with_the_mark_of_utf_8(written: Callable[[str], Path]) -> None:
+    assert read_vehicle(written("\ufeffJ_1 = 0.09\n")) == {"J_1": 0.09}
+
+
 def test_all_blocks_that_have_a_parameter_must_allow_it(written: Callable[[str], Path]) -> None:
     from dataclasses import replace
     from typing import Annotated, NamedTuple
