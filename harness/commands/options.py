@@ -160,8 +160,11 @@ def folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name of the folder is empty")
     path = Path(text)
-    if path.exists() and not path.is_dir():
-        raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
+    try:
+        if path.exists() and not path.is_dir():
+            raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
+    except OSError as error:  # a name that is too long
+        raise argparse.ArgumentTypeError(str(error)) from error
     return path
 
 

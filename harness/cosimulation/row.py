@@ -20,6 +20,9 @@ from .interface import Interface, type_of
 Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
 """An input from outside: a constant, a sample for each instant, or a function of the instants."""
 
+MOST_STEPS = 2**53
+"""From here on a double does not tell the number of a step from that of the next."""
+
 
 def instants(duration: float, step_size: float) -> NDArray[np.float64]:
     """k * step_size for k = 0, 1, ... up to the duration, in s.
@@ -32,6 +35,8 @@ def instants(duration: float, step_size: float) -> NDArray[np.float64]:
             f"a step of {step_size:g} s in a run of {duration:g} s: steps must be longer than 0 s and "
             "not longer than the run"
         )
+    if not duration / step_size < MOST_STEPS:
+        raise WiringError(f"a step of {step_size:g} s in a run of {duration:g} s: these are too many steps")
     return np.arange(floor(duration / step_size + 1e-6) + 1, dtype=np.float64) * step_size
 
 

@@ -62,6 +62,11 @@ def test_a_folder_is_no_file(tmp_path):
     assert folder(str(tmp_path)) == tmp_path
 
 
+def test_a_folder_whose_name_is_too_long_is_refused():
+    with pytest.raises(ArgumentTypeError, match="too long"):
+        folder("a" * 5000)
+
+
 def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
     assert BUILD == ROOT / "build"
     copytree(ROOT / "harness", tmp_path / "site" / "harness", ignore=ignore_patterns("__pycache__", "*.so"))

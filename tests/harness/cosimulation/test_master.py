@@ -84,6 +84,9 @@ def test_a_run_ends_with_its_last_whole_step():
     for step_size in (0.0, -1e-3, float("nan"), 2.0):
         with pytest.raises(WiringError, match="must be longer than 0 s"):
             instants(1.0, step_size)
+    for duration, step_size in ((1.0, 1e-320), (1e300, 1e-3)):
+        with pytest.raises(WiringError, match="too many steps"):
+            instants(duration, step_size)
 
 
 def test_a_refusal_names_instance_function_time_and_reason(chain):
