@@ -1,6 +1,6 @@
 """The loop as data: which FMUs there are, what is connected, and what a run gives and wants to see."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
@@ -214,13 +214,16 @@ def _files(blocks: Mapping[str, NameOrFile | None], folder: Path, build: str) ->
         raise WiringError(f"unknown build {build}; {nearest(build, BUILDS)}")
     if build == NATIVE:
         folder = folder / NATIVE
-    return {place: _file(place, blocks[place] or names[0], names, folder) for place, names in PLACES.items()}
+    return {place: _file(place, blocks[place], names, folder) for place, names in PLACES.items()}
 
 
-def _file(place: str, block: NameOrFile, names: Iterable[str], folder: Path) -> Path:
+def _file(place: str, block: NameOrFile | None, names: Sequence[str], folder: Path) -> Path:
+    if block is None:
+        block = names[0]
     if str(block) in names:
         return folder / f"{block}.fmu"
     path = Path(block)
     if path.suffix == ".fmu":
         return path
-    raise WiringError(f"unknown {place} {block}; {nearest(str(block), names)} (or give the path of a .fmu file)")
+    name = str(block) or "(an empty name)"
+    raise WiringError(f"unknown {place} {name}; {nearest(str(block), names)} (or give the path of a .fmu file)")

@@ -121,3 +121,10 @@ def test_the_page_says_what_each_place_needs():
                     told[f"{place.strip(' `')}.{name}"] = causality, unit or None, may_lack
     ports = [(causality, port) for causality, ports in loop().ports.items() for port in ports]
     assert told == {port.name: (causality, port.unit, port.name in OPTIONAL) for causality, port in ports}
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_an_empty_name_is_no_block(place):
+    blocks: dict[str, Any] = {place: ""}
+    with pytest.raises(WiringError, match=rf"unknown {place} \(an empty name\)"):
+        loop(**blocks)
