@@ -51,6 +51,9 @@ def build_fmus(
 
     fmus = [_named(name) for name in dict.fromkeys(names or FMUS)]
     own = [fmu for fmu in fmus if fmu not in FMUS.values()]
+    built = [fmu.name for fmu in fmus]
+    if same := sorted({name for name in built if built.count(name) > 1}):
+        raise BuildError(f"{same[0]} is the name of several FMUs, which would overwrite each other")
     if own and builds in ("python", "both"):
         raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
     of_the_project = builders(builds, platform) if len(own) < len(fmus) else []

@@ -27,7 +27,7 @@ def fmu_in(path: Path) -> Fmu:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise BuildError(f"{path} cannot be run: {type(error).__name__}: {error}") from error
     fmu = getattr(module, "FMU", None)
@@ -40,7 +40,8 @@ def fmu_in(path: Path) -> Fmu:
 def _taken(name: str, path: Path) -> bool:
     """Whether a module of that name would be hidden by the file."""
     if name in sys.modules:
-        return True
+        file = getattr(sys.modules[name], "__file__", None)
+        return not (file and Path(file).exists() and path.samefile(file))
     spec = find_spec(name) if name.isidentifier() else None
     if spec is None or spec.origin is None:
         return False

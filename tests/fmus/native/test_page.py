@@ -8,6 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fmus.builds import build_fmus
+from fmus.errors import BuildError
+from fmus.own_file import fmu_in
 from harness.cosimulation.system import NATIVE
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.evaluate import evaluate
@@ -56,6 +59,34 @@ def test_a_file_without_an_fmu_is_refused(tmp_path: Path) -> None:
     done = build(file, tmp_path, "--build", "native")
     assert done.returncode == 2
     assert "has no line `FMU = Fmu(BLOCK, stop_time=10.0)`" in done.stderr
+
+
+OF_THE_BUS = "from fmus.fmu import Fmu\nfrom models.wheel_speed_can import BLOCK\nFMU = Fmu(BLOCK, stop_time=11.0)\n"
+
+
+def test_a_file_can_be_changed_and_read_again(tmp_path: Path) -> None:
+    file = tmp_path / "my_bus.py"
+    for stop_time in ("11.0", "120.0"):
+        file.write_text(OF_THE_BUS.replace("11.0", stop_time), encoding="utf-8")
+        assert fmu_in(file).stop_time == float(stop_time)
+    del sys.modules["my_bus"]
+
+
+def test_fmus_of_one_name_do_not_overwrite_each_other(tmp_path: Path) -> None:
+    file = tmp_path / "my_bus.py"
+    file.write_text(OF_THE_BUS, encoding="utf-8")
+    with pytest.raises(BuildError, match="WheelSpeedCan is the name of several FMUs"):
+        list(build_fmus(["WheelSpeedCan", str(file)], tmp_path))
+    del sys.modules["my_bus"]
+    assert not list(tmp_path.rglob("*.fmu"))
+
+
+def test_a_file_that_ends_the_process_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "leaves.py"
+    file.write_text("raise SystemExit(0)\n", encoding="utf-8")
+    done = build(file, tmp_path, "--build", "native")
+    assert done.returncode == 2
+    assert "cannot be run: SystemExit: 0" in done.stderr
 
 
 def test_a_file_whose_name_is_taken_is_refused(tmp_path: Path) -> None:
