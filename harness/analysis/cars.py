@@ -17,7 +17,8 @@ from ..manoeuvres.catalogue import MANOEUVRES
 from ..metrics.evaluate import evaluate
 from ..metrics.record import Metrics
 from ..simulate import simulate
-from .design import design, records
+from .design import design
+from .weights import records
 
 
 class Gains(Enum):

@@ -13,7 +13,8 @@ from scipy.linalg import expm
 from models.controller.supervision import T_S
 from models.controller.torque_estimator import Estimate
 
-from .design import Motor, Plant, transition
+from .kalman import transition
+from .weights import Motor, Plant
 
 STATES = Estimate._fields
 

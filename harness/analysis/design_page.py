@@ -15,7 +15,8 @@ from ..reports.markdown import markdown_table
 from ..reports.table import number
 from .cars import Gains, Trial, measured, own_gains
 from .closed_loop import swing
-from .design import design, records
+from .design import design
+from .weights import records
 
 ROOT = Path(__file__).parents[2]
 CARS = (None, *sorted((ROOT / "examples" / "cars").glob("*.toml")))

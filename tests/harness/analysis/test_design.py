@@ -7,20 +7,9 @@ import numpy as np
 import pytest
 
 from harness.analysis.closed_loop import closed_loop, modes, swing
-from harness.analysis.design import (
-    CAN,
-    MOTOR,
-    PLANT,
-    WEIGHTS,
-    DesignError,
-    design,
-    drive_train,
-    landing_torque,
-    motor_speed_gains,
-    process_noise,
-    records,
-    transition,
-)
+from harness.analysis.design import design, landing_torque
+from harness.analysis.kalman import DesignError, motor_speed_gains, process_noise, transition
+from harness.analysis.weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
 from harness.commands.design import designed
 from models.block.declaration import variables
 from models.damping_controller import BLOCK
@@ -67,10 +56,16 @@ def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float
 
 def test_the_vehicle_takes_its_share_of_the_gear_torque() -> None:
     """With a wheel share of 1 the estimated wheels move as one with the vehicle."""
-    train = drive_train(PLANT, MOTOR, replace(WEIGHTS, wheel_share=1.0))
+    train = drive_train(PLANT, MOTOR, CAN, replace(WEIGHTS, wheel_share=1.0))
     assert train.M == pytest.approx(1450.0 * 0.29**2 / 9.0**2)
     assert (1.0 - train.lambda_v) / PLANT.J_2 == pytest.approx(1.0 / (PLANT.J_2 + train.M))
     assert train.omega_0 / (2.0 * pi) == pytest.approx(swing(PLANT, MOTOR, design())[0].frequency, rel=1e-6)
+
+
+def test_of_light_wheels_the_vehicle_takes_all_that_the_controller_allows() -> None:
+    physical = PLANT._replace(J_2=1.9 / 81.0)
+    assert drive_train(physical, MOTOR, CAN).lambda_v == 0.99
+    assert swing(physical, MOTOR, design(physical))[1].damping_ratio > 0.4
 
 
 def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_the_phase() -> None:
@@ -88,7 +83,7 @@ def test_the_washout_gives_back_the_same_share_of_a_step_for_every_car() -> None
 
 
 def test_the_landing_withholds_what_it_may_and_ends_as_hard_as_it_may() -> None:
-    train = drive_train(PLANT, MOTOR, WEIGHTS)
+    train = drive_train(PLANT, MOTOR, CAN)
     T_d = WEIGHTS.demand * MOTOR.T_max
 
     def withheld(T: float, phi_B: float) -> float:
@@ -121,7 +116,7 @@ def test_more_damping_is_asked_for_by_a_larger_damping_ratio() -> None:
 def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
     A = transition(PLANT, 0.9)
     assert A[3].tolist() == [0.0, 0.0, 0.0, 1.0]
-    assert np.all(np.linalg.eigvalsh(process_noise(PLANT, MOTOR, WEIGHTS)) > 0.0)
+    assert np.all(np.linalg.eigvalsh(process_noise(PLANT, MOTOR, drive_train(PLANT, MOTOR, CAN), WEIGHTS)) > 0.0)
 
 
 @pytest.mark.parametrize(

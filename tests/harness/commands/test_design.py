@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from fmus.parameter_files import read_parameters, read_vehicle
-from harness.analysis.design import design, records
+from harness.analysis.design import design
+from harness.analysis.weights import records
 from harness.cli import main
 from tests import ROOT
 
