@@ -1,0 +1,26 @@
+"""A vehicle file meets an FMU that somebody else wrote."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.cli import main
+from tests.foreign import build_car
+
+
+def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
+    built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heavy = tmp_path / "heavy.toml"
+    heavy.write_text("m = 2000.0\n")
+    plain, theirs = (
+        build_car(tmp_path / name, m=("m", unit, factor)) for name, unit, factor in (("si", "kg", 1.0), ("t", "t", 1e3))
+    )
+    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(built), "--quiet"]
+    assert main([*options, "--plant", str(theirs), "--output", str(tmp_path)]) == 2
+    assert "plant.m is in t; the file gives it in kg (--map plant.m=m converts it)" in capsys.readouterr().err
+    for name, plant, mapped in (("si", plain, []), ("t", theirs, ["--map", "plant.m=m"])):
+        assert main([*options, "--plant", str(plant), *mapped, "--output", str(tmp_path / name)]) == 0
+    runs = [np.genfromtxt(next((tmp_path / name).glob("*.csv")), delimiter=",", names=True) for name in ("si", "t")]
+    np.testing.assert_allclose(runs[1]["plantv"], runs[0]["plantv"], rtol=1e-9)
