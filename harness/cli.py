@@ -29,7 +29,7 @@ COMMANDS = {
 }
 
 DESCRIPTION = """\
-Active damping of drive-train oscillations: the closed loop of FMUs, with and without control.
+Active damping of drive-train oscillations: the closed loop of FMUs, with and without damping.
 
 First `driveline build`, then for example `driveline simulate --manoeuvre tipin15`;
 `driveline COMMAND --help` explains a command.

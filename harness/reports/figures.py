@@ -1,4 +1,4 @@
-"""Figures of the runs: without control on the left, with control on the right, on the same axes.
+"""Figures of the runs: without damping on the left, with damping on the right, on the same axes.
 
 Every figure is written as PNG and PDF; the same runs give the same bytes.
 """
@@ -42,7 +42,7 @@ METADATA = {
 }
 """What matplotlib would say of date and origin, by the kind of file: nothing."""
 
-TITLES = ("without oscillation control", "with oscillation control")
+TITLES = ("without damping", "with damping")
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def plot_drive(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, ste
     """Speeds and torques over a whole drive, as in Figs. 7 and 8 of the paper.
 
     Args:
-        runs: results without and with control.
+        runs: results without and with damping.
         manoeuvre: that both ran.
         plant: its name, for the title.
         stem: path of the files without their ending.
@@ -130,10 +130,10 @@ def plot_step(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem
 def plot_replay(
     runs: Sequence[np.ndarray], recorded: tuple[np.ndarray, np.ndarray], title: str, stem: Path
 ) -> list[Path]:
-    """A recorded drive: speed against the recorded one, gear torque without and with control, a close-up.
+    """A recorded drive: speed against the recorded one, gear torque without and with damping, a close-up.
 
     Args:
-        runs: results without and with control, with `time`, `plant.v`, `plant.T_gear` and
+        runs: results without and with damping, with `time`, `plant.v`, `plant.T_gear` and
             `controller.T_driver`.
         recorded: time in s and speed in m/s of the recording.
         title: of the figure.
@@ -147,12 +147,12 @@ def plot_replay(
         speed, torque, close = figure.subplots(3, 1)
         t = runs[0]["time"]
         speed.plot(*recorded, color=BLACK, label="recorded")
-        speed.plot(t, runs[1]["plant.v"], color=BLUE, label="simulated, with control", rasterized=True)
+        speed.plot(t, runs[1]["plant.v"], color=BLUE, label="simulated, with damping", rasterized=True)
         figure.suptitle(title, fontsize=10)
         speed.set(ylabel="speed in m/s", xlim=(t[0], t[-1]))
         for axes, window in ((torque, (t[0], t[-1])), (close, _roughest(runs[0]))):
             shown = (t >= window[0]) & (t <= window[1])
-            for run, color, label in zip(runs, (VERMILION, BLUE), ("without control", "with control"), strict=True):
+            for run, color, label in zip(runs, (VERMILION, BLUE), ("without damping", "with damping"), strict=True):
                 axes.plot(t[shown], run["plant.T_gear"][shown], color=color, label=label, rasterized=True)
             axes.set(ylabel="gear torque in N·m", xlim=window)
         shown = (t >= close.get_xlim()[0]) & (t <= close.get_xlim()[1])
