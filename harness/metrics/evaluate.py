@@ -114,7 +114,7 @@ def step_response(t: np.ndarray, T_gear: np.ndarray, t_0: float) -> tuple[float,
 
 def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
     """-(integral of e)/dT in s: by how much the added torque e delays the driver's step dT."""
-    return float(-np.sum(e)) * T_s / dT
+    return -float(np.sum(e)) * T_s / dT + 0.0  # nothing withheld is 0, not -0
 
 
 def impact_speed(results: np.ndarray, t_0: float) -> float:

@@ -100,6 +100,13 @@ def test_the_time_withheld_by_a_pure_delay_is_the_delay(samples):
     assert metrics.stationary_torque_change == 0.0
 
 
+@pytest.mark.parametrize("name", ["tipin15", "tipout"])
+def test_nothing_withheld_is_no_negative_zero(name):
+    T_driver = MANOEUVRES[name].T_driver
+    results = run(T_gear=decaying(0.1)[0], T_driver=T_driver, T_ref=lambda t: T_driver(np.round(t - T_S, 9)))
+    assert str(evaluate(results, MANOEUVRES[name]).withheld_time) == "0.0"
+
+
 def test_the_computation_delay_is_not_counted():
     T_driver = MANOEUVRES["tipout"].T_driver
     results = run(T_gear=decaying(0.1)[0], T_driver=T_driver, T_ref=lambda t: T_driver(np.round(t - T_S, 9)))
