@@ -71,6 +71,8 @@ def _named(name: str) -> Fmu:
         return FMUS[name]
     if name.endswith(".py"):
         return fmu_in(Path(name))
+    if name.endswith(".toml"):
+        raise BuildError(f"{name} is no FMU; a car is given as --vehicle {name}, its gains as --parameters")
     near = get_close_matches(name, FMUS, n=2, cutoff=0.5)
     hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(FMUS)}"
     raise BuildError(f"unknown FMU {name}; {hint}")

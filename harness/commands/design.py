@@ -5,7 +5,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..errors import DrivelineError
-from .options import add_printing
+from .options import add_printing, file
 from .printing import Printer
 
 DESCRIPTION = """\
@@ -28,7 +28,7 @@ Drive train: {alone.frequency:.2f} Hz; damped: {damped.frequency:.2f} Hz, dampin
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     for option, meaning in (("--vehicle", "the car (default: that of all blocks)"), ("--output", "for the gains")):
-        action = parser.add_argument(option, type=Path, metavar="FILE.toml", help=meaning)
+        action = parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
         action.complete = "file"  # type: ignore[attr-defined]
     add_printing(parser)
 

@@ -168,6 +168,16 @@ def folder(text: str) -> Path:
     return path
 
 
+def file(text: str) -> Path:
+    """The path of a file, which may not exist yet."""
+    if not text:
+        raise argparse.ArgumentTypeError("the name of the file is empty")
+    path = Path(text)
+    if path.is_dir():
+        raise argparse.ArgumentTypeError(f"{text} is a folder; a file is needed")
+    return path
+
+
 def blocks(args: argparse.Namespace) -> dict[str, str]:
     """The blocks of the loop beside the plant."""
     return {place: getattr(args, place) for place in OTHERS}

@@ -66,6 +66,12 @@ def test_an_unknown_name_is_answered_with_the_nearest():
     assert "unknown FMU TwoMasDriveline; did you mean TwoMassDriveline?" in said
 
 
+def test_a_vehicle_file_in_the_place_of_an_fmu_is_answered_with_its_option():
+    code, said = run(["build_fmus.py", "car.toml"], ROOT)
+    assert code == 2
+    assert "car.toml is no FMU; a car is given as --vehicle car.toml" in said
+
+
 def test_the_builder_leaves_no_trace_even_while_the_fmu_is_loaded(built, tmp_path):
     def ours():
         return {name: module for name, module in sys.modules.items() if name.startswith("driveline_")}

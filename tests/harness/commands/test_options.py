@@ -9,6 +9,7 @@ from shutil import copytree, ignore_patterns
 import pytest
 
 from harness.commands.options import LARGEST_SEED, assignment, folder, seconds, seed
+from harness.commands.options import file as a_file
 from harness.cosimulation.system import BUILD
 from tests import ROOT
 
@@ -65,6 +66,14 @@ def test_a_folder_is_no_file(tmp_path):
 def test_a_folder_whose_name_is_too_long_is_refused():
     with pytest.raises(ArgumentTypeError, match="too long"):
         folder("a" * 5000)
+
+
+def test_a_file_is_no_folder(tmp_path):
+    assert a_file(str(tmp_path / "gains.toml")) == tmp_path / "gains.toml"
+    with pytest.raises(ArgumentTypeError, match="is a folder"):
+        a_file(str(tmp_path))
+    with pytest.raises(ArgumentTypeError, match="empty"):
+        a_file("")
 
 
 def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
