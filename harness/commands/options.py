@@ -1,7 +1,7 @@
 """The options that several commands have, each with its check, and how they are read."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 from shlex import quote
@@ -160,11 +160,8 @@ def folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name of the folder is empty")
     path = Path(text)
-    try:
-        if path.exists() and not path.is_dir():
-            raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
-    except OSError as error:  # a name that is too long
-        raise argparse.ArgumentTypeError(str(error)) from error
+    if path.exists() and not path.is_dir():
+        raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
     return path
 
 
@@ -216,24 +213,43 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     from fmus.errors import ParameterFileError
     from fmus.parameter_files import for_instances, read_files, units
 
-    from ..cosimulation.interface import unit_of
     from ..cosimulation.wiring import fit, require
 
-    owned = {name: interface.of_causality("parameter") for name, interface in fit(system).interfaces.items()}
-    names = {instance: {variable.name for variable in variables} for instance, variables in owned.items()}
+    interfaces = fit(system).interfaces
+    names = {
+        instance: {variable.name for variable in interface.of_causality("parameter")}
+        for instance, interface in interfaces.items()
+    }
     try:
         values = read_files(args.vehicle, args.parameters, others=set().union(*names.values()))
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}
     require(
-        f"{name} is in {unit_of(v)}; the file gives it in {meant[v.name]} (--map {name}={v.name} converts it)"
-        for instance, variables in owned.items()
-        for v in variables
-        if (name := f"{instance}.{v.name}") not in system.mapping
-        and unit_of(v) not in (None, meant.get(v.name, unit_of(v)))
+        problem
+        for instance, interface in interfaces.items()
+        for name in sorted(names[instance] & meant.keys())
+        if (problem := _other_unit(interface, f"{instance}.{name}", meant[name], system.mapping))
     )
     return for_instances(values, names)
+
+
+def _other_unit(interface: Any, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:
+    """Why the number of a file, in the unit that is meant, does not reach the parameter `instance.name`, or None."""
+    from ..cosimulation.interface import unit_of
+    from ..cosimulation.units import factor
+
+    theirs = mapping.get(name, name.partition(".")[2])
+    unit = next(unit_of(variable) for variable in interface.description.modelVariables if variable.name == theirs)
+    if unit in (None, "", meant):
+        return None
+    try:
+        factor(unit, meant)
+    except ValueError as reason:
+        return f"{name} {reason}, the unit of the file"
+    if name in mapping:
+        return None
+    return f"{name} is in {unit}; the file gives it in {meant} (--map {name}={theirs} converts it)"
 
 
 def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:

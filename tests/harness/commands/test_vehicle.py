@@ -24,3 +24,15 @@ def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
         assert main([*options, "--plant", str(plant), *mapped, "--output", str(tmp_path / name)]) == 0
     runs = [np.genfromtxt(next((tmp_path / name).glob("*.csv")), delimiter=",", names=True) for name in ("si", "t")]
     np.testing.assert_allclose(runs[1]["plantv"], runs[0]["plantv"], rtol=1e-9)
+
+
+def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_mapped(
+    built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heavy = tmp_path / "heavy.toml"
+    heavy.write_text("m = 2000.0\n")
+    plant = build_car(tmp_path / "metres", m=("m", "m", 1.0))
+    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(built), "--plant", str(plant)]
+    for mapped in ([], ["--map", "plant.m=m"]):
+        assert main([*options, *mapped, "--output", str(tmp_path)]) == 2
+        assert "plant.m is in m, which does not convert into kg, the unit of the file" in capsys.readouterr().err
