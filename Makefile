@@ -50,6 +50,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs
 	$(BIN)/driveline back-to-back --output docs
+	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
