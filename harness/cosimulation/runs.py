@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from threading import local
 
 import numpy as np
 
@@ -32,27 +33,27 @@ def run(
     """
     names = inputs or (), parameters or ()
     wanted = duration, step_size, inputs, parameters, scheme, label
-    if _kept is not None:
-        return _kept.loop(system, *names).run(*wanted)
+    if _here.kept is not None:
+        return _here.kept.loop(system, *names).run(*wanted)
     with loaded(system, *names) as loop:
         return loop.run(*wanted)
 
 
 @contextmanager
 def kept_loaded(folder: Path | None = None) -> Iterator[None]:
-    """Within it a system that has been run stays loaded for its next run. For one thread alone.
+    """Within it a system that has been run in this thread stays loaded for its next run.
 
     The results are the same. What was loaded last is kept; an FMU whose file has changed is loaded anew.
 
     Args:
         folder: in which the FMUs are unpacked; None: that for temporary files.
     """
-    global _kept
-    outer, _kept = _kept, KeptLoops(folder)
+    outer, kept = _here.kept, KeptLoops(folder)
+    _here.kept = kept
     try:
         yield
     finally:
-        kept, _kept = _kept, outer
+        _here.kept = outer
         kept.close()
 
 
@@ -87,7 +88,13 @@ class KeptLoops:
                 stack.callback(unloading.close)
 
 
-_kept: KeptLoops | None = None
+class _Thread(local):
+    """Each thread has its own: two that step the same instances end the process."""
+
+    kept: KeptLoops | None = None
+
+
+_here = _Thread()
 
 
 def _version(path: Path) -> Hashable:

@@ -24,6 +24,27 @@ CASES = [
 ]
 
 
+THREADS = """
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.many import run_many
+from harness.simulate import simulate
+
+
+def end(k_d):
+    return simulate(MANOEUVRES["tipin15"], parameters={{"controller.k_d": k_d}}, folder=Path({0!r}))[-1].tolist()
+
+
+cases = [0.0, 1.0, 2.0]
+alone = [end(case) for case in cases]
+with ThreadPoolExecutor(3) as threads:
+    assert list(threads.map(lambda _: run_many(end, cases, workers=1), range(6))) == [alone] * 6
+"""
+"""Two threads that step the same instances end their process, so they get one of their own."""
+
+
 def in_folder(fmus):
     """Gives the end of a tip-in for a plant, a build and a gain."""
 
@@ -56,6 +77,13 @@ def test_one_worker_is_this_process_and_others_share_the_cases():
     others = run_many(lambda case: (Path("/").exists(), process(case)), range(3), workers=2)
     assert os.getpid() not in [number for _, number in others]
     assert run_many(process, []) == []
+
+
+def test_threads_do_not_share_what_is_kept_loaded(native, tmp_path):
+    script = tmp_path / "threads.py"
+    script.write_text(THREADS.format(str(native.parent)), encoding="utf-8")
+    done = subprocess.run([sys.executable, script], cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    assert done.returncode == 0
 
 
 @pytest.mark.parametrize("workers", [1, 2])

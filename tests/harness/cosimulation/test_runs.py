@@ -101,4 +101,4 @@ def test_an_error_within_unloads_too(relay, unpacked):
     with pytest.raises(SimulationError), kept_loaded():
         run(System({"a": relay}), 0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0})
     assert files(unpacked) == []
-    assert runs._kept is None
+    assert runs._here.kept is None
