@@ -30,6 +30,8 @@ F_BRAKE_MAX = 4000.0
 """Largest brake force in N, and the one that holds a standing car."""
 SLOPE_LIMIT = 0.08
 """Steepest road in rad."""
+HELD_MIN = 1e-3
+"""Shortest time in s for which a demand is held, the communication step."""
 SPEED_MIN = 3.0
 """Speed in m/s below which the climb over the distance says nothing of the slope."""
 
@@ -92,7 +94,12 @@ def road(recording: Recording, load: RoadLoad, held: float | None = None) -> Man
         recording: the drive; resampled to its median interval.
         load: of the vehicle that will drive it.
         held: if given, the demand is sampled and held for so many seconds: a rougher foot.
+
+    Raises:
+        WiringError: it is held for less than HELD_MIN.
     """
+    if held is not None and not held >= HELD_MIN:
+        raise WiringError(f"a demand that is held for {held:g} s: it must be {HELD_MIN:g} s or more")
     interval = round(float(np.median(np.diff(recording.time))), 9)
     t = np.arange(int((recording.time[-1] - recording.time[0]) / interval + 1e-6) + 1) * interval
     v, elevation, T_mot = (

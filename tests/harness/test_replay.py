@@ -11,8 +11,9 @@ import pytest
 
 from harness.cli import main
 from harness.cosimulation.interface import Interface
+from harness.errors import WiringError
 from harness.manoeuvres.recording import read_recording
-from harness.manoeuvres.road import RoadLoad, road
+from harness.manoeuvres.road import HELD_MIN, RoadLoad, road
 from harness.manoeuvres.town_drive import PATH
 from harness.metrics.damage import MissingExtra
 from harness.replay import replay, ride, write
@@ -39,6 +40,14 @@ def replayed(built, short_drive, tmp_path_factory):
     rides = replay(manoeuvre, recording, "ValidationVehicle", folder=built)
     write(rides, recording, "ValidationVehicle", folder)
     return folder
+
+
+def test_a_demand_is_not_held_for_less_than_a_step(built, short_drive):
+    recording, load = read_recording(short_drive), RoadLoad.of_plant(Interface(built / "ValidationVehicle.fmu"))
+    assert road(recording, load, held=HELD_MIN).duration == road(recording, load).duration
+    for held in (0.999 * HELD_MIN, 1e-300, float("nan")):
+        with pytest.raises(WiringError, match=r"it must be 0\.001 s or more"):
+            road(recording, load, held)
 
 
 def test_damping_lowers_oscillation_and_damage(replayed):
