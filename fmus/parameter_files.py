@@ -14,6 +14,7 @@ from typing import Any
 
 from models.block.declaration import Real
 
+from . import two_mass_driveline
 from .catalogue import FMUS
 from .description.variables import LARGEST, Variable, interface
 from .errors import ParameterFileError
@@ -90,6 +91,11 @@ def units() -> dict[str, str]:
     """The unit of every entry that our own blocks have and that is a Real; "1" for none."""
     declared = {name: owners[0][1].declaration for name, owners in _owners(FMUS.values()).items()}
     return {name: declaration.unit for name, declaration in declared.items() if isinstance(declaration, Real)}
+
+
+def of_plants() -> set[str]:
+    """Names of the parameters of a car that the design model has."""
+    return {quantity for quantity in two_mass_driveline.FMU.block.Parameters._fields if quantity not in OF_A_RUN}
 
 
 def _of_car(own: Iterable[Fmu] = ()) -> list[str]:

@@ -46,6 +46,8 @@ def run_many(
     """
     from loky import cpu_count  # only those who need processes load it
 
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+        raise DrivelineError(f"workers = {workers!r}: it must be a whole number from 1 on, or None")
     todo = list(cases)
     count = min(workers or cpu_count(), len(todo))
     source = _here(function, todo) if count <= 1 else _in_workers(function, todo, count)

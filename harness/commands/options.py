@@ -1,6 +1,7 @@
 """The options that several commands have, each with its check, and how they are read."""
 
 import argparse
+import logging
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
@@ -11,6 +12,8 @@ from fmus.options import add_parameter_files
 
 from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, System, chosen_build, loop
 from ..errors import DrivelineError
+
+LOG = logging.getLogger(__name__)
 
 LARGEST_SEED = 2**31 - 1
 """Of an FMI Integer."""
@@ -160,8 +163,11 @@ def folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name of the folder is empty")
     path = Path(text)
-    if path.exists() and not path.is_dir():
-        raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
+    try:
+        if path.exists() and not path.is_dir():
+            raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
+    except OSError as error:  # a name that is too long
+        raise argparse.ArgumentTypeError(str(error)) from error
     return path
 
 
@@ -211,7 +217,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     if args.vehicle is None and args.parameters is None:
         return {}
     from fmus.errors import ParameterFileError
-    from fmus.parameter_files import for_instances, read_files, units
+    from fmus.parameter_files import for_instances, of_plants, read_files, units
 
     from ..cosimulation.wiring import fit, require
 
@@ -225,6 +231,11 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}
+    if args.vehicle is not None and args.parameters is None:
+        LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
+    plant = system.instances["plant"]
+    if plant.stem not in PLANTS and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
+        LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
     require(
         problem
         for instance, interface in interfaces.items()

@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
-    from ..manoeuvres.road import RoadLoad, road
+    from ..manoeuvres.road import RoadLoad, road, torque_limit
     from ..replay import records, replay, write
     from ..reports.terminal import print_table, rides_table
 
@@ -67,8 +67,9 @@ def run(args: argparse.Namespace) -> int:
     recording = read_recording(args.recording)
     given, plant = settings(args, args.plant, build), Path(args.plant).stem
     system = loop(args.plant, args.fmus, build, mapping=given["mapping"], **blocks(args))
-    load = RoadLoad.of_plant(fit(system).interfaces["plant"], given["parameters"])
-    manoeuvre = road(recording, load, args.held)
+    interfaces, parameters = fit(system).interfaces, given["parameters"]
+    load = RoadLoad.of_plant(interfaces["plant"], parameters)
+    manoeuvre = road(recording, load, args.held, torque_limit(interfaces["motor"], parameters))
     out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {plant}, {build} FMUs, without and with damping")
     rides = replay(manoeuvre, recording, args.plant, **given)
     if not out.silent:

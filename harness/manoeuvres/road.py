@@ -8,6 +8,7 @@ the recorded one as far as the vehicle resembles the recorded car.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from math import inf
 from typing import Self
 
 import numpy as np
@@ -20,8 +21,6 @@ from .manoeuvre import Manoeuvre
 from .recording import Recording
 from .signals import Held, Lines
 
-T_LIMIT = 180.0
-"""Largest demanded motor torque in N.m."""
 ROTATING_MASS = 1.09
 """Mass including the rotating parts, over the mass."""
 F_UNCERTAIN = 300.0
@@ -87,13 +86,21 @@ class RoadLoad:
         return self.i * T_mot / self.r - grade - self.c_wa * v**2 - ROTATING_MASS * self.m * a
 
 
-def road(recording: Recording, load: RoadLoad, held: float | None = None) -> Manoeuvre:
+def torque_limit(motor: Interface, parameters: Mapping[str, float] | None = None) -> float:
+    """T_max of a motor in N.m as `parameters` (`motor.T_max` -> value), else its start value says; inf without one."""
+    variable = motor.variables.get("T_max")
+    start = float(variable.start) * motor.factors.get("T_max", 1.0) if variable and variable.start else inf
+    return (parameters or {}).get("motor.T_max", start)
+
+
+def road(recording: Recording, load: RoadLoad, held: float | None = None, T_max: float = inf) -> Manoeuvre:
     """The manoeuvre of a whole recorded trip, from its start (time 0) to its last sample.
 
     Args:
         recording: the drive; resampled to its median interval.
         load: of the vehicle that will drive it.
         held: if given, the demand is sampled and held for so many seconds: a rougher foot.
+        T_max: largest torque of the motor in N.m, to which the demand is limited.
 
     Raises:
         WiringError: it is held for less than HELD_MIN.
@@ -106,7 +113,7 @@ def road(recording: Recording, load: RoadLoad, held: float | None = None) -> Man
         np.interp(t, recording.time - recording.time[0], signal)
         for signal in (recording.v, recording.elevation, recording.T_mot)
     )
-    T_driver = np.clip(T_mot, -T_LIMIT, T_LIMIT)
+    T_driver = np.clip(T_mot, -T_max, T_max)
     slope = road_slope(v, elevation, interval)
     demand = Lines(t, T_driver)
     return Manoeuvre(

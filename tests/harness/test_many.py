@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.errors import SimulationError
+from harness.errors import DrivelineError, SimulationError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.many import run_many
 from harness.simulate import simulate
@@ -151,3 +151,9 @@ def test_no_guard_is_needed(native, tmp_path, how):
         check=False,
     )
     assert (done.returncode, done.stdout.split(), done.stderr) == (0, ["True", "True"], "")
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5])
+def test_a_number_of_workers_that_is_none_is_refused(workers):
+    with pytest.raises(DrivelineError, match="workers = "):
+        run_many(str, [1], workers=workers)

@@ -1,5 +1,6 @@
 """Recorded drives: what is read, what is refused and where, and the road made of them."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from harness.cosimulation.interface import Interface
 from harness.manoeuvres.recording import RecordingError, read_recording
-from harness.manoeuvres.road import RoadLoad, brake_torque, road
+from harness.manoeuvres.road import RoadLoad, brake_torque, road, torque_limit
 from tests import ROOT
 
 HEADER = "Time [s],Velocity [km/h],Elevation [m],Throttle [%],Motor Torque [Nm]"
@@ -93,7 +94,7 @@ def test_a_file_without_a_drive_is_refused(write, lines):
 
 def test_the_demand_is_the_recorded_torque_within_the_limits_of_the_motor(write):
     lines = [f"{k},36,500,0,{T}" for k, T in ((5, 10), (6, 20), (7, 300))]
-    manoeuvre = road(read_recording(write(*lines)), LOAD)
+    manoeuvre = road(read_recording(write(*lines)), LOAD, T_max=180.0)
     assert manoeuvre.T_driver([0.0, 0.5, 1.0, 2.0]) == pytest.approx([10, 15, 20, 180])
     assert manoeuvre.v_0 == pytest.approx(10.0)
     assert manoeuvre.duration == pytest.approx(2.0)
@@ -123,6 +124,13 @@ def test_the_brakes_know_the_vehicle_as_the_run_sets_it(built):
     given = {"plant.m": 1900.0, "can.r": 0.4}
     plant = Interface(built / "ValidationVehicle.fmu")
     assert RoadLoad.of_plant(plant, given) == replace(RoadLoad.of_plant(plant), m=1900.0)
+
+
+def test_the_limit_is_that_of_the_motor_as_the_run_sets_it(built):
+    motor = Interface(built / "MotorTorqueLoop.fmu")
+    assert torque_limit(motor) == 180.0
+    assert torque_limit(motor, {"motor.T_max": 250.0, "controller.T_max": 90.0}) == 250.0
+    assert torque_limit(Interface(built / "WheelSpeedCan.fmu")) == math.inf
 
 
 def test_what_is_mapped_is_in_the_units_of_the_loop(built):
