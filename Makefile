@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup demo test lint check cross bench docs clean
+.PHONY: help setup demo test mutation lint check cross bench docs clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
@@ -25,6 +25,9 @@ demo: $(READY) ## build the FMUs, compare with and without damping, replay a sho
 
 test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
+
+mutation: $(READY) ## small faults put into controller and C core, one by one: do the tests find them?
+	$(BIN)/python tests/mutation
 
 lint: $(READY) ## format, lint and types
 	$(BIN)/ruff format --check .

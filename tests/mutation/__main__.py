@@ -1,0 +1,58 @@
+"""Mutation run: small faults are put into the code one at a time; for each a test must fail.
+
+    python tests/mutation [FILE ...]
+
+A fault that no test finds must be explained in survivors.toml. Without a list of files the score is written to
+docs/mutation.md.
+"""
+
+import sys
+
+from mutants import mutants_of
+from page import PATH, page, reasons
+from workers import survivors
+
+LEAST_SCORE = 0.95
+
+CONTROLLER = "damping_law", "fading", "rest", "signal_monitor", "supervision", "torque_estimator"
+WHOLE_CONTROLLER = "tests/models/controller", "tests/models/test_damping_controller.py"
+CALLS = (
+    *(f"tests/fmus/native/test_{name}.py" for name in ("calls", "same_words", "as_python", "rates")),
+    "tests/fmus/native/test_sanitizers.py::test_random_calls_find_no_fault_and_leave_no_memory[MotorTorqueLoop]",
+)
+
+TESTS = {
+    **{
+        f"models/controller/{name}.py": (f"tests/models/controller/test_{name}.py", *WHOLE_CONTROLLER)
+        for name in CONTROLLER
+    },
+    "models/block/runner.py": ("tests/models/block/test_runner.py",),
+    "models/block/integrator.py": ("tests/models/block/test_integrator.py",),
+    "fmus/protocol.py": ("tests/fmus/test_time.py",),
+    "fmus/native/c/sampled.c": ("tests/fmus/native/test_runner.py", *CALLS),
+    "fmus/native/c/integrator.c": ("tests/fmus/native/test_integrator.py", "tests/fmus/native/test_rates.py"),
+    "fmus/native/c/operators.h": ("tests/fmus/native/test_functions.py",),
+    "fmus/native/c/continuous.c": ("tests/fmus/native/test_rates.py", *CALLS),
+    **{f"fmus/native/c/{name}.c": CALLS for name in ("run", "values", "state", "messages", "fmi2")},
+}
+"""The files, and the tests that find faults in them, in the order in which they are run."""
+
+
+def main(files: list[str]) -> None:
+    known = {name for name in reasons() if name[0] in (files or TESTS)}
+    mutants = [mutant for file in files or TESTS for mutant in mutants_of(file)]
+    found = list(survivors(mutants, TESTS))
+    score = 1.0 - len(found) / len(mutants)
+    print(f"{len(mutants)} faults, {len(found)} not found: {score:.1%} found")
+    alive = {mutant.known_as for mutant in found}
+    for some, what in ((alive - known, "is not explained"), (known - alive, "is explained, but found")):
+        for name in sorted(some):
+            print(f"{' | '.join(name)}: {what}")
+    if alive != known or score < LEAST_SCORE:
+        sys.exit(1)
+    if not files:
+        PATH.write_text(page(mutants, found), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

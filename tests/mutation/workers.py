@@ -1,0 +1,115 @@
+"""Workers that try mutants, each in a copy of the tree of its own."""
+
+import math
+import os
+import resource
+import shutil
+import stat
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+# slow to import and needed by every run of the tests, which inherits them
+import casadi  # noqa: F401
+import fmpy.fmi2  # noqa: F401
+import matplotlib.backends.backend_agg  # noqa: F401
+import pytest
+from hypothesis import Phase, settings
+from mutants import ROOT, Mutant
+
+settings.register_profile("mutation", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
+
+OPTIONS = "-x", "-q", "-p", "no:cacheprovider", "--hypothesis-profile=mutation"
+
+Tests = tuple[str, ...]
+
+TIME_LIMIT = 10
+"""Of computing in a test, in s: a mutant that needs more does not end, and is found."""
+
+COMPILER = """#!/bin/sh
+# cc that compiles a file again only when it, a header or an option has changed
+for argument; do
+    case $argument in
+    *.c)
+        key=$( (echo "$options"; cat "$argument" *.h "${argument%/*}"/*.h) 2>/dev/null | md5sum | cut -c1-32)
+        object=OBJECTS/$key.o
+        [ -f "$object" ] || cc $options -O0 -c "$argument" -o "$object$$" || exit 1
+        [ -f "$object" ] || mv "$object$$" "$object"
+        objects="$objects $object" ;;
+    *) options="$options $argument" ;;
+    esac
+done
+exec cc $objects $options
+"""
+
+
+def prepare(folder: str) -> None:
+    """Gives this worker a copy of the tree to work in."""
+    copy = Path(folder, str(os.getpid()))
+    ours = shutil.ignore_patterns(".*", "build", "results", "__pycache__", "*.egg-info")
+    shutil.copytree(ROOT, copy, ignore=ours)
+    objects, compiler = copy / "objects", copy / "cc"
+    objects.mkdir()
+    compiler.write_text(COMPILER.replace("OBJECTS", str(objects)))
+    compiler.chmod(stat.S_IRWXU)
+    os.environ["CC"] = str(compiler)
+    os.chdir(copy)
+    sys.path[0] = str(copy)
+    sys.dont_write_bytecode = True
+
+
+class TimeLimit:
+    """Ends the process, or the program that it waits for, when a test computes for too long."""
+
+    def pytest_runtest_setup(self) -> None:
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        limit = math.ceil(used.ru_utime + used.ru_stime) + TIME_LIMIT
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+
+
+def passes(tests: Tests) -> bool:
+    """Whether the tests pass here; in a process of its own, which has imported nothing of the tree."""
+    child = os.fork()
+    if child == 0:
+        result = 1
+        try:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, 1)
+            os.dup2(nowhere, 2)
+            result = pytest.main([*OPTIONS, *tests], plugins=[TimeLimit()])
+        finally:
+            os._exit(result)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def survives(mutant: Mutant, tests: Tests) -> bool:
+    sound = mutant.apply(Path())
+    try:
+        return passes(tests)
+    finally:
+        Path(mutant.file).write_bytes(sound)
+
+
+def survivors(mutants: list[Mutant], tests_of: Mapping[str, Tests]) -> Iterator[Mutant]:
+    """Those that no test finds; tells how far it is.
+
+    Args:
+        tests_of: by the file that is mutated, in the order in which they are run.
+    """
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        ProcessPoolExecutor(mp_context=get_context("fork"), initializer=prepare, initargs=(folder,)) as workers,
+    ):
+        used = list(dict.fromkeys(tests_of[mutant.file] for mutant in mutants))
+        for tests, good in zip(used, workers.map(passes, used), strict=True):
+            if not good:
+                sys.exit(f"without any fault the tests fail: {' '.join(tests)}")
+        results = workers.map(survives, mutants, [tests_of[mutant.file] for mutant in mutants])
+        for n, (mutant, alive) in enumerate(zip(mutants, results, strict=True), start=1):
+            print(f"{n} of {len(mutants)}", end="\r", flush=True)
+            if alive:
+                print(f"{mutant.file}:{mutant.line}: {mutant.fault}", flush=True)
+                yield mutant
