@@ -26,7 +26,7 @@ demo: $(READY) ## build the FMUs, compare with and without damping, replay a sho
 test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
-mutation: $(READY) ## small faults put into controller and C core, one by one: do the tests find them?
+mutation: $(READY) ## small faults put into the controller, one by one: do the tests find them?
 	$(BIN)/python tests/mutation
 
 lint: $(READY) ## format, lint and types

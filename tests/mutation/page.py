@@ -15,6 +15,8 @@ Made by `make mutation` (tests/mutation), do not edit. Small faults were put int
 changed by a fifth, `<` made `<=` or `>=`, `+` made `-`, `min` made `max`, `and` made `or`, both sides of a choice
 swapped, limits and statements left out, a field of the next state left as it was. A fault is found when a test fails,
 the compiler refuses it, or the tests never end.
+
+The files of the C core are not in this score yet; `python tests/mutation fmus/native/c/run.c` runs one of them.
 """
 
 
