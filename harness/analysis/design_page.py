@@ -31,8 +31,8 @@ Made by `python -m harness.analysis.design_page`; do not edit.
 
 The default car and those of `examples/cars/`, driven without damping / with the gains of the default car / with gains
 designed for the car itself ([control.md](control.md) says how). The estimator is told the true car in either case.
-Means over the noise of three seeds. The design knows the design model alone: on the validation vehicle its gains are not
-better in every row.
+Means over the noise of three seeds. The design knows the design model alone: on the validation vehicle its gains
+are not better in every row.
 
 {cars}
 """
