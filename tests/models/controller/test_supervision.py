@@ -270,9 +270,9 @@ def test_the_state_moves_by_one_sample_a_sample() -> None:
 
 @every_controller
 def test_a_lost_motor_speed_is_answered_within_a_fifth_of_a_period_of_the_drive_train(block: SampledBlock) -> None:
-    """24 ms at 8 Hz, but not before a tenth: single lost samples must not end the damping."""
+    """22 ms at 8 Hz, but not before a tenth: single lost samples must not end the damping."""
     good = driven(0.3)
     lost = [u._replace(omega_1_meas=math.nan) if k >= 100 else u for k, u in enumerate(good)]
     statuses = [x.status for x in run(block, lost)][100:]
     assert statuses[round(0.012 / T_S)] != FALLBACK
-    assert statuses[round(0.024 / T_S)] == FALLBACK
+    assert statuses[round(0.022 / T_S)] == FALLBACK
