@@ -1,6 +1,7 @@
 """The sequence of a run: initialization, communication steps of any length, time."""
 
 import math
+import sys
 from itertools import cycle, repeat
 from typing import Annotated, NamedTuple
 
@@ -222,6 +223,36 @@ def test_the_time_of_a_host_may_be_a_microsecond_off(built, tmp_path, difference
         host.step(0.0, 0.001)
         host.step(0.001 + difference, 0.001)
         assert f"computed up to {0.001 + difference + 0.001!r} s" in host.refuses(host.step, 0.0, 0.001)
+        host.fmu.reset()
+        host.initialize()
+        host.step(1e-6, 0.001)
+
+
+def test_any_finite_time_is_a_start_time(built, tmp_path):
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        for time in (sys.float_info.max, -sys.float_info.max, 5.0):
+            host.fmu.setupExperiment(startTime=time)
+
+
+def test_outputs_change_with_time_alone(built, tmp_path):
+    with opened(built / "TwoMassDriveline.fmu", tmp_path) as host:
+        host.initialize(v_0=10.0, T_0=50.0)
+        seen = {host.get("v")}
+        for k in range(3):
+            host.step(0.01 * k, 0.01)
+            seen.add(host.get("v"))
+        assert len(seen) == 4
+
+
+def test_a_new_instance_shows_what_it_would_start_with(built, tmp_path):
+    with opened(built / "TwoMassDriveline.fmu", tmp_path) as host:
+        block = FMUS["TwoMassDriveline"].block
+        u, p = block.Input(), block.Parameters()
+        for _ in range(2):
+            assert tuple(host.outputs().values()) == tuple(block.output(block.start(u, p), u, p))
+            host.initialize(v_0=10.0)
+            host.step(0.0, 0.01)
+            host.fmu.reset()
 
 
 def test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on(built, tmp_path):

@@ -19,13 +19,16 @@ from tests.fmus.test_state import (  # noqa: F401
     test_a_state_saved_before_initialization_restores_that_mode,
 )
 from tests.fmus.test_time import (  # noqa: F401
+    test_a_new_instance_shows_what_it_would_start_with,
     test_a_sampled_block_does_not_depend_on_the_communication_step,
     test_a_step_from_another_time_is_discarded,
     test_a_step_that_is_not_positive_or_too_long_is_discarded,
     test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step,
     test_an_input_that_is_fed_through_shows_before_the_step,
+    test_any_finite_time_is_a_start_time,
     test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on,
     test_outputs_are_right_at_the_start_and_parameters_in_effect,
+    test_outputs_change_with_time_alone,
     test_the_shortest_and_the_longest_step_are_allowed,
     test_the_time_of_a_host_may_be_a_microsecond_off,
     test_time_counts_from_the_start_time,

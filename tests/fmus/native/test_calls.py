@@ -194,6 +194,23 @@ def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checks
         assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, forged)
 
 
+def test_a_saved_state_tells_its_checksum_and_its_build(native, tmp_path):
+    """The CRC-32 of the rest, the GUID filled up with zeros, whole multiples of 8 bytes."""
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        saved = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
+        assert saved[:4] == zlib.crc32(saved[4:]).to_bytes(4, "little")
+        assert saved[4:48] == str(host.description.guid).encode().ljust(44, b"\0")
+        assert len(saved) % 8 == 0
+
+
+def test_a_build_whose_name_does_not_end_is_named_as_far_as_there_is_room(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        body = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:]
+        body = b"x" * 44 + body[44:]
+        forged = zlib.crc32(body).to_bytes(4, "little") + body
+        assert f"saved by {43 * 'x'}, this is" in host.refuses(host.fmu.deSerializeFMUstate, forged)
+
+
 @pytest.mark.parametrize("name", FMUS)
 def test_a_reset_instance_is_as_new(native, tmp_path, name):
     with opened(native / f"{name}.fmu", tmp_path) as host:

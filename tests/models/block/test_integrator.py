@@ -107,6 +107,19 @@ def test_a_crossing_is_located_to_a_tenth_of_a_picosecond(integrator: MakeIntegr
     assert 0.6e-13 < max(distances) < 1.001e-13
 
 
+def test_the_slope_of_an_indicator_is_taken_over_a_tenth_of_a_microsecond(integrator: MakeIntegrator) -> None:
+    """Far below what moves in a drive train, far above the rounding of its state."""
+    seen = []
+
+    def height(x: Body) -> float:
+        seen.append(x.x)
+        return x.x - 0.01
+
+    falling = block(lambda x, u, p: Body(x.v, -9.81, 0.0), height)
+    integrator(falling).advance(Body(0.0, 0.5, 0.0), Nothing(), Nothing(), 0.1)
+    assert min(x for x in seen if x > 0.0) == pytest.approx(0.5e-7, rel=1e-6)
+
+
 @given(t=st.floats(0.011, 0.049), share=st.floats(1e-4, 0.99))
 def test_an_excursion_within_one_step_is_found(integrator: MakeIntegrator, t: float, share: float) -> None:
     """A body thrown up at t = 0 is highest at t; it is above zero for 2 share t."""
