@@ -5,7 +5,7 @@ torque will act; the damping law (damping_law) adds to the driver's demand what 
 motion and vanishes when stationary. The damping torque is limited to T_damp_max; modes fade within
 t_fade. The literal form of the paper, an imperfect derivative of the estimated gear torque (Sugiura
 and Hori 1996) behind an observer without load, is lambda_v = k_d = T_pred = 0, L_T_l = Lw_T_l =
-L_can_T_l = 0, T_land = T_max.
+L_can_T_l = 0, T_gap = T_max.
 
 A motor speed or torque that is not finite, out of range, jumping or frozen is not used; if that lasts,
 the driver's demand is passed through (fallback). A lost, late or absurd wheel speed only ends the mode

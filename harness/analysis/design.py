@@ -61,13 +61,13 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
         "k_T": omega_w * weights.withheld / train.omega_v,
         "k_gap": weights.k_gap,
         "omega_w": omega_w,
-        "T_land": landing_torque(plant, motor, train, weights),
+        "T_gap": landing_torque(plant, motor, train, weights),
         "t_land": weights.longest_landing / train.omega_v,
     }
 
 
 def landing_torque(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights) -> float:
-    """T_land in N.m: as low as the withheld impulse allows, or lower where the impact would be too hard.
+    """T_gap in N.m: as low as the withheld impulse allows, or lower where the impact would be too hard.
 
     The torque T takes the motor across the gap of 2 phi_B in t = sqrt(4 phi_B J_1/T) and lets it arrive with the
     speed sqrt(4 phi_B T/J_1); of the demand T_d it withholds the time (1 - T/T_d) t. The spring turns the

@@ -3,7 +3,7 @@
     T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear],   k_d times k_gap in the gap
 
 with the motion T_pred ahead, when the torque will act; limited to T_damp_max. While the estimated twist
-is in the gap, but for at most t_land, the demand is limited to T_land, so that the teeth land softly.
+is in the gap, but for at most t_land, the demand is limited to T_gap, so that the teeth land softly.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -22,7 +22,7 @@ class Parameters(NamedTuple):
     k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0)] = GAINS["k_gap"]
     k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0)] = GAINS["k_T"]
     omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = GAINS["omega_w"]
-    T_land: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0)] = GAINS["T_land"]
+    T_gap: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0)] = GAINS["T_gap"]
     t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0)] = GAINS["t_land"]
     T_damp_max: Annotated[float, Real("N.m", "limit of the damping torque", 0.0, 2000.0)] = 60.0
 
@@ -64,4 +64,4 @@ def washed_out(stationary: Any, value: Any, T_s: Any, p: Any) -> Any:
 def soft_landing(T_driver: Any, landing: Any, p: Any) -> Any:
     """The demand, limited while the teeth are between the flanks, `landing` s after they left one."""
     soft = logical_and(landing > 0.0, landing <= p.t_land)
-    return where(soft, clip(T_driver, -p.T_land, p.T_land), T_driver)
+    return where(soft, clip(T_driver, -p.T_gap, p.T_gap), T_driver)

@@ -10,7 +10,7 @@ from ..block.operators import logical_and, maximum, minimum, where
 
 def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
     """Neither demand nor motion."""
-    return logical_and(abs(T_driver) <= p.T_rest, abs(omega_1) <= p.omega_rest)
+    return logical_and(abs(T_driver) <= p.T_still, abs(omega_1) <= p.omega_still)
 
 
 def longest(p: Any) -> Any:

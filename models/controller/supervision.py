@@ -33,8 +33,8 @@ class Parameters(NamedTuple):
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_frozen: Annotated[float, Real("s", "a speed or torque unchanged for so long is frozen", 0.01, 10.0)] = 0.1
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
-    T_rest: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
-    omega_rest: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
+    T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
+    omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 2000.0
     e_max: Annotated[float, Real("rad/s", "largest plausible error of the estimated speeds", 1.0, 1000.0)] = 40.0

@@ -89,7 +89,7 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
 def test_the_literal_form_of_the_paper_is_an_imperfect_derivative_of_the_gear_torque() -> None:
     """Observer without load, imperfect derivative of the estimated gear torque."""
     literal = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0}
-    literal |= {"T_land": P.T_max, "k_gap": 1.0, "k_T": 0.6, "omega_w": 60.0}
+    literal |= {"T_gap": P.T_max, "k_gap": 1.0, "k_T": 0.6, "omega_w": 60.0}
     states = run(BLOCK, shaken(1.0), **literal)
     gear = [P.C * dead_zone(x.estimator.estimate.phi, P.phi_B) for x in states]
     low_passed = gear[0]

@@ -14,7 +14,7 @@ from models.controller.damping_law import LawState
 from models.controller.parts import Motion
 
 P = damping_controller.BLOCK.Parameters(
-    phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, T_land=60.0, t_land=1.0, T_damp_max=60.0
+    phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, T_gap=60.0, t_land=1.0, T_damp_max=60.0
 )
 T_S = 0.25
 STILL = Motion(omega_1=100.0, omega_2=100.0, phi=0.75, T_gear=40.0)

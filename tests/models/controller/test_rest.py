@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from models.controller import rest
 from models.controller.supervision import Parameters
 
-P = Parameters(T_rest=2.0, omega_rest=3.0, t_rest=1.0, t_fade=0.5)
+P = Parameters(T_still=2.0, omega_still=3.0, t_rest=1.0, t_fade=0.5)
 T_S = 0.25
 
 
