@@ -11,7 +11,16 @@ ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def write_archive(files: Mapping[str, bytes], target: Path) -> None:
-    """Writes the zip archive; one that is there is replaced when the new one is complete."""
+    """Writes the zip archive; one that is there is replaced when the new one is complete. A link stays one.
+
+    Raises:
+        OSError: its folder is a file, or what has its name is no file.
+    """
+    target = target.resolve()
+    if target.parent.exists() and not target.parent.is_dir():
+        raise NotADirectoryError(f"{target.parent} is a file; a folder is needed")
+    if target.exists() and not target.is_file():
+        raise FileExistsError(f"{target} is no file and is not replaced by an FMU")
     target.parent.mkdir(parents=True, exist_ok=True)
     unfinished = target.with_suffix(f".{os.getpid()}.part")
     try:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from .builds import BUILDS, PLATFORMS, build_fmus
 from .catalogue import FMUS
-from .options import add_parameter_files
+from .options import add_parameter_files, output_folder
 
 DESCRIPTION = """\
 Builds the FMI 2.0 co-simulation FMUs of the loop, which the other commands run. The same sources give
@@ -42,7 +42,9 @@ def add_arguments(parser: ArgumentParser, folder: Path) -> None:
         "--platform", choices=PLATFORMS, default="host", help="of the native build (default: %(default)s)"
     )
     add_parameter_files(parser)
-    parser.add_argument("--output", type=Path, default=folder, metavar="FOLDER", help="(default: %(default)s)")
+    parser.add_argument(
+        "--output", type=output_folder, default=str(folder), metavar="FOLDER", help="(default: %(default)s)"
+    )
     parser.add_argument("--quiet", action="store_true", help="print only what goes wrong")
 
 

@@ -4,8 +4,10 @@ import argparse
 from importlib.metadata import version
 from pathlib import Path
 
+from fmus.options import file
+
 from ..errors import DrivelineError
-from .options import add_printing, file
+from .options import add_printing
 from .printing import Printer
 
 DESCRIPTION = """\

@@ -8,7 +8,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any
 
-from fmus.options import add_parameter_files
+from fmus.options import add_parameter_files, folder, output_folder
 
 from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, System, chosen_build, loop
 from ..errors import DrivelineError
@@ -105,8 +105,8 @@ def add_output(parser: argparse.ArgumentParser, default: str, files: str) -> Non
     """--output, the folder for everything that the command writes; `files` says what that is."""
     action = parser.add_argument(
         "--output",
-        type=folder,
-        default=Path(default),
+        type=output_folder,
+        default=default,
         metavar="FOLDER",
         help=f"for {files} (default: %(default)s)",
     )
@@ -156,29 +156,6 @@ def seconds(text: str) -> float:
     if not (isfinite(number) and number > 0.0):
         raise argparse.ArgumentTypeError(f"{text!r} is not a time above 0 s")
     return number
-
-
-def folder(text: str) -> Path:
-    """The path of a folder, which may not exist yet."""
-    if not text:
-        raise argparse.ArgumentTypeError("the name of the folder is empty")
-    path = Path(text)
-    try:
-        if path.exists() and not path.is_dir():
-            raise argparse.ArgumentTypeError(f"{text} is a file; a folder is needed")
-    except OSError as error:  # a name that is too long
-        raise argparse.ArgumentTypeError(str(error)) from error
-    return path
-
-
-def file(text: str) -> Path:
-    """The path of a file, which may not exist yet."""
-    if not text:
-        raise argparse.ArgumentTypeError("the name of the file is empty")
-    path = Path(text)
-    if path.is_dir():
-        raise argparse.ArgumentTypeError(f"{text} is a folder; a file is needed")
-    return path
 
 
 def blocks(args: argparse.Namespace) -> dict[str, str]:

@@ -32,6 +32,7 @@ STYLE = {
     "axes.spines.right": False,
     "lines.linewidth": 1.0,
     "mathtext.fontset": "dejavuserif",
+    "pdf.fonttype": 42,  # TrueType; publishers refuse Type 3
 }
 # colours of Okabe and Ito, which the colour-blind can tell apart
 BLACK, BLUE, VERMILION, GREEN, GREY = "black", "#0072B2", "#D55E00", "#009E73", "0.6"

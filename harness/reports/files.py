@@ -5,19 +5,23 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+DEVICES = (Path("/dev"), Path("/dev/fd"), Path("/proc/self/fd"))
+
 
 @contextmanager
 def complete(path: Path) -> Iterator[Path]:
     """A path to write to; what is there at the end of the block becomes the file at `path`, after an error nothing.
 
-    The folder is made if absent. A link stays one, and so does what is no file: /dev/stdout is written to.
+    The folder is made if absent. A link stays one, and the file that it leads to is replaced. What is no regular file
+    (a device, a pipe) is never replaced but written to, as is whatever stands among the devices: /dev/stdout may be a
+    file.
 
     Raises:
         IsADirectoryError: there is a folder of that name.
     """
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; a file is needed")
-    if path.exists() and not path.is_file():
+    if path.exists() and (path.absolute().parent in DEVICES or not path.is_file()):
         yield path
         return
     path = path.resolve()

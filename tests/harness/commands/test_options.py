@@ -8,8 +8,9 @@ from shutil import copytree, ignore_patterns
 
 import pytest
 
-from harness.commands.options import LARGEST_SEED, assignment, folder, seconds, seed
-from harness.commands.options import file as a_file
+from fmus.options import file as a_file
+from fmus.options import folder, output_folder
+from harness.commands.options import LARGEST_SEED, assignment, seconds, seed
 from harness.cosimulation.system import BUILD
 from tests import ROOT
 
@@ -63,9 +64,19 @@ def test_a_folder_is_no_file(tmp_path):
     assert folder(str(tmp_path)) == tmp_path
 
 
-def test_a_folder_whose_name_is_too_long_is_refused():
+@pytest.mark.parametrize("take", [folder, output_folder, a_file])
+def test_a_name_that_is_too_long_is_refused(take):
     with pytest.raises(ArgumentTypeError, match="too long"):
-        folder("a" * 5000)
+        take("a" * 5000)
+
+
+def test_a_folder_for_results_is_tried_and_nothing_is_left_of_it(tmp_path):
+    assert output_folder(str(tmp_path / "new" / "results")) == tmp_path / "new" / "results"
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").touch()
+    for text in ("/proc/results", str(tmp_path / "file" / "results")):
+        with pytest.raises(ArgumentTypeError, match="cannot be written to"):
+            output_folder(text)
 
 
 def test_a_file_is_no_folder(tmp_path):

@@ -4,6 +4,7 @@ import csv
 import io
 import math
 import os
+import re
 from dataclasses import fields
 from pathlib import Path
 
@@ -111,6 +112,25 @@ def test_a_file_that_is_not_finished_leaves_the_old_one_and_nothing_else(tmp_pat
     assert [file.read_text() for file in path.parent.iterdir()] == ["old"]
 
 
+def test_a_link_stays_one_and_its_file_is_replaced(tmp_path):
+    (tmp_path / "link.csv").symlink_to(tmp_path / "file.csv")
+    for text in ("old", "new"):
+        write_text(text, tmp_path / "link.csv")
+        assert (tmp_path / "link.csv").is_symlink()
+        assert (tmp_path / "file.csv").read_text() == text
+
+
+def test_what_is_no_regular_file_is_written_to_and_not_replaced(tmp_path):
+    pipe = tmp_path / "signals.csv"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_text("new", pipe)
+    assert (os.read(reader, 10), pipe.is_fifo()) == (b"new", True)
+    os.close(reader)
+    with complete(Path(os.devnull)) as unfinished:
+        assert str(unfinished) == os.devnull
+
+
 @pytest.fixture(scope="module")
 def results():
     """Signals of two seconds that look like a step."""
@@ -134,6 +154,8 @@ def test_the_same_runs_give_the_same_figures(plot, name, results, tmp_path):
     for first, second in zip(*files, strict=True):
         assert first.read_bytes() == second.read_bytes()
     assert {file.suffix for file in files[0]} == {".png", ".pdf"}
+    fonts = re.findall(rb"/Subtype\s*/(Type3|TrueType|Type0|Type1)\b", files[0][1].read_bytes())
+    assert set(fonts) == {b"Type0"}, "TrueType, as publishers want it"
 
 
 def test_what_another_controller_does_not_show_is_not_drawn(results, tmp_path):

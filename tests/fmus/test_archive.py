@@ -1,0 +1,39 @@
+"""The file of an FMU: what it replaces."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from fmus.archive import write_archive
+from harness.cli import main
+
+FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}
+
+
+def test_a_link_stays_one_and_its_file_is_replaced(tmp_path: Path) -> None:
+    (tmp_path / "link.fmu").symlink_to(tmp_path / "file.fmu")
+    write_archive(FILES, tmp_path / "link.fmu")
+    assert (tmp_path / "link.fmu").is_symlink()
+    assert (tmp_path / "file.fmu").read_bytes().startswith(b"PK")
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_what_is_no_regular_file_is_not_replaced(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.fmu")
+    with pytest.raises(FileExistsError, match="is no file and is not replaced"):
+        write_archive(FILES, tmp_path / "pipe.fmu")
+    (tmp_path / "file").touch()
+    with pytest.raises(NotADirectoryError, match="file is a file; a folder is needed"):
+        write_archive(FILES, tmp_path / "file" / "Car.fmu")
+
+
+def test_a_file_in_the_place_of_the_folder_is_answered_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(SystemExit) as end:
+        main(["build", "--output", str(tmp_path / "file")])
+    assert end.value.code == 2
+    assert "--output" in (said := capsys.readouterr().err)
+    assert "file is a file; a folder is needed" in said
