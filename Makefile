@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup demo test mutation lint check cross bench docs clean
+.PHONY: help setup demo test mutation fuzz lint check cross bench docs clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
@@ -26,8 +26,11 @@ demo: $(READY) ## build the FMUs, compare with and without damping, replay a sho
 test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
-mutation: $(READY) ## small faults put into the controller, one by one: do the tests find them?
+mutation: $(READY) ## small faults put into the controller and the C core, one by one: do the tests find them?
 	$(BIN)/python tests/mutation
+
+fuzz: $(READY) ## odd calls, files and options by the thousand
+	$(BIN)/python -m tests.fuzz
 
 lint: $(READY) ## format, lint and types
 	$(BIN)/ruff format --check .

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import DrivelineError
-from ..names import nearest
+from ..names import nearest, printable
 
 GAP_LIMIT = 3.0
 """Longest step of time that is still no gap, in median steps."""
@@ -17,10 +17,16 @@ GAP_LIMIT = 3.0
 
 @dataclass(frozen=True)
 class RecordedColumn:
-    """A quantity that a recording must contain: the names and units it may have in the file."""
+    """A quantity that a recording must contain: the names and units it may have in the file.
+
+    Attributes:
+        units: their factors to that of the SI.
+        limit: largest magnitude that a drive can have, in the unit of the SI.
+    """
 
     names: tuple[str, ...]
     units: dict[str, float]
+    limit: float
 
     @property
     def example(self) -> str:
@@ -28,10 +34,10 @@ class RecordedColumn:
 
 
 COLUMNS = {
-    "time": RecordedColumn(("Time", "t"), {"s": 1.0, "ms": 1e-3, "min": 60.0}),
-    "v": RecordedColumn(("Velocity", "Speed", "Vehicle Speed"), {"km/h": 1 / 3.6, "m/s": 1.0, "mph": 0.44704}),
-    "elevation": RecordedColumn(("Elevation", "Altitude", "Height"), {"m": 1.0, "km": 1e3, "ft": 0.3048}),
-    "T_mot": RecordedColumn(("Motor Torque", "Torque"), {"Nm": 1.0, "N.m": 1.0, "kNm": 1e3}),
+    "time": RecordedColumn(("Time", "t"), {"s": 1.0, "ms": 1e-3, "min": 60.0}, math.inf),
+    "v": RecordedColumn(("Velocity", "Speed", "Vehicle Speed"), {"km/h": 1 / 3.6, "m/s": 1.0, "mph": 0.44704}, 200.0),
+    "elevation": RecordedColumn(("Elevation", "Altitude", "Height"), {"m": 1.0, "km": 1e3, "ft": 0.3048}, 10_000.0),
+    "T_mot": RecordedColumn(("Motor Torque", "Torque"), {"Nm": 1.0, "N.m": 1.0, "kNm": 1e3}, 10_000.0),
 }
 
 
@@ -63,11 +69,18 @@ def read_recording(path: Path) -> Recording:
 
     Raises:
         RecordingError: a column is missing, doubled or of an unknown unit; a cell is not a finite
-            number; time does not increase or has a gap (naming the line).
+            number; time does not increase or has a gap (naming the line); it is no CSV file in UTF-8.
     """
+    try:
+        return _read(path)
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise RecordingError(f"{path} is no CSV file in UTF-8: {error}") from error
+
+
+def _read(path: Path) -> Recording:
     with path.open(newline="", encoding="utf-8-sig") as file:
         rows = csv.reader(file)
-        header = next(rows, [])
+        header = [printable(cell) for cell in next(rows, [])]
         places = {quantity: _find(path, header, column) for quantity, column in COLUMNS.items()}
         lines, table = [], []
         for row in rows:
@@ -79,6 +92,8 @@ def read_recording(path: Path) -> Recording:
     factors = [factor for _, factor in places.values()]
     signals = dict(zip(places, (np.array(table) * factors).T, strict=True))
     _check_time(path, signals["time"], lines)
+    for quantity, column in COLUMNS.items():
+        _check_limit(path, column, signals[quantity], lines)
     return Recording(path.stem, **signals)
 
 
@@ -119,7 +134,8 @@ def _number(path: Path, line: int, header: list[str], row: list[str], place: int
         value = math.nan
     if not math.isfinite(value):
         raise RecordingError(
-            f"{path}, line {line}, column {header[place].strip()}: {cell or 'nothing'} is not a finite number"
+            f"{path}, line {line}, column {header[place].strip()}: {printable(cell) or 'nothing'} "
+            f"is not a finite number"
         )
     return value
 
@@ -137,4 +153,14 @@ def _check_time(path: Path, time: np.ndarray, lines: list[int]) -> None:
         raise RecordingError(
             f"{path}, line {lines[k + 1]}: gap of {steps[k]:g} s after {time[k]:g} s; at most {limit:g} s "
             f"({GAP_LIMIT:g} times the median step) is allowed, so cut the file there"
+        )
+
+
+def _check_limit(path: Path, column: RecordedColumn, signal: np.ndarray, lines: list[int]) -> None:
+    beyond = np.flatnonzero(np.abs(signal) > column.limit)
+    if len(beyond):
+        k, unit = beyond[0], next(unit for unit, factor in column.units.items() if factor == 1.0)
+        raise RecordingError(
+            f"{path}, line {lines[k]}: {column.names[0]} is {signal[k]:g} {unit}; "
+            f"at most {column.limit:g} {unit} in magnitude can be"
         )

@@ -65,6 +65,40 @@ def test_a_cell_that_is_no_number_is_named_by_line_and_column(write, cell):
         read_recording(write(*rows(2), f"0.2,{cell},500,3,1"))
 
 
+def test_what_a_refused_cell_holds_is_shown_in_one_short_line(write):
+    path = write("0,36,500,3,1", '0.1,"\x1b[31m' + 500 * "\n7" + '",501,3,1')
+    with pytest.raises(RecordingError, match="Velocity") as refusal:
+        read_recording(path)
+    assert str(refusal.value).isprintable()
+    assert len(str(refusal.value)) < 200 + len(str(path))
+
+
+@pytest.mark.parametrize("content", [b"Time [s]\xff,\n", b"\xff\xfe", b'Time [s],"' + 200_000 * b"x"])
+def test_what_is_no_text_or_no_csv_is_refused(tmp_path, content):
+    path = tmp_path / "trip.csv"
+    path.write_bytes(content)
+    with pytest.raises(RecordingError, match="no CSV file in UTF-8"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("0.1,721,501,3,1", r"line 3: Velocity is 200\.278 m/s; at most 200 m/s"),
+        ("0.1,36,-10001,3,1", r"line 3: Elevation is -10001 m; at most 10000 m"),
+        ("0.1,36,501,3,10001", r"line 3: Motor Torque is 10001 Nm; at most 10000 Nm"),
+    ],
+)
+def test_what_no_car_can_have_recorded_is_refused_with_its_line(write, line, said):
+    with pytest.raises(RecordingError, match=said):
+        read_recording(write(*rows(1), line))
+
+
+def test_the_largest_values_that_can_be_are_taken(write):
+    recording = read_recording(write(*rows(1), "0.1,720,10000,3,-10000"))
+    assert (recording.v[-1], recording.elevation[-1], recording.T_mot[-1]) == (200.0, 1e4, -1e4)
+
+
 def test_a_short_line_is_refused(write):
     with pytest.raises(RecordingError, match=r"line 4, column Motor Torque.*nothing"):
         read_recording(write(*rows(2), "0.2,36,500"))

@@ -1,0 +1,58 @@
+"""Calls to native FMUs, in any order and with any arguments, under the address and undefined-behaviour sanitizers."""
+
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+
+import fmpy
+
+from fmus.builds import builders
+from fmus.catalogue import FMUS
+from fmus.native.compiler import host_compiler
+
+from .target import Attempt, Target, Unclean
+
+HOST = Path(__file__).parents[1] / "fmus" / "native" / "native_host.c"
+CALLS = 300
+"""Of a sequence."""
+
+SANITIZED = (
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-ffp-contract=off"),
+    *("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"),
+)
+
+
+def program(fmu: Path, folder: Path) -> list[str]:
+    """The command that makes random calls to a native FMU, compiled from its sources."""
+    fmpy.extract(str(fmu), str(folder))
+    sources = folder / "sources"
+    made = folder / "host"
+    files = [str(HOST), *map(str, sorted(sources.glob("*.c")))]
+    subprocess.run([str(host_compiler()), *SANITIZED, f"-I{sources}", *files, "-o", str(made), "-lm"], check=True)
+    return [str(made), str(fmpy.read_model_description(str(fmu)).guid)]
+
+
+@contextmanager
+def attempts(folder: Path) -> Iterator[Attempt]:
+    (build,) = builders("native")
+    programs = [program(build(fmu, folder / "fmus"), folder / name) for name, fmu in FMUS.items()]
+
+    def attempt(random: Random) -> str:
+        command = [*random.choice(programs), str(random.getrandbits(31)), str(CALLS)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise Unclean(f"{' '.join(command)}: {done.stdout}{done.stderr}")
+        return f"sequences of {CALLS} calls, no fault of memory or arithmetic"
+
+    yield attempt
+
+
+TARGET = Target(
+    "calls of native FMUs in any order with any arguments, under address and undefined-behaviour sanitizers",
+    "no fault of memory or arithmetic, no memory left behind",
+    attempts,
+    short=20,
+    long=100_000,
+)
