@@ -2,14 +2,15 @@
 
     python tests/mutation [FILE ...]
 
-A fault that no test finds must be explained in survivors.toml. Without a list of files those of SCORED are run and
-the score is written to docs/mutation.md; the C core is run by naming its files.
+A fault that no test finds must be explained in survivors.toml. The files that are named, or all, are run, and their
+score is written to docs/mutation.md.
 """
 
 import sys
+from collections.abc import Sequence
 
 from mutants import mutants_of
-from page import PATH, page, reasons
+from page import reasons, record
 from workers import survivors
 
 LEAST_SCORE = 0.95
@@ -37,12 +38,10 @@ TESTS = {
 }
 """The files, and the tests that find faults in them, in the order in which they are run."""
 
-SCORED = [file for file in TESTS if file.startswith("models/controller/")] + ["models/block/runner.py"]
 
-
-def main(files: list[str]) -> None:
-    known = {name for name in reasons() if name[0] in (files or SCORED)}
-    mutants = [mutant for file in files or SCORED for mutant in mutants_of(file)]
+def main(files: Sequence[str]) -> None:
+    known = {name for name in reasons() if name[0] in files}
+    mutants = [mutant for file in files for mutant in mutants_of(file)]
     found = list(survivors(mutants, TESTS))
     score = 1.0 - len(found) / len(mutants)
     print(f"{len(mutants)} faults, {len(found)} not found: {score:.1%} found")
@@ -52,9 +51,8 @@ def main(files: list[str]) -> None:
             print(f"{' | '.join(name)}: {what}")
     if alive != known or score < LEAST_SCORE:
         sys.exit(1)
-    if not files:
-        PATH.write_text(page(mutants, found), encoding="utf-8")
+    record(files, mutants, found)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(sys.argv[1:] or list(TESTS))

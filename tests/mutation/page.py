@@ -1,12 +1,16 @@
 """docs/mutation.md: the score, and why some faults are not found."""
 
+import json
 import tomllib
 from collections import Counter
+from collections.abc import Iterable
+from hashlib import sha256
 
 from mutants import ROOT, Mutant
 
 PATH = ROOT / "docs" / "mutation.md"
 KNOWN = ROOT / "tests" / "mutation" / "survivors.toml"
+SCORE = ROOT / "tests" / "mutation" / "score.json"
 
 HEAD = """\
 # Mutation run
@@ -14,9 +18,7 @@ HEAD = """\
 Made by `make mutation` (tests/mutation), do not edit. Small faults were put into the code one at a time: numbers
 changed by a fifth, `<` made `<=` or `>=`, `+` made `-`, `min` made `max`, `and` made `or`, both sides of a choice
 swapped, limits and statements left out, a field of the next state left as it was. A fault is found when a test fails,
-the compiler refuses it, or the tests never end.
-
-The files of the C core are not in this score yet; `python tests/mutation fmus/native/c/run.c` runs one of them.
+the compiler refuses it, or the tests never end. `python tests/mutation fmus/native/c/run.c` runs one file anew.
 """
 
 
@@ -31,13 +33,27 @@ def reasons() -> dict[tuple[str, str, str], str]:
     }
 
 
-def page(mutants: list[Mutant], found: list[Mutant]) -> str:
+def digest(file: str) -> str:
+    return sha256((ROOT / file).read_bytes()).hexdigest()[:16]
+
+
+def record(files: Iterable[str], mutants: Iterable[Mutant], found: Iterable[Mutant]) -> None:
+    """Adds what a run of some files has shown to the score, and writes the page."""
+    score = json.loads(SCORE.read_text(encoding="utf-8")) if SCORE.exists() else {}
     made, alive = (Counter(mutant.file for mutant in some) for some in (mutants, found))
-    rows = [(f"`{file}`", made[file], alive[file]) for file in made] + [("all", len(mutants), len(found))]
+    score |= {file: {"digest": digest(file), "faults": made[file], "not_found": alive[file]} for file in files}
+    SCORE.write_text(json.dumps(score, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+    PATH.write_text(page(score), encoding="utf-8")
+
+
+def page(score: dict[str, dict[str, str | int]]) -> str:
+    rows = [(f"`{file}`", int(each["faults"]), int(each["not_found"])) for file, each in score.items()]
+    rows += [("all", sum(n for _, n, _ in rows), sum(k for _, _, k in rows))]
     lines = [HEAD, "| file | faults | not found | found |", "| --- | ---: | ---: | ---: |"]
     lines += [f"| {file} | {n} | {k} | {1.0 - k / n:.1%} |" for file, n, k in rows]
+    if changed := [f"`{file}`" for file, each in score.items() if each["digest"] != digest(file)]:
+        lines += ["", f"Changed since they were run: {', '.join(changed)}."]
     lines += ["", "## Why some are not found"]
-    known = reasons()
-    for mutant in found:
-        lines += ["", f"`{mutant.file}`, line {mutant.line}: `{mutant.fault}`", "", f"- {known[mutant.known_as]}"]
+    for (file, line, fault), why in reasons().items():
+        lines += ["", f"`{file}`: `{line}`", "", f"`{fault}`", "", f"- {why}"]
     return "\n".join(lines) + "\n"
