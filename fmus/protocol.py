@@ -5,7 +5,7 @@ A sentence is a format with named fields; `!r` is a number as Python writes it, 
 only one build can refuse is said where it is refused.
 """
 
-from enum import IntEnum
+from enum import IntFlag
 
 TIME_TOLERANCE = 1e-6
 """In s: how far the host's time may be from the FMU's."""
@@ -14,13 +14,13 @@ LONGEST_COMMUNICATION_STEP = 1000.0
 """In s: a longer communication step is a mistake of the host, and would keep it waiting for ever."""
 
 
-class Mode(IntEnum):
+class Mode(IntFlag):
     """Where an instance is in the sequence of calls."""
 
-    INSTANTIATED = 0
-    INITIALIZATION = 1
-    STEPPING = 2
-    TERMINATED = 3
+    INSTANTIATED = 1
+    INITIALIZATION = 2
+    STEPPING = 4
+    TERMINATED = 8
 
 
 MODE_NAMES = ("before initialization mode", "in initialization mode", "after initialization", "after termination")
@@ -30,14 +30,16 @@ LOG_ERROR, LOG_DISCARD = "logStatusError", "logStatusDiscard"
 
 LOG_CATEGORIES = {
     LOG_ERROR: "a call that was refused, and why; nothing has changed",
-    LOG_DISCARD: "a step that was refused, and why; nothing has changed",
+    LOG_DISCARD: "a step that was refused, but that a shorter one can stand for; nothing has changed",
 }
 
 WRONG_MODE = "{function} is refused {mode}; its place is {place}"
 
 BAD_START_TIME = "startTime = {time!r} s is refused; allowed is any finite number"
+BAD_STOP_TIME = "stopTime = {time!r} s is refused; allowed is the startTime = {start!r} s and later"
 BAD_STEP_SIZE = "communicationStepSize = {size!r} s is refused; allowed is above 0 to {longest:g} s"
 BAD_TIME = "currentCommunicationPoint = {time!r} s is refused; {model} has been computed up to {reached!r} s"
+PAST_STOP_TIME = "a step to {end!r} s is refused; the run was said to stop at {stop!r} s"
 
 UNKNOWN_REFERENCE = "value reference {reference:d} is unknown; {model} has 0 to {last:d}"
 WRONG_TYPE = "{name} is of type {type}, not {asked}"

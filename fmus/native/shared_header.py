@@ -3,6 +3,7 @@
 import ast
 import inspect
 import json
+from enum import IntFlag
 from itertools import pairwise
 from string import Formatter
 from types import ModuleType
@@ -28,7 +29,7 @@ CONVERSIONS = {"": "%s", "d": "%u", "g": "%g"}
 
 
 def shared_header() -> str:
-    """shared.h: every number, text and tuple of texts that those modules name in capitals."""
+    """shared.h: every number, text, tuple of texts and enumeration that those modules name with a capital."""
     modules = (protocol, runner, integrator)
     return HEADER.format(
         modules=", ".join(module.__name__ for module in modules),
@@ -38,7 +39,7 @@ def shared_header() -> str:
 
 def _definitions(module: ModuleType) -> list[str]:
     meanings = _meanings(module)
-    found = [(name, definition(name, value)) for name, value in vars(module).items() if name.isupper()]
+    found = [(name, definition(name, value)) for name, value in vars(module).items() if name[0].isupper()]
     return [f"/* {meanings[name]} */\n{text}" if name in meanings else text for name, text in found if text]
 
 
@@ -53,8 +54,11 @@ def _meanings(module: ModuleType) -> dict[str, str]:
 
 
 def definition(name: str, value: Any) -> str:
-    """The #define of a value; empty for one that is not for C."""
+    """The C of a value: the enum of an IntFlag, else a #define; empty for one that is not for C."""
     match value:
+        case type() if issubclass(value, IntFlag) and value is not IntFlag:
+            members = ", ".join(f"{member.name} = {member.value}" for member in value)
+            return f"typedef enum {{ {members} }} {name};"
         case int() | float():
             return f"#define {name} {value!r}"
         case str():

@@ -15,8 +15,15 @@ from .values import Values
 
 FMI_DISCARD = 2
 
-SETTABLE = (("input", "parameter"), ("input", "parameter"), ("input",), ())
+SETTABLE = {
+    Mode.INSTANTIATED: ("input", "parameter"),
+    Mode.INITIALIZATION: ("input", "parameter"),
+    Mode.STEPPING: ("input",),
+    Mode.TERMINATED: (),
+}
 """Causalities that can be set in each mode."""
+
+NAMES = dict(zip(Mode, protocol.MODE_NAMES, strict=True))
 
 
 class BlockSlave:
@@ -35,6 +42,7 @@ class BlockSlave:
         self.values = Values(self.block)
         self.mode = Mode.INSTANTIATED
         self.start_time = self.time = 0.0
+        self.stop_time = math.inf
         self.runner: Runner | None = None
 
     @property
@@ -78,8 +86,8 @@ class BlockSlave:
             raise Refused(
                 protocol.WRONG_MODE,
                 function=function,
-                mode=protocol.MODE_NAMES[self.mode],
-                place=protocol.MODE_NAMES[mode],
+                mode=NAMES[self.mode],
+                place=NAMES[mode],
             )
 
     def _enter(self, mode: Mode) -> None:
@@ -91,7 +99,10 @@ class BlockSlave:
         self._require(Mode.INSTANTIATED, "fmi2SetupExperiment")
         if not math.isfinite(start_time):
             raise Refused(protocol.BAD_START_TIME, time=start_time)
+        if stop_time is not None and not stop_time >= start_time:
+            raise Refused(protocol.BAD_STOP_TIME, time=stop_time, start=start_time)
         self.start_time = self.time = start_time
+        self.stop_time = math.inf if stop_time is None else stop_time
 
     @fmi_call
     def enter_initialization_mode(self) -> None:
@@ -111,12 +122,17 @@ class BlockSlave:
 
     @fmi_call
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Advances the block; a step that makes no sense is logged and discarded."""
-        try:
-            self._check_step(current_time, step_size)
-        except Refused as refusal:
-            self.log(str(refusal), FMI_DISCARD, protocol.LOG_DISCARD)
+        """Advances the block; a step that is too long is logged and discarded.
+
+        Raises:
+            Refused: no shorter step would do either.
+        """
+        self._require(Mode.STEPPING, "fmi2DoStep")
+        longest = protocol.LONGEST_COMMUNICATION_STEP
+        if longest < step_size < math.inf:
+            self.log(protocol.BAD_STEP_SIZE.format(size=step_size, longest=longest), FMI_DISCARD, protocol.LOG_DISCARD)
             return False
+        self._check_step(current_time, step_size)
         assert self.runner
         before = self.runner.x
         self.runner.elapsed = current_time - self.start_time
@@ -127,24 +143,25 @@ class BlockSlave:
         return True
 
     def _check_step(self, current_time: float, step_size: float) -> None:
-        self._require(Mode.STEPPING, "fmi2DoStep")
         if not 0.0 < step_size <= protocol.LONGEST_COMMUNICATION_STEP:
             raise Refused(protocol.BAD_STEP_SIZE, size=step_size, longest=protocol.LONGEST_COMMUNICATION_STEP)
         if not abs(current_time - self.time) <= protocol.TIME_TOLERANCE:
             raise Refused(protocol.BAD_TIME, time=current_time, model=self.block.name, reached=self.time)
+        if (end := current_time + step_size) > self.stop_time + protocol.TIME_TOLERANCE:
+            raise Refused(protocol.PAST_STOP_TIME, end=end, stop=self.stop_time)
 
     @fmi_call
     def _get_fmu_state(self) -> bytes:
         """The saved state, which is its own serialised form."""
         memory = self.runner and self.runner.memory
-        content = (self.mode, self.start_time, self.time, self.values.u, self.values.p, memory)
+        content = (self.mode, self.start_time, self.stop_time, self.time, self.values.u, self.values.p, memory)
         return snapshot.pack(type(self).__module__, content)
 
     @fmi_call
     def _set_fmu_state(self, state: bytes) -> None:
-        mode, start_time, time, u, p, memory = snapshot.unpack(type(self).__module__, state)
+        mode, start_time, stop_time, time, u, p, memory = snapshot.unpack(type(self).__module__, state)
         self.values.restore(u, p)
-        self.start_time, self.time, self.runner = start_time, time, None
+        self.start_time, self.stop_time, self.time, self.runner = start_time, stop_time, time, None
         if memory:
             self.runner = runner(self.block, self.values.u, self.values.p)
             self.runner.restore(snapshot.shaped(memory, self.runner.memory))

@@ -15,12 +15,13 @@ from fmpy.fmi2 import (
 
 
 class Host:
-    """One instance of an FMU, and the text of the last message it logged."""
+    """One instance of an FMU, the text of the last message it logged and the status of the last refusal."""
 
     def __init__(self, path, unpacked, name="instance"):
         self.description = fmpy.read_model_description(str(path))
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.message = ""
+        self.status = 0
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
@@ -55,10 +56,10 @@ class Host:
     def outputs(self):
         return {name: self.get(name) for name in self.names("output")}
 
-    def initialize(self, start_time=0.0, **values):
+    def initialize(self, start_time=0.0, stop_time=None, **values):
         """Sets parameters and inputs, and goes through initialization mode."""
         self.set(**values)
-        self.fmu.setupExperiment(startTime=start_time)
+        self.fmu.setupExperiment(startTime=start_time, stopTime=stop_time)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
 
@@ -67,8 +68,9 @@ class Host:
 
     def refuses(self, call, *arguments, **named):
         """The message with which the FMU refuses a call; fails if it does not."""
-        with pytest.raises(FMICallException):
+        with pytest.raises(FMICallException) as refusal:
             call(*arguments, **named)
+        self.status = refusal.value.status
         return self.message
 
 

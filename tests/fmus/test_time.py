@@ -187,7 +187,7 @@ def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built,
 
 
 @pytest.mark.parametrize("step_size", [0.0, -0.001, math.nextafter(1000.0, math.inf), 1e300, math.nan, math.inf])
-def test_a_step_that_is_not_positive_or_too_long_is_discarded(built, tmp_path, step_size):
+def test_a_step_that_is_not_positive_or_too_long_is_refused(built, tmp_path, step_size):
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize(T_ref=50.0)
         before = host.outputs()
@@ -206,7 +206,7 @@ def test_the_shortest_and_the_longest_step_are_allowed(built, tmp_path, step_siz
 
 
 @pytest.mark.parametrize("time", [0.0, 0.0011, 0.001 - 1.01e-6, 0.001 + 1.01e-6, math.nan])
-def test_a_step_from_another_time_is_discarded(built, tmp_path, time):
+def test_a_step_from_another_time_is_refused(built, tmp_path, time):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         host.initialize()
         host.step(0.0, 0.001)
@@ -232,6 +232,38 @@ def test_any_finite_time_is_a_start_time(built, tmp_path):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         for time in (sys.float_info.max, -sys.float_info.max, 5.0):
             host.fmu.setupExperiment(startTime=time)
+
+
+def test_a_run_ends_at_its_stop_time(built, tmp_path):
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        host.initialize(start_time=1.0, stop_time=1.01)
+        host.step(1.0, 0.009)
+        before = host.outputs()
+        message = host.refuses(host.step, 1.009, 0.001 + 1.01e-6)
+        assert message == f"a step to {1.009 + (0.001 + 1.01e-6)!r} s is refused; the run was said to stop at 1.01 s"
+        assert host.outputs() == before
+        host.step(1.009, 0.001 + 0.99e-6)
+        assert "stop at 1.01 s" in host.refuses(host.step, 1.01, 0.001)
+
+
+def test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset(built, tmp_path):
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        host.initialize(stop_time=0.01)
+        saved = host.fmu.serializeFMUstate(host.fmu.getFMUstate())
+        host.fmu.reset()
+        host.initialize()
+        host.step(0.0, 0.02)
+        host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(saved))
+        assert "stop at 0.01 s" in host.refuses(host.step, 0.0, 0.02)
+
+
+@pytest.mark.parametrize("stop_time", [math.nextafter(5.0, 0.0), -math.inf, math.nan])
+def test_a_run_does_not_stop_before_its_start(built, tmp_path, stop_time):
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        message = host.refuses(host.fmu.setupExperiment, startTime=5.0, stopTime=stop_time)
+        assert message == f"stopTime = {stop_time!r} s is refused; allowed is the startTime = 5.0 s and later"
+        for allowed in (5.0, math.nextafter(5.0, 6.0), sys.float_info.max, math.inf):
+            host.fmu.setupExperiment(startTime=5.0, stopTime=allowed)
 
 
 def test_outputs_change_with_time_alone(built, tmp_path):

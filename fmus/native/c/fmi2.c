@@ -3,6 +3,7 @@ sees to it that calls come in an order that makes sense; what they do is done by
 #include "fmi2Functions.h"
 #include "instance.h"
 
+#include <math.h>
 #include <string.h>
 
 /* An instance as the host has it. */
@@ -152,10 +153,9 @@ fmi2Status fmi2SetupExperiment(
 {
     (void)toleranceDefined; /* the integration is exact to rounding whatever is asked for */
     (void)tolerance;
-    (void)stopTimeDefined;
-    (void)stopTime;
+    const double stop = stopTimeDefined ? stopTime : (double)INFINITY;
     Instance *instance = ready(c, INSTANTIATED, 1, __func__);
-    return instance ? in_fmi(set_start_time(instance, startTime)) : fmi2Error;
+    return instance ? in_fmi(set_experiment(instance, startTime, stop)) : fmi2Error;
 }
 
 /* A function without arguments that is allowed in some modes and cannot fail. */

@@ -13,9 +13,6 @@ There is nothing outside instances, so several run side by side. */
 /* How a call ended. Of a refused one the host was told why, and nothing has changed. */
 typedef enum { OK, DISCARD, ERROR } Status; /* DISCARD: a step or question that the host can do without */
 
-/* Where an instance is in the sequence of calls. */
-typedef enum { INSTANTIATED = 1, INITIALIZATION = 2, STEPPING = 4, TERMINATED = 8 } Mode;
-
 /* A variable's place in `variables`. */
 typedef unsigned Reference;
 
@@ -33,6 +30,7 @@ typedef struct {
     State x;           /* from the end of initialization mode on */
     State coming;      /* of a sampled block: what its last tick computed */
     double start_time; /* s */
+    double stop_time;  /* s; infinite if there is none */
     double time;       /* s */
     double ticks;      /* of a sampled block: ticks made */
     int64_t mode;
@@ -62,7 +60,7 @@ LIKE_PRINTF Status discard(const Instance *instance, const char *format, ...); /
 /* run.c */
 void begin(Instance *instance); /* as new, with the same host */
 int in_mode(const Instance *instance, unsigned modes, const char *function); /* else the function is refused */
-Status set_start_time(Instance *instance, double start_time);
+Status set_experiment(Instance *instance, double start_time, double stop_time);
 void leave_initialization(Instance *instance);
 Status make_step(Instance *instance, double time, double step_size);
 

@@ -10,6 +10,7 @@ void begin(Instance *instance)
     memset(&instance->memory, 0, sizeof instance->memory);
     set_start_values(&instance->memory);
     instance->memory.mode = INSTANTIATED;
+    instance->memory.stop_time = (double)INFINITY;
 }
 
 /* The name of the first of some modes. */
@@ -31,12 +32,16 @@ int in_mode(const Instance *instance, unsigned modes, const char *function)
     return 0;
 }
 
-Status set_start_time(Instance *instance, double start_time)
+Status set_experiment(Instance *instance, double start_time, double stop_time)
 {
-    char text[NUMBER_LENGTH];
+    Memory *memory = &instance->memory;
+    char text[NUMBER_LENGTH], text_start[NUMBER_LENGTH];
     if (!(fabs(start_time) <= DBL_MAX))
         return refuse(instance, BAD_START_TIME(write_number(text, start_time)));
-    instance->memory.start_time = instance->memory.time = start_time;
+    if (!(stop_time >= start_time))
+        return refuse(instance, BAD_STOP_TIME(write_number(text, stop_time), write_number(text_start, start_time)));
+    memory->start_time = memory->time = start_time;
+    memory->stop_time = stop_time;
     return OK;
 }
 
@@ -50,13 +55,16 @@ void leave_initialization(Instance *instance)
 
 static Status check_step(Instance *instance, double time, double step_size)
 {
-    const double reached = instance->memory.time;
-    char text[NUMBER_LENGTH], text_reached[NUMBER_LENGTH];
-    if (!(step_size > 0.0 && step_size <= LONGEST_COMMUNICATION_STEP))
+    const double reached = instance->memory.time, end = time + step_size, stop = instance->memory.stop_time;
+    char text[NUMBER_LENGTH], other[NUMBER_LENGTH];
+    if (!(step_size > 0.0 && step_size <= DBL_MAX))
+        return refuse(instance, BAD_STEP_SIZE(write_number(text, step_size), LONGEST_COMMUNICATION_STEP));
+    if (step_size > LONGEST_COMMUNICATION_STEP)
         return discard(instance, BAD_STEP_SIZE(write_number(text, step_size), LONGEST_COMMUNICATION_STEP));
     if (!(fabs(time - reached) <= TIME_TOLERANCE))
-        return discard(
-            instance, BAD_TIME(write_number(text, time), model_name, write_number(text_reached, reached)));
+        return refuse(instance, BAD_TIME(write_number(text, time), model_name, write_number(other, reached)));
+    if (end > stop + TIME_TOLERANCE)
+        return refuse(instance, PAST_STOP_TIME(write_number(text, end), write_number(other, stop)));
     return check_moving_inputs(instance, step_size);
 }
 

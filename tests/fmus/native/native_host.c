@@ -166,7 +166,7 @@ static void change_mode(Slot *slot)
     const fmi2String categories[] = {"logStatusError", "logStatusDiscard", "%s%n", NULL};
     switch (draw(12)) {
     case 0:
-        fmi2SetupExperiment(slot->instance, 0, 0.0, draw(3) ? 0.0 : number(), 0, 0.0);
+        fmi2SetupExperiment(slot->instance, 0, 0.0, draw(3) ? 0.0 : number(), draw(3) == 0, draw(3) ? 10.0 : number());
         break;
     case 1:
     case 2:

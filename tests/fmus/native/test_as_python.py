@@ -21,8 +21,8 @@ from tests.fmus.test_state import (  # noqa: F401
 from tests.fmus.test_time import (  # noqa: F401
     test_a_new_instance_shows_what_it_would_start_with,
     test_a_sampled_block_does_not_depend_on_the_communication_step,
-    test_a_step_from_another_time_is_discarded,
-    test_a_step_that_is_not_positive_or_too_long_is_discarded,
+    test_a_step_from_another_time_is_refused,
+    test_a_step_that_is_not_positive_or_too_long_is_refused,
     test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step,
     test_an_input_that_is_fed_through_shows_before_the_step,
     test_any_finite_time_is_a_start_time,

@@ -112,6 +112,10 @@ class Calls(RuleBasedStateMachine):
 
     @rule(number=st.sampled_from([-1.0, math.nan, math.inf]))
     def step_that_makes_no_sense(self, number):
+        self.expect(False, "step_of", number)
+
+    @rule(number=st.sampled_from([1000.0000000000001, 1e300]))
+    def step_that_is_too_long(self, number):
         assert self.call("step_of", number=number)[0] == (DISCARD if self.now.mode == AFTER else ERROR)
 
     @rule()

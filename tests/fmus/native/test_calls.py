@@ -140,9 +140,10 @@ def test_the_status_is_that_of_the_last_step(native, tmp_path):
         host.initialize()
         host.step(0.0, 0.25)
         assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, OK)
-        with pytest.raises(FMICallException):
-            host.step(0.0, 0.25)
-        assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, DISCARD)
+        for step, expected in (((0.0, 0.25), ERROR), ((0.25, 1001.0), DISCARD)):
+            with pytest.raises(FMICallException):
+                host.step(*step)
+            assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, expected)
         assert status(host, "fmi2GetRealStatus", LAST_SUCCESSFUL_TIME, ctypes.c_double(-1.0)) == (OK, 0.25)
         assert status(host, "fmi2GetBooleanStatus", TERMINATED, ctypes.c_int(-1)) == (OK, 0)
         assert status(host, "fmi2GetStringStatus", PENDING_STATUS, ctypes.c_char_p()) == (OK, b"")
@@ -162,7 +163,7 @@ def test_messages_are_given_out_by_category(native, tmp_path):
         def messages():
             """Which of a discarded step and an unknown reference is told."""
             told = []
-            for call_wrongly in (lambda: host.step(0.0, -1.0), lambda: host.fmu.getReal([99])):
+            for call_wrongly in (lambda: host.step(0.0, 1001.0), lambda: host.fmu.getReal([99])):
                 host.message = ""
                 with pytest.raises(FMICallException):
                     call_wrongly()

@@ -1,4 +1,4 @@
-"""Both builds refuse the same call with the same sentence."""
+"""Both builds refuse the same call with the same sentence, and with the same status as far as PythonFMU knows it."""
 
 import math
 import re
@@ -10,6 +10,8 @@ import pytest
 
 from fmus import protocol
 from tests.fmus.host import Host, opened
+
+DISCARD, ERROR, FATAL = 2, 3, 4
 
 Call = Callable[[Host], Any]
 
@@ -30,6 +32,10 @@ def initialized(call: Call) -> Call:
     return lambda host: (host.initialize(start_time=1.0), call(host))
 
 
+def stopping(call: Call) -> Call:
+    return lambda host: (host.initialize(start_time=1.0, stop_time=1.001), call(host))
+
+
 def terminated(call: Call) -> Call:
     return initialized(lambda host: (host.fmu.terminate(), call(host)))
 
@@ -41,11 +47,12 @@ def restored(change: Callable[[bytes], bytes]) -> Call:
 
 
 class Refusal(NamedTuple):
-    """A call, and the name of the sentence with which it is refused."""
+    """A call, the name of the sentence with which it is refused, and the status."""
 
     sentence: str
     call: Call
     fmu: str = "MotorTorqueLoop"
+    status: int = ERROR
 
 
 REFUSALS = [
@@ -83,7 +90,13 @@ REFUSALS = [
         Refusal("BAD_START_TIME", lambda host, time=time: host.fmu.setupExperiment(startTime=time))
         for time in (math.nan, math.inf)
     ),
-    *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size))) for size in (0.0, -0.0, 1000.0000000000001, math.nan)),
+    *(
+        Refusal("BAD_STOP_TIME", lambda host, time=time: host.fmu.setupExperiment(startTime=1.0, stopTime=time))
+        for time in (math.nan, 0.9999999999999999)
+    ),
+    *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size))) for size in (0.0, -0.0, math.nan, math.inf)),
+    *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size)), status=DISCARD) for size in (1000.0000000000001, 1e300)),
+    Refusal("PAST_STOP_TIME", stopping(step(1.0, 0.002))),
     *(Refusal("BAD_TIME", initialized(step(time, 1e-3))) for time in (0.1 + 0.2, -math.inf)),
     Refusal("DAMAGED_STATE", restored(lambda saved: saved[:-1])),
     Refusal("DAMAGED_STATE", restored(lambda saved: b"\xff" * 5)),
@@ -92,7 +105,7 @@ REFUSALS = [
 
 def said(folder, unpacked, refusal):
     with opened(folder / f"{refusal.fmu}.fmu", unpacked) as host:
-        return host.refuses(refusal.call, host)
+        return host.refuses(refusal.call, host), host.status
 
 
 @pytest.fixture(scope="module")
@@ -102,9 +115,11 @@ def unpacked(tmp_path_factory):
 
 @pytest.mark.parametrize("refusal", REFUSALS, ids=lambda refusal: refusal.sentence)
 def test_both_builds_say_the_same(built, native, unpacked, refusal):
-    in_python = said(built, unpacked["python"] / refusal.fmu, refusal)
-    in_c = said(native, unpacked["native"] / refusal.fmu, refusal)
+    in_python, status_in_python = said(built, unpacked["python"] / refusal.fmu, refusal)
+    in_c, status_in_c = said(native, unpacked["native"] / refusal.fmu, refusal)
     assert in_c == in_python
+    assert status_in_c == refusal.status
+    assert status_in_python == (FATAL if refusal.status == ERROR else refusal.status)
     parts = Formatter().parse(getattr(protocol, refusal.sentence))
     assert re.fullmatch("".join(re.escape(text) + (".+" if field else "") for text, field, _, _ in parts), in_c)
 
