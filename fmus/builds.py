@@ -1,13 +1,18 @@
 """Building FMUs: those of the project by name, or one of a Python file of the user's own."""
 
-from collections.abc import Callable, Iterator, Sequence
+import logging
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
 from importlib.util import find_spec
+from math import inf
 from pathlib import Path
+from typing import Any
 
+from .description.variables import interface
 from .errors import BuildError
 from .fmu import Fmu
+from .origin import is_stale, origin_of
 from .own_file import fmu_in
 
 BUILDS = ("python", "native", "both")
@@ -15,6 +20,8 @@ PLATFORMS = ("host", "all")
 
 NATIVE_FOLDER = "native"
 """Folder of the native builds, in that of the others."""
+
+LOG = logging.getLogger(__name__)
 
 Builder = Callable[[Fmu, Path], Path]
 """Builds an FMU into a folder and returns the path of its file."""
@@ -64,6 +71,53 @@ def build_fmus(
             yield build(fmu.started_with(start_values), folder)
 
 
+def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
+    """Builds those FMUs of the project that are missing or stale, as they were built: with their start values and
+    for their platforms.
+
+    Args:
+        names: of FMUs of the project.
+        folder: of the files; the native ones are in NATIVE_FOLDER in it.
+        build: "python" or "native".
+
+    Returns:
+        The files that were made; none if all were there and up to date.
+
+    Raises:
+        NotPossible: there is something to build, and it is not possible here.
+        BuildError: start values that one was built with are refused by what it is now.
+    """
+    from .catalogue import FMUS
+
+    where = folder / NATIVE_FOLDER if build == "native" else folder
+    made = []
+    for name in names:
+        if is_stale(path := where / f"{name}.fmu"):
+            origin = origin_of(path)
+            platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
+            fmu = _as_built(FMUS[name], origin.start_values, path) if origin else FMUS[name]
+            made += [builder(fmu, folder) for builder in builders(build, platform)]
+    return made
+
+
+def _as_built(fmu: Fmu, start_values: Mapping[str, Any], path: Path) -> Fmu:
+    """The FMU as it is now, with the start values that the one at `path` was built with.
+
+    Raises:
+        BuildError: it does not take them any more.
+    """
+    parameters = {variable.name: variable for variable in interface(fmu.block) if variable.causality == "parameter"}
+    for name, value in start_values.items():
+        low, high = parameters[name].bounds() if name in parameters else (inf, -inf)
+        if not low <= value <= high:
+            allowed = parameters[name].allowed() if name in parameters else "no such parameter"
+            raise BuildError(
+                f"{path} is stale and was built with {name} = {value!r}; {fmu.name} now takes {allowed}: "
+                f"build it again with --vehicle and --parameters"
+            )
+    return fmu.started_with(start_values)
+
+
 def _named(name: str) -> Fmu:
     from .catalogue import FMUS
 
@@ -86,7 +140,7 @@ def builders(builds: str | None, platform: str = "host") -> list[Builder]:
         platform: of the native build, one of PLATFORMS.
 
     Raises:
-        NotPossible: a build that is asked for cannot be made here.
+        NotPossible: a build that is asked for cannot be made here. Why native is left out otherwise is logged.
     """
     from .python.packaging import build
 
@@ -94,8 +148,9 @@ def builders(builds: str | None, platform: str = "host") -> list[Builder]:
         return [build]
     try:
         native = _native_builder(platform)
-    except NotPossible:
+    except NotPossible as reason:
         if builds is None and platform == "host":
+            LOG.warning("there is no native build: %s", reason)
             return [build]
         raise
     return [native] if builds == "native" else [build, native]

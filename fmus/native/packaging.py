@@ -12,6 +12,7 @@ from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
 from ..fmu import Fmu
+from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES
 from .compiler import host_binaries
 from .shared_header import shared_header
@@ -48,7 +49,7 @@ def build_native(
     guid = guid_of(model_description(fmu, kind, ""), sources)
     sources["variables.c"] = variables_source(fmu, guid).encode()
     packed = {f"sources/{name}": content for name, content in sources.items()}
-    packed |= binaries(fmu.name, sources) | documentation(fmu, kind)
+    packed |= binaries(fmu.name, sources) | documentation(fmu, kind) | origin_entry(fmu)
     packed["modelDescription.xml"] = model_description(fmu, kind, guid)
     target = folder / f"{fmu.name}.fmu"
     write_archive(packed, target)

@@ -16,6 +16,7 @@ from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
 from ..fmu import Fmu
+from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES, LOG_DISCARD
 from .bundle import bundle, package_name, package_text, script_text
 
@@ -28,7 +29,7 @@ def build(fmu: Fmu, folder: Path) -> Path:
     kind = python_kind()
     files = _resources_and_binaries(fmu)
     guid = guid_of(model_description(fmu, kind, ""), files)
-    files |= documentation(fmu, kind) | _license_of_pythonfmu()
+    files |= documentation(fmu, kind) | _license_of_pythonfmu() | origin_entry(fmu)
     files["modelDescription.xml"] = model_description(fmu, kind, guid)
     target = folder / f"{fmu.name}.fmu"
     write_archive(files, target)

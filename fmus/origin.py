@@ -1,0 +1,66 @@
+"""What an FMU was made from: told inside it, so that one that is older than its sources is found."""
+
+import hashlib
+import json
+import zipfile
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .fmu import Fmu
+
+ENTRY = "extra/driveline.damping/origin.json"
+"""Where it stands in the archive."""
+
+PACKAGES, KINDS = ("models", "fmus"), (".py", ".c", ".h", ".toml")
+"""What the sources of every FMU of the project are."""
+
+
+class Origin(NamedTuple):
+    """What an FMU tells of itself.
+
+    Attributes:
+        sources: digest of the sources that made it.
+        start_values: of the parameters that a vehicle file or gains have set, by name.
+        platforms: for which it has binaries.
+    """
+
+    sources: str
+    start_values: Mapping[str, Any]
+    platforms: frozenset[str]
+
+
+@cache
+def sources_digest() -> str:
+    """SHA-256 of the sources of the FMUs, as they were when this was asked first."""
+    root = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    files = (path for package in PACKAGES for path in (root / package).rglob("*") if path.suffix in KINDS)
+    for path in sorted(files):
+        content = path.read_bytes()
+        digest.update(f"{path.relative_to(root).as_posix()}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest()
+
+
+def origin_entry(fmu: Fmu) -> dict[str, bytes]:
+    """The file that tells it, by its name in the archive."""
+    told = {"sources": sources_digest(), "start_values": dict(fmu.start_values)}
+    return {ENTRY: json.dumps(told, indent=2, sort_keys=True).encode() + b"\n"}
+
+
+def origin_of(path: Path) -> Origin | None:
+    """What the FMU at `path` tells; None if it tells nothing (it is somebody else's, or older than this)."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            told = json.loads(archive.read(ENTRY))
+            binaries = [name.split("/")[1] for name in archive.namelist() if name.startswith("binaries/")]
+        return Origin(told["sources"], dict(told["start_values"]), frozenset(binaries))
+    except (OSError, KeyError, ValueError, TypeError, zipfile.BadZipFile):
+        return None
+
+
+def is_stale(path: Path) -> bool:
+    """Whether an FMU of the project was not made from the sources that are there."""
+    origin = origin_of(path)
+    return origin is None or origin.sources != sources_digest()

@@ -1,0 +1,77 @@
+"""What an FMU tells of its making, and what is built again for it."""
+
+from pathlib import Path
+
+import pytest
+
+from fmus import builds, origin
+from fmus.builds import NotPossible, refreshed
+from fmus.catalogue import FMUS
+from fmus.errors import BuildError
+from fmus.origin import is_stale, origin_of
+from fmus.python.packaging import build
+
+NAME = "WheelSpeedCan"
+
+
+@pytest.fixture
+def later(monkeypatch: pytest.MonkeyPatch):
+    """Makes the sources others than they were."""
+    return lambda: monkeypatch.setattr(origin, "sources_digest", lambda: "others")
+
+
+def test_both_builds_tell_the_sources_that_made_them(built: Path, native: Path) -> None:
+    for folder in (built, native):
+        for name in FMUS:
+            assert not is_stale(folder / f"{name}.fmu")
+
+
+def test_what_tells_nothing_is_stale(tmp_path: Path) -> None:
+    assert is_stale(tmp_path / "nothing.fmu")
+    (tmp_path / "broken.fmu").write_bytes(b"PK")
+    assert is_stale(tmp_path / "broken.fmu")
+
+
+def test_what_is_missing_or_stale_is_built_and_nothing_else(tmp_path: Path, later) -> None:
+    path = tmp_path / f"{NAME}.fmu"
+    assert refreshed([NAME], tmp_path, "python") == [path]
+    assert refreshed([NAME], tmp_path, "python") == []
+    later()
+    assert is_stale(path)
+    assert refreshed([NAME], tmp_path, "python") == [path]
+    assert not is_stale(path)
+
+
+def test_an_fmu_stays_the_car_that_it_was_built_as(tmp_path: Path, later) -> None:
+    path = build(FMUS[NAME].started_with({"i": 12.0}), tmp_path)
+    later()
+    assert refreshed([NAME], tmp_path, "python") == [path]
+    told = origin_of(path)
+    assert told is not None
+    assert told.start_values == {"i": 12.0}
+
+
+@pytest.mark.parametrize(("values", "said"), [({"i": -1.0}, "i = -1.0"), ({"i_gone": 1.0}, "no such parameter")])
+def test_start_values_that_are_refused_now_are_named_and_the_file_is_kept(
+    tmp_path: Path, later, monkeypatch: pytest.MonkeyPatch, values: dict[str, float], said: str
+) -> None:
+    path = build(FMUS[NAME], tmp_path)
+    before = path.read_bytes()
+    later()
+    told = origin.Origin("older", values, frozenset())
+    monkeypatch.setattr(builds, "origin_of", lambda _: told)
+    with pytest.raises(BuildError, match=said):
+        refreshed([NAME], tmp_path, "python")
+    assert path.read_bytes() == before
+
+
+def test_native_is_not_possible_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler")
+    with pytest.raises(NotPossible, match="no-such-compiler"):
+        refreshed([NAME], tmp_path, "native")
+
+
+def test_a_build_says_why_native_is_left_out(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler")
+    assert len(builds.builders(None)) == 1
+    assert "no native build: there is no C compiler 'no-such-compiler'" in caplog.text

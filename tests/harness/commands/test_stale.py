@@ -1,0 +1,65 @@
+"""Commands never run a stale build silently."""
+
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from fmus import origin
+from harness.cli import main
+from harness.commands import options
+
+RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
+
+
+@pytest.fixture
+def stale(both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Folder of FMUs of both builds whose sources have changed since."""
+    folder = tmp_path / "stale"
+    copytree(both_built, folder)
+    monkeypatch.setattr(origin, "sources_digest", lambda: "others")
+    options._say_once.cache_clear()
+    return folder
+
+
+def test_stale_fmus_of_a_folder_are_named_and_not_built(
+    stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    before = {path: path.read_bytes() for path in stale.rglob("*.fmu")}
+    assert main([*RUN, "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 0
+    assert [record.message.count("native/") for record in caplog.records] == [4]
+    assert "stale, not made from the sources that are installed" in caplog.text
+    assert {path: path.read_bytes() for path in stale.rglob("*.fmu")} == before
+
+
+def test_a_stale_file_is_named(
+    both_built: Path, stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.undo()
+    plant = tmp_path / "stale" / "TwoMassDriveline.fmu"
+    monkeypatch.setattr(options, "is_stale", lambda path: path == plant)
+    assert main([*RUN, "--fmus", str(both_built), "--plant", str(plant), "--output", str(tmp_path / "results")]) == 0
+    assert f"stale, not made from the sources that are installed: {plant}" in caplog.text
+
+
+def test_those_of_the_project_are_built_again_and_it_is_said_once(
+    stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(options, "BUILD", stale)
+    given = [*RUN, "--build", "python", "--fmus", str(stale), "--output", str(tmp_path / "results")]
+    for _ in range(2):
+        assert main(given) == 0
+    (record,) = caplog.records
+    assert record.message.startswith(f"built, as missing or stale: {stale / 'MotorTorqueLoop.fmu'}")
+    assert not origin.is_stale(stale / "TwoMassDriveline.fmu")
+    assert origin.is_stale(stale / "ValidationVehicle.fmu"), "this run does not need it"
+
+
+def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
+    stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(options, "BUILD", stale)
+    monkeypatch.setenv("CC", "no-such-compiler")
+    assert main([*RUN, "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 0
+    assert "no native FMUs: there is no C compiler 'no-such-compiler'" in caplog.text
+    assert main([*RUN, "--build", "native", "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 2
