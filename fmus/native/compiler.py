@@ -30,6 +30,9 @@ WINDOWS_LIBRARIES = tuple(
 )
 """The C library that is part of Windows."""
 
+WHOLE = "all.c"
+"""The file of an FMU's source that is compiled; it includes the others."""
+
 WINDOWS_SOURCE = Path(__file__).parent / "windows.c"
 
 LINUX, WINDOWS, MAC_INTEL, MAC_ARM = (
@@ -103,7 +106,7 @@ def zig_compiler() -> list[str]:
 
 def _compiled(compiler: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
     with _folder_of(sources) as folder:
-        _run([*compiler, *FLAGS, *LIBRARY_FLAGS, *_c_files(folder), "-o", binary, "-lm"], folder)
+        _run([*compiler, *FLAGS, *LIBRARY_FLAGS, WHOLE, "-o", binary, "-lm"], folder)
         return (folder / binary).read_bytes()
 
 
@@ -112,7 +115,7 @@ def _compiled_for_windows(zig: Sequence[str], binary: str, sources: Mapping[str,
     with _folder_of({**sources, WINDOWS_SOURCE.name: WINDOWS_SOURCE.read_bytes()}) as folder:
         compiler = [*zig, "-target", WINDOWS]
         objects = []
-        for file in _c_files(folder):
+        for file in (WHOLE, WINDOWS_SOURCE.name):
             objects.append(file.replace(".c", ".o"))
             _run([*compiler, *FLAGS, "-c", file, "-o", objects[-1]], folder)
         _run([*compiler, "-nostdlib", "-shared", "-s", *objects, *WINDOWS_LIBRARIES, "-o", binary], folder)
@@ -132,10 +135,6 @@ def _folder_of(sources: Mapping[str, bytes]) -> Iterator[Path]:
         for name, content in sources.items():
             (folder / name).write_bytes(content)
         yield folder
-
-
-def _c_files(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.glob("*.c"))
 
 
 def _run(command: Sequence[str], folder: Path) -> None:

@@ -14,20 +14,25 @@ from ..description.model_description import model_description
 from ..fmu import Fmu
 from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES
-from .compiler import host_binaries
+from .compiler import WHOLE, host_binaries
 from .shared_header import shared_header
-from .source import block_sources, variables_source
+from .source import block_sources, variables_header
 from .tableau import step_header
 
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 
-FOR_ALL = ("fmi2.c", "messages.c", "run.c", "state.c", "values.c", "instance.h", "operators.h", "variables.h")
+FOR_ALL = ("fmi2.c", "messages.c", "run.c", "state.c", "values.c", "instance.h", "operators.h", "variable.h")
 FOR_CONTINUOUS = ("continuous.c", "integrator.c", "integrator.h")
 FOR_SAMPLED = ("sampled.c",)
 
 NEEDS = """The model is compiled code in this file and needs nothing else; its C source is in the
 folder <code>sources</code>."""
+
+ALL = """/* {name}: the one file to compile.
+
+With FMI2_FUNCTION_PREFIX defined as {name}_ it can be linked with other FMUs, without it makes a shared library. */
+{included}"""
 
 MOVING = """An input is held over a communication step, or moves at the rate that fmi2SetRealInputDerivatives
 gave it for that step."""
@@ -45,9 +50,9 @@ def build_native(
         CompilerError: there is no compiler, or it refuses the source.
     """
     sources = c_sources(fmu)
-    kind = native_kind(fmu, sources)
+    kind = native_kind(fmu)
     guid = guid_of(model_description(fmu, kind, ""), sources)
-    sources["variables.c"] = variables_source(fmu, guid).encode()
+    sources["variables.h"] = variables_header(fmu, guid).encode()
     packed = {f"sources/{name}": content for name, content in sources.items()}
     packed |= binaries(fmu.name, sources) | documentation(fmu, kind) | origin_entry(fmu)
     packed["modelDescription.xml"] = model_description(fmu, kind, guid)
@@ -61,13 +66,15 @@ def c_sources(fmu: Fmu) -> dict[str, bytes]:
     names = FOR_ALL + (FOR_CONTINUOUS if isinstance(fmu.block, ContinuousBlock) else FOR_SAMPLED)
     sources = {name: (C_FILES / name).read_bytes() for name in names}
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob("fmi2*.h")}
-    generated = block_sources(fmu) | {"variables.c": variables_source(fmu, ""), "shared.h": shared_header()}
+    generated = block_sources(fmu) | {"variables.h": variables_header(fmu, ""), "shared.h": shared_header()}
     if isinstance(fmu.block, ContinuousBlock):
         generated["dop853.h"] = step_header()
-    return sources | {name: text.encode() for name, text in generated.items()}
+    sources |= {name: text.encode() for name, text in generated.items()}
+    included = "".join(f'#include "{name}"\n' for name in sorted(sources) if name.endswith(".c"))
+    return sources | {WHOLE: ALL.format(name=fmu.name, included=included).encode()}
 
 
-def native_kind(fmu: Fmu, sources: Mapping[str, bytes]) -> BuildKind:
+def native_kind(fmu: Fmu) -> BuildKind:
     """What the native build of an FMU says of itself; rates of change are known of continuous blocks."""
     continuous = isinstance(fmu.block, ContinuousBlock)
     return BuildKind(
@@ -80,6 +87,6 @@ def native_kind(fmu: Fmu, sources: Mapping[str, bytes]) -> BuildKind:
         },
         log_categories=LOG_CATEGORIES,
         needs=NEEDS,
-        source_files=tuple(sorted(name for name in sources if name.endswith(".c"))),
+        source_files=(WHOLE,),
         **({"inputs": MOVING} if continuous else {}),
     )

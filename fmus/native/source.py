@@ -1,4 +1,4 @@
-"""The C source of a block: block.h and block.c, and variables.c with what a host sees of it."""
+"""The C source of a block: block.h and block.c, and variables.h with what a host sees of it."""
 
 import re
 from typing import Any
@@ -37,15 +37,7 @@ typedef {precision.real} real;
 
 {constants}
 
-#if defined __GNUC__
-#pragma GCC visibility push(hidden)
-#endif
-
 {prototypes}
-
-#if defined __GNUC__
-#pragma GCC visibility pop
-#endif
 
 #endif
 """
@@ -69,7 +61,7 @@ def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
         precision=precision,
         structs="\n\n".join(structs(records)),
         constants="\n".join(_constants(fmu, traced)),
-        prototypes="\n".join(f"/* {MEANINGS[each.name]} */\n{head(each)};" for each in traced),
+        prototypes="\n".join(f"/* {MEANINGS[each.name]} */\nstatic {head(each)};" for each in traced),
     )
     functions = "\n\n".join(function(each, records, precision) for each in traced)
     return {"block.h": header, "block.c": SOURCE.format(**about, functions=functions)}
@@ -123,25 +115,30 @@ def _lvalues(name: str, records: dict[str, Any]) -> list[str]:
 
 
 VARIABLES = """/* {name}: its variables as its host sees them, written by build_fmus.py from {module}. */
-#include "variables.h"
+#ifndef VARIABLES_H
+#define VARIABLES_H
+
+#include "variable.h"
 
 #include <stddef.h>
 
-const char *const model_name = "{name}";
-const char *const model_guid = "{guid}";
-const int copes_with_bad_input = {copes};
-const unsigned variable_count = {count};
+static const char *const model_name = "{name}";
+static const char *const model_guid = "{guid}";
+static const int copes_with_bad_input = {copes}; /* inputs are not refused */
+static const unsigned variable_count = {count};
 
-const Variable variables[{count}] = {{
+static const Variable variables[{count}] = {{
 {rows}
 }};
+
+#endif
 """
 
 FIELD = {"input": "u", "output": "y", "parameter": "p"}
 
 
-def variables_source(fmu: Fmu, guid: str) -> str:
-    """variables.c: name, unit, place, bounds and start value of every variable, by value reference."""
+def variables_header(fmu: Fmu, guid: str) -> str:
+    """variables.h: name, unit, place, bounds and start value of every variable, by value reference."""
     listed = interface(fmu.block)
     return VARIABLES.format(
         name=fmu.name,

@@ -3,6 +3,13 @@ sees to it that calls come in an order that makes sense; what they do is done by
 #include "fmi2Functions.h"
 #include "instance.h"
 
+#ifdef FMI2_FUNCTION_PREFIX /* some editions of the header leave it out of the names */
+#undef fmi2FullName
+#define JOINED(prefix, name) prefix##name
+#define WITH_PREFIX(prefix, name) JOINED(prefix, name)
+#define fmi2FullName(name) WITH_PREFIX(FMI2_FUNCTION_PREFIX, name)
+#endif
+
 #include <math.h>
 #include <string.h>
 
@@ -132,7 +139,7 @@ fmi2Component fmi2Instantiate(
     component->callbacks = *functions;
     component->logged[DISCARD] = component->logged[ERROR] = loggingOn;
     strcpy(component->name, instanceName);
-    begin(&component->instance);
+    renew(&component->instance);
     return component;
 }
 
@@ -172,7 +179,7 @@ fmi2Status fmi2SetupExperiment(
 CHANGE(fmi2EnterInitializationMode, INSTANTIATED, instance->memory.mode = INITIALIZATION)
 CHANGE(fmi2ExitInitializationMode, INITIALIZATION, leave_initialization(instance))
 CHANGE(fmi2Terminate, STEPPING, instance->memory.mode = TERMINATED)
-CHANGE(fmi2Reset, ANY_MODE, begin(instance))
+CHANGE(fmi2Reset, ANY_MODE, renew(instance))
 
 #define VALUES(Type, TYPE)                                                                                             \
     fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[])           \

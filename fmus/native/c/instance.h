@@ -1,6 +1,7 @@
 /* One instance of a block at work, whatever standard its host speaks: an adapter translates.
 
-There is nothing outside instances, so several run side by side. */
+There is nothing outside instances, so several run side by side; and no function but those of the adapter has a name
+outside the one file that is compiled, all.c, so FMUs can be linked with each other. */
 #ifndef INSTANCE_H
 #define INSTANCE_H
 
@@ -45,7 +46,6 @@ typedef struct {
 } Instance;
 
 #if defined __GNUC__
-#pragma GCC visibility push(hidden)
 #define LIKE_PRINTF __attribute__((format(printf, 2, 3)))
 #else
 #define LIKE_PRINTF
@@ -53,38 +53,38 @@ typedef struct {
 
 /* messages.c */
 enum { NUMBER_LENGTH = 40, MESSAGE_LENGTH = 1000 };
-char *write_number(char text[NUMBER_LENGTH], double value); /* as Python's repr */
-LIKE_PRINTF Status refuse(const Instance *instance, const char *format, ...);  /* tells the host; ERROR */
-LIKE_PRINTF Status discard(const Instance *instance, const char *format, ...); /* tells the host; DISCARD */
+static char *write_number(char text[NUMBER_LENGTH], double value); /* as Python's repr */
+LIKE_PRINTF static Status refuse(const Instance *instance, const char *format, ...);  /* tells the host; ERROR */
+LIKE_PRINTF static Status discard(const Instance *instance, const char *format, ...); /* tells the host; DISCARD */
 
 /* run.c */
-void begin(Instance *instance); /* as new, with the same host */
-int in_mode(const Instance *instance, unsigned modes, const char *function); /* else the function is refused */
-Status set_experiment(Instance *instance, double start_time, double stop_time);
-void leave_initialization(Instance *instance);
-Status make_step(Instance *instance, double time, double step_size);
+static void renew(Instance *instance); /* as new, with the same host */
+static int in_mode(const Instance *instance, unsigned modes, const char *function); /* else the function is refused */
+static Status set_experiment(Instance *instance, double start_time, double stop_time);
+static void leave_initialization(Instance *instance);
+static Status make_step(Instance *instance, double time, double step_size);
 
 /* values.c; the values are double for REAL, else int */
-void set_start_values(Memory *memory);
-Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
-Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
-const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
-double *place_of(Values *values, const Variable *variable);
-double *rate_of(Input *du, const Variable *input);
+static void set_start_values(Memory *memory);
+static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
+static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
+static const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
+static double *place_of(Values *values, const Variable *variable);
+static double *rate_of(Input *du, const Variable *input);
 
 /* state.c */
-Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */
-void set_state(Instance *instance, const void *state);
-size_t serialized_size(void);
-Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size);
-Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state);
+static Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */
+static void set_state(Instance *instance, const void *state);
+static size_t serialized_size(void);
+static Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size);
+static Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state);
 
 /* continuous.c or sampled.c */
-void advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
-Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
-Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
-Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);
-Status get_directional_derivative(
+static void advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
+static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
+static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
+static Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);
+static Status get_directional_derivative(
     const Instance *instance,
     const Reference unknown[],
     size_t unknowns,
@@ -92,9 +92,5 @@ Status get_directional_derivative(
     size_t knowns,
     const double change[],
     double result[]);
-
-#if defined __GNUC__
-#pragma GCC visibility pop
-#endif
 
 #endif

@@ -11,18 +11,10 @@ typedef struct {
     const Parameters *p;
 } Problem;
 
-#if defined __GNUC__
-#pragma GCC visibility push(hidden)
-#endif
-
 /* Takes the state x to `duration` s later, in equal steps no longer than LONGEST_STEP. */
-void integrate(const Problem *problem, double duration, State *x);
+static void integrate(const Problem *problem, double duration, State *x);
 
 /* The inputs t s after the start of the communication step; `room` is for them if they move. */
-const Input *inputs_at(const Problem *problem, double t, Input *room);
-
-#if defined __GNUC__
-#pragma GCC visibility pop
-#endif
+static const Input *inputs_at(const Problem *problem, double t, Input *room);
 
 #endif

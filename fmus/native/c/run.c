@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-void begin(Instance *instance)
+void renew(Instance *instance)
 {
     memset(&instance->memory, 0, sizeof instance->memory);
     set_start_values(&instance->memory);

@@ -21,11 +21,11 @@ class Functions:
         sources = block_sources(fmu) | {"operators.h": (C_FILES / "operators.h").read_text()}
         self._sizes = {each.name: each.function.size1_out(0) for each in trace(fmu.block)}
         exported = "".join(EXPORTED.format(name=name) for name in self._sizes)
-        sources["exported.c"] = f'#include "block.h"\n#include <stddef.h>\n{exported}'
+        sources["exported.c"] = f'#include "block.c"\n#include <stddef.h>\n{exported}'
         for name, text in sources.items():
             (folder / name).write_text(text)
         command = [host_compiler(), "-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC", "-o", "block.so"]
-        subprocess.run([*command, "block.c", "exported.c", "-lm"], cwd=folder, check=True)
+        subprocess.run([*command, "exported.c", "-lm"], cwd=folder, check=True)
         self._library = ctypes.CDLL(str(folder / "block.so"))
 
     def __call__(self, name, *arguments):

@@ -38,7 +38,7 @@ extern void (*event_indicators)(const State *x, const Input *u, const Parameters
 """
 
 RUN = """
-#include "integrator.h"
+#include "integrator.c"
 double LONGEST_STEP;
 void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
 void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);
@@ -61,7 +61,7 @@ def compiled(folder: Path, states: int, indicators: int) -> ctypes.CDLL:
     folder.joinpath("dop853.h").write_text(step_header())
     folder.joinpath("shared.h").write_text(shared_header())
     command = [host_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC", "-I.", f"-I{C_FILES}", "run.c"]
-    subprocess.run([*command, C_FILES / "integrator.c", "-o", "integrator.so", "-lm"], cwd=folder, check=True)
+    subprocess.run([*command, "-o", "integrator.so", "-lm"], cwd=folder, check=True)
     return ctypes.CDLL(str(folder / "integrator.so"))
 
 

@@ -1,6 +1,6 @@
-/* The variables of the block as its host sees them, numbered by value reference. */
-#ifndef VARIABLES_H
-#define VARIABLES_H
+/* What is known of a variable of the block; all of them are in variables.h, by value reference. */
+#ifndef VARIABLE_H
+#define VARIABLE_H
 
 #include "block.h"
 
@@ -27,19 +27,5 @@ typedef struct {
     double maximum;
     double start;
 } Variable;
-
-#if defined __GNUC__
-#pragma GCC visibility push(hidden)
-#endif
-
-extern const char *const model_name;
-extern const char *const model_guid;
-extern const int copes_with_bad_input; /* inputs are not refused */
-extern const unsigned variable_count;
-extern const Variable variables[];
-
-#if defined __GNUC__
-#pragma GCC visibility pop
-#endif
 
 #endif
