@@ -22,7 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.master import loaded
+from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import MakeSteps, interpreted
 from harness.cosimulation.system import PLANTS, Scheme, System, loop
 from harness.manoeuvres.manoeuvre import Manoeuvre

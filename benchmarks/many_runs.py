@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.master import loaded
+from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import Refusal, interpreted
 from harness.cosimulation.system import PLANTS, loop
 from harness.manoeuvres.catalogue import MANOEUVRES

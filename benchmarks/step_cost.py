@@ -24,7 +24,7 @@ from harness.cosimulation.calls import Call
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.instance import Instance
 from harness.cosimulation.interface import type_of
-from harness.cosimulation.master import loaded
+from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import MakeSteps, Steps, interpreted
 from harness.cosimulation.system import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, System, chosen_build, loop
 from harness.manoeuvres.catalogue import MANOEUVRES

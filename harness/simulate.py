@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from .cosimulation.limits import USUAL, Limits
 from .cosimulation.row import Source
 from .cosimulation.runs import run
 from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, loop
@@ -27,6 +28,7 @@ def simulate(
     motor: NameOrFile | None = None,
     can: NameOrFile | None = None,
     mapping: Mapping[str, str] | None = None,
+    limits: Limits = USUAL,
 ) -> np.ndarray:
     """Drives the closed loop through a manoeuvre.
 
@@ -40,16 +42,17 @@ def simulate(
         folder: of the built FMUs.
         build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
         mapping: names of the loop -> names of an FMU, see `harness.cosimulation.mapping`.
+        limits: of FMUs that are given by their path.
 
     Returns:
         Structured array, see `harness.cosimulation.master.Loop.run`.
 
     Raises:
         WiringError: a block or a parameter does not fit.
-        SimulationError: an FMU refused a call.
+        SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
     return run(
-        loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping),
+        loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping, limits=limits),
         duration=manoeuvre.duration,
         step_size=step_size,
         inputs=signals(manoeuvre, control),

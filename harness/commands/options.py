@@ -161,7 +161,7 @@ def seconds(text: str) -> float:
     return number
 
 
-def blocks(args: argparse.Namespace) -> dict[str, str]:
+def blocks(args: argparse.Namespace) -> dict[str, Any]:
     """The blocks of the loop beside the plant."""
     return {place: getattr(args, place) for place in OTHERS}
 

@@ -26,6 +26,7 @@ class Call(NamedTuple):
         arguments: of the FMI function after the component, as ctypes objects.
         sources: of the values that are set, in bytes from the beginning of the row.
         factors: what the FMU's values are multiplied by to be those of the row; empty: they are the same.
+        names: of the variables whose values are set or got.
     """
 
     instance: Instance
@@ -35,6 +36,12 @@ class Call(NamedTuple):
     changed: Callable[[], bool] | None = None
     sources: Sequence[int] = ()
     factors: Sequence[float] = ()
+    names: Sequence[str] = ()
+
+    @property
+    def values(self) -> Sequence[Any]:
+        """Those that are set or got."""
+        return self.arguments[-1]
 
 
 def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout: Layout) -> list[Call]:
@@ -104,6 +111,7 @@ def _access(instance: Instance, function: str, variables: Sequence[ModelVariable
     references = (c_uint * len(variables))(*(v.valueReference for v in variables))
     factors = [instance.interface.factors.get(v.name, 1.0) for v in variables]
     call = _bound(instance, function, references, c_size_t(len(variables)), place)
+    call = call._replace(names=[v.name for v in variables])
     return call._replace(factors=factors) if any(factor != 1.0 for factor in factors) else call
 
 

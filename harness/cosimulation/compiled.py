@@ -13,6 +13,7 @@ import numpy as np
 
 from .calls import Call
 from .steps import Refusal
+from .whereabouts import NUMBERS, current
 
 
 def _library() -> CDLL | None:
@@ -37,6 +38,8 @@ class CompiledCall(Structure):
         ("factors", c_void_p),
         ("real", c_int32),
         ("step_size", c_void_p),
+        ("instance", c_int32),
+        ("function", c_int32),
     )
 
 
@@ -48,6 +51,7 @@ class CompiledSteps:
         self._make_steps = LIBRARY.make_steps
         self._make_steps.restype = c_size_t
         self._calls = calls
+        c_void_p.in_dll(LIBRARY, "whereabouts").value = addressof(current())
         # the records hold bare addresses: of these, and of what the calls keep
         self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
         self._factors = [(c_double * len(call.factors))(*call.factors) for call in calls]
@@ -68,6 +72,7 @@ class CompiledSteps:
 
 def _record(call: Call, sources: Any, factors: Any) -> CompiledCall:
     record = CompiledCall(component=call.instance.component)
+    record.instance, record.function = call.instance.number, NUMBERS[call.function]
     function = cast(call.instance.slave.dll[call.function], c_void_p)
     if call.function == "fmi2DoStep":
         record.do_step, record.step_size = function, addressof(call.arguments[1])

@@ -1,10 +1,11 @@
 """An FMU at work: unpacked, loaded, instantiated, and afterwards gone without a trace."""
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from ctypes import byref, c_void_p
+from ctypes import byref, c_int, c_void_p
 from itertools import count
+from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, cast
@@ -24,7 +25,9 @@ from fmpy.fmi2 import (
 from fmpy.logging import addLoggerProxy
 
 from ..errors import SimulationError, WiringError
+from ..plain import plain
 from .interface import Interface, type_of
+from .whereabouts import note
 
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
 
@@ -38,7 +41,7 @@ _keys = count(1)
 
 def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes | None) -> None:
     if environment in _logs and message:
-        _logs[environment].append((status, " ".join(message.decode("utf-8", "replace").split())))
+        _logs[environment].append((status, plain(message.decode("utf-8", "replace"))))
 
 
 # one callback for all, never freed: fmpy's proxy, which fills in the arguments of the message, knows one
@@ -55,18 +58,39 @@ def _callbacks(key: int) -> fmi2CallbackFunctions:
     return callbacks
 
 
+class FMU2Watched(FMU2Slave):
+    """What fmpy makes of an FMU; notes each call, and takes a status that FMI does not know for a refusal.
+
+    (fmpy looks for FMU2 in the name of the class.)
+    """
+
+    def __init__(self, number: int, **arguments: Any) -> None:
+        note(number, "loading its binary")
+        self.number = number
+        super().__init__(**arguments)
+
+    def _call(self, fname: str, *args: Any) -> Any:
+        note(self.number, fname)
+        result = super()._call(fname, *args)
+        if self._functions[fname].restype == c_int and result < fmi2OK:
+            raise FMICallException(function=fname, status=result)
+        return result
+
+
 class Instance:
     """An instantiated FMU.
 
     Attributes:
         name: of the instance.
+        number: in its loop.
         interface: of its FMU.
         slave: what fmpy made of it.
         status: the worst so far.
     """
 
-    def __init__(self, name: str, interface: Interface, slave: FMU2Slave, key: int) -> None:
+    def __init__(self, name: str, interface: Interface, slave: FMU2Watched, key: int) -> None:
         self.name = name
+        self.number = slave.number
         self.interface = interface
         self.slave = slave
         self.status = 0
@@ -83,6 +107,11 @@ class Instance:
         except FMICallException as error:
             raise self.failure(error.function, error.status) from error
 
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return label(self.name, self.interface)
+
     def reset(self) -> None:
         """Brings it back to where it was after instantiation.
 
@@ -90,7 +119,7 @@ class Instance:
             SimulationError: it cannot; it is of no more use then.
         """
         if self.status >= fmi2Fatal:
-            raise SimulationError(f"{self.name} ({self.interface.path.name}) has ended with fatal; load it anew")
+            raise SimulationError(f"{self.label} has ended with fatal; load it anew")
         self.call("reset")
         self.status = fmi2OK
         self._log.clear()
@@ -105,14 +134,22 @@ class Instance:
 
     def failure(self, function: str, status: int, when: str = "") -> SimulationError:
         """The exception for a refused call, with what the FMU logged about it; `when` as in "at 1 s"."""
-        self.status = max(self.status, status)
+        known = 0 <= status < len(STATUS)
+        self.status = max(self.status, status) if known else fmi2Fatal
         logged = [message for level, message in self._log if level > fmi2Warning] or [
             message for _, message in self._log
         ]
         return SimulationError(
-            f"{self.name} ({self.interface.path.name}) answered {f'{function} {when}'.strip()} with "
-            f"{STATUS[status] if status < len(STATUS) else status}: {'; '.join(logged) or 'no message'}"
+            f"{self.label} answered {f'{function} {when}'.strip()} with "
+            f"{STATUS[status] if known else f'the status {status}, which FMI does not know'}: "
+            f"{plain('; '.join(logged)) or 'no message'}"
         )
+
+    def not_finite(self, names: Sequence[str], values: Sequence[float], when: str) -> SimulationError:
+        """The exception for NaN or infinity among the values that were read."""
+        wrong = [f"{name} is {value}" for name, value in zip(names, values, strict=True) if not isfinite(value)]
+        more = f" and {len(wrong) - 1} more" if wrong[1:] else ""
+        return SimulationError(f"{self.label}: {wrong[0]}{more} {when}")
 
     def set_parameters(self, values: Mapping[str, float]) -> None:
         """Sets parameters, one call each, so that a refusal names the one.
@@ -129,6 +166,11 @@ class Instance:
             self.call(f"set{kind}", [variable.valueReference], [value if factor == 1.0 else value / factor])
 
 
+def label(name: str, interface: Interface) -> str:
+    """What messages call the instance of that name."""
+    return f"{name} ({interface.path.name})"
+
+
 def _typed(instance: str, name: str, kind: str, value: float) -> float:
     whole = {"Real": False, "Integer": True, "Boolean": True}
     if kind not in whole:
@@ -141,10 +183,11 @@ def _typed(instance: str, name: str, kind: str, value: float) -> float:
 
 
 @contextmanager
-def instantiated(name: str, interface: Interface, folder: Path | None = None) -> Iterator[Instance]:
+def instantiated(name: str, interface: Interface, folder: Path | None = None, number: int = 0) -> Iterator[Instance]:
     """The FMU as an instance of that name, freed at the end; its unpacked files vanish.
 
     Args:
+        number: in its loop.
         folder: in which it is unpacked; None: that for temporary files.
 
     Raises:
@@ -154,7 +197,7 @@ def instantiated(name: str, interface: Interface, folder: Path | None = None) ->
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
     with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as unpacked:
         try:
-            instance = _instantiate(name, interface, unpacked, key)
+            instance = _instantiate(name, interface, unpacked, key, number)
             try:
                 yield instance
             finally:
@@ -165,7 +208,7 @@ def instantiated(name: str, interface: Interface, folder: Path | None = None) ->
             del _logs[key]
 
 
-def _instantiate(name: str, interface: Interface, folder: str, key: int) -> Instance:
+def _instantiate(name: str, interface: Interface, folder: str, key: int, number: int) -> Instance:
     path = interface.path
     if not folder.isascii():
         raise SimulationError(f"{path.name} cannot be unpacked to {folder}: FMUs need a plain ASCII folder")
@@ -175,7 +218,8 @@ def _instantiate(name: str, interface: Interface, folder: str, key: int) -> Inst
         has = ", ".join(platforms) or "none"
         raise SimulationError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
     try:
-        slave = FMU2Slave(
+        slave = FMU2Watched(
+            number,
             guid=interface.description.guid,
             unzipDirectory=folder,
             modelIdentifier=interface.identifier,
@@ -184,5 +228,5 @@ def _instantiate(name: str, interface: Interface, folder: str, key: int) -> Inst
         slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
     except Exception as error:  # fmpy raises bare exceptions
         logged = "; ".join(message for _, message in _logs[key])
-        raise SimulationError(f"{path.name} cannot be instantiated: {logged or error}") from error
+        raise SimulationError(f"{label(name, interface)} cannot be instantiated: {plain(logged or error)}") from error
     return Instance(name, interface, slave, key)

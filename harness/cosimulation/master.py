@@ -5,55 +5,38 @@ comes later gets what those before it put out at the end of the step. Jacobi giv
 outputs of the beginning of the step. What each does to the loop's dead time is in the documentation.
 """
 
-import logging
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from ctypes import c_double
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fmpy.fmi2 import fmi2Warning
+from fmpy.fmi2 import fmi2OK, fmi2Warning
 
 from ..errors import SimulationError, WiringError
 from ..progress import chunks, progress
 from .calls import Call
-from .compiled import LIBRARY, CompiledSteps
 from .instance import Instance, instantiated
 from .row import Source, instants, sampled
-from .steps import MakeSteps, interpreted
-from .system import Scheme, System
+from .steps import NOT_FINITE, MakeSteps, made
+from .system import Scheme
 from .wires import Wires, wired
-from .wiring import Fit, fit, require, unknown
-
-LOG = logging.getLogger(__name__)
+from .wiring import Fit, require, unknown
 
 
 @contextmanager
-def loaded(
-    system: System,
-    inputs: Iterable[str] = (),
-    parameters: Iterable[str] = (),
-    folder: Path | None = None,
-    make_steps: MakeSteps = CompiledSteps if LIBRARY else interpreted,
-) -> Iterator["Loop"]:
-    """The FMUs of a system, loaded and wired, for any number of runs. Afterwards they are gone.
-
-    Args:
-        inputs, parameters: `instance.variable` of those that the runs will give, if they are known, so that
-            all that is wrong is named at once.
-        folder: in which the FMUs are unpacked; None: that for temporary files.
-        make_steps: CompiledSteps or interpreted; the results are the same.
+def opened(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator["Loop"]:
+    """The FMUs of a system, loaded into this process and wired; see `harness.cosimulation.loading.loaded`.
 
     Raises:
-        WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
         SimulationError: an FMU cannot be loaded.
     """
-    fitted = fit(system, inputs, parameters)
-    for name in fitted.absent:
-        LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
     with ExitStack() as stack:
-        instances = [stack.enter_context(instantiated(*item, folder)) for item in fitted.interfaces.items()]
+        instances = [
+            stack.enter_context(instantiated(name, interface, folder, number))
+            for number, (name, interface) in enumerate(fitted.interfaces.items())
+        ]
         yield Loop(fitted, instances, make_steps)
 
 
@@ -120,7 +103,7 @@ class Loop:
             for chunk in chunks(len(table) - 1):
                 refusal = steps(table, chunk)
                 if refusal:
-                    _check(refusal.call, refusal.status, f"at {time[refusal.step]:g} s")
+                    _check(refusal.call, refusal.status, float(time[refusal.step]))
                 done(chunk.stop)
         for instance in self._instances:
             instance.call("terminate")
@@ -175,7 +158,7 @@ class Loop:
             for call in wires.hand_over:
                 if call.changed:
                     call.changed()
-                _check(call, call.run(), "at the start")
+                _check(call, made(call))
             if row == before:
                 data[: len(row)] = row
                 return
@@ -183,6 +166,11 @@ class Loop:
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
 
 
-def _check(call: Call, status: int, when: str) -> None:
-    if status > fmi2Warning:
+def _check(call: Call, status: int, time: float | None = None) -> None:
+    """Raises what is to be said of a status, in the step from a time in s on; None: before the first."""
+    if status == NOT_FINITE:
+        when = "at the start" if time is None else f"in the step from {time:g} s"
+        raise call.instance.not_finite(call.names, call.values, when)
+    if status not in (fmi2OK, fmi2Warning):
+        when = "at the start" if time is None else f"at {time:g} s"
         raise call.instance.failure(call.function, status, when)

@@ -8,7 +8,8 @@ from threading import local
 import numpy as np
 
 from ..errors import SimulationError
-from .master import Loop, loaded
+from .loading import LoopApart, loaded
+from .master import Loop
 from .row import Source
 from .system import Scheme, System
 
@@ -62,9 +63,9 @@ class KeptLoops:
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
-        self._loops: dict[Hashable, tuple[ExitStack, Loop]] = {}
+        self._loops: dict[Hashable, tuple[ExitStack, Loop | LoopApart]] = {}
 
-    def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop:
+    def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop | LoopApart:
         """The loop of a system after reset, or as `loaded` gives it."""
         key = repr(system), *map(_version, system.instances.values())
         stack, loop = self._loops.pop(key, (ExitStack(), None))

@@ -1,6 +1,7 @@
 /* The steps of the master: the same calls in the same order as in steps.py. The library is loaded
  * and given the addresses of the FMI functions and of their arguments by compiled.py. */
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -12,6 +13,18 @@
 #endif
 
 enum { FMI2_OK, FMI2_WARNING };
+
+/* The status, which no FMU returns, of a call that put out NaN or infinity: NOT_FINITE in steps.py */
+enum { NOT_FINITE = INT32_MIN };
+
+/* Whereabouts in whereabouts.py: the call that was begun last, where another process may look at it. */
+struct whereabouts {
+    int32_t instance;
+    int32_t function;
+    double time;
+};
+
+EXPORT struct whereabouts *whereabouts;
 
 /* struct CompiledCall in compiled.py */
 typedef struct {
@@ -25,6 +38,8 @@ typedef struct {
     const double *factors;    /* the FMU's values times these are those of the row; null: they are the same */
     int32_t real;             /* the values are double, else int32_t */
     const double *step_size;
+    int32_t instance;         /* numbers for whereabouts */
+    int32_t function;
 } Call;
 
 /* Whether the values of the row that feed the inputs have changed; then they are taken over. */
@@ -62,19 +77,38 @@ static void convert(const Call *call)
     }
 }
 
+/* Whether all values that were got are numbers. */
+static int all_finite(const Call *call)
+{
+    const double *values = call->values;
+    for (size_t i = 0; i < call->count; i++) {
+        if (!isfinite(values[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Makes the call; what it puts out is looked at. */
 static int32_t made(const Call *call, const unsigned char *row)
 {
+    if (call->sources && !changed(call, row)) {
+        return FMI2_OK;
+    }
+    whereabouts->instance = call->instance;
+    whereabouts->function = call->function;
+    memcpy(&whereabouts->time, row, sizeof whereabouts->time);
     if (call->do_step) {
         double time;
         memcpy(&time, row, sizeof time);
         return call->do_step(call->component, time, *call->step_size, 1);
     }
-    if (call->sources && !changed(call, row)) {
-        return FMI2_OK;
-    }
     int32_t status = call->access(call->component, call->references, call->count, call->values);
     if (call->factors && !call->sources) {
         convert(call);
+    }
+    if (call->real && !call->sources && !all_finite(call)) {
+        return status == FMI2_OK || status == FMI2_WARNING ? NOT_FINITE : status;
     }
     return status;
 }
@@ -89,7 +123,7 @@ EXPORT size_t make_steps(const Call *calls, size_t number, unsigned char *row, s
         memcpy(row, now, known);
         for (size_t i = 0; i < number; i++) {
             *status = made(&calls[i], row);
-            if (*status > FMI2_WARNING) {
+            if (*status != FMI2_OK && *status != FMI2_WARNING) {
                 *refused = i;
                 return k;
             }

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from ..errors import WiringError
 from ..names import nearest
+from .limits import USUAL, Limits
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -76,6 +77,8 @@ class System:
         parameters: what every run sets.
         outputs: what is evaluated after the run; other outputs are recorded too.
         mapping: `instance.variable` of the loop -> variable of the FMU, see `harness.cosimulation.mapping`.
+        own: instances whose FMUs are the project's; those of the others run in a process of their own.
+        limits: of the others.
         optional: inputs and parameters that an FMU may lack, and the value that it then stands for (None: any).
     """
 
@@ -86,6 +89,8 @@ class System:
     outputs: tuple[Port, ...] = ()
     mapping: Mapping[str, str] = field(default_factory=dict)
     optional: Mapping[str, float | None] = field(default_factory=dict)
+    own: frozenset[str] = frozenset()
+    limits: Limits = USUAL
 
     @property
     def ports(self) -> dict[str, list[Port]]:
@@ -163,6 +168,7 @@ def loop(
     motor: NameOrFile | None = None,
     can: NameOrFile | None = None,
     mapping: Mapping[str, str] | None = None,
+    limits: Limits = USUAL,
 ) -> System:
     """The closed loop: controller, motor, plant and the wheel speeds over CAN.
 
@@ -172,6 +178,7 @@ def loop(
         build: one of BUILDS; None: see `chosen_build`.
         mapping: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in the place of the plant,
             see `harness.cosimulation.mapping`.
+        limits: of FMUs that are given by their path.
 
     Raises:
         WiringError: there is no such block or build.
@@ -185,6 +192,8 @@ def loop(
         outputs=OUTPUTS,
         mapping=dict(mapping or {}),
         optional=OPTIONAL,
+        own=frozenset(place for place, block in blocks.items() if block is None or str(block) in PLACES[place]),
+        limits=limits,
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.cosimulation.master import loaded
+from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
 from harness.errors import SimulationError, WiringError
@@ -111,5 +111,5 @@ def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
     with loaded(System({"a": relay, "b": relay})) as running:
         for _ in range(3):
             running.run(0.01)
-        assert len(list(tmp_path.iterdir())) == 2
+        assert len(list(tmp_path.iterdir())) == 1
     assert list(tmp_path.iterdir()) == []

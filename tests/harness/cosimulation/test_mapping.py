@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.loading import loaded
 from harness.cosimulation.mapping import parsed
-from harness.cosimulation.master import loaded
 from harness.cosimulation.steps import interpreted
 from harness.cosimulation.system import PLANTS, loop
 from harness.errors import WiringError

@@ -1,0 +1,56 @@
+"""The process in which FMUs that are not ours run: answers what `harness.cosimulation.apart` asks.
+
+A question is a function and its arguments, pickled; so is the answer. Whatever FMUs print is thrown away, and
+nothing they do reaches the process that asks.
+"""
+
+import os
+import pickle
+import sys
+from collections.abc import Callable
+from mmap import mmap
+from pathlib import Path
+from threading import Thread
+from time import sleep
+from typing import Any, BinaryIO
+
+from . import whereabouts
+
+
+def main() -> None:
+    """Answers until nobody asks any more."""
+    questions, answers = _silenced()
+    Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+    with Path(sys.argv[1]).open("r+b") as page:
+        whereabouts.share(mmap(page.fileno(), 0))
+    while True:
+        try:
+            function, arguments = pickle.load(questions)
+        except EOFError:
+            break
+        pickle.dump(_answer(function, arguments), answers, pickle.HIGHEST_PROTOCOL)
+        answers.flush()
+    os._exit(0)  # what FMUs have registered to be done at exit is not done
+
+
+def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Exception | None]:
+    try:
+        return function(*arguments), None
+    except Exception as error:
+        return None, error.with_traceback(None)
+
+
+def _silenced() -> tuple[BinaryIO, BinaryIO]:
+    """The pipes of questions and answers, moved to where no FMU writes by accident."""
+    pipes = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for descriptor in range(3):
+        os.dup2(nothing, descriptor)
+    return pipes
+
+
+def _end_with(parent: int) -> None:
+    """An FMU that hangs does not outlive a parent that was killed."""
+    while os.getppid() == parent:
+        sleep(1.0)
+    os._exit(1)

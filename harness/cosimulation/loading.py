@@ -1,0 +1,123 @@
+"""Loading the FMUs of a system: ours into this process, for speed; with one that is not ours, all into another.
+
+The steps of a loop are then made in that process as they would be in this one, and so are the results.
+"""
+
+import logging
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..progress import progress
+from .apart import Apart
+from .compiled import LIBRARY, CompiledSteps
+from .instance import label
+from .master import Loop, opened
+from .row import Source, instants, sampled
+from .steps import MakeSteps, interpreted
+from .system import Scheme, System
+from .wiring import Fit, fit
+
+LOG = logging.getLogger(__name__)
+
+
+class LoopApart:
+    """Loaded FMUs that run together in a process of their own; see `harness.cosimulation.master.Loop`."""
+
+    def __init__(self, apart: Apart) -> None:
+        self._apart = apart
+
+    def reset(self) -> None:
+        """As `Loop.reset`."""
+        self._apart.ask(_reset)
+
+    def run(
+        self,
+        duration: float,
+        step_size: float = 1e-3,
+        inputs: Mapping[str, Source] | None = None,
+        parameters: Mapping[str, float] | None = None,
+        scheme: Scheme = Scheme.GAUSS_SEIDEL,
+        label: str = "simulating",
+    ) -> np.ndarray:
+        """As `Loop.run`.
+
+        Raises:
+            WiringError: inputs or parameters do not fit the FMUs.
+            SimulationError: an FMU refused a call, ended the process, crashed, or did not return from a call.
+        """
+        time = instants(duration, step_size)
+        samples = {name: sampled(name, source, time) for name, source in (inputs or {}).items()}
+        wanted = duration, step_size, samples, dict(parameters or {}), scheme
+        with progress(len(time) - 1, label) as done:
+            return self._apart.ask(_run, *wanted, watch=lambda now: done(round(now / step_size)))
+
+
+@contextmanager
+def loaded(
+    system: System,
+    inputs: Iterable[str] = (),
+    parameters: Iterable[str] = (),
+    folder: Path | None = None,
+    make_steps: MakeSteps = CompiledSteps if LIBRARY else interpreted,
+) -> Iterator[Loop | LoopApart]:
+    """The FMUs of a system, loaded and wired, for any number of runs. Afterwards they are gone.
+
+    Args:
+        inputs, parameters: `instance.variable` of those that the runs will give, if they are known, so that
+            all that is wrong is named at once.
+        folder: in which the FMUs are unpacked; None: that for temporary files.
+        make_steps: CompiledSteps or interpreted; the results are the same.
+
+    Raises:
+        WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
+        SimulationError: an FMU cannot be loaded.
+    """
+    fitted = fit(system, inputs, parameters)
+    for name in fitted.absent:
+        LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
+    load = _here if system.instances.keys() <= system.own else _apart
+    with load(fitted, folder, make_steps) as loop:
+        yield loop
+
+
+_here: Callable[[Fit, Path | None, MakeSteps], Any] = opened
+
+
+@contextmanager
+def _apart(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator[LoopApart]:
+    names = [label(*item) for item in fitted.interfaces.items()]
+    apart = Apart(names, fitted.system.limits.call, folder)
+    try:
+        apart.ask(_load, fitted, make_steps)
+        yield LoopApart(apart)
+        if apart.alive:
+            apart.ask(_unload)
+    finally:
+        apart.close()
+
+
+# what follows runs in the other process
+
+_loop: Loop
+_loading = ExitStack()
+
+
+def _load(fitted: Fit, make_steps: MakeSteps) -> None:
+    global _loop
+    _loop = _loading.enter_context(opened(fitted, None, make_steps))
+
+
+def _reset() -> None:
+    _loop.reset()
+
+
+def _run(*wanted: Any) -> np.ndarray:
+    return _loop.run(*wanted)
+
+
+def _unload() -> None:
+    _loading.close()

@@ -1,0 +1,60 @@
+"""Which FMI call is being made, noted where another process can read it when this one has ended or hangs."""
+
+from ctypes import Structure, c_double, c_int32
+from mmap import mmap
+
+FUNCTIONS = (
+    "loading its binary",
+    "fmi2Instantiate",
+    "fmi2SetupExperiment",
+    "fmi2EnterInitializationMode",
+    "fmi2ExitInitializationMode",
+    "fmi2DoStep",
+    *(f"fmi2{access}{kind}" for access in ("Get", "Set") for kind in ("Real", "Integer", "Boolean", "String")),
+    "fmi2GetFMUstate",
+    "fmi2SetFMUstate",
+    "fmi2FreeFMUstate",
+    "fmi2SerializedFMUstateSize",
+    "fmi2SerializeFMUstate",
+    "fmi2DeSerializeFMUstate",
+    "fmi2Terminate",
+    "fmi2Reset",
+    "fmi2FreeInstance",
+)
+"""What is called, numbered from 1."""
+
+NUMBERS = {function: number for number, function in enumerate(FUNCTIONS, start=1)}
+
+AT_START = -1.0
+"""The time of calls outside the steps."""
+
+
+class Whereabouts(Structure):
+    """The call that was begun last; `struct whereabouts` in steps.c.
+
+    Attributes:
+        instance: its number.
+        function: the number of the function, 0 before the first call.
+        time: of the instant at work, in s.
+    """
+
+    _fields_ = (("instance", c_int32), ("function", c_int32), ("time", c_double))
+
+
+_current = Whereabouts()
+
+
+def current() -> Whereabouts:
+    """Where the calls of this process are noted."""
+    return _current
+
+
+def share(memory: mmap) -> None:
+    """From now on the calls are noted in memory that another process sees."""
+    global _current
+    _current = Whereabouts.from_buffer(memory)
+
+
+def note(instance: int, function: str, time: float = AT_START) -> None:
+    """Notes a call that is about to be made."""
+    _current.instance, _current.function, _current.time = instance, NUMBERS[function], time

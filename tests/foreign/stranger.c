@@ -1,0 +1,114 @@
+/* A plant of somebody else's that stands still, and does what the macros IN_... say on the way. */
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#ifndef IN_INSTANTIATE
+#define IN_INSTANTIATE
+#endif
+#ifndef IN_DO_STEP
+#define IN_DO_STEP
+#endif
+#ifndef IN_GET_REAL
+#define IN_GET_REAL
+#endif
+#ifndef IN_RESET
+#define IN_RESET
+#endif
+#ifndef IN_FREE
+#define IN_FREE
+#endif
+
+typedef void *Component;
+typedef unsigned Reference;
+typedef void (*Logger)(void *, const char *, int, const char *, const char *, ...);
+typedef struct {
+    Logger log;
+    void *allocate, *release, *finished, *environment;
+} Callbacks;
+
+static const Callbacks *host;
+static double now;
+
+static void say(const char *text)
+{
+    host->log(host->environment, "stranger", 3, "error", "%s", text);
+}
+
+static void say_much(void)
+{
+    static char text[41001];
+    for (size_t i = 0; i + 5 <= sizeof text; i += 5) {
+        memcpy(text + i, "\033[31m", 5);
+    }
+    say(text);
+}
+
+const char *fmi2GetTypesPlatform(void) { return "default"; }
+const char *fmi2GetVersion(void) { return "2.0"; }
+int fmi2SetDebugLogging(Component c, int on, size_t n, const char *const names[]) { return 0; }
+
+Component fmi2Instantiate(const char *name, int type, const char *guid, const char *place, const Callbacks *callbacks,
+                          int visible, int logging)
+{
+    host = callbacks;
+    (void)say_much;
+    IN_INSTANTIATE;
+    return &now;
+}
+
+void fmi2FreeInstance(Component c) { IN_FREE; }
+int fmi2SetupExperiment(Component c, int defined, double tolerance, double start, int stops, double stop) { return 0; }
+int fmi2EnterInitializationMode(Component c) { return 0; }
+int fmi2ExitInitializationMode(Component c) { return 0; }
+int fmi2Terminate(Component c) { return 0; }
+int fmi2Reset(Component c)
+{
+    now = 0.0;
+    IN_RESET;
+    return 0;
+}
+
+int fmi2GetReal(Component c, const Reference r[], size_t n, double values[])
+{
+    for (size_t i = 0; i < n; i++) {
+        values[i] = 0.0;
+    }
+    IN_GET_REAL;
+    return 0;
+}
+
+int fmi2DoStep(Component c, double time, double step, int no_set_before)
+{
+    IN_DO_STEP;
+    now = time + step;
+    return 0;
+}
+
+#define VALUES(kind, type) \
+    int fmi2Get##kind(Component c, const Reference r[], size_t n, type values[]) { return n ? 3 : 0; } \
+    int fmi2Set##kind(Component c, const Reference r[], size_t n, const type values[]) { return n ? 3 : 0; }
+VALUES(Integer, int)
+VALUES(Boolean, int)
+VALUES(String, char *)
+
+int fmi2SetReal(Component c, const Reference r[], size_t n, const double values[]) { return 0; }
+int fmi2GetFMUstate(Component c, void **state) { return 3; }
+int fmi2SetFMUstate(Component c, void *state) { return 3; }
+int fmi2FreeFMUstate(Component c, void **state) { return 3; }
+int fmi2SerializedFMUstateSize(Component c, void *state, size_t *size) { return 3; }
+int fmi2SerializeFMUstate(Component c, void *state, char bytes[], size_t size) { return 3; }
+int fmi2DeSerializeFMUstate(Component c, const char bytes[], size_t size, void **state) { return 3; }
+int fmi2GetDirectionalDerivative(Component c, const Reference u[], size_t nu, const Reference k[], size_t nk,
+                                 const double dk[], double du[]) { return 3; }
+int fmi2SetRealInputDerivatives(Component c, const Reference r[], size_t n, const int o[], const double v[]) { return 3; }
+int fmi2GetRealOutputDerivatives(Component c, const Reference r[], size_t n, const int o[], double v[]) { return 3; }
+int fmi2CancelStep(Component c) { return 3; }
+int fmi2GetStatus(Component c, int kind, int *value) { return 3; }
+int fmi2GetRealStatus(Component c, int kind, double *value) { return 3; }
+int fmi2GetIntegerStatus(Component c, int kind, int *value) { return 3; }
+int fmi2GetBooleanStatus(Component c, int kind, int *value) { return 3; }
+int fmi2GetStringStatus(Component c, int kind, const char **value) { return 3; }

@@ -1,0 +1,122 @@
+"""Whatever an FMU of somebody else's does: one line that names it and the call, and nothing is left behind."""
+
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.limits import Limits
+from harness.cosimulation.loading import loaded
+from harness.cosimulation.runs import kept_loaded, run
+from harness.cosimulation.steps import interpreted
+from harness.cosimulation.system import System
+from harness.errors import SimulationError
+from tests import ROOT
+from tests.foreign.stranger import build_stranger
+
+LATER = "if (time > 0.0995)"
+
+FAULTS = {
+    "exits in a step": (
+        {"IN_DO_STEP": f"{LATER} exit(0)"},
+        r"ended the process that it ran in, with exit code 0, in fmi2DoStep at 0\.1 s",
+    ),
+    "ends at once": ({"IN_DO_STEP": f"{LATER} _exit(7)"}, r"with exit code 7, in fmi2DoStep at 0\.1 s"),
+    "exits when instantiated": ({"IN_INSTANTIATE": "exit(0)"}, r"with exit code 0, in fmi2Instantiate"),
+    "is not instantiated": ({"IN_INSTANTIATE": "return 0"}, r"cannot be instantiated: Failed to instantiate model"),
+    "crashes in a step": (
+        {"IN_DO_STEP": f"{LATER} *(volatile int *)8 = 1"},
+        r"crashed \(SIGSEGV\) in fmi2DoStep at 0\.1 s",
+    ),
+    "aborts": ({"IN_GET_REAL": "if (now > 0.0995) abort()"}, r"crashed \(SIGABRT\) in fmi2GetReal at 0\.099 s"),
+    "crashes when instantiated": ({"IN_INSTANTIATE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2Instantiate"),
+    "crashes when freed": ({"IN_FREE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2FreeInstance"),
+    "hangs in a step": (
+        {"IN_DO_STEP": f"{LATER} for (;;) usleep(1000)"},
+        r"did not return from fmi2DoStep at 0\.1 s within 0\.5 s",
+    ),
+    "hangs when instantiated": (
+        {"IN_INSTANTIATE": "for (;;) {}"},
+        r"did not return from fmi2Instantiate within 0\.5 s",
+    ),
+    "has the status -1": ({"IN_DO_STEP": f"{LATER} return -1"}, r"answered fmi2DoStep at 0\.1 s with the status -1"),
+    "has the status 17": ({"IN_DO_STEP": f"{LATER} return 17"}, r"answered fmi2DoStep at 0\.1 s with the status 17"),
+    "has the status -1 first": ({"IN_GET_REAL": "return -1"}, r"answered fmi2GetReal at the start with the status -1"),
+    "puts out NaN": (
+        {"IN_GET_REAL": "if (now > 0.0995) values[4] = NAN"},
+        r": T_gear is nan in the step from 0\.099 s",
+    ),
+    "puts out infinity": (
+        {"IN_GET_REAL": "if (now > 0.0995) values[0] = values[5] = -INFINITY"},
+        r": omega_1 is -inf and 1 more in the step from 0\.099 s",
+    ),
+    "puts out NaN at the start": ({"IN_GET_REAL": "values[5] = NAN"}, r": v is nan at the start"),
+    "logs escape sequences": ({"IN_DO_STEP": f"{LATER} {{ say_much(); return 3; }}"}, r"at 0\.1 s with error: \[31m"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault):
+    does, message = FAULTS[fault]
+    system = System({"car": build_stranger(tmp_path, **does)}, limits=Limits(call=0.5))
+    with pytest.raises(SimulationError, match=message) as error:
+        run(system, 0.3)
+    text = str(error.value)
+    assert text.startswith("car (stranger.fmu)")
+    assert len(text) < 700
+    assert text.isprintable()
+    assert list(unpacked.iterdir()) == []
+
+
+@pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
+@pytest.mark.parametrize("fault", ["exits in a step", "puts out NaN", "has the status -1", "aborts"])
+def test_the_steps_in_python_name_the_same(tmp_path, fault):
+    does, _ = FAULTS[fault]
+    system = System({"car": build_stranger(tmp_path, **does)})
+    messages = []
+    for make in (CompiledSteps, interpreted):
+        with pytest.raises(SimulationError) as error, loaded(system, make_steps=make) as loop:
+            loop.run(0.3)
+        messages.append(str(error.value))
+    assert messages[0] == messages[1]
+
+
+RUN = """
+import sys
+from pathlib import Path
+from harness.cosimulation.runs import run
+from harness.cosimulation.system import System
+
+run(System({"car": Path(sys.argv[1])}), 0.1)
+"""
+
+
+def test_what_a_stranger_prints_goes_nowhere(tmp_path):
+    path = build_stranger(tmp_path, IN_DO_STEP='puts("hello"), fprintf(stderr, "hello")', IN_FREE="fflush(0)")
+    done = subprocess.run([sys.executable, "-c", RUN, path], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_slow_stranger_may_take_longer_than_one_call(tmp_path):
+    system = System({"car": build_stranger(tmp_path, IN_DO_STEP="usleep(100000)")}, limits=Limits(call=0.4))
+    begun = time.monotonic()
+    assert len(run(system, 1.0, 0.1)) == 11
+    assert time.monotonic() - begun > 1.0
+
+
+def test_a_stranger_keeps_its_process_and_gets_a_new_one_after_a_crash(tmp_path, unpacked):
+    crash = {"IN_DO_STEP": "if (time > 0.1) raise(SIGSEGV)"}
+    system = System({"car": build_stranger(tmp_path, **crash)})
+    with kept_loaded():
+        run(system, 0.1)
+        first = list(unpacked.iterdir())
+        run(system, 0.1)
+        assert list(unpacked.iterdir()) == first
+        for _ in range(2):
+            with pytest.raises(SimulationError, match="crashed"):
+                run(system, 0.2)
+        np.testing.assert_array_equal(run(system, 0.1)["car.v"], 0.0)
+    assert list(unpacked.iterdir()) == []
