@@ -107,11 +107,11 @@ class Stopwatch:
         return sum(map(len, self.laps.values())) * (self.outside + self.inside)
 
 
-def with_fmpy(calls: Sequence[Call], row: bytearray, known: int) -> Steps:
-    """The same steps with one call of FMU2Slave a variable; nothing is recorded."""
+def with_fmpy(begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> Steps:
+    """Steps under Gauss-Seidel with one call of FMU2Slave a variable; nothing is recorded."""
     sources = {target: source for source, target, _ in CONNECTIONS} | {port.name: port.name for port in INPUTS}
     plans = []
-    for instance in dict.fromkeys(call.instance for call in calls):
+    for instance in dict.fromkeys(call.instance for call in begin):
         inputs = [
             (getattr(instance.slave, f"set{type_of(v)}"), v.valueReference, source)
             for v in instance.interface.of_causality("input")

@@ -15,8 +15,8 @@ class Timed:
     def __init__(self, make: MakeSteps, clock: Callable[[], float] = process_time) -> None:
         self.make, self.clock, self.seconds = make, clock, 0.0
 
-    def __call__(self, calls: Sequence[Call], row: bytearray, known: int) -> Steps:
-        make_them = self.make(calls, row, known)
+    def __call__(self, begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> Steps:
+        make_them = self.make(begin, end, row, known)
 
         def steps(table: np.ndarray, numbers: range) -> Refusal | None:
             began = self.clock()

@@ -19,7 +19,7 @@ def simulate(
     control: bool = True,
     parameters: Mapping[str, float] | None = None,
     step_size: float = 1e-3,
-    scheme: Scheme = Scheme.GAUSS_SEIDEL,
+    scheme: Scheme = Scheme.PROPAGATED,
     seed: int = 1,
     folder: Path = BUILD,
     build: str | None = None,

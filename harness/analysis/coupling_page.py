@@ -1,7 +1,8 @@
 """The documentation page that `driveline coupling` writes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
+from ..cosimulation.schedule import Transfer
 from ..cosimulation.system import Scheme
 from ..reports.markdown import markdown_table
 from .coupling import SIGNALS, Comparison
@@ -16,17 +17,29 @@ loop is measured here against its monolithic solution (`harness/analysis/monolit
 integrated as one system, the sampled blocks ticking with the values of exactly that instant. Noise and
 rounding are off; delays and losses on the bus are the same in all runs.
 
-**Gauss-Seidel** (the default) steps one after the other and hands each the newest outputs: over a step
-from t to t + h, an FMU gets from those before it the values of t + h, from those after it the values
-of t. The order is {order}. **Jacobi** gives all of them the values of t.
+Over a step from t to t + h,
 
-- A continuous FMU holds what it gets over the step, so the value of t is late by h/2 on average and that
-  of t + h early by h/2.
+- **propagated** (the default) gives every FMU the values of t. A continuous signal then goes on: along a straight line
+  to its value at t + h if the FMU that puts it out has been stepped before ({interpolated}), else along its
+  derivative ({extrapolated}), if the FMUs can; if they cannot (Python builds, FMUs from elsewhere), it is held.
+  At t + h outputs go on to inputs along the declared dependencies until every output is that of t + h with the inputs
+  of t + h: `motor.omega_1_meas` follows from `plant.omega_1`, so the motor is asked again after the plant. Declared
+  dependencies that form an algebraic loop are refused before the run;
+- **Gauss-Seidel** steps one after the other and hands each the newest outputs: an FMU gets from those before it the
+  values of t + h, from those after it the values of t. The order is {order};
+- **Jacobi** gives all of them the values of t, and reads all outputs afterwards. Of hosts, libcosim, ecos and MasterSim
+  do the same; OMSimulator propagates.
+
+What that does:
+
+- A continuous FMU that holds what it gets over the step gets the value of t late by h/2 on average and that
+  of t + h early by h/2. On a straight line nothing is late or early, and the error is that of the line: it falls
+  with the square of the step.
 - A sampled FMU ticks at t, with what it gets for the step: the value of t is exact there, that of t + h
   early by h. What it computed before changes at its tick: the value of t is exact, that of t + h early
   by h.
-- `motor.omega_1_meas` follows from `plant.omega_1`, which the motor has held since the beginning of its
-  last step: late by h, unless the plant comes before the motor.
+- `motor.omega_1_meas` follows from `plant.omega_1`, which under Gauss-Seidel and Jacobi the motor has held since the
+  beginning of its last step: late by h, unless the plant comes before the motor.
 
 ## Dead time
 
@@ -40,16 +53,16 @@ sample) and of the bus are part of the loop and not counted.
 
 The largest and the rms distance from the monolithic solution, in % of the range of the signal, over
 {duration:g} s of a tip-in with damping. Through the backlash, some decisions of the controller (teeth in the
-gap or not) fall one sample earlier or later, and single samples of `T_ref` differ by as much as these
-change it.
+gap or not) fall one sample earlier or later under Gauss-Seidel and Jacobi, and single samples of `T_ref` differ
+by as much as these change it.
 
 {errors}
 
 ## Order
 
 The rms error of `T_gear` in % of its range by the communication step in ms, and the power of the step
-with which it falls. Through the backlash that power is blurred: a decision that falls one sample off
-makes the same difference at any step, until at a small enough one it falls in time.
+with which it falls. Through the backlash that of Gauss-Seidel and Jacobi is blurred: a decision that falls one
+sample off makes the same difference at any step, until at a small enough one it falls in time.
 
 {orders}
 """
@@ -58,6 +71,7 @@ makes the same difference at any step, until at a small enough one it falls in t
 def page(
     comparisons: Sequence[Comparison],
     dead_times: Mapping[tuple[Scheme, float], Mapping[str, float]],
+    transfers: Mapping[str, Transfer],
     order: Sequence[str],
     step_size: float,
 ) -> str:
@@ -66,16 +80,24 @@ def page(
     Args:
         comparisons: each with a deviation at `step_size` (s).
         dead_times: by scheme and communication step, then by section of the loop, in s.
-        order: of the instances under Gauss-Seidel.
+        transfers: of inputs under the propagated scheme.
+        order: of the instances.
     """
+    moving = {t: _names(name for name in transfers if transfers[name] is t) or "none here" for t in Transfer}
     return PAGE.format(
-        order=", ".join(f"`{name}`" for name in order),
+        interpolated=moving[Transfer.INTERPOLATED],
+        extrapolated=moving[Transfer.EXTRAPOLATED],
+        order=_names(order),
         step=1e3 * step_size,
         duration=comparisons[0].manoeuvre.duration,
         dead_times=_dead_times(dead_times),
         errors=_errors(comparisons, step_size),
         orders=_orders(comparisons),
     )
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def _dead_times(found: Mapping[tuple[Scheme, float], Mapping[str, float]]) -> str:

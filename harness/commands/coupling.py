@@ -8,7 +8,7 @@ from .options import add_fmus, add_output, add_printing, built
 from .printing import Printer
 
 DESCRIPTION = """\
-Runs the loop under both schemes and several communication steps and compares it with its monolithic
+Runs the loop under every scheme and several communication steps and compares it with its monolithic
 solution: the coupling error of each signal, the order with which it falls, and the dead time that a
 scheme adds to each connection and around the loop. The result is a page of Markdown, coupling.md in the
 output folder.
@@ -39,13 +39,17 @@ def run(args: argparse.Namespace) -> int:
     from ..analysis.coupling import MANOEUVRES, compare
     from ..analysis.coupling_page import page
     from ..analysis.dead_time import dead_times
+    from ..cosimulation.schedule import transfers
+    from ..cosimulation.wiring import fit
     from ..reports.files import write_text
 
     cases = [(plant, manoeuvre, scheme) for plant in PLANTS for manoeuvre in MANOEUVRES for scheme in Scheme]
+    fitted = fit(loop(folder=args.fmus))
     text = page(
         [compare(plant, manoeuvre, scheme, folder=args.fmus) for plant, manoeuvre, scheme in cases],
         {(s, h): dead_times(s, h, args.fmus) for s, h in product(Scheme, DEAD_TIME_STEPS)},
-        list(loop().instances),
+        transfers(fitted.system, fitted.interfaces),
+        list(fitted.interfaces),
         STEP_SIZE,
     )
     path = args.output / "coupling.md"

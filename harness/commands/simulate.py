@@ -54,8 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheme",
         choices=[scheme.value for scheme in Scheme],
-        default=Scheme.GAUSS_SEIDEL.value,
-        help="one FMU after the other, or all with the outputs of the beginning of the step (default: %(default)s)",
+        default=Scheme.PROPAGATED.value,
+        help="when outputs reach inputs: at their instant, one FMU after the other, or a step later; "
+        "docs/coupling.md shows what that does (default: %(default)s)",
     )
     add_output(parser, "results/simulate", "the signals and the figure")
     parser.add_argument("--plot", action="store_true", help="draw speeds, torques and the motion of the body")

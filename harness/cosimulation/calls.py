@@ -4,9 +4,11 @@ A row of the run is the only memory: an FMU's outputs are read straight into it,
 gathered from it. Every call returns its FMI status.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from ctypes import c_double, c_int, c_size_t, c_uint
+from collections.abc import Callable, Collection, Mapping, Sequence
+from ctypes import c_double, c_int, c_size_t, c_uint, sizeof
 from functools import partial
+from itertools import pairwise
+from math import nan
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -27,6 +29,8 @@ class Call(NamedTuple):
         sources: of the values that are set, in bytes from the beginning of the row.
         factors: what the FMU's values are multiplied by to be those of the row; empty: they are the same.
         names: of the variables whose values are set or got.
+        sent: of a call that sets rates: the inputs as they were set last, to be forgotten since they now move.
+        step_size: in s; of a call that sets rates: those of straight lines from what was sent to the sources.
     """
 
     instance: Instance
@@ -37,6 +41,8 @@ class Call(NamedTuple):
     sources: Sequence[int] = ()
     factors: Sequence[float] = ()
     names: Sequence[str] = ()
+    sent: Sequence[c_double] = ()
+    step_size: c_double | None = None
 
     @property
     def values(self) -> Sequence[Any]:
@@ -77,15 +83,67 @@ def _change(view: Any, offsets: Sequence[int], buffer: Any, factors: Sequence[fl
     return changed
 
 
-def receives(instance: Instance, row: bytearray, layout: Layout) -> list[Call]:
-    """Calls that read the outputs into the row, one for each type."""
+def receives(instance: Instance, row: bytearray, layout: Layout, outputs: Collection[str]) -> list[Call]:
+    """Calls that read outputs into the row, one for each piece of it."""
     calls = []
-    for kind, variables in _by_type(instance.interface.of_causality("output")):
-        first = layout.offset(f"{instance.name}.{variables[0].name}")
-        place = (KINDS[kind].ctype * len(variables)).from_buffer(row, first)
-        call = _access(instance, f"fmi2Get{kind}", variables, place)
-        calls.append(call._replace(run=_converting(call.run, place, call.factors)) if call.factors else call)
+    for kind, variables in _by_type([v for v in instance.interface.of_causality("output") if v.name in outputs]):
+        size = sizeof(KINDS[kind].ctype)
+        offsets = [layout.offset(f"{instance.name}.{v.name}") for v in variables]
+        starts = [n for n, offset in enumerate(offsets) if n == 0 or offset != offsets[n - 1] + size]
+        for first, end in pairwise([*starts, len(variables)]):
+            place = (KINDS[kind].ctype * (end - first)).from_buffer(row, offsets[first])
+            calls.append(_converted(_access(instance, f"fmi2Get{kind}", variables[first:end], place)))
     return calls
+
+
+def receives_rates(instance: Instance, row: bytearray, places: Mapping[str, int]) -> Call:
+    """The call that reads output derivatives into the memory behind the row, which has a place for each name."""
+    prefix = f"{instance.name}."
+    variables = [instance.interface.variables[n.removeprefix(prefix)] for n in places if n.startswith(prefix)]
+    values = (c_double * len(variables)).from_buffer(row, places[prefix + variables[0].name])
+    return _converted(_access(instance, "fmi2GetRealOutputDerivatives", variables, values, _first_order(variables)))
+
+
+def sends_rates(
+    instance: Instance,
+    inputs: Sequence[str],
+    sources: Sequence[int],
+    row: bytearray,
+    sent: Call,
+    step_size: c_double | None,
+) -> Call:
+    """The call that sets input derivatives.
+
+    Args:
+        sources: first bytes in the row of the values at the end of the step, or of the derivatives.
+        sent: the call that sets the inputs.
+        step_size: of lines to the end of the step; None: the sources are the derivatives.
+    """
+    variables = [instance.interface.variables[name] for name in inputs]
+    values = (c_double * len(variables))()
+    call = _access(instance, "fmi2SetRealInputDerivatives", variables, values, _first_order(variables))
+    references, _, buffer = sent.arguments
+    places = [list(references).index(v.valueReference) for v in variables]
+    before = [c_double.from_buffer(buffer, sizeof(c_double) * place) for place in places]
+    now = [c_double.from_buffer(row, source) for source in sources]
+    factors = call.factors or [1.0] * len(variables)
+
+    def run() -> int:
+        for n, (source, last, factor) in enumerate(zip(now, before, factors, strict=True)):
+            value = source.value / factor
+            values[n] = value if step_size is None else (value - last.value) / step_size.value
+            last.value = nan
+        return call.run()
+
+    return call._replace(run=run, sources=sources, sent=before, step_size=step_size)
+
+
+def _first_order(variables: Sequence[ModelVariable]) -> Any:
+    return (c_int * len(variables))(*(1 for _ in variables))
+
+
+def _converted(call: Call) -> Call:
+    return call._replace(run=_converting(call.run, call.arguments[-1], call.factors)) if call.factors else call
 
 
 def _converting(get_values: Callable[[], int], place: Any, factors: Sequence[float]) -> Callable[[], int]:
@@ -99,7 +157,8 @@ def _converting(get_values: Callable[[], int], place: Any, factors: Sequence[flo
 
 def advance(instance: Instance, row: bytearray, step_size: c_double) -> Call:
     """The call that makes one communication step from the time in the row, of the size in s at that moment."""
-    return _bound(instance, "fmi2DoStep", c_double.from_buffer(row), step_size, c_int(1))
+    call = _bound(instance, "fmi2DoStep", c_double.from_buffer(row), step_size, c_int(1))
+    return call._replace(step_size=step_size)
 
 
 def _by_type(variables: Sequence[ModelVariable]) -> list[tuple[str, list[ModelVariable]]]:
@@ -107,10 +166,10 @@ def _by_type(variables: Sequence[ModelVariable]) -> list[tuple[str, list[ModelVa
     return [(kind, group) for kind, group in alike if group]
 
 
-def _access(instance: Instance, function: str, variables: Sequence[ModelVariable], place: Any) -> Call:
+def _access(instance: Instance, function: str, variables: Sequence[ModelVariable], place: Any, *orders: Any) -> Call:
     references = (c_uint * len(variables))(*(v.valueReference for v in variables))
     factors = [instance.interface.factors.get(v.name, 1.0) for v in variables]
-    call = _bound(instance, function, references, c_size_t(len(variables)), place)
+    call = _bound(instance, function, references, c_size_t(len(variables)), *orders, place)
     call = call._replace(names=[v.name for v in variables])
     return call._replace(factors=factors) if any(factor != 1.0 for factor in factors) else call
 

@@ -1,12 +1,14 @@
 """The steps of the master as compiled code, steps.c: what is left beside the FMUs is next to nothing.
 
-The shared library is made when the project is installed, where there is a C compiler. Without it the
-loop runs in Python, with the same results.
+The shared library is made when the project is installed, where there is a C compiler. Without it, or if
+its source has changed since, the loop runs in Python, with the same results.
 """
 
+import logging
 from collections.abc import Sequence
 from ctypes import CDLL, Structure, addressof, byref, c_char, c_double, c_int32, c_size_t, c_uint32, c_void_p, cast
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,10 +17,20 @@ from .calls import Call
 from .steps import Refusal
 from .whereabouts import NUMBERS, current
 
+LOG = logging.getLogger(__name__)
+SOURCE = Path(__file__).with_name("steps.c")
+
 
 def _library() -> CDLL | None:
     spec = find_spec(f"{__package__}._steps")
-    return CDLL(spec.origin) if spec and spec.origin else None
+    if not (spec and spec.origin):
+        return None
+    if SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
+        LOG.warning(
+            "%s is older than %s; the steps run in Python until the next `make setup`", spec.origin, SOURCE.name
+        )
+        return None
+    return CDLL(spec.origin)
 
 
 LIBRARY = _library()
@@ -40,47 +52,60 @@ class CompiledCall(Structure):
         ("step_size", c_void_p),
         ("instance", c_int32),
         ("function", c_int32),
+        ("rates", c_void_p),
+        ("orders", c_void_p),
+        ("sent", c_void_p),
     )
 
 
 class CompiledSteps:
     """The same as `harness.cosimulation.steps.interpreted`; only where there is a LIBRARY."""
 
-    def __init__(self, calls: Sequence[Call], row: bytearray, known: int) -> None:
+    def __init__(self, begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> None:
         assert LIBRARY is not None
         self._make_steps = LIBRARY.make_steps
         self._make_steps.restype = c_size_t
-        self._calls = calls
+        self._turn = len(begin)
+        calls = self._calls = [*begin, *end]
         c_void_p.in_dll(LIBRARY, "whereabouts").value = addressof(current())
         # the records hold bare addresses: of these, and of what the calls keep
         self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
         self._factors = [(c_double * len(call.factors))(*call.factors) for call in calls]
+        self._sent = [(c_void_p * len(call.sent))(*map(addressof, call.sent)) for call in calls]
         self._loop = (
-            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors)),
+            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors, self._sent)),
+            c_size_t(self._turn),
             c_size_t(len(calls)),
             (c_char * len(row)).from_buffer(row),
-            c_size_t(len(row)),
             c_size_t(known),
         )
 
     def __call__(self, table: np.ndarray, numbers: range) -> Refusal | None:
         refused, status = c_size_t(), c_int32()
-        place, first, last = c_void_p(table.ctypes.data), c_size_t(numbers.start), c_size_t(numbers.stop)
-        step = self._make_steps(*self._loop, place, first, last, byref(refused), byref(status))
-        return None if step == numbers.stop else Refusal(self._calls[refused.value], status.value, step)
+        rows, size = c_void_p(table.ctypes.data), c_size_t(table.itemsize)
+        first, last = c_size_t(numbers.start), c_size_t(numbers.stop)
+        step = self._make_steps(*self._loop, rows, size, first, last, byref(refused), byref(status))
+        if step == numbers.stop:
+            return None
+        return Refusal(self._calls[refused.value], status.value, step, step + (refused.value >= self._turn))
 
 
-def _record(call: Call, sources: Any, factors: Any) -> CompiledCall:
+def _record(call: Call, sources: Any, factors: Any, sent: Any) -> CompiledCall:
     record = CompiledCall(component=call.instance.component)
     record.instance, record.function = call.instance.number, NUMBERS[call.function]
     function = cast(call.instance.slave.dll[call.function], c_void_p)
+    record.step_size = None if call.step_size is None else addressof(call.step_size)
     if call.function == "fmi2DoStep":
-        record.do_step, record.step_size = function, addressof(call.arguments[1])
+        record.do_step = function
         return record
-    references, count, values = call.arguments
-    record.access, record.count = function, count
-    record.references, record.values = addressof(references), addressof(values)
+    references, count, *orders, values = call.arguments
+    if orders:
+        record.rates, record.orders = function, addressof(orders[0])
+    else:
+        record.access = function
+    record.count, record.references, record.values = count, addressof(references), addressof(values)
     record.real = values._type_ is c_double
     record.sources = addressof(sources) if call.sources else None
     record.factors = addressof(factors) if call.factors else None
+    record.sent = addressof(sent) if call.sent else None
     return record

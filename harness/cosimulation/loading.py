@@ -40,7 +40,7 @@ class LoopApart:
         step_size: float = 1e-3,
         inputs: Mapping[str, Source] | None = None,
         parameters: Mapping[str, float] | None = None,
-        scheme: Scheme = Scheme.GAUSS_SEIDEL,
+        scheme: Scheme = Scheme.PROPAGATED,
         label: str = "simulating",
     ) -> np.ndarray:
         """As `Loop.run`.

@@ -1,8 +1,7 @@
 """The master: runs wired FMUs in step, k * step_size being the time, and records every output.
 
-Gauss-Seidel steps one instance after the other and hands each the newest outputs: an instance that
-comes later gets what those before it put out at the end of the step. Jacobi gives all of them the
-outputs of the beginning of the step. What each does to the loop's dead time is in the documentation.
+What is done in which order, and when an output reaches an input, is the scheme: see schedule.py and
+docs/coupling.md.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -48,7 +47,7 @@ class Loop:
         self._instances = instances
         self._make_steps = make_steps
         self._step_size = c_double()
-        self._wires: dict[tuple[str, ...], Wires] = {}
+        self._wires: dict[tuple[Scheme, tuple[str, ...]], Wires] = {}
         self._is_new = True
 
     def reset(self) -> None:
@@ -68,7 +67,7 @@ class Loop:
         step_size: float = 1e-3,
         inputs: Mapping[str, Source] | None = None,
         parameters: Mapping[str, float] | None = None,
-        scheme: Scheme = Scheme.GAUSS_SEIDEL,
+        scheme: Scheme = Scheme.PROPAGATED,
         label: str = "simulating",
     ) -> np.ndarray:
         """Runs the FMUs from reset on, whatever the run before has done and however it has ended.
@@ -82,28 +81,29 @@ class Loop:
 
         Returns:
             Structured array with the rows of the instants k * step_size, k = 0, 1, ..., and the columns
-            `time`, each input (held from that instant on) and each output `instance.variable` (as the
-            FMU gives it at the end of the step).
+            `time`, each input (held from that instant on) and each output `instance.variable`: under the
+            propagated scheme that of the instant with the inputs of the instant, else as the FMU gives it
+            at the end of the step.
 
         Raises:
-            WiringError: inputs or parameters do not fit the FMUs.
+            WiringError: inputs or parameters do not fit the FMUs, or the scheme does not suit them.
             SimulationError: an FMU refused a call.
         """
         time = instants(duration, step_size)
         require(unknown(self._fitted, inputs or (), parameters or ()))
         samples = self._present({name: sampled(name, source, time) for name, source in (inputs or {}).items()})
-        wires = self._wired(tuple(samples))
+        wires = self._wired(scheme, tuple(samples))
         table = wires.layout.table(time, samples)
         self.reset()
         self._is_new = False
         self._step_size.value = step_size
         self._initialize(wires, table, self._present(parameters or {}))
-        steps = wires.steps[scheme]
         with progress(len(table) - 1, label) as done:
             for chunk in chunks(len(table) - 1):
-                refusal = steps(table, chunk)
+                refusal = wires.steps(table, chunk)
                 if refusal:
-                    _check(refusal.call, refusal.status, float(time[refusal.step]))
+                    begun = refusal.status == NOT_FINITE
+                    _check(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
                 done(chunk.stop)
         for instance in self._instances:
             instance.call("terminate")
@@ -123,12 +123,16 @@ class Loop:
                 raise WiringError(f"{name}: {file} does not have it and runs as if it were always {only:g}")
         return present
 
-    def _wired(self, inputs: tuple[str, ...]) -> Wires:
-        """The calls for runs that give these inputs, bound when they are given for the first time."""
-        if inputs not in self._wires:
-            connections = self._fitted.system.connections
-            self._wires[inputs] = wired(self._instances, connections, inputs, self._step_size, self._make_steps)
-        return self._wires[inputs]
+    def _wired(self, scheme: Scheme, inputs: tuple[str, ...]) -> Wires:
+        """The calls for runs under a scheme that give these inputs, bound when they are given for the first time.
+
+        Raises:
+            WiringError: the scheme does not suit the system.
+        """
+        if (scheme, inputs) not in self._wires:
+            fixed = self._step_size, self._make_steps
+            self._wires[scheme, inputs] = wired(self._fitted, self._instances, inputs, scheme, *fixed)
+        return self._wires[scheme, inputs]
 
     def _initialize(self, wires: Wires, table: np.ndarray, parameters: Mapping[str, float]) -> None:
         """Brings all instances from instantiation to the first step, with consistent outputs in the first row.
@@ -160,14 +164,14 @@ class Loop:
                     call.changed()
                 _check(call, made(call))
             if row == before:
-                data[: len(row)] = row
+                data[: table.itemsize] = row[: table.itemsize]
                 return
             before = bytes(row)
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
 
 
 def _check(call: Call, status: int, time: float | None = None) -> None:
-    """Raises what is to be said of a status, in the step from a time in s on; None: before the first."""
+    """Raises what is to be said of a status at a time in s (of NaN, in the step from it on); None: before the first."""
     if status == NOT_FINITE:
         when = "at the start" if time is None else f"in the step from {time:g} s"
         raise call.instance.not_finite(call.names, call.values, when)

@@ -23,7 +23,7 @@ def run(
     step_size: float = 1e-3,
     inputs: Mapping[str, Source] | None = None,
     parameters: Mapping[str, float] | None = None,
-    scheme: Scheme = Scheme.GAUSS_SEIDEL,
+    scheme: Scheme = Scheme.PROPAGATED,
     label: str = "simulating",
 ) -> np.ndarray:
     """Loads a system of FMUs, unless it is kept loaded, and runs it; see `Loop.run` for arguments and results.

@@ -37,9 +37,12 @@ typedef struct {
     const uint32_t *sources;  /* of what is set: bytes from the beginning of the row; null: nothing is set */
     const double *factors;    /* the FMU's values times these are those of the row; null: they are the same */
     int32_t real;             /* the values are double, else int32_t */
-    const double *step_size;
+    const double *step_size;  /* in s; of rates that are set: those of straight lines from what was sent */
     int32_t instance;         /* numbers for whereabouts */
     int32_t function;
+    int32_t (*rates)(void *component, const uint32_t *references, size_t count, const int32_t *orders, void *values);
+    const int32_t *orders;
+    double *const *sent;      /* of rates that are set: the inputs as they were set last */
 } Call;
 
 /* Whether the values of the row that feed the inputs have changed; then they are taken over. */
@@ -77,6 +80,22 @@ static void convert(const Call *call)
     }
 }
 
+/* The rates with which inputs go on from what was sent, to values or with derivatives in the row. What was sent
+ * is forgotten: the inputs move now. */
+static void aim(const Call *call, const unsigned char *row)
+{
+    double *rates = call->values;
+    for (size_t i = 0; i < call->count; i++) {
+        double value;
+        memcpy(&value, row + call->sources[i], sizeof value);
+        if (call->factors) {
+            value /= call->factors[i];
+        }
+        rates[i] = call->step_size ? (value - *call->sent[i]) / *call->step_size : value;
+        *call->sent[i] = NAN;
+    }
+}
+
 /* Whether all values that were got are numbers. */
 static int all_finite(const Call *call)
 {
@@ -92,7 +111,9 @@ static int all_finite(const Call *call)
 /* Makes the call; what it puts out is looked at. */
 static int32_t made(const Call *call, const unsigned char *row)
 {
-    if (call->sources && !changed(call, row)) {
+    if (call->sent) {
+        aim(call, row);
+    } else if (call->sources && !changed(call, row)) {
         return FMI2_OK;
     }
     whereabouts->instance = call->instance;
@@ -103,7 +124,9 @@ static int32_t made(const Call *call, const unsigned char *row)
         memcpy(&time, row, sizeof time);
         return call->do_step(call->component, time, *call->step_size, 1);
     }
-    int32_t status = call->access(call->component, call->references, call->count, call->values);
+    int32_t status = call->rates
+        ? call->rates(call->component, call->references, call->count, call->orders, call->values)
+        : call->access(call->component, call->references, call->count, call->values);
     if (call->factors && !call->sources) {
         convert(call);
     }
@@ -113,22 +136,36 @@ static int32_t made(const Call *call, const unsigned char *row)
     return status;
 }
 
-/* Makes the steps that begin with the rows first ... last - 1 of the table, and fills the rows after them.
- * Returns the number of the step that was not finished, or last; then refused and status tell the call. */
-EXPORT size_t make_steps(const Call *calls, size_t number, unsigned char *row, size_t size, size_t known,
-                         unsigned char *table, size_t first, size_t last, size_t *refused, int32_t *status)
+/* Makes the calls first ... last - 1 up to one that is refused; returns its number, or last. */
+static size_t make(const Call *calls, size_t first, size_t last, const unsigned char *row, int32_t *status)
+{
+    for (size_t i = first; i < last; i++) {
+        *status = made(&calls[i], row);
+        if (*status != FMI2_OK && *status != FMI2_WARNING) {
+            return i;
+        }
+    }
+    return last;
+}
+
+/* Makes the steps that begin with the rows first ... last - 1 of the table, and fills the rows after them. Time goes
+ * on to the next instant before call number `turn`. Returns the number of the step that was not finished, or last; then
+ * refused and status tell the call. */
+EXPORT size_t make_steps(const Call *calls, size_t turn, size_t number, unsigned char *row, size_t known,
+                         unsigned char *table, size_t size, size_t first, size_t last, size_t *refused,
+                         int32_t *status)
 {
     for (size_t k = first; k < last; k++) {
-        unsigned char *now = table + k * size;
-        memcpy(row, now, known);
-        for (size_t i = 0; i < number; i++) {
-            *status = made(&calls[i], row);
-            if (*status != FMI2_OK && *status != FMI2_WARNING) {
-                *refused = i;
-                return k;
-            }
+        unsigned char *next = table + (k + 1) * size;
+        *refused = make(calls, 0, turn, row, status);
+        if (*refused == turn) {
+            memcpy(row, next, known);
+            *refused = make(calls, turn, number, row, status);
         }
-        memcpy(now + size + known, row + known, size - known);
+        if (*refused < number) {
+            return k;
+        }
+        memcpy(next + known, row + known, size - known);
     }
     return last;
 }

@@ -15,19 +15,23 @@ NOT_FINITE = -(2**31)
 """The status, which no FMU returns, of a call that put out NaN or infinity."""
 
 
+GETS = ("fmi2GetReal", "fmi2GetRealOutputDerivatives")
+
+
 class Refusal(NamedTuple):
-    """The call that was refused, its status, and the number of the step."""
+    """The call that was refused, its status, and the numbers of the step and of the instant at work."""
 
     call: Call
     status: int
     step: int
+    instant: int
 
 
 def made(call: Call, time: float = AT_START) -> int:
     """The status of a call that is made at a time in s; what it puts out is looked at."""
     note(call.instance.number, call.function, time)
     status = call.run()
-    if status in (fmi2OK, fmi2Warning) and call.function == "fmi2GetReal" and not all(map(isfinite, call.values)):
+    if status in (fmi2OK, fmi2Warning) and call.function in GETS and not all(map(isfinite, call.values)):
         return NOT_FINITE
     return status
 
@@ -35,28 +39,36 @@ def made(call: Call, time: float = AT_START) -> int:
 Steps = Callable[[np.ndarray, range], Refusal | None]
 """Makes the steps of these numbers, or those up to a refusal, and fills the rows of a table of all instants."""
 
-MakeSteps = Callable[[Sequence[Call], bytearray, int], Steps]
-"""Binds the calls of a step, the row of bytes that they work on, and how many bytes at its beginning are known
-in advance: they come from the table, the others go there."""
+MakeSteps = Callable[[Sequence[Call], Sequence[Call], bytearray, int], Steps]
+"""Binds the calls of a step, which are made before and after time goes on to the next instant, to the row of bytes
+that they work on. What is known in advance, so many bytes at its beginning, then comes from the table; at the end of
+the step the others go there."""
 
 
-def interpreted(calls: Sequence[Call], row: bytearray, known: int) -> Steps:
+def interpreted(begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> Steps:
     """The steps, each of which is these calls in this order; an unchanged set of values is not set again."""
-    size, now = len(row), memoryview(row)
-    computed, time = now[known:], c_double.from_buffer(row)
+    now, time = memoryview(row), c_double.from_buffer(row)
+
+    def refused(calls: Sequence[Call]) -> tuple[Call, int] | None:
+        for call in calls:
+            if call.changed and not call.changed():
+                continue
+            status = made(call, time.value)
+            if status not in (fmi2OK, fmi2Warning):
+                return call, status
+        return None
 
     def steps(table: np.ndarray, numbers: range) -> Refusal | None:
-        data = table.view(np.uint8).data
+        data, size = table.view(np.uint8).data, table.itemsize
+        computed = now[known:size]
         for k in numbers:
-            start = k * size
-            now[:known] = data[start : start + known]
-            for call in calls:
-                if call.changed and not call.changed():
-                    continue
-                status = made(call, time.value)
-                if status not in (fmi2OK, fmi2Warning):
-                    return Refusal(call, status, k)
-            data[start + size + known : start + size + size] = computed
+            if refusal := refused(begin):
+                return Refusal(*refusal, k, k)
+            following = (k + 1) * size
+            now[:known] = data[following : following + known]
+            if refusal := refused(end):
+                return Refusal(*refusal, k, k + 1)
+            data[following + known : following + size] = computed
         return None
 
     return steps

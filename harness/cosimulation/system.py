@@ -23,14 +23,14 @@ BUILDS = ("python", NATIVE)
 BUILD_HELP = "native FMUs or those that run Python (default: native where all FMUs of the loop have that build)"
 """Of the option --build."""
 
-# of all orders this one comes nearest to the loop as one system: see docs/coupling.md
+# the torque of the motor does not depend on its speed, so it is stepped first and then known over the step
 PLACES = {
     "motor": ("MotorTorqueLoop",),
     "controller": ("DampingController",),
     "can": ("WheelSpeedCan",),
     "plant": ("TwoMassDriveline", "ValidationVehicle"),
 }
-"""The places of the loop in the order in which Gauss-Seidel steps them, and the project's FMUs for each, the
+"""The places of the loop in the order in which they step, and the project's FMUs for each, the
 first by default."""
 
 PLANTS = PLACES["plant"]
@@ -40,8 +40,9 @@ NameOrFile = str | Path
 
 
 class Scheme(Enum):
-    """When an output reaches the inputs it feeds."""
+    """When an output reaches the inputs it feeds; see harness.cosimulation.schedule."""
 
+    PROPAGATED = "propagated"
     GAUSS_SEIDEL = "gauss-seidel"
     JACOBI = "jacobi"
 
@@ -71,7 +72,7 @@ class System:
     """FMUs and how they are wired.
 
     Attributes:
-        instances: name -> file of the FMU, in the order in which Gauss-Seidel steps them.
+        instances: name -> file of the FMU, in the order in which they step.
         connections: from outputs to inputs.
         inputs: what is fed from outside.
         parameters: what every run sets.

@@ -11,6 +11,8 @@ FUNCTIONS = (
     "fmi2ExitInitializationMode",
     "fmi2DoStep",
     *(f"fmi2{access}{kind}" for access in ("Get", "Set") for kind in ("Real", "Integer", "Boolean", "String")),
+    "fmi2GetRealOutputDerivatives",
+    "fmi2SetRealInputDerivatives",
     "fmi2GetFMUstate",
     "fmi2SetFMUstate",
     "fmi2FreeFMUstate",
