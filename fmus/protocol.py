@@ -7,6 +7,12 @@ only one build can refuse is said where it is refused.
 
 from enum import IntFlag
 
+ANY_NUMBER, FROM_START_ON, NEAR_ITS_TIME = (
+    "any finite number",
+    "the start time and later",
+    "the number of ticks up to its time",
+)
+
 TIME_TOLERANCE = 1e-6
 """In s: how far the host's time may be from the FMU's."""
 
@@ -22,6 +28,9 @@ class Mode(IntFlag):
     STEPPING = 4
     TERMINATED = 8
 
+
+MOST_TICKS = 1e15
+"""Of a sampled block in a run: a larger count would be a mistake, and one more could not be told from it."""
 
 MODE_NAMES = ("before initialization mode", "in initialization mode", "after initialization", "after termination")
 """In the order of the modes."""
@@ -51,4 +60,5 @@ SET_TOO_LATE = (
 BAD_VALUE = "{name} = {value!r}{unit} is refused; allowed is {allowed}"
 
 DAMAGED_STATE = "the FMU state is refused: its bytes are damaged"
+BAD_STATE = "the FMU state is refused: {name} = {value!r} in it; allowed is {allowed}"
 FOREIGN_STATE = "the FMU state is refused: it was saved by {origin}, this is {build}"

@@ -22,7 +22,17 @@ from .tableau import step_header
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 
-FOR_ALL = ("fmi2.c", "messages.c", "run.c", "state.c", "values.c", "instance.h", "operators.h", "variable.h")
+FOR_ALL = (
+    "content.c",
+    "fmi2.c",
+    "messages.c",
+    "run.c",
+    "state.c",
+    "values.c",
+    "instance.h",
+    "operators.h",
+    "variable.h",
+)
 FOR_CONTINUOUS = ("continuous.c", "integrator.c", "integrator.h")
 FOR_SAMPLED = ("sampled.c",)
 

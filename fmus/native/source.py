@@ -131,6 +131,14 @@ static const Variable variables[{count}] = {{
 {rows}
 }};
 
+static const char *const input_names[] = {{
+{inputs}
+}};
+
+static const char *const state_names[] = {{
+{states}
+}};
+
 #endif
 """
 
@@ -139,15 +147,22 @@ FIELD = {"input": "u", "output": "y", "parameter": "p"}
 
 def variables_header(fmu: Fmu, guid: str) -> str:
     """variables.h: name, unit, place, bounds and start value of every variable, by value reference."""
-    listed = interface(fmu.block)
+    block, listed, records = fmu.block, interface(fmu.block), records_of(fmu.block)
     return VARIABLES.format(
         name=fmu.name,
         module=fmu.module,
         guid=guid,
-        copes=int(fmu.block.tolerates_bad_input),
+        copes=int(block.tolerates_bad_input),
         count=len(listed),
         rows="\n".join(map(_row, listed)),
+        inputs=_names(records["u"]),
+        states=_names(records["x"]),
     )
+
+
+def _names(record: Any) -> str:
+    """What stands behind the name of a record to name each number in it; there is one at least, as in C."""
+    return "\n".join(f'    "{path}",' for path in list(paths("", record)) or [".none"])
 
 
 def _row(variable: Variable) -> str:

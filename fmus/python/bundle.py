@@ -35,8 +35,9 @@ from .models.block.types import with_start_values
 SCRIPT_TEXT = '''"""Main script of the FMU {name}; its text is run once for every instance."""
 
 from {package} import {name}
-from {package}.fmus.python.repairs import undo_loading
+from {package}.fmus.python.repairs import own_class, undo_loading
 
+globals()["{name}"] = own_class({name})
 undo_loading(globals(), locals())
 '''
 

@@ -3,6 +3,9 @@
 - When an exception leaves an instance, the binary gives up its references to the instance, its class
   and its log queue, and gives them up once more when the host frees the instance. `fmi_call` takes
   them back beforehand, so that the host can go on or free the instance.
+- It calls `_fmu_state_from_bytes` of the class, of which all instances would give up references when that
+  raises an exception. `own_class` gives every instance a class of its own, so that `fmi_class_call` knows
+  whose references to take back.
 - At the exit of the process the binary destroys a static object twice: a use after free, which now and
   then ends in an abort. `dismiss_guard` has it destroyed in time, while that is harmless.
 - Every instantiation gives up a reference to the globals of the main script that it does not own, and
@@ -31,11 +34,35 @@ def fmi_call(method: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return method(self, *arguments)
         except BaseException:
-            for lost in (self, type(self), self.log_queue):
-                _hold(lost)
+            _hold_all(self)
             raise
 
     return call
+
+
+def fmi_class_call(method: Callable[..., Any]) -> Callable[..., Any]:
+    """The same for the methods of the class of an instance."""
+
+    @functools.wraps(method)
+    def call(cls: Any, *arguments: Any) -> Any:
+        try:
+            return method(cls, *arguments)
+        except BaseException:
+            _hold_all(cls.instance())
+            raise
+
+    return call
+
+
+def _hold_all(instance: Any) -> None:
+    """Takes back what the binary gives up when an exception leaves an instance."""
+    for lost in (instance, type(instance), instance.log_queue):
+        _hold(lost)
+
+
+def own_class(slave: type) -> type:
+    """A class like that, for one instance."""
+    return type(slave.__name__, (slave,), {"__module__": slave.__module__})
 
 
 def undo_loading(script_globals: dict[str, Any], script_locals: Any) -> None:

@@ -3,14 +3,15 @@
 import math
 from collections.abc import Callable
 from typing import Any
+from weakref import ref
 
 from models.block.runner import Runner, runner
 
 from .. import protocol
 from ..protocol import Mode
-from . import snapshot
+from . import content, snapshot
 from .refusal import Refused
-from .repairs import dismiss_guard, fmi_call
+from .repairs import dismiss_guard, fmi_call, fmi_class_call
 from .values import Values
 
 FMI_DISCARD = 2
@@ -29,15 +30,19 @@ NAMES = dict(zip(Mode, protocol.MODE_NAMES, strict=True))
 class BlockSlave:
     """Mixed into PythonFMU's Fmi2Slave with the class attribute `block`.
 
+    The binary gives every instance a class of its own (see .repairs), whose `instance` it is.
+
     Before initialization mode is left nothing runs: the outputs then are those of the state that the
     present inputs and parameters would start from.
     """
 
     block: Any
+    instance: ref[Any]
     log: Callable[..., None]
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        type(self).instance = ref(self)
         dismiss_guard(kwargs["resources"], self.block.name)
         self.values = Values(self.block)
         self.mode = Mode.INSTANTIATED
@@ -154,24 +159,27 @@ class BlockSlave:
     def _get_fmu_state(self) -> bytes:
         """The saved state, which is its own serialised form."""
         memory = self.runner and self.runner.memory
-        content = (self.mode, self.start_time, self.stop_time, self.time, self.values.u, self.values.p, memory)
-        return snapshot.pack(type(self).__module__, content)
+        times = self.start_time, self.stop_time, self.time
+        return snapshot.pack(type(self).__module__, (self.mode, *times, self.values.u, self.values.p, memory))
 
     @fmi_call
     def _set_fmu_state(self, state: bytes) -> None:
-        mode, start_time, stop_time, time, u, p, memory = snapshot.unpack(type(self).__module__, state)
-        self.values.restore(u, p)
-        self.start_time, self.stop_time, self.time, self.runner = start_time, stop_time, time, None
-        if memory:
+        self._restore(content.checked(self.block, snapshot.unpack(type(self).__module__, state)))
+
+    def _restore(self, saved: content.Content) -> None:
+        self.values.restore(saved.u, saved.p)
+        self.start_time, self.stop_time, self.time, self.runner = saved.start_time, saved.stop_time, saved.time, None
+        if saved.memory:
             self.runner = runner(self.block, self.values.u, self.values.p)
-            self.runner.restore(snapshot.shaped(memory, self.runner.memory))
-        self._enter(Mode(mode))
+            self.runner.restore(saved.memory)
+        self._enter(saved.mode)
 
     @staticmethod
     def _fmu_state_to_bytes(state: bytes) -> bytes:
         return state
 
-    @staticmethod
-    def _fmu_state_from_bytes(state: bytes) -> bytes:
-        """Unchecked: an exception here could not be mended by `fmi_call`, so fmi2SetFMUstate checks."""
+    @classmethod
+    @fmi_class_call
+    def _fmu_state_from_bytes(cls, state: bytes) -> bytes:
+        content.checked(cls.block, snapshot.unpack(cls.__module__, state))
         return state

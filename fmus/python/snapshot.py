@@ -26,15 +26,10 @@ def unpack(build: str, state: bytes) -> list[Any]:
     checksum, body = state[:8], state[8:]
     if checksum != b"%08x" % zlib.crc32(body):
         raise Refused(DAMAGED_STATE)
-    origin, content = json.loads(body)
+    try:
+        origin, content = json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise Refused(DAMAGED_STATE) from error
     if origin != build:
         raise Refused(FOREIGN_STATE, origin=origin, build=build)
     return content
-
-
-def shaped(content: Any, template: Any) -> Any:
-    """Nested lists as the records and tuples of a template of the same structure."""
-    if not isinstance(template, tuple):
-        return content
-    items = [shaped(item, like) for item, like in zip(content, template, strict=True)]
-    return getattr(type(template), "_make", tuple)(items)

@@ -69,6 +69,7 @@ static void set_start_values(Memory *memory);
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
 static const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
+static const char *write_value(char text[NUMBER_LENGTH], Type type, double value);
 static double *place_of(Values *values, const Variable *variable);
 static double *rate_of(Input *du, const Variable *input);
 
@@ -79,7 +80,11 @@ static size_t serialized_size(void);
 static Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size);
 static Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state);
 
+/* content.c */
+static Status check_content(const Instance *instance, Memory *memory); /* of a saved state */
+
 /* continuous.c or sampled.c */
+static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
 static void advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);

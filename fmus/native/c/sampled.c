@@ -18,6 +18,15 @@ void advance(Memory *memory, double elapsed, double duration)
         memory->x = memory->coming;
 }
 
+Status check_ticks(const Instance *instance, const Memory *memory)
+{
+    const double ticks = memory->ticks, samples = (memory->time - memory->start_time) / SAMPLE_TIME;
+    char text[NUMBER_LENGTH];
+    if (ticks >= 0.0 && ticks <= MOST_TICKS && ticks == floor(ticks) && fabs(ticks - samples) < 1.5)
+        return OK;
+    return refuse(instance, BAD_STATE("ticks", write_number(text, ticks), NEAR_ITS_TIME));
+}
+
 Status check_moving_inputs(Instance *instance, double duration)
 {
     (void)instance;

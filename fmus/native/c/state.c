@@ -64,11 +64,6 @@ Status serialize_state(const Instance *instance, const void *state, void *bytes,
     return OK;
 }
 
-static int is_mode(int64_t mode)
-{
-    return mode == INSTANTIATED || mode == INITIALIZATION || mode == STEPPING || mode == TERMINATED;
-}
-
 Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state)
 {
     Head head;
@@ -84,7 +79,5 @@ Status deserialize_state(const Instance *instance, const void *bytes, size_t siz
     if (size != serialized_size())
         return refuse(instance, DAMAGED_STATE);
     memcpy(&memory, (const char *)bytes + sizeof head, sizeof memory);
-    if (!is_mode(memory.mode))
-        return refuse(instance, DAMAGED_STATE);
-    return keep(instance, &memory, state);
+    return check_content(instance, &memory) == OK ? keep(instance, &memory, state) : ERROR;
 }

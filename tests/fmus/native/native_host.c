@@ -119,6 +119,31 @@ static void set_or_get(Slot *slot)
     }
 }
 
+/* Gives the bytes of a state the CRC-32 that makes them whole. */
+static void make_whole(fmi2Byte *bytes, size_t size)
+{
+    unsigned sum = 0xFFFFFFFFU;
+    for (size_t k = sizeof sum; k < size; k++) {
+        sum ^= (unsigned char)bytes[k];
+        for (int bit = 0; bit < 8; bit++)
+            sum = (sum >> 1) ^ (0xEDB88320U & (0U - (sum & 1U)));
+    }
+    sum = ~sum;
+    memcpy(bytes, &sum, sizeof sum);
+}
+
+/* A bit or a number of a state that no longer is what was saved. */
+static void damage(fmi2Byte *bytes, size_t size)
+{
+    const double wrong = draw(2) ? number() : draw(2) ? -1e18 : 0.5;
+    if (draw(2))
+        bytes[draw((unsigned)size)] ^= (fmi2Byte)(1 << draw(7));
+    else
+        memcpy(bytes + 8 * draw((unsigned)size / 8), &wrong, sizeof wrong);
+    if (draw(4))
+        make_whole(bytes, size);
+}
+
 static void save_or_restore(Slot *slot)
 {
     fmi2Byte bytes[8192];
@@ -142,7 +167,7 @@ static void save_or_restore(Slot *slot)
             break;
         fmi2SerializeFMUstate(slot->instance, *state, bytes, size - draw(2));
         if (draw(3) == 0)
-            bytes[draw((unsigned)size)] ^= (fmi2Byte)(1 << draw(7));
+            damage(bytes, size);
         fmi2DeSerializeFMUstate(slot->instance, bytes, size - (draw(10) == 0), state);
     }
 }

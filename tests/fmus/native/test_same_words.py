@@ -9,6 +9,9 @@ from typing import Any, NamedTuple
 import pytest
 
 from fmus import protocol
+from fmus.catalogue import FMUS
+from fmus.native.records import paths, records_of
+from tests.fmus.forged import forged
 from tests.fmus.host import Host, opened
 
 DISCARD, ERROR, FATAL = 2, 3, 4
@@ -46,6 +49,20 @@ def restored(change: Callable[[bytes], bytes]) -> Call:
     )
 
 
+def with_content(place: str, value: float, fmu: str, coming: bool = False) -> Call:
+    """After a step of 10 ms from 1 s on."""
+    states = len([*paths("", records_of(FMUS[fmu].block)["x"])])
+    restore = restored(lambda saved: forged(saved, place, value, states, coming))
+    return initialized(lambda host: (host.step(1.0, 0.01), restore(host)))
+
+
+def bad_content(fmu: str) -> "list[Refusal]":
+    """Of a state, in places that all blocks have."""
+    wrong = [("start_time", math.inf), ("time", math.nan), ("stop_time", math.nan), ("stop_time", 0.999)]
+    wrong += [("state", math.nan), ("state", -math.inf)]
+    return [Refusal("BAD_STATE", with_content(place, value, fmu), fmu) for place, value in wrong]
+
+
 class Refusal(NamedTuple):
     """A call, the name of the sentence with which it is refused, and the status."""
 
@@ -54,6 +71,11 @@ class Refusal(NamedTuple):
     fmu: str = "MotorTorqueLoop"
     status: int = ERROR
 
+
+TICKS = (-(10**18), -1, 8, 12, 10**18)
+"""After 10 ms, when there are 10; one more or less is a matter of rounding."""
+
+NOISY = ("DampingController",)
 
 REFUSALS = [
     *(
@@ -98,6 +120,13 @@ REFUSALS = [
     *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size)), status=DISCARD) for size in (1000.0000000000001, 1e300)),
     Refusal("PAST_STOP_TIME", stopping(step(1.0, 0.002))),
     *(Refusal("BAD_TIME", initialized(step(time, 1e-3))) for time in (0.1 + 0.2, -math.inf)),
+    *bad_content("MotorTorqueLoop"),
+    *bad_content("TwoMassDriveline"),
+    Refusal("BAD_STATE", with_content("input", 2000.0000000000002, "MotorTorqueLoop")),
+    Refusal("BAD_STATE", with_content("input", math.nan, "MotorTorqueLoop")),
+    *(Refusal("BAD_STATE", with_content("ticks", n, "WheelSpeedCan"), "WheelSpeedCan") for n in TICKS),
+    *(Refusal("BAD_STATE", with_content("state", math.nan, fmu, coming=True), fmu) for fmu in NOISY),
+    *(Refusal("DAMAGED_STATE", with_content("mode", mode, "WheelSpeedCan"), "WheelSpeedCan") for mode in (0, 3, 16)),
     Refusal("DAMAGED_STATE", restored(lambda saved: saved[:-1])),
     Refusal("DAMAGED_STATE", restored(lambda saved: b"\xff" * 5)),
 ]
@@ -124,9 +153,19 @@ def test_both_builds_say_the_same(built, native, unpacked, refusal):
     assert re.fullmatch("".join(re.escape(text) + (".+" if field else "") for text, field, _, _ in parts), in_c)
 
 
+@pytest.mark.parametrize("ticks", [9, 11])
+@pytest.mark.parametrize("build", ["python", "native"])
+def test_one_tick_more_or_less_is_allowed_in_a_state(request, unpacked, build, ticks):
+    folder = request.getfixturevalue({"python": "built", "native": "native"}[build])
+    with opened(folder / "WheelSpeedCan.fmu", unpacked[build] / "WheelSpeedCan") as host:
+        with_content("ticks", ticks, "WheelSpeedCan")(host)
+        host.step(1.01, 0.01)
+
+
 def test_every_sentence_is_said():
     sentences = {
         name for name, text in vars(protocol).items() if isinstance(text, str) and " " in text and name.isupper()
     }
     elsewhere = {"FOREIGN_STATE"}  # names the builds, see test_state.py
+    elsewhere |= {"ANY_NUMBER", "FROM_START_ON", "NEAR_ITS_TIME"}  # parts of BAD_STATE
     assert {refusal.sentence for refusal in REFUSALS} | elsewhere == sentences

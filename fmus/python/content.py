@@ -1,0 +1,117 @@
+"""Whether an instance can have come to what a saved state holds: nothing that was read from bytes is trusted."""
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from models.block.runner import runner
+from models.block.types import Block, SampledBlock
+
+from ..description.variables import Variable, interface
+from ..protocol import ANY_NUMBER, BAD_STATE, DAMAGED_STATE, FROM_START_ON, MOST_TICKS, NEAR_ITS_TIME, Mode
+from .refusal import Refused
+
+TYPES = {"Real": (float, int), "Integer": (int,), "Boolean": (bool,)}
+"""Of the values of a variable, by its type in FMI."""
+
+
+class Content(NamedTuple):
+    """What a saved state holds; `memory` is that of the runner, once there is one."""
+
+    mode: Mode
+    start_time: float
+    stop_time: float
+    time: float
+    u: Any
+    p: Any
+    memory: tuple[Any, ...] | None
+
+
+def checked(block: Block, read: Any) -> Content:
+    """The content of a state of that block.
+
+    Args:
+        read: what was read from bytes.
+
+    Raises:
+        Refused: no instance can have come to it.
+    """
+    try:
+        return _checked(block, Content._make(read))
+    except (TypeError, ValueError, OverflowError) as error:
+        raise Refused(DAMAGED_STATE) from error
+
+
+def _checked(block: Block, content: Content) -> Content:
+    mode, u, p = Mode(content.mode), block.Input._make(content.u), block.Parameters._make(content.p)
+    running = mode in (Mode.STEPPING, Mode.TERMINATED)
+    if mode not in tuple(Mode) or running != (content.memory is not None):
+        raise Refused(DAMAGED_STATE)
+    _check_times(content)
+    values = {**u._asdict(), **p._asdict()}
+    for variable in interface(block):
+        if variable.causality != "output":
+            _check_value(block, variable, values[variable.name])
+    memory = _checked_memory(block, u, p, content) if running else None
+    return content._replace(mode=mode, u=u, p=p, memory=memory)
+
+
+def _check_times(content: Content) -> None:
+    for name in ("start_time", "time"):
+        if not math.isfinite(value := getattr(content, name)):
+            raise Refused(BAD_STATE, name=name, value=value, allowed=ANY_NUMBER)
+    if not content.stop_time >= content.start_time:
+        raise Refused(BAD_STATE, name="stop_time", value=content.stop_time, allowed=FROM_START_ON)
+
+
+def _check_value(block: Block, variable: Variable, value: Any) -> None:
+    """An input or a parameter is as it can be set."""
+    low, high = variable.bounds()
+    bounded = variable.causality == "parameter" or not block.tolerates_bad_input
+    if type(value) not in TYPES[variable.fmi_type]:
+        raise Refused(DAMAGED_STATE)
+    if bounded and not low <= value <= high:
+        raise Refused(BAD_STATE, name=variable.name, value=value, allowed=variable.allowed())
+
+
+def _checked_memory(block: Block, u: Any, p: Any, content: Content) -> tuple[Any, ...]:
+    """Elapsed time and state, of a sampled block also the coming state and the number of ticks."""
+    template = runner(block, u, p).memory
+    memory = shaped(content.memory, template)
+    elapsed = content.time - content.start_time
+    for record, value in zip(("x", "coming"), memory[1:3], strict=False):
+        for name, number in _numbers(record, value):
+            if not math.isfinite(number):
+                raise Refused(BAD_STATE, name=name, value=number, allowed=ANY_NUMBER)
+    if isinstance(block, SampledBlock):
+        ticks = memory[3]
+        if not (0 <= ticks <= MOST_TICKS and abs(ticks - elapsed / block.sample_time) < 1.5):
+            raise Refused(BAD_STATE, name="ticks", value=float(ticks), allowed=NEAR_ITS_TIME)
+    return (elapsed, *memory[1:])
+
+
+def shaped(read: Any, template: Any) -> Any:
+    """Nested lists of numbers as the records and tuples of a template.
+
+    Raises:
+        TypeError: a number is of another type than the template's, or no number.
+        ValueError: there are more or fewer of them.
+    """
+    if isinstance(template, tuple):
+        items = [shaped(item, like) for item, like in zip(read, template, strict=True)]
+        return getattr(type(template), "_make", tuple)(items)
+    if type(read) is not type(template):
+        raise TypeError(f"{read!r} is not of the type of {template!r}")
+    return read
+
+
+def _numbers(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """The numbers in nested tuples, each with its place as C writes it."""
+    if not isinstance(value, tuple):
+        yield name, value
+    elif fields := getattr(value, "_fields", ()):
+        for field, item in zip(fields, value, strict=True):
+            yield from _numbers(f"{name}.{field}", item)
+    else:
+        for k, item in enumerate(value):
+            yield from _numbers(f"{name}[{k}]", item)
