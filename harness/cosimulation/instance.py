@@ -26,13 +26,11 @@ from fmpy.logging import addLoggerProxy
 
 from ..errors import SimulationError, WiringError
 from ..plain import plain
+from .archive import unpack
 from .interface import Interface, type_of
-from .whereabouts import note
+from .whereabouts import AT_START, note
 
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
-
-NOT_NEEDED = ("sources/", "documentation/")
-"""Folders of an FMU that only people and compilers read."""
 
 MESSAGES_KEPT = 20
 _logs: dict[int, deque[tuple[int, str]]] = {}
@@ -70,7 +68,7 @@ class FMU2Watched(FMU2Slave):
         super().__init__(**arguments)
 
     def _call(self, fname: str, *args: Any) -> Any:
-        note(self.number, fname)
+        note(self.number, fname, args[1] if fname == "fmi2DoStep" else AT_START)
         result = super()._call(fname, *args)
         if self._functions[fname].restype == c_int and result < fmi2OK:
             raise FMICallException(function=fname, status=result)
@@ -212,7 +210,7 @@ def _instantiate(name: str, interface: Interface, folder: str, key: int, number:
     path = interface.path
     if not folder.isascii():
         raise SimulationError(f"{path.name} cannot be unpacked to {folder}: FMUs need a plain ASCII folder")
-    fmpy.extract(str(path), unzipdir=folder, include=lambda name: not name.startswith(NOT_NEEDED))
+    unpack(path, folder)
     platforms = fmpy.supported_platforms(folder)
     if fmpy.platform not in platforms:
         has = ", ".join(platforms) or "none"

@@ -1,12 +1,11 @@
 """What an FMU shows to the outside, and what the loop calls it."""
 
 from pathlib import Path
-from zipfile import BadZipFile
 
-from fmpy import read_model_description
-from fmpy.model_description import ModelDescription, ModelVariable
+from fmpy.model_description import ModelVariable
 
-from ..errors import WiringError
+from . import description
+from .limits import USUAL, Limits
 
 
 class Interface:
@@ -21,14 +20,14 @@ class Interface:
         refused: names of the loop whose mapping does not fit.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, limits: Limits = USUAL) -> None:
         """Reads the model description.
 
         Raises:
-            WiringError: the file is not an FMI 2.0 Co-Simulation FMU.
+            WiringError: the file is not an FMI 2.0 Co-Simulation FMU, or is not one that can be used.
         """
         self.path = path
-        self.description = _read(path)
+        self.description = description.read(path, limits)
         assert self.description.coSimulation is not None
         self.identifier = str(self.description.coSimulation.modelIdentifier)
         self.variables: dict[str, ModelVariable] = {v.name: v for v in self.description.modelVariables}
@@ -37,20 +36,6 @@ class Interface:
 
     def of_causality(self, causality: str) -> list[ModelVariable]:
         return [v for v in self.variables.values() if v.causality == causality]
-
-
-def _read(path: Path) -> ModelDescription:
-    if not path.is_file():
-        raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
-    try:
-        description = read_model_description(str(path), validate=False)
-    except (BadZipFile, KeyError) as error:
-        raise WiringError(f"{path} is not an FMU: {error}") from error
-    except Exception as error:  # fmpy raises bare exceptions
-        raise WiringError(f"the model description of {path} cannot be read: {error}") from error
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise WiringError(f"{path} is of FMI {description.fmiVersion}; only FMI 2.0 Co-Simulation runs here")
-    return description
 
 
 def unit_of(variable: ModelVariable) -> str | None:

@@ -1,0 +1,130 @@
+"""Reading a model description that anybody may have written: what a run relies on is there and is a number."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from io import BytesIO
+from math import isnan
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+from fmpy import read_model_description
+from fmpy.model_description import ModelDescription
+
+from ..errors import WiringError
+from ..plain import plain
+from .archive import described
+from .limits import USUAL, Limits
+
+IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
+
+
+def read(path: Path, limits: Limits = USUAL) -> ModelDescription:
+    """The model description of an FMU.
+
+    Raises:
+        WiringError: it is not one of an FMI 2.0 Co-Simulation FMU, or what a run relies on is missing or is no number.
+    """
+    if not path.is_file():
+        raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
+    text = described(path, limits)
+    if b"<!DOCTYPE" in text:
+        raise WiringError(f"the model description of {path} declares a document type, which FMI does not know")
+    try:
+        root = ElementTree.parse(BytesIO(text)).getroot()
+    except Exception as error:  # what it raises depends on the encoding that the text claims to have
+        raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
+    cosimulation = root.find("CoSimulation")
+    version = root.get("fmiVersion")
+    if root.tag != "fmiModelDescription" or version != "2.0" or cosimulation is None:
+        raise WiringError(f"{path} is of FMI {plain(version)}; only FMI 2.0 Co-Simulation runs here")
+    found = list(_problems(root, cosimulation))
+    if found:
+        more = f" (and {len(found) - 1} more)" if found[1:] else ""
+        raise WiringError(f"the model description of {path} cannot be used: {found[0]}{more}")
+    try:
+        return read_model_description(str(path), validate=False)
+    except Exception as error:  # fmpy raises bare exceptions
+        reason = plain(error if type(error) is Exception else f"{type(error).__name__} {error}")
+        raise WiringError(f"the model description of {path} cannot be read: {reason}") from error
+
+
+def _problems(root: Element, cosimulation: Element) -> Iterator[str]:
+    if root.get("guid") is None:
+        yield "fmiModelDescription has no guid"
+    identifier = cosimulation.get("modelIdentifier")
+    if identifier is None:
+        yield "CoSimulation has no modelIdentifier"
+    elif not IDENTIFIER.fullmatch(identifier):
+        yield f"modelIdentifier is {plain(identifier)!r}; it must be a name as in C"
+    for experiment in root.findall("DefaultExperiment"):
+        yield from _not_numbers(experiment, "DefaultExperiment", dict.fromkeys(EXPERIMENT, _real))
+    variables = root.findall("ModelVariables/ScalarVariable")
+    for position, variable in enumerate(variables, start=1):
+        yield from _of_variable(variable, position)
+    for unknown in root.iterfind("ModelStructure/*/Unknown"):
+        yield from _of_unknown(unknown, len(variables))
+
+
+def _of_variable(variable: Element, position: int) -> Iterator[str]:
+    name = variable.get("name")
+    if not name:
+        yield f"the variable number {position} has no name"
+        return
+    name = plain(name)
+    if variable.get("valueReference") is None:
+        yield f"{name} has no valueReference"
+    yield from _not_numbers(variable, name, {"valueReference": _reference})
+    kinds = [child for child in variable if child.tag in NUMBERS]
+    if len(kinds) != 1:
+        yield f"{name} has {'more than one type' if kinds else 'no type'}"
+    for kind in kinds:
+        yield from _not_numbers(kind, name, NUMBERS[kind.tag])
+
+
+def _of_unknown(unknown: Element, count: int) -> Iterator[str]:
+    for attribute in ("index", "dependencies"):
+        for text in unknown.get(attribute, "").split():
+            if not (text.isdecimal() and 1 <= int(text) <= count):
+                yield f"{attribute} of an Unknown in ModelStructure is {plain(text)!r}; there are {count} variables"
+    if unknown.get("index") is None:
+        yield "an Unknown in ModelStructure has no index"
+
+
+def _not_numbers(element: Element, name: str, numbers: Mapping[str, Callable[[str], bool]]) -> Iterator[str]:
+    for attribute, is_one in numbers.items():
+        text = element.get(attribute)
+        if text is not None and not is_one(text):
+            yield f"{attribute} of {name} is {plain(text)!r}, which is not a number that it can be"
+
+
+def _real(text: str) -> bool:
+    try:
+        return "_" not in text and not isnan(float(text))
+    except ValueError:
+        return False
+
+
+def _whole(text: str, lowest: int = -(2**31), highest: int = 2**31 - 1) -> bool:
+    digits = text.strip().lstrip("+-")
+    return digits.isdecimal() and len(digits) < 20 and lowest <= int(text) <= highest
+
+
+def _reference(text: str) -> bool:
+    return _whole(text, 0, 2**32 - 1)
+
+
+def _truth(text: str) -> bool:
+    return text.strip() in ("true", "false", "0", "1")
+
+
+EXPERIMENT = ("startTime", "stopTime", "tolerance", "stepSize")
+
+NUMBERS: Mapping[str, Mapping[str, Callable[[str], bool]]] = {
+    "Real": dict.fromkeys(("start", "min", "max", "nominal"), _real),
+    "Integer": dict.fromkeys(("start", "min", "max"), _whole),
+    "Enumeration": dict.fromkeys(("start", "min", "max"), _whole),
+    "Boolean": {"start": _truth},
+    "String": {},
+}
+"""The types of variables, and which of their attributes are numbers."""
