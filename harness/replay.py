@@ -13,6 +13,7 @@ from .manoeuvres.manoeuvre import Manoeuvre
 from .manoeuvres.recording import Recording
 from .many import run_many
 from .metrics.damage import damage, require_counting
+from .metrics.declaration import given, measured
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
 from .reports.csv_file import write_csv
@@ -53,12 +54,13 @@ def ride(manoeuvre: Manoeuvre, recording: Recording, plant: str, control: bool, 
     signals = repack_fields(at_samples(results)[KEPT])
     metrics = evaluate(signals, manoeuvre)
     recorded = np.interp(signals["time"], recording.time - recording.time[0], recording.v)
-    worth = RideMetrics(
-        gear_torque_rms=metrics.gear_torque_rms,
-        gear_damage=damage(signals["plant.T_gear"]),
-        jerk_rms=metrics.jerk_rms,
-        speed_error_rms=float(np.sqrt(np.mean((signals["plant.v"] - recorded) ** 2))),
-    )
+    computed = {
+        "gear_torque_rms": lambda: given(metrics, "gear_torque_rms"),
+        "gear_damage": lambda: damage(signals["plant.T_gear"]),
+        "jerk_rms": lambda: given(metrics, "jerk_rms"),
+        "speed_error_rms": lambda: float(np.sqrt(np.mean((signals["plant.v"] - recorded) ** 2))),
+    }
+    worth = RideMetrics(**measured(computed))
     return Ride(control, worth, signals)
 
 

@@ -1,7 +1,6 @@
 """What a design is worth: a car without damping, with the gains of the default car, and with its own."""
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from enum import Enum
 from functools import cache
 from pathlib import Path
@@ -14,6 +13,7 @@ from fmus.parameter_files import for_instances, read_vehicle
 
 from ..cosimulation.system import BUILD
 from ..manoeuvres.catalogue import MANOEUVRES
+from ..metrics.declaration import declared
 from ..metrics.evaluate import evaluate
 from ..metrics.record import Metrics
 from ..simulate import simulate
@@ -79,5 +79,6 @@ def measured(
         )
         for seed in seeds
     ]
-    found = [asdict(evaluate(results, manoeuvre)) for results in runs]
-    return Metrics(**{name: float(np.mean([metrics[name] for metrics in found])) for name in found[0]})
+    found = [evaluate(results, manoeuvre) for results in runs]
+    means = {metric.name: float(np.mean([metric.of(metrics) for metrics in found])) for metric in declared(Metrics)}
+    return Metrics(**means, absent={name: why for metrics in found for name, why in metrics.absent.items()})

@@ -6,7 +6,7 @@ from pathlib import Path
 from ..cosimulation.system import PLANTS
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
-from ..reports.table import legend
+from ..reports.table import legend, reasons
 from .options import add_loop, add_output, add_plant, add_printing, blocks, built, settings
 from .printing import Printer
 
@@ -56,8 +56,11 @@ def run(args: argparse.Namespace) -> int:
     todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
     given = {plant: settings(args, plant, build) for plant, build in builds.items()}
     outcomes = run_cases(todo, args.output / "runs", given)
+    rows = [outcome.row for outcome in outcomes]
     if not out.silent:
-        print_table(runs_table([outcome.row for outcome in outcomes]))
+        print_table(runs_table(rows))
+    for reason in reasons(rows):
+        out.say(reason)
     out.say(f"{LEGEND}\n")
     files = write_tables(outcomes, args.output)
     figures = write_figures(outcomes, args.output)

@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     from ..manoeuvres.recording import read_recording
     from ..manoeuvres.road import RoadLoad, road, torque_limit
     from ..replay import records, replay, write
-    from ..reports.terminal import print_table, rides_table
+    from ..reports.terminal import print_table, rides_reasons, rides_table
 
     out = Printer(args)
     recording = read_recording(args.recording)
@@ -74,6 +74,8 @@ def run(args: argparse.Namespace) -> int:
     rides = replay(manoeuvre, recording, args.plant, **given)
     if not out.silent:
         print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{plant} on {recording.name}"))
+    for reason in rides_reasons(rides[0].metrics, rides[1].metrics):
+        out.say(reason)
     out.say(f"{LEGEND}\n")
     files = write(rides, recording, plant, args.output)
     for file in files:

@@ -6,6 +6,7 @@ from types import ModuleType
 import numpy as np
 
 from ..errors import DrivelineError
+from .declaration import Absent
 
 EXPONENT = 5.0
 """Slope of the assumed fatigue line."""
@@ -37,6 +38,9 @@ def damage(T_gear: np.ndarray) -> float:
 
     Raises:
         MissingExtra: the package rainflow is not installed.
+        Absent: the torque is not finite.
     """
+    if not np.isfinite(T_gear).all():
+        raise Absent("the gear torque is not finite")
     cycles = require_counting().count_cycles(T_gear)
     return float(sum(count * swing**EXPONENT for swing, count in cycles))

@@ -5,8 +5,14 @@
 Help, tables, legends, CSV and JSON read from here with `declared` what they say of a metric.
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import isfinite, nan
 from typing import Any, NamedTuple, get_type_hints
+
+
+class Absent(ValueError):
+    """A metric makes no sense for a run; the text says why."""
 
 
 class Column(NamedTuple):
@@ -48,4 +54,38 @@ class Metric:
 def declared(record: type) -> tuple[Metric, ...]:
     """The metrics of a record, in the order of its fields."""
     hints = get_type_hints(record, include_extras=True)
-    return tuple(replace(hint.__metadata__[0], name=name) for name, hint in hints.items())
+    return tuple(
+        replace(hint.__metadata__[0], name=name) for name, hint in hints.items() if hasattr(hint, "__metadata__")
+    )
+
+
+def measured(computed: Mapping[str, Callable[[], float]], none_because: str | None = None) -> dict[str, Any]:
+    """The fields of a record of metrics: their values, and in `absent` why those that are NaN have none.
+
+    Args:
+        computed: metrics by name; one that raises Absent or is not finite has no value.
+        none_because: why none has one.
+    """
+    values, absent = dict.fromkeys(computed, nan), {}
+    for name, compute in computed.items():
+        try:
+            if none_because:
+                raise Absent(none_because)
+            value = compute()
+            if not isfinite(value):
+                raise Absent(f"computed as {value}")
+            values[name] = value
+        except Absent as reason:
+            absent[name] = str(reason)
+    return {**values, "absent": absent}
+
+
+def given(record: Any, name: str) -> float:
+    """A metric of a record.
+
+    Raises:
+        Absent: it has no value.
+    """
+    if name in record.absent:
+        raise Absent(record.absent[name])
+    return getattr(record, name)

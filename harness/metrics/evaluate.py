@@ -3,64 +3,97 @@
 The signals are read at the samples of the controller, T_s apart.
 """
 
-from math import nan
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .oscillation import amplitude, damping_ratio
+from .declaration import Absent, measured
+from .oscillation import amplitude
 from .record import Metrics
 from .spectrum import band_rms
+from .step_response import Response, height_of_step, response, settling_time
 
 T_S = 0.002
 """Sample time of the controller in s."""
 
+COLUMNS = (
+    "time",
+    "controller.T_driver",
+    "controller.T_ref",
+    "plant.T_gear",
+    "plant.omega_1",
+    "plant.omega_2",
+    "plant.a_body",
+)
+"""What the metrics are computed from."""
+
 
 def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Metrics:
-    """The metrics of one run.
+    """The metrics of one run. One that makes no sense for it is NaN, and `absent` has the reason.
 
     Args:
-        results: structured array of a run of `manoeuvre` with the columns `time`,
-            `controller.T_driver`, `controller.T_ref`, `plant.T_gear`, `plant.omega_1`,
-            `plant.omega_2` and `plant.a_body`, at equal intervals of which T_s is a multiple.
+        results: structured array of a run of `manoeuvre` with the COLUMNS, at equal intervals of which T_s is a
+            multiple.
         T_s: sample time of the controller in s.
 
     Raises:
         ValueError: T_s is not a multiple of the interval of the results.
     """
     sampled = at_samples(results, T_s)
-    t, T_gear = sampled["time"], sampled["plant.T_gear"]
-    e = added_torque(sampled["controller.T_driver"], sampled["controller.T_ref"])
-    t_0, dT = manoeuvre.t_0, manoeuvre.dT
-    window = np.full(len(t), True) if dT is None else _between(t, t_0 - 0.2, t_0 + 4.0)
-    settling, delay, overshoot, zeta, withheld = (nan,) * 5
-    if dT is not None:
-        settling = settling_time(T_gear, T_s, t_0, dT)
-        delay, overshoot, zeta = step_response(t, T_gear, t_0)
-        withheld = withheld_time(e[_between(t, t_0, t_0 + 2.0)], T_s, dT)
-    return Metrics(
-        settling_time=settling,
-        overshoot=overshoot,
-        damping_ratio=zeta,
-        gear_torque_rms=band_rms(T_gear[window], T_s),
-        jerk_rms=band_rms(sampled["plant.a_body"][window], T_s, derivative=True),
-        impact_speed=impact_speed(results, t_0),
-        response_delay=delay,
-        withheld_time=withheld,
-        stationary_torque_change=stationary_change(sampled["controller.T_driver"], e, T_s),
-        jerk_rms_to_50_Hz=band_rms(sampled["plant.a_body"][window], T_s, (0.0, 50.0), derivative=True),
-        added_torque_rms=float(np.sqrt(np.mean(e[window] ** 2))),
-        added_torque_peak=float(np.abs(e[window]).max()),
-        end_swing=float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),
-        plateau_swing=plateau_swing(t, T_gear, manoeuvre.plateau_ends),
-    )
+    t, T_gear, T_driver = sampled["time"], sampled["plant.T_gear"], sampled["controller.T_driver"]
+    e = added_torque(T_driver, sampled["controller.T_ref"])
+    t_0 = manoeuvre.t_0
+
+    def dT() -> float:
+        return height_of_step(manoeuvre, t)
+
+    @cache
+    def step() -> Response:
+        return response(t, T_gear, t_0, dT())
+
+    def windowed(signal: np.ndarray) -> np.ndarray:
+        return signal if manoeuvre.dT is None else _piece(signal, t, t_0 - 0.2, t_0 + 4.0)
+
+    computed = {
+        "settling_time": lambda: settling_time(T_gear, T_s, t_0, dT()),
+        "overshoot": lambda: step().overshoot,
+        "damping_ratio": lambda: step().damping_ratio,
+        "gear_torque_rms": lambda: band_rms(windowed(T_gear), T_s),
+        "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, derivative=True),
+        "impact_speed": lambda: impact_speed(results, t_0),
+        "response_delay": lambda: step().delay,
+        "withheld_time": lambda: withheld_time(_piece(e, t, t_0, t_0 + 2.0), T_s, dT()),
+        "stationary_torque_change": lambda: stationary_change(T_driver, e, T_s),
+        "jerk_rms_to_50_Hz": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, (0.0, 50.0), derivative=True),
+        "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e) ** 2))),
+        "added_torque_peak": lambda: float(np.abs(windowed(e)).max()),
+        "end_swing": lambda: float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),
+        "plateau_swing": lambda: plateau_swing(t, T_gear, manoeuvre.plateau_ends),
+    }
+    return Metrics(**measured(computed, none_because=not_finite(results)))
+
+
+def not_finite(results: np.ndarray) -> str | None:
+    """Which signal is not finite, and from when on; None if all are."""
+    for name in COLUMNS:
+        wrong = np.flatnonzero(~np.isfinite(results[name]))
+        if len(wrong):
+            return f"{name} is not finite at {results['time'][wrong[0]]:g} s"
+    return None
 
 
 def stationary_change(T_driver: np.ndarray, e: np.ndarray, T_s: float) -> float:
-    """Mean of e in N.m over the last 0.6 s, NaN if the demand T_driver is not constant there."""
+    """Mean of e in N.m over the last 0.6 s.
+
+    Raises:
+        Absent: the demand T_driver is not constant there.
+    """
     last = -round(0.6 / T_s)
-    return float(e[last:].mean()) if np.ptp(T_driver[last - 1 :]) == 0.0 else nan
+    if len(T_driver) <= -last or np.ptp(T_driver[last - 1 :]) != 0.0:
+        raise Absent("the demand is not constant in the last 0.6 s")
+    return float(e[last:].mean())
 
 
 def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
@@ -84,34 +117,6 @@ def added_torque(T_driver: np.ndarray, T_ref: np.ndarray) -> np.ndarray:
     return T_ref - np.concatenate((T_driver[:1], T_driver[:-1]))
 
 
-def settling_time(T_gear: np.ndarray, T_s: float, t_0: float, dT: float) -> float:
-    """Time in s from t_0 to the last sample at which the swing exceeds 5 % of dT, plus one sample."""
-    first = round(t_0 / T_s)
-    exceeding = np.flatnonzero(amplitude(T_gear, T_s)[first:] > 0.05 * abs(dT))
-    return float(exceeding[-1] + 1) * T_s if len(exceeding) else 0.0
-
-
-def step_response(t: np.ndarray, T_gear: np.ndarray, t_0: float) -> tuple[float, float, float]:
-    """Response delay in s, overshoot and damping ratio of T_gear after a step at t_0.
-
-    The final value is a straight line fitted to the last 0.9 s and extended backwards (the torque of a
-    car that gains speed drifts). Delay and damping ratio are NaN if 90 % are never reached.
-    """
-    T_s = float(t[1] - t[0])
-    last = t > t[-1] - 0.9 + T_s / 2
-    final = Polynomial.fit(t[last], T_gear[last], 1)
-    first = round(t_0 / T_s)
-    initial = T_gear[first - 1] if abs(T_gear[first - 1]) >= 0.1 else 0.0
-    way = final(t[first]) - initial
-    z = (T_gear - initial) / way
-    y = (T_gear - final(t)) / way
-    overshoot = max(0.0, float(y[first:].max()))
-    reached = np.flatnonzero(z[first:] >= 0.9)
-    if not len(reached):
-        return nan, overshoot, nan
-    return float(reached[0] * T_s), overshoot, damping_ratio(y, T_s, first + int(reached[0]), overshoot)
-
-
 def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
     """-(integral of e)/dT in s: by how much the added torque e delays the driver's step dT."""
     return -float(np.sum(e)) * T_s / dT + 0.0  # nothing withheld is 0, not -0
@@ -125,9 +130,16 @@ def impact_speed(results: np.ndarray, t_0: float) -> float:
     the teeth. In a plant with compliance behind the gear it contains the twisting of that compliance,
     which is small because it carries no torque while the gap is open; the interface that every plant
     shares shows no more.
+
+    Raises:
+        Absent: T_gear goes from one sign to the other without ever staying zero between them: there is no backlash.
     """
     side = np.sign(results["plant.T_gear"])
     closes = np.flatnonzero((side[1:] != 0) & (side[1:] != side[:-1]))
+    loaded = np.flatnonzero(side)
+    rows_apart = np.diff(loaded)[np.diff(side[loaded]) != 0]
+    if len(rows_apart) and (rows_apart == 1).all():
+        raise Absent("the gear torque is never zero between both flanks: the plant shows no backlash")
     closes = closes[results["time"][closes] >= t_0 - 1e-9]
     speed = np.abs(results["plant.omega_1"] - results["plant.omega_2"])
     return float((0.5 * (speed[closes] + speed[closes + 1])).max(initial=0.0))
@@ -136,15 +148,29 @@ def impact_speed(results: np.ndarray, t_0: float) -> float:
 def plateau_swing(t: np.ndarray, T_gear: np.ndarray, plateau_ends: tuple[float, ...]) -> float:
     """Mean over the plateaus of half the peak-to-peak of T_gear about a straight line, N.m.
 
-    Of each plateau the piece from 0.45 s to 0.02 s before its end is taken. NaN without plateaus.
+    Of each plateau the piece from 0.45 s to 0.02 s before its end is taken.
+
+    Raises:
+        Absent: there is none, or the run ends before the last one.
     """
+    if not plateau_ends:
+        raise Absent("the demand has no plateaus")
+    if t[-1] < max(plateau_ends) - 0.02:
+        raise Absent("the run ends before the last plateau of the demand")
     swings = []
     for end in plateau_ends:
-        piece = _between(t, end - 0.45, end - 0.02)
-        rest = T_gear[piece] - Polynomial.fit(t[piece], T_gear[piece], 1)(t[piece])
-        swings.append(np.ptp(rest) / 2.0)
-    return float(np.mean(swings)) if swings else nan
+        times, torques = (_piece(signal, t, end - 0.45, end - 0.02) for signal in (t, T_gear))
+        swings.append(np.ptp(torques - Polynomial.fit(times, torques, 1)(times)) / 2.0)
+    return float(np.mean(swings))
 
 
-def _between(t: np.ndarray, start: float, end: float) -> np.ndarray:
-    return (t >= start - 1e-9) & (t <= end + 1e-9)
+def _piece(signal: np.ndarray, t: np.ndarray, start: float, end: float) -> np.ndarray:
+    """The samples from start to end.
+
+    Raises:
+        Absent: there are less than two.
+    """
+    piece = signal[(t >= start - 1e-9) & (t <= end + 1e-9)]
+    if len(piece) < 2:
+        raise Absent(f"the run has no samples from {start:g} to {end:g} s")
+    return piece

@@ -6,12 +6,20 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.signal import butter, sosfiltfilt
 
+from .declaration import Absent
+
 SPAN = 0.2
 """Length in s of the piece within which a swing is measured: more than one period of the drive train."""
 
 
 def amplitude(x: np.ndarray, T_s: float) -> np.ndarray:
-    """A(t) = (max - min)/2 of x over [t, t + 0.2 s), for every sample at which that piece is complete."""
+    """A(t) = (max - min)/2 of x over [t, t + 0.2 s), for every sample at which that piece is complete.
+
+    Raises:
+        Absent: there is none.
+    """
+    if len(x) < round(SPAN / T_s):
+        raise Absent(f"the run is shorter than {SPAN:g} s")
     pieces = np.lib.stride_tricks.sliding_window_view(x, round(SPAN / T_s))
     return np.ptp(pieces, axis=1) / 2.0
 

@@ -1,6 +1,7 @@
-"""The metrics of a run and of a recorded drive, in SI units; NaN where one has no meaning for the manoeuvre."""
+"""The metrics of a run and of a recorded drive, in SI units; NaN where one makes no sense, `absent` says why."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from .declaration import Column, Metric
@@ -91,6 +92,8 @@ class Metrics:
             "mean swing of the gear torque about a straight line at the ends of the demand's plateaus",
         ),
     ]
+    absent: Mapping[str, str] = field(default_factory=dict)
+    """Why metrics have no value, by their names."""
 
 
 @dataclass(frozen=True)
@@ -115,3 +118,5 @@ class RideMetrics:
             Column("speed\nerror", "m/s", 1.0, 2),
         ),
     ]
+    absent: Mapping[str, str] = field(default_factory=dict)
+    """Why metrics have no value, by their names."""

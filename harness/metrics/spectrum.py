@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .declaration import Absent
+
 DRIVE_TRAIN = (5.0, 50.0)
 
 
@@ -13,6 +15,9 @@ def band_rms(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN,
 
     Args:
         derivative: of dx/dt instead of x (X times 2 pi j f).
+
+    Raises:
+        Absent: x is shorter than a period of the lowest frequency of the band.
     """
     n = len(x)
     f = np.fft.rfftfreq(n, T_s)
@@ -20,4 +25,6 @@ def band_rms(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN,
     if derivative:
         X = X * (2j * np.pi * f)
     within = (f >= band[0]) & (f <= band[1])
+    if band[0] * n * T_s < 1.0 and band[0] > 0.0:
+        raise Absent(f"the run is shorter than a period of {band[0]:g} Hz")
     return float(np.sqrt(2.0 * np.sum(np.abs(X[within]) ** 2)) / n)

@@ -49,6 +49,28 @@ def legend(record: type) -> str:
     )
 
 
+def reasons(rows: Sequence[Row]) -> list[str]:
+    """Why the table of these runs has dashes: a sentence for each reason, with the columns and the runs."""
+    runs: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        for metric, column in SHOWN:
+            if metric.name in row.metrics.absent:
+                runs.setdefault((row.metrics.absent[metric.name], column.plain_heading), []).append(row)
+    headings: dict[tuple[str, str], list[str]] = {}
+    for (reason, heading), concerned in runs.items():
+        headings.setdefault((reason, _named(concerned, rows)), []).append(heading)
+    return [f"- {', '.join(columns)}: {reason} ({where})" for (reason, where), columns in headings.items()]
+
+
+def _named(some: Sequence[Row], rows: Sequence[Row]) -> str:
+    """Some of the runs in words: a manoeuvre alone is all runs of it."""
+    names = []
+    for row in some:
+        whole = all(other in some for other in rows if other.manoeuvre == row.manoeuvre)
+        names.append(row.manoeuvre if whole else f"{row.plant} {row.manoeuvre} {'on' if row.control else 'off'}")
+    return ", ".join(dict.fromkeys(names))
+
+
 def write_markdown(rows: Sequence[Row], path: Path) -> None:
     """Writes the table, with the plant as first column, and what every metric means."""
     headings = ["plant", "manoeuvre", "damping", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
@@ -58,13 +80,17 @@ def write_markdown(rows: Sequence[Row], path: Path) -> None:
         for metric in declared(Metrics)
     ]
     explained = markdown_table(("column", "in `metrics.csv`", "meaning"), meanings, labels=3)
+    dashes = "\n".join(reasons(rows))
+    table += f"\n\n{dashes}" if dashes else ""
     write_text(f"{table}\n\n{cleandoc(Metrics.__doc__ or '')}\n\n{explained}\n", path)
 
 
-def values(metrics: Any) -> dict[str, float | None]:
-    """All metrics of a record by their keys, in SI units; None where one has no meaning."""
-    found = {metric.key: metric.of(metrics) for metric in declared(type(metrics))}
-    return {key: None if isnan(value) else value for key, value in found.items()}
+def values(metrics: Any) -> dict[str, Any]:
+    """All metrics of a record by their keys, in SI units; None where one has no value, and under "absent" why."""
+    every = declared(type(metrics))
+    found = {metric.key: metric.of(metrics) for metric in every}
+    absent = {metric.key: metrics.absent[metric.name] for metric in every if metric.name in metrics.absent}
+    return {key: None if isnan(value) else value for key, value in found.items()} | {"absent": absent}
 
 
 def write_metrics(runs: Sequence[dict[str, Any]], path: Path) -> None:
@@ -80,4 +106,7 @@ def _cell(value: object) -> object:
             return int(value)
         case float():
             return f"{value:.6g}"
+        case dict():
+            keys = {text: [key for key in value if value[key] == text] for text in value.values()}
+            return "; ".join(f"{', '.join(names)}: {text}" for text, names in keys.items())
     return value

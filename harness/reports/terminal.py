@@ -1,6 +1,7 @@
 """Tables and verdicts on the terminal."""
 
 from collections.abc import Sequence
+from math import isnan
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -55,5 +56,17 @@ def rides_table(undamped: RideMetrics, damped: RideMetrics, title: str) -> Table
     for metric in declared(RideMetrics):
         off, on = metric.of(undamped), metric.of(damped)
         if metric.column:
-            table.add_row(metric.column.plain_heading, metric.column.unit, f"{off:.3g}", f"{on:.3g}", f"{on / off:.3f}")
+            shown = ("-" if isnan(value) else f"{value:.3g}" for value in (off, on))
+            ratio = f"{on / off:.3f}" if off and not isnan(on / off) else "-"
+            table.add_row(metric.column.plain_heading, metric.column.unit, *shown, ratio)
     return table
+
+
+def rides_reasons(undamped: RideMetrics, damped: RideMetrics) -> list[str]:
+    """Why the table of both rides has dashes."""
+    return [
+        f"- {metric.column.plain_heading} {label} damping: {ride.absent[metric.name]}"
+        for metric in declared(RideMetrics)
+        for label, ride in (("without", undamped), ("with", damped))
+        if metric.column and metric.name in ride.absent
+    ]

@@ -1,7 +1,8 @@
 """Each metric on a signal whose answer is known."""
 
-from dataclasses import asdict
+from dataclasses import replace
 from math import exp, pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,9 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.manoeuvres.signals import lines
 from harness.metrics.damage import damage
+from harness.metrics.declaration import Absent, declared
 from harness.metrics.evaluate import T_S, evaluate, impact_speed
 from harness.metrics.oscillation import amplitude
+from harness.metrics.record import Metrics
 from harness.metrics.spectrum import band_rms
 
 COLUMNS = (
@@ -34,6 +38,15 @@ def run(duration=6.0, interval=1e-3, **signals):
         column = next(column for column in COLUMNS if column.endswith("." + name))
         results[column] = signal(t) if callable(signal) else signal
     return results
+
+
+STEP_METRICS = ("settling_time", "response_delay", "overshoot", "damping_ratio", "withheld_time")
+
+
+def without_value(metrics):
+    """The metrics that are NaN, and why."""
+    values = {metric.name: metric.of(metrics) for metric in declared(Metrics)}
+    return {name: metrics.absent[name] for name, value in values.items() if np.isnan(value)}
 
 
 def after(t, t_0=1.0):
@@ -172,10 +185,69 @@ def test_plateau_swing_is_the_swing_left_on_the_plateaus():
 
 
 def test_metrics_of_a_step_are_not_given_for_a_drive():
-    metrics = asdict(evaluate(run(duration=20.0), MANOEUVRES["drive"]))
-    assert {name for name, value in metrics.items() if np.isnan(value)} == {
-        "settling_time", "response_delay", "overshoot", "damping_ratio", "withheld_time"
+    assert without_value(evaluate(run(duration=20.0), MANOEUVRES["drive"])) == dict.fromkeys(
+        STEP_METRICS, "the manoeuvre is no step"
+    )
+
+
+def test_metrics_of_a_step_are_not_given_for_a_pulse():
+    demand = lines((1.0, -12.0), (1.0, 100.0), (1.5, 100.0), (1.5, -12.0))
+    pulse = replace(MANOEUVRES["tipin15"], T_driver=demand)
+    found = without_value(evaluate(run(T_gear=decaying(0.1)[0]), pulse))
+    assert {found[name] for name in STEP_METRICS} == {"the demand does not stay at the height of its step"}
+    late = replace(MANOEUVRES["tipin15"], T_driver=lines((0.5, -12.0), (0.5, 5.0), (1.0, 5.0), (1.0, 100.0)))
+    found = without_value(evaluate(run(T_gear=decaying(0.1)[0]), late))
+    assert {found[name] for name in STEP_METRICS} == {"the demand is not constant before its step"}
+
+
+def test_a_torque_that_does_not_follow_has_no_response():
+    held = without_value(evaluate(run(T_gear=lambda t: 11.0 * after(t)[1]), MANOEUVRES["tipin15"]))
+    assert {name for name, why in held.items() if "hardly follows" in why} == {
+        "overshoot", "damping_ratio", "response_delay"
     }  # fmt: skip
+    follows = without_value(evaluate(run(T_gear=lambda t: 11.3 * after(t)[1]), MANOEUVRES["tipin15"]))
+    assert set(follows) == {"plateau_swing"}
+
+
+def test_what_still_swings_at_the_end_has_not_settled():
+    swinging = evaluate(run(T_gear=lambda t: 6.0 * np.sin(50.0 * t)), MANOEUVRES["tipin15"])
+    assert "still swings" in swinging.absent["settling_time"]
+    still = evaluate(run(T_gear=lambda t: 5.0 * np.sin(50.0 * t)), MANOEUVRES["tipin15"])
+    assert still.settling_time == 0.0
+
+
+@pytest.mark.parametrize("duration", [0.002, 0.1, 0.7, 1.1, 1.8])
+@pytest.mark.parametrize("name", ["tipin15", "drive", "creep"])
+def test_a_run_that_is_too_short_has_no_metrics_of_its_end(name, duration):
+    found = without_value(evaluate(run(duration=duration, T_gear=decaying(0.1)[0]), MANOEUVRES[name]))
+    assert set(STEP_METRICS) <= found.keys()
+    assert all(found.values())
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+@pytest.mark.parametrize("column", ["T_gear", "a_body", "T_ref", "omega_1"])
+def test_metrics_of_what_is_not_finite_are_absent_and_never_zero(column, value):
+    signal = np.zeros(6001)
+    signal[2500:] = value
+    signals: dict[str, Any] = {column: signal}
+    metrics = evaluate(run(**signals), MANOEUVRES["tipin15"])
+    found = without_value(metrics)
+    assert found.keys() == {metric.name for metric in declared(Metrics)}
+    assert all(f"{column} is not finite at 2.5 s" in why for why in found.values())
+
+
+def test_a_plant_without_backlash_has_no_impact():
+    T_gear = np.sin(np.arange(6001) * 0.05 + 0.01)
+    found = evaluate(run(T_gear=T_gear, omega_1=30.0), MANOEUVRES["tipin15"])
+    assert "no backlash" in found.absent["impact_speed"]
+    T_gear[1130] = 0.0  # between both flanks
+    assert T_gear[1129] * T_gear[1131] < 0.0
+    assert evaluate(run(T_gear=T_gear, omega_1=30.0), MANOEUVRES["tipin15"]).impact_speed == 30.0
+
+
+def test_a_torque_that_is_not_finite_does_no_damage():
+    with pytest.raises(Absent, match="not finite"):
+        damage(np.array([0.0, 10.0, np.nan, 0.0]))
 
 
 def test_only_samples_of_the_controller_count():

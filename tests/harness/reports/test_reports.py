@@ -5,7 +5,6 @@ import io
 import math
 import os
 import re
-from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +16,14 @@ from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics, RideMetrics
 from harness.reports.figures import plot_drive, plot_replay, plot_step
 from harness.reports.files import complete, write_text
-from harness.reports.table import SHOWN, Row, cells, legend, values, write_markdown, write_metrics
-from harness.reports.terminal import rides_table, runs_table
+from harness.reports.table import SHOWN, Row, cells, legend, reasons, values, write_markdown, write_metrics
+from harness.reports.terminal import rides_reasons, rides_table, runs_table
 
 
-def metrics(**values):
-    return Metrics(**({field.name: math.nan for field in fields(Metrics)} | values))
+def metrics(absent=None, **values):
+    return Metrics(
+        **(dict.fromkeys((metric.name for metric in declared(Metrics)), math.nan) | values), absent=absent or {}
+    )
 
 
 OFF = Row(
@@ -31,7 +32,8 @@ OFF = Row(
     False,
     metrics(settling_time=1.758, overshoot=1.16, gear_torque_rms=26.5, stationary_torque_change=-1e-9),
 )
-ON = Row("Plant", "tipin15", True, metrics(settling_time=0.114, overshoot=0.19, withheld_time=0.012))
+WHY = {"response_delay": "no step", "overshoot": "no step"}
+ON = Row("Plant", "tipin15", True, metrics(settling_time=0.114, withheld_time=0.012, absent=WHY))
 
 
 def shown(row):
@@ -56,6 +58,23 @@ def test_what_has_no_meaning_is_a_dash_and_a_rounded_zero_has_no_sign():
     assert found["stationary_torque_change"] == "0.00"
 
 
+def test_below_a_table_stands_why_it_has_dashes(tmp_path):
+    assert reasons([OFF, ON]) == ["- overshoot, delay to 90 %: no step (Plant tipin15 on)"]
+    both = [row._replace(metrics=metrics(absent=WHY)) for row in (OFF, ON)]
+    assert reasons(both) == ["- overshoot, delay to 90 %: no step (tipin15)"]
+    write_markdown(both, tmp_path / "table.md")
+    assert (tmp_path / "table.md").read_text(encoding="utf-8").split("\n\n")[1] == reasons(both)[0]
+
+
+def test_a_ride_without_damage_has_a_dash_and_no_ratio():
+    off, on = RideMetrics(2.0, math.nan, 4.0, 0.0, {"gear_damage": "not finite"}), RideMetrics(1.0, 1.0, 3.0, 0.5)
+    lines = printed(rides_table(off, on, "a drive")).splitlines()
+    assert [line.split()[-3:] for line in lines if "damage" in line or "error" in line] == [
+        ["-", "1", "-"], ["0", "0.5", "-"]
+    ]  # fmt: skip
+    assert rides_reasons(off, on) == ["- gear damage without damping: not finite"]
+
+
 def test_the_terminal_table_names_plant_units_and_runs():
     text = printed(runs_table([OFF, ON]))
     assert all(part in text for part in ("Plant", "tipin15", "ms", "N.m", "1758", "114"))
@@ -78,7 +97,7 @@ def test_the_legend_explains_every_column(record):
 def test_markdown_has_one_line_a_run_and_explains_every_metric(tmp_path):
     path = tmp_path / "table.md"
     write_markdown([OFF, ON], path)
-    table, _, meanings = path.read_text(encoding="utf-8").split("\n\n")
+    table, _, _, meanings = path.read_text(encoding="utf-8").split("\n\n")
     assert len(table.splitlines()) == 4
     assert len({line.count("|") for line in table.splitlines()}) == 1
     for metric in declared(Metrics):
@@ -93,7 +112,8 @@ def test_the_csv_file_has_all_metrics_in_si_units(tmp_path):
     assert float(off["settling_time_s"]) == 1.758
     assert off["response_delay_s"] == ""
     assert (on["control"], float(on["withheld_time_s"])) == ("1", 0.012)
-    assert set(off) == {"control", *(metric.key for metric in declared(Metrics))}
+    assert set(off) == {"control", "absent", *(metric.key for metric in declared(Metrics))}
+    assert on["absent"] == "overshoot_1, response_delay_s: no step"
     assert {"overshoot_1", "impact_speed_rad_per_s", "jerk_rms_m_per_s3", "gear_torque_rms_N_m"} <= set(off)
 
 

@@ -1,0 +1,110 @@
+"""What the gear torque makes of a step of the demand."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from ..manoeuvres.manoeuvre import Manoeuvre
+from .declaration import Absent
+from .oscillation import amplitude, damping_ratio
+
+FITTED = 0.9
+"""Length in s of the end of a run to which the line of the final value is fitted."""
+
+LEAST_WAY = 0.1
+"""Of the step of the demand, that the gear torque must make for its response to mean something."""
+
+
+def height_of_step(manoeuvre: Manoeuvre, t: np.ndarray) -> float:
+    """dT in N.m of a manoeuvre whose demand is a step at t_0: constant before, and from some instant on again.
+
+    Raises:
+        Absent: it is none (a pulse, for example), or the run ends too soon after it.
+    """
+    if manoeuvre.dT is None:
+        raise Absent("the manoeuvre is no step")
+    if t[-1] < manoeuvre.t_0 + FITTED:
+        raise Absent(f"the run ends less than {FITTED:g} s after the step")
+    demand = np.asarray(manoeuvre.T_driver(t), dtype=float) * np.ones(len(t))
+    before, after = demand[t < manoeuvre.t_0 - 1e-9], demand[t > t[-1] - FITTED]
+    start = before[0] if len(before) else demand[0]
+    tolerance = 1e-6 * abs(manoeuvre.dT)
+    if not (abs(after - start - manoeuvre.dT) <= tolerance).all() or not tolerance > 0.0:
+        raise Absent("the demand does not stay at the height of its step")
+    if not (abs(before - start) <= tolerance).all():
+        raise Absent("the demand is not constant before its step")
+    return manoeuvre.dT
+
+
+def settling_time(T_gear: np.ndarray, T_s: float, t_0: float, dT: float) -> float:
+    """Time in s from t_0 to the last sample at which the swing exceeds 5 % of dT, plus one sample.
+
+    Raises:
+        Absent: it still does at the end.
+    """
+    exceeding = amplitude(T_gear, T_s)[round(t_0 / T_s) :] > 0.05 * abs(dT)
+    if exceeding[-1]:
+        raise Absent("the gear torque still swings when the run ends")
+    last = np.flatnonzero(exceeding)
+    return float(last[-1] + 1) * T_s if len(last) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """T_gear from the step on, relative to its way, one element a sample.
+
+    Attributes:
+        z: from its initial value.
+        y: about the line of its final value, from the beginning of the run.
+        first: sample of the step.
+        T_s: time between samples in s.
+    """
+
+    z: np.ndarray
+    y: np.ndarray
+    first: int
+    T_s: float
+
+    @property
+    def overshoot(self) -> float:
+        """Over the line of the final value."""
+        return max(0.0, float(self.y[self.first :].max()))
+
+    @property
+    def delay(self) -> float:
+        """Time in s until 90 % of the way are made.
+
+        Raises:
+            Absent: they never are.
+        """
+        reached = np.flatnonzero(self.z >= 0.9)
+        if not len(reached):
+            raise Absent("the gear torque never makes 90 % of its way")
+        return float(reached[0] * self.T_s)
+
+    @property
+    def damping_ratio(self) -> float:
+        """From 90 % of the way on; raises as `delay` does."""
+        return damping_ratio(self.y, self.T_s, self.first + round(self.delay / self.T_s), self.overshoot)
+
+
+def response(t: np.ndarray, T_gear: np.ndarray, t_0: float, dT: float) -> Response:
+    """The response to a step of dT at t_0.
+
+    The final value is a straight line fitted to the last 0.9 s and extended backwards (the torque of a car that gains
+    speed drifts).
+
+    Raises:
+        Absent: the torque hardly moves.
+    """
+    T_s = float(t[1] - t[0])
+    last = t > t[-1] - FITTED + T_s / 2
+    final = Polynomial.fit(t[last], T_gear[last], 1)
+    first = round(t_0 / T_s)
+    before = T_gear[max(first - 1, 0)]
+    initial = before if abs(before) >= 0.1 else 0.0
+    way = final(t[first]) - initial
+    if not abs(way) >= LEAST_WAY * abs(dT):
+        raise Absent("the gear torque hardly follows the step of the demand")
+    return Response((T_gear[first:] - initial) / way, (T_gear - final(t)) / way, first, T_s)
