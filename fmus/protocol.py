@@ -59,6 +59,11 @@ SET_TOO_LATE = (
 )
 BAD_VALUE = "{name} = {value!r}{unit} is refused; allowed is {allowed}"
 
+NOT_INTEGRABLE = (
+    "the step of {size!r} s is refused; {state} changes too fast to be followed with these parameters and inputs"
+)
+NOT_FINITE = "the step of {size!r} s is refused; {name} would be {value!r}"
+
 DAMAGED_STATE = "the FMU state is refused: its bytes are damaged"
 BAD_STATE = "the FMU state is refused: {name} = {value!r} in it; allowed is {allowed}"
 FOREIGN_STATE = "the FMU state is refused: it was saved by {origin}, this is {build}"

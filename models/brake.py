@@ -1,10 +1,11 @@
 """Wheel brake as bristle friction: slides under load, holds as a spring at rest.
 
     z' = w_s - |w_s| z/z_br,   w_s = omega limited to +-omega_sat
-    T  = T_brake (z + t_br z')/z_br
+    T  = T_brake q,   q = (z + t_br z')/z_br limited to +-1
 
 Sliding, z tends to z_br sign(omega) and the torque to T_brake sign(omega); at rest the bristle is a
-spring T_brake/z_br with a damper. omega_sat only limits the rate of z, not the torque.
+spring T_brake/z_br with a damper. omega_sat only limits the rate of z, not the torque. The limit of q acts
+while a wheel breaks loose: the damper would add to the spring, and a brake has no more than its capacity.
 
 P. R. Dahl, "A solid friction model", Aerospace Corporation TOR-0158(3107-18)-1, 1968; with the damper it is
 LuGre friction without Stribeck effect: C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new
@@ -39,5 +40,5 @@ def bristle_rate(omega: Any, z: Any, p: Any) -> Any:
 
 
 def grip(z: Any, dz: Any, p: Any) -> Any:
-    """Share of the brake torque capacity that acts, in [-1, 1] while sliding."""
-    return (z + p.t_br * dz) / p.z_br
+    """Share of the brake torque capacity that acts: q in [-1, 1]."""
+    return clip((z + p.t_br * dz) / p.z_br, -1.0, 1.0)

@@ -17,7 +17,7 @@ from ..protocol import LOG_CATEGORIES
 from .compiler import WHOLE, host_binaries
 from .shared_header import shared_header
 from .source import block_sources, variables_header
-from .tableau import step_header
+from .tableau import rosenbrock_header, step_header
 
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
@@ -33,7 +33,7 @@ FOR_ALL = (
     "operators.h",
     "variable.h",
 )
-FOR_CONTINUOUS = ("continuous.c", "integrator.c", "integrator.h")
+FOR_CONTINUOUS = ("continuous.c", "implicit.c", "integrator.c", "integrator.h")
 FOR_SAMPLED = ("sampled.c",)
 
 NEEDS = """The model is compiled code in this file and needs nothing else; its C source is in the
@@ -78,7 +78,7 @@ def c_sources(fmu: Fmu) -> dict[str, bytes]:
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob("fmi2*.h")}
     generated = block_sources(fmu) | {"variables.h": variables_header(fmu, ""), "shared.h": shared_header()}
     if isinstance(fmu.block, ContinuousBlock):
-        generated["dop853.h"] = step_header()
+        generated |= {"dop853.h": step_header(), "rodas.h": rosenbrock_header()}
     sources |= {name: text.encode() for name, text in generated.items()}
     included = "".join(f'#include "{name}"\n' for name in sorted(sources) if name.endswith(".c"))
     return sources | {WHOLE: ALL.format(name=fmu.name, included=included).encode()}

@@ -9,7 +9,7 @@ from string import Formatter
 from types import ModuleType
 from typing import Any
 
-from models.block import integrator, runner
+from models.block import explicit, implicit, integrator, runner
 
 from .. import protocol
 
@@ -30,7 +30,7 @@ CONVERSIONS = {"": "%s", "d": "%u", "g": "%g"}
 
 def shared_header() -> str:
     """shared.h: every number, text, tuple of texts and enumeration that those modules name with a capital."""
-    modules = (protocol, runner, integrator)
+    modules = (protocol, runner, explicit, implicit, integrator)
     return HEADER.format(
         modules=", ".join(module.__name__ for module in modules),
         definitions="\n\n".join(text for module in modules for text in _definitions(module)),
@@ -38,9 +38,19 @@ def shared_header() -> str:
 
 
 def _definitions(module: ModuleType) -> list[str]:
-    meanings = _meanings(module)
-    found = [(name, definition(name, value)) for name, value in vars(module).items() if name[0].isupper()]
+    meanings, taken = _meanings(module), _taken(module)
+    found = [
+        (name, definition(name, value))
+        for name, value in vars(module).items()
+        if name[0].isupper() and name not in taken
+    ]
     return [f"/* {meanings[name]} */\n{text}" if name in meanings else text for name, text in found if text]
+
+
+def _taken(module: ModuleType) -> set[str]:
+    """The names that a module takes from others."""
+    imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
+    return {alias.name for node in imports for alias in node.names}
 
 
 def _meanings(module: ModuleType) -> dict[str, str]:

@@ -1,5 +1,6 @@
 """The C source of a block: block.h and block.c, and variables.h with what a host sees of it."""
 
+import json
 import re
 from typing import Any
 
@@ -75,6 +76,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define INDICATORS {sum(indicators)}",
+        f"#define STATE_NAMES {{{', '.join(map(json.dumps, fmu.block.State._fields))}}}",
     ]
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 from weakref import ref
 
+from models.block.implicit import NotIntegrable
 from models.block.runner import Runner, runner
 
 from .. import protocol
@@ -138,14 +139,26 @@ class BlockSlave:
             self.log(protocol.BAD_STEP_SIZE.format(size=step_size, longest=longest), FMI_DISCARD, protocol.LOG_DISCARD)
             return False
         self._check_step(current_time, step_size)
-        assert self.runner
-        before = self.runner.x
-        self.runner.elapsed = current_time - self.start_time
-        self.runner.advance(self.values.u, step_size)
+        self._advance(current_time - self.start_time, step_size)
         self.time = current_time + step_size
-        if self.runner.x is not before:
-            self.values.up_to_date = False
         return True
+
+    def _advance(self, elapsed: float, step_size: float) -> None:
+        """Advances the block from `elapsed` s after the start on, to finite outputs or not at all."""
+        assert self.runner
+        before, memory = self.runner.x, self.runner.memory
+        self.runner.elapsed = elapsed
+        try:
+            self.runner.advance(self.values.u, step_size)
+            if self.runner.x is not before:
+                self.values.up_to_date = False
+            self.values.check_outputs(self.runner.x, step_size)
+        except (NotIntegrable, Refused) as failure:
+            self.runner.restore(memory)
+            self.values.up_to_date = False
+            if isinstance(failure, Refused):
+                raise
+            raise Refused(protocol.NOT_INTEGRABLE, size=step_size, state=failure.args[0]) from None
 
     def _check_step(self, current_time: float, step_size: float) -> None:
         if not 0.0 < step_size <= protocol.LONGEST_COMMUNICATION_STEP:

@@ -1,5 +1,6 @@
 """The values of an FMU's variables, checked when they are set and computed when they are asked for."""
 
+import math
 from typing import Any
 
 from models.block.types import ContinuousBlock
@@ -52,11 +53,30 @@ class Values:
         if not self.of_type[fmi_type].issuperset(references):
             self._refuse_type(fmi_type, references)
         if not self.up_to_date:
-            x = self.block.start(self.u, self.p) if x is None else x
-            self._all[self.first_output : self.first_parameter] = self.block.output(x, self.u, self.p)
-            self.up_to_date = True
+            self._compute(x)
         values = self._all
         return [values[reference] for reference in references]
+
+    def _compute(self, x: Any) -> None:
+        """The outputs of state x (None: of the start)."""
+        x = self.block.start(self.u, self.p) if x is None else x
+        self._all[self.first_output : self.first_parameter] = self.block.output(x, self.u, self.p)
+        self.up_to_date = True
+
+    def check_outputs(self, x: Any, step_size: float) -> None:
+        """Computes the outputs of state x, at which a step of that size (s) ends.
+
+        Raises:
+            Refused: one is not finite.
+        """
+        if self.up_to_date:
+            return
+        self._compute(x)
+        for reference in range(self.first_output, self.first_parameter):
+            value = self._all[reference]
+            if not -math.inf < value < math.inf:
+                name = self.variables[reference].name
+                raise Refused(protocol.NOT_FINITE, size=step_size, name=name, value=value)
 
     def set(self, fmi_type: str, references: list[int], new: list[Any]) -> None:
         """Sets variables of one type; all of them or, when one is refused, none.

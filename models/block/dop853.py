@@ -92,3 +92,22 @@ B: dict[int, float] = {
     11: 0.04471061572777259,
 }
 """Weights of the stages in the step."""
+
+ERROR_5: dict[int, float] = {
+    0: 0.01312004499419488,
+    5: -1.2251564463762044,
+    6: -0.4957589496572502,
+    7: 1.6643771824549864,
+    8: -0.35032884874997366,
+    9: 0.3341791187130175,
+    10: 0.08192320648511571,
+    11: -0.022355307863886294,
+}
+"""Weights of the stages in the error of order 5."""
+
+B_3: dict[int, float] = {
+    0: 0.2440944881889764,
+    8: 0.7338466882816118,
+    11: 0.022058823529411766,
+}
+"""Weights of the stages in a step of order 3; its distance from the step is the error of order 3."""

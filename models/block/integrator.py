@@ -2,14 +2,16 @@
 
 Between the zeros of its event indicators a block is smooth and the method has order 8. When an
 indicator changes sign within a step, the step is shortened so that it ends just behind the zero; an
-excursion that leaves and comes back within one step is found from the slopes at both ends.
+excursion that leaves and comes back within one step is found from the slopes at both ends. Where the
+error of a step is more than is tolerated, the step is divided; where a block is so stiff that very many
+would be needed, the stretch is left to an implicit method. Nothing is kept from one stretch to the next.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from .dop853 import A, B
+from .explicit import GREATEST, SMALL, TOLERANCE, step, tangent, trial
+from .implicit import Implicit
 from .types import ContinuousBlock
 
 STEP_TOLERANCE = 1e-9
@@ -18,45 +20,23 @@ STEP_TOLERANCE = 1e-9
 LOCATION_TOLERANCE = 1e-13
 """Time in s within which a crossing is located; it moves the state by less than rounding does."""
 
+RESOLUTION = 1e-12
+"""In the unit of an event indicator (rad, rad/s, m/s): beyond its zero by less, nothing has crossed it."""
+
 PROBE = 1e-7
 """Time in s over which the slope of an event indicator is taken."""
 
 MOST_CROSSINGS = 16
-"""Crossings located in one step; what rests on a zero may cross it without end."""
+"""Crossings located in one stretch; what rests on a zero may cross it without end."""
 
+MOST_TRIALS = 400
+"""Explicit steps tried in one stretch."""
 
-Tableau = tuple[tuple[dict[int, float], ...], dict[int, float]]
-"""Explicit Runge-Kutta method: weights of the earlier stages in each stage, of the stages in the step."""
+COARSE_ERROR = 1e4
+"""A step with more than this error is no step on which a crossing could be looked for."""
 
-EULER: Tableau = (({},), {0: 1.0})
-
-
-def stepper(block: ContinuousBlock, tableau: Tableau) -> Callable[[Any, Any, Any, Any, float], Any]:
-    """Function (x, dx, u, p, h) -> x after one step of length h, dx being the derivative at x.
-
-    It is written out for the fields of the block's State (as NamedTuple writes its methods), which
-    is ten times faster than looping over them.
-    """
-    fields = block.State._fields
-    stages, step = tableau
-    lines = [f"def step(x, dx, u, p, h, f=f, new=new, State=State):\n    {_targets('x', fields)} = x"]
-    lines.append(f"    {_targets('k0_', fields)} = dx")
-    for stage, weights in enumerate(stages[1:], start=1):
-        lines.append(f"    {_targets(f'k{stage}_', fields)} = f({_advanced(weights, fields)}, u, p)")
-    lines.append(f"    return {_advanced(step, fields)}")
-    scope: dict[str, Any] = {"f": block.derivative, "new": tuple.__new__, "State": block.State}
-    exec("\n".join(lines), scope)
-    return scope["step"]
-
-
-def _targets(prefix: str, fields: tuple[str, ...]) -> str:
-    return "".join(f"{prefix}{n}, " for n in range(len(fields)))
-
-
-def _advanced(weights: dict[int, float], fields: tuple[str, ...]) -> str:
-    """Source of the state advanced by h times the weighted stages."""
-    sums = (" + ".join(f"{a!r} * k{j}_{n}" for j, a in weights.items()) for n in range(len(fields)))
-    return "new(State, (" + ", ".join(f"x{n} + h * ({total})" for n, total in enumerate(sums)) + ",))"
+STIFF = 50.0
+"""Fastest rate times length of a stretch, above which it is left to the implicit method."""
 
 
 class Start(NamedTuple):
@@ -75,41 +55,74 @@ class Integrator:
         self.derivative = block.derivative
         self.event_indicators = block.event_indicators
         self.step_size = block.step_size
-        self.step = stepper(block, (A, B))
-        self.tangent = stepper(block, EULER)
+        self.step, self.trial, self.tangent = step(block), trial(block), tangent(block)
+        self.implicit = Implicit(block)
 
     def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
         """The state `duration` s later, with the inputs u held.
 
         Args:
             x, u, p: State, Input and Parameters of the block.
-            duration: any time >= 0 in s, divided into equal steps no longer than block.step_size.
+            duration: any time >= 0 in s, divided into equal stretches no longer than block.step_size.
+
+        Raises:
+            NotIntegrable: the state changes too fast to be followed.
         """
-        steps = max(1, math.ceil(duration / self.step_size - STEP_TOLERANCE))
+        stretches = max(1, math.ceil(duration / self.step_size - STEP_TOLERANCE))
         sides = self._sides(x, u, p)
-        for _ in range(steps):
-            x = self._advance_through(x, u, p, duration / steps, sides)
+        for _ in range(stretches):
+            x = self._advance_through(x, u, p, duration / stretches, sides)
         return x
 
-    def _advance_through(self, x: Any, u: Any, p: Any, h: float, sides: list[bool]) -> Any:
-        """The state after one step of length h, split at every event on its way.
+    def _advance_through(self, x: Any, u: Any, p: Any, left: float, sides: list[bool]) -> Any:
+        """The state after a stretch of length `left`, split at every event on its way.
 
         `sides` says on which side of each zero the state is, and is kept up to date. It is
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
-        for _ in range(MOST_CROSSINGS):
-            start = Start(x, self.derivative(x, u, p), u, p)
-            x_end = self.step(*start, h)
-            crossings = self._crossings(start, h, x_end, sides)
-            if not crossings:
-                return x_end
-            length, crossed = min(crossings)
-            x = self.step(*start, length)
-            sides[crossed] = not sides[crossed]
-            h -= length
-            if h <= LOCATION_TOLERANCE:
-                return x
-        return self.step(x, self.derivative(x, u, p), u, p, h)
+        start, longest, located = Start(x, self.derivative(x, u, p), u, p), left, 0
+        for _ in range(MOST_TRIALS):
+            length, crossed = min(left, longest), None
+            x_end, error = self.trial(*start, length)
+            if error <= COARSE_ERROR and located < MOST_CROSSINGS:
+                crossings = self._crossings(start, length, x_end, sides)
+                if crossings:
+                    length, crossed = min(crossings)
+                    x_end, error = self.trial(*start, length)
+            if error <= 1.0:
+                left -= length
+                if crossed is not None:
+                    sides[crossed] = not sides[crossed]
+                    located += 1
+                if left <= LOCATION_TOLERANCE:
+                    return x_end
+                start = start._replace(x=x_end, dx=self.derivative(x_end, u, p))
+                longest = longest if crossed is not None else 2.0 * longest
+            elif self._is_stiff(start, x_end, left):
+                break
+            else:
+                longest = length * shortened(error)
+        x = self.implicit.advance(start.x, u, p, left)
+        sides[:] = self._sides(x, u, p)
+        return x
+
+    def _is_stiff(self, start: Start, x_end: Any, left: float) -> bool:
+        """Whether the state changes too fast, in the direction to the end of a step that failed, for explicit steps."""
+        x, dx = start.x, start.dx
+        weights = [TOLERANCE * (abs(value) + SMALL) for value in x]
+        away = 0.0
+        for value, end, weight in zip(x, x_end, weights, strict=True):
+            e = (end - value) / weight
+            away += e * e
+        if not 0.0 < away <= GREATEST:
+            return True
+        share = 1.0 / math.sqrt(away)
+        near = type(x)._make(value + share * (end - value) for value, end in zip(x, x_end, strict=True))
+        rate = 0.0
+        for there, here, weight in zip(self.derivative(near, start.u, start.p), dx, weights, strict=True):
+            e = (there - here) / weight
+            rate += e * e
+        return not left * math.sqrt(rate) <= STIFF
 
     def _sides(self, x: Any, u: Any, p: Any) -> list[bool]:
         return [z > 0.0 for z in self.event_indicators(x, u, p)]
@@ -118,14 +131,12 @@ class Integrator:
         """Each crossing within a step of length h: length of the step to it, number of the event indicator."""
         if not sides:
             return []
-        end = self._sides(x_end, start.u, start.p)
-        straight = self._sides(self.tangent(*start, h), start.u, start.p)
-        if end == sides == straight:
-            return []
+        end = self.event_indicators(x_end, start.u, start.p)
+        straight = self.event_indicators(self.tangent(*start, h), start.u, start.p)
         found = []
         for n, side in enumerate(sides):
-            beyond = h if end[n] != side else None
-            if beyond is None and straight[n] != side:
+            beyond = h if is_beyond(end[n], side) else None
+            if beyond is None and is_beyond(straight[n], side):
                 beyond = self._excursion(n, start, h, x_end, side)
             if beyond is not None:
                 found.append((self._locate(n, start, beyond, side), n))
@@ -149,10 +160,10 @@ class Integrator:
         if slope_end * slope >= 0.0:
             return None
         turn = h * slope / (slope - slope_end)
-        return turn if (self._value(n, start, turn) > 0.0) != side else None
+        return turn if is_beyond(self._value(n, start, turn), side) else None
 
     def _locate(self, n: int, start: Start, far: float, side: bool) -> float:
-        """Shortest step (to LOCATION_TOLERANCE) that ends beyond zero n; one of length `far` does.
+        """Shortest step that ends beyond zero n, to LOCATION_TOLERANCE or RESOLUTION; one of length `far` does.
 
         The Illinois variant of regula falsi (M. Dowell, P. Jarratt, BIT 11, 1971): when the same end
         moves twice, the value at the other counts half. Three steps without halving the bracket (an
@@ -171,8 +182,21 @@ class Integrator:
             if (z > 0.0) != side:
                 far, z_far, z_near = length, z, 0.5 * z_near if moved == "far" else z_near
                 moved = "far"
+                if abs(z) <= RESOLUTION:
+                    break
             else:
                 near, z_near, z_far = length, z, 0.5 * z_far if moved == "near" else z_far
                 moved = "near"
             slow = 0 if bisect or width >= 2.0 * (far - near) else slow + 1
         return far
+
+
+def is_beyond(z: float, side: bool) -> bool:
+    """Whether an event indicator that was on that side of its zero (true for above) has crossed it."""
+    return z < -RESOLUTION if side else z > RESOLUTION
+
+
+def shortened(error: float) -> float:
+    """Of a step with that error, above 1: the share that the method, of order 8, is good for; at least a tenth."""
+    share = 0.9 / math.sqrt(math.sqrt(math.sqrt(error)))
+    return share if share > 0.1 else 0.1

@@ -94,6 +94,8 @@ def sin(x: Any) -> Any:
         return math.sin(x)
     except TypeError:
         return x.sin()
+    except ValueError:
+        return math.nan
 
 
 def cos(x: Any) -> Any:
@@ -101,6 +103,8 @@ def cos(x: Any) -> Any:
         return math.cos(x)
     except TypeError:
         return x.cos()
+    except ValueError:
+        return math.nan
 
 
 def atan(x: Any) -> Any:

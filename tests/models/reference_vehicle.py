@@ -62,7 +62,7 @@ def br(w: float, z: float) -> float:
 
 
 def q(w: float, z: float) -> float:
-    return (z + tbr * br(w, z)) / zbr
+    return max(-1.0, min(1.0, (z + tbr * br(w, z)) / zbr))
 
 
 def simple(state: np.ndarray, held: Held) -> tuple[list[float], list[float]]:

@@ -6,18 +6,22 @@
 #include <math.h>
 #include <string.h>
 
-void advance(Memory *memory, double elapsed, double duration)
+const char *advance(Memory *memory, double elapsed, double duration)
 {
+    static const char *const names[STATES] = STATE_NAMES;
     Values *values = &memory->values;
     const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p};
     (void)elapsed;
-    integrate(&problem, duration, &memory->x);
+    const int failed = integrate(&problem, duration, &memory->x);
+    if (failed)
+        return names[failed - 1];
     if (memory->moving) {
         Input room;
         values->u = *inputs_at(&problem, duration, &room);
         memset(&memory->du, 0, sizeof memory->du);
         memory->moving = 0;
     }
+    return NULL;
 }
 
 Status check_ticks(const Instance *instance, const Memory *memory)

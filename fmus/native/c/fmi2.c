@@ -158,7 +158,7 @@ fmi2Status fmi2SetupExperiment(
     fmi2Boolean stopTimeDefined,
     fmi2Real stopTime)
 {
-    (void)toleranceDefined; /* the integration is exact to rounding whatever is asked for */
+    (void)toleranceDefined; /* the integration has its own, see integrator.c */
     (void)tolerance;
     const double stop = stopTimeDefined ? stopTime : (double)INFINITY;
     Instance *instance = ready(c, INSTANTIATED, 1, __func__);

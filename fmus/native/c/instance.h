@@ -66,6 +66,7 @@ static Status make_step(Instance *instance, double time, double step_size);
 
 /* values.c; the values are double for REAL, else int */
 static void set_start_values(Memory *memory);
+static Status check_outputs(const Instance *instance, Memory *memory, double step_size); /* computes them */
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
 static const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
@@ -85,7 +86,8 @@ static Status check_content(const Instance *instance, Memory *memory); /* of a s
 
 /* continuous.c or sampled.c */
 static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
-static void advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
+/* From `elapsed` s after the start on; NULL, or the name of a state that changes too fast to be followed. */
+static const char *advance(Memory *memory, double elapsed, double duration);
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
 static Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);

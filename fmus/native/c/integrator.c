@@ -2,24 +2,14 @@
 
 Between the zeros of its event indicators a block is smooth and the method has order 8. When an indicator
 changes sign within a step, the step is shortened so that it ends just behind the zero; an excursion that
-leaves and comes back within one step is found from the slopes at both ends. The same as integrator.py, operation by
-operation. */
+leaves and comes back within one step is found from the slopes at both ends. Where the error of a step is more than
+is tolerated, the step is divided; where a block is so stiff that very many would be needed, the stretch is left to
+an implicit method. Nothing is kept from one stretch to the next. The same as integrator.py, operation by operation. */
 #include "integrator.h"
 #include "shared.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { INPUTS = sizeof(Input) / sizeof(real), STATES = sizeof(State) / sizeof(real) };
-
-typedef real Vector[STATES];
-
-/* Where a step starts: time since the start of the communication step in s, state, its derivative. */
-typedef struct {
-    double t;
-    Vector x;
-    Vector dx;
-} Start;
 
 const Input *inputs_at(const Problem *problem, double t, Input *room)
 {
@@ -32,7 +22,7 @@ const Input *inputs_at(const Problem *problem, double t, Input *room)
     return room;
 }
 
-static void rate(const Problem *problem, double t, const Vector x, Vector dx)
+void rate(const Problem *problem, double t, const Vector x, Vector dx)
 {
     Input room;
     derivative((const State *)(const void *)x, inputs_at(problem, t, &room), problem->p, (State *)(void *)dx);
@@ -40,14 +30,18 @@ static void rate(const Problem *problem, double t, const Vector x, Vector dx)
 
 #include "dop853.h"
 
-static void begin(const Problem *problem, double t, const Vector x, Start *from)
+void begin_at(const Problem *problem, double t, const Vector x, Start *from)
 {
     from->t = t;
     memcpy(from->x, x, sizeof(Vector));
     rate(problem, t, x, from->dx);
 }
 
+enum { NO_CROSSING = -1 };
+
 #if INDICATORS
+
+typedef int Sides[INDICATORS]; /* of each zero: 1 above, 0 below */
 
 static void indicators_at(const Problem *problem, double t, const Vector x, real z[INDICATORS])
 {
@@ -55,12 +49,18 @@ static void indicators_at(const Problem *problem, double t, const Vector x, real
     event_indicators((const State *)(const void *)x, inputs_at(problem, t, &room), problem->p, z);
 }
 
-static void sides_at(const Problem *problem, double t, const Vector x, int sides[INDICATORS])
+static void sides_at(const Problem *problem, double t, const Vector x, Sides sides)
 {
     real z[INDICATORS];
     indicators_at(problem, t, x, z);
     for (int n = 0; n < INDICATORS; n++)
         sides[n] = z[n] > 0.0;
+}
+
+/* Whether an event indicator that was on that side of its zero has crossed it. */
+static int is_beyond(double z, int side)
+{
+    return side ? z < -RESOLUTION : z > RESOLUTION;
 }
 
 static void tangent(const Start *from, double h, Vector end)
@@ -80,7 +80,7 @@ static double indicator_at(int n, const Problem *problem, double t, const Vector
 static double value(int n, const Problem *problem, const Start *from, double length)
 {
     Vector end;
-    step(problem, from->t, from->x, from->dx, length, end);
+    step(problem, from->t, from->x, from->dx, length, end, NULL);
     return indicator_at(n, problem, from->t + length, end);
 }
 
@@ -96,16 +96,16 @@ static double slope(int n, const Problem *problem, const Start *from)
 /* Length of a step to beyond zero n, if the state goes there and is back before h; else 0. */
 static double excursion(int n, const Problem *problem, const Start *from, double h, const Vector end, int side)
 {
-    Start back;
-    begin(problem, from->t + h, end, &back);
+    Start back = {0.0, {0.0}, {0.0}};
+    begin_at(problem, from->t + h, end, &back);
     const double here = slope(n, problem, from), there = slope(n, problem, &back);
     if (there * here >= 0.0)
         return 0.0;
     const double turn = h * here / (here - there);
-    return (value(n, problem, from, turn) > 0.0) != side ? turn : 0.0;
+    return is_beyond(value(n, problem, from, turn), side) ? turn : 0.0;
 }
 
-/* Shortest step (to LOCATION_TOLERANCE) that ends beyond zero n; one of length `far` does.
+/* Shortest step that ends beyond zero n, to LOCATION_TOLERANCE or RESOLUTION; one of length `far` does.
 
 The Illinois variant of regula falsi (M. Dowell, P. Jarratt, BIT 11, 1971): when the same end moves twice, the value at
 the other counts half. Three steps without halving the bracket (an indicator on whose zero a block at rest lies is flat
@@ -131,6 +131,8 @@ static double locate(int n, const Problem *problem, const Start *from, double fa
             z_far = z;
             z_near = moved == FAR ? 0.5 * z_near : z_near;
             moved = FAR;
+            if (fabs(z) <= RESOLUTION)
+                break;
         } else {
             near = length;
             z_near = z;
@@ -142,25 +144,26 @@ static double locate(int n, const Problem *problem, const Start *from, double fa
     return far;
 }
 
-/* The first zero crossed within a step of length h to `end`, and the length of the step to it; else -1. */
+/* The first zero crossed within a step of length h to `end`, and the length of the step to it. */
 static int first_crossing(
-    const Problem *problem, const Start *from, double h, const Vector end, const int sides[INDICATORS], double *length)
+    const Problem *problem, const Start *from, double h, const Vector end, const Sides sides, double *length)
 {
-    int ends[INDICATORS], straight[INDICATORS], first = -1;
+    real ends[INDICATORS], straight[INDICATORS];
+    int first = NO_CROSSING;
     Vector tip;
-    sides_at(problem, from->t + h, end, ends);
+    indicators_at(problem, from->t + h, end, ends);
     tangent(from, h, tip);
-    sides_at(problem, from->t + h, tip, straight);
+    indicators_at(problem, from->t + h, tip, straight);
     for (int n = 0; n < INDICATORS; n++) {
         double beyond = 0.0;
-        if (ends[n] != sides[n])
+        if (is_beyond(ends[n], sides[n]))
             beyond = h;
-        else if (straight[n] != sides[n])
+        else if (is_beyond(straight[n], sides[n]))
             beyond = excursion(n, problem, from, h, end, sides[n]);
         if (beyond == 0.0)
             continue;
         const double found = locate(n, problem, from, beyond, sides[n]);
-        if (first < 0 || found < *length) {
+        if (first == NO_CROSSING || found < *length) {
             first = n;
             *length = found;
         }
@@ -168,52 +171,113 @@ static int first_crossing(
     return first;
 }
 
-/* One step of length h, split at every event on its way.
+#else
 
-`sides` says on which side of each zero the state is, and is kept up to date. It is remembered rather than
-looked up: at a crossing the value is zero but for rounding. */
-static void advance_through(const Problem *problem, double t, double h, Vector x, int sides[INDICATORS])
+typedef int Sides[1]; /* a block without zeros has none */
+
+static void sides_at(const Problem *problem, double t, const Vector x, Sides sides)
 {
-    Start from;
-    for (int crossings = 0; crossings < MOST_CROSSINGS; crossings++) {
-        Vector end;
-        double length = 0.0;
-        begin(problem, t, x, &from);
-        step(problem, t, from.x, from.dx, h, end);
-        const int crossed = first_crossing(problem, &from, h, end, sides, &length);
-        if (crossed < 0) {
-            memcpy(x, end, sizeof end);
-            return;
-        }
-        step(problem, t, from.x, from.dx, length, x);
-        sides[crossed] = !sides[crossed];
-        t += length;
-        h -= length;
-        if (h <= LOCATION_TOLERANCE)
-            return;
-    }
-    begin(problem, t, x, &from);
-    step(problem, t, from.x, from.dx, h, x);
+    (void)problem, (void)t, (void)x;
+    sides[0] = 0;
+}
+
+static int first_crossing(
+    const Problem *problem, const Start *from, double h, const Vector end, const Sides sides, double *length)
+{
+    (void)problem, (void)from, (void)h, (void)end, (void)sides, (void)length;
+    return NO_CROSSING;
 }
 
 #endif
 
-void integrate(const Problem *problem, double duration, State *state)
+/* Whether the state changes too fast, in the direction to the end of a step that failed, for explicit steps. */
+static int is_stiff(const Problem *problem, const Start *from, const Vector end, double left)
+{
+    Vector near, there;
+    double away = 0.0, change = 0.0;
+    for (int n = 0; n < STATES; n++) {
+        const double e = (end[n] - from->x[n]) / (TOLERANCE * (fabs(from->x[n]) + SMALL));
+        away += e * e;
+    }
+    if (!(away > 0.0 && away <= GREATEST))
+        return 1;
+    const double share = 1.0 / sqrt(away);
+    for (int n = 0; n < STATES; n++)
+        near[n] = from->x[n] + share * (end[n] - from->x[n]);
+    rate(problem, from->t, near, there);
+    for (int n = 0; n < STATES; n++) {
+        const double e = (there[n] - from->dx[n]) / (TOLERANCE * (fabs(from->x[n]) + SMALL));
+        change += e * e;
+    }
+    return !(left * sqrt(change) <= STIFF);
+}
+
+/* Of a step with that error, above 1: the share that the method, of order 8, is good for; at least a tenth. */
+static double shortened(double error)
+{
+    const double share = 0.9 / sqrt(sqrt(sqrt(error)));
+    return share > 0.1 ? share : 0.1;
+}
+
+/* A stretch of length `left`, split at every event on its way; as for `integrate`.
+
+`sides` says on which side of each zero the state is, and is kept up to date. It is remembered rather than
+looked up: at a crossing the value is zero but for rounding. */
+static int advance_through(const Problem *problem, double t, double left, Vector x, Sides sides)
+{
+    Start from;
+    double longest = left;
+    int located = 0;
+    begin_at(problem, t, x, &from);
+    for (int trials = 0; trials < MOST_TRIALS; trials++) {
+        Vector end;
+        double length = longest < left ? longest : left, error;
+        int crossed = NO_CROSSING;
+        step(problem, from.t, from.x, from.dx, length, end, &error);
+        if (error <= COARSE_ERROR && located < MOST_CROSSINGS) {
+            double to_crossing = 0.0;
+            crossed = first_crossing(problem, &from, length, end, sides, &to_crossing);
+            if (crossed != NO_CROSSING) {
+                length = to_crossing;
+                step(problem, from.t, from.x, from.dx, length, end, &error);
+            }
+        }
+        if (error <= 1.0) {
+            left -= length;
+            if (crossed != NO_CROSSING) {
+                sides[crossed] = !sides[crossed];
+                located++;
+            } else {
+                longest = 2.0 * longest;
+            }
+            if (left <= LOCATION_TOLERANCE) {
+                memcpy(x, end, sizeof end);
+                return 0;
+            }
+            begin_at(problem, from.t + length, end, &from);
+        } else if (is_stiff(problem, &from, end, left)) {
+            break;
+        } else {
+            longest = length * shortened(error);
+        }
+    }
+    const int failed = integrate_stiff(problem, &from, left);
+    memcpy(x, from.x, sizeof from.x);
+    sides_at(problem, from.t, x, sides);
+    return failed;
+}
+
+int integrate(const Problem *problem, double duration, State *state)
 {
     real *x = (real *)state;
-    const double steps = fmax(1.0, ceil(duration / LONGEST_STEP - STEP_TOLERANCE));
-    const double h = duration / steps;
-#if INDICATORS
-    int sides[INDICATORS];
+    const double stretches = fmax(1.0, ceil(duration / LONGEST_STEP - STEP_TOLERANCE));
+    const double h = duration / stretches;
+    Sides sides;
     sides_at(problem, 0.0, x, sides);
-#endif
-    for (double k = 0.0; k < steps; k += 1.0) {
-#if INDICATORS
-        advance_through(problem, k * h, h, x, sides);
-#else
-        Start from;
-        begin(problem, k * h, x, &from);
-        step(problem, from.t, from.x, from.dx, h, x);
-#endif
+    for (double k = 0.0; k < stretches; k += 1.0) {
+        const int failed = advance_through(problem, k * h, h, x, sides);
+        if (failed)
+            return failed;
     }
+    return 0;
 }

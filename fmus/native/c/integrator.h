@@ -4,6 +4,10 @@
 
 #include "block.h"
 
+enum { INPUTS = sizeof(Input) / sizeof(real), STATES = sizeof(State) / sizeof(real) };
+
+typedef real Vector[STATES];
+
 /* What is integrated: the block with its parameters, and inputs that move at the rates du (NULL if held). */
 typedef struct {
     const Input *u;
@@ -11,10 +15,29 @@ typedef struct {
     const Parameters *p;
 } Problem;
 
-/* Takes the state x to `duration` s later, in equal steps no longer than LONGEST_STEP. */
-static void integrate(const Problem *problem, double duration, State *x);
+/* Where a step starts: time since the start of the communication step in s, state, its derivative. */
+typedef struct {
+    double t;
+    Vector x;
+    Vector dx;
+} Start;
+
+/* integrator.c */
+
+/* Takes the state x to `duration` s later; stretches of at most LONGEST_STEP are integrated one by one. If it changes
+too fast to be followed: 1 + the number of the state that changes fastest, and x is somewhere between; else 0. */
+static int integrate(const Problem *problem, double duration, State *x);
 
 /* The inputs t s after the start of the communication step; `room` is for them if they move. */
 static const Input *inputs_at(const Problem *problem, double t, Input *room);
+
+/* The derivative there. */
+static void rate(const Problem *problem, double t, const Vector x, Vector dx);
+static void begin_at(const Problem *problem, double t, const Vector x, Start *from);
+
+/* implicit.c */
+
+/* Takes the state at the start to `duration` s later, with what `integrate` returns. */
+static int integrate_stiff(const Problem *problem, Start *from, double duration);
 
 #endif

@@ -68,15 +68,22 @@ static Status check_step(Instance *instance, double time, double step_size)
     return check_moving_inputs(instance, step_size);
 }
 
+/* A step is made on a copy, which takes the place of the memory if it can be followed to finite outputs. */
 Status make_step(Instance *instance, double time, double step_size)
 {
-    Memory *memory = &instance->memory;
-    const Status status = check_step(instance, time, step_size);
-    memory->last_step = status;
+    Status status = check_step(instance, time, step_size);
     if (status == OK) {
-        advance(memory, time - memory->start_time, step_size);
-        memory->time = time + step_size;
-        memory->outputs_known = 0;
+        Memory next = instance->memory;
+        const char *state = advance(&next, time - next.start_time, step_size);
+        char text[NUMBER_LENGTH];
+        next.time = time + step_size;
+        if (state)
+            status = refuse(instance, NOT_INTEGRABLE(write_number(text, step_size), state));
+        else
+            status = check_outputs(instance, &next, step_size);
+        if (status == OK)
+            instance->memory = next;
     }
+    instance->memory.last_step = status;
     return status;
 }

@@ -1,6 +1,8 @@
 /* Values by reference, checked when they are set and computed when they are asked for. */
 #include "instance.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 static const char *const type_names[] = {"Real", "Integer", "Boolean", "String"};
@@ -59,6 +61,20 @@ static void compute_outputs(Memory *memory)
         x = memory->x;
     output(&x, &values->u, &values->p, &memory->values.y);
     memory->outputs_known = 1;
+}
+
+Status check_outputs(const Instance *instance, Memory *memory, double step_size)
+{
+    compute_outputs(memory);
+    for (unsigned k = 0; k < variable_count; k++) {
+        const double value = *place_of(&memory->values, &variables[k]);
+        char text[NUMBER_LENGTH], size[NUMBER_LENGTH];
+        if (variables[k].causality == OUTPUT && !(fabs(value) <= DBL_MAX))
+            return refuse(
+                instance,
+                NOT_FINITE(write_number(size, step_size), variables[k].name, write_number(text, value)));
+    }
+    return OK;
 }
 
 Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values)

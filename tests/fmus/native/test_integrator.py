@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
@@ -20,8 +20,9 @@ pytest.importorskip("casadi", reason="the extra `native` is not installed")
 from fmus.native.compiler import FLAGS, host_compiler
 from fmus.native.packaging import C_FILES
 from fmus.native.shared_header import shared_header
-from fmus.native.tableau import step_header
+from fmus.native.tableau import rosenbrock_header, step_header
 from models import two_mass_driveline as driveline
+from models.block.implicit import NotIntegrable
 from models.block.integrator import Integrator
 from models.block.types import ContinuousBlock
 from tests.models.block.test_integrator import *  # noqa: F403
@@ -39,14 +40,15 @@ extern void (*event_indicators)(const State *x, const Input *u, const Parameters
 
 RUN = """
 #include "integrator.c"
+#include "implicit.c"
 double LONGEST_STEP;
 void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
 void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);
-void run(double duration, State *x);
-void run(double duration, State *x)
+int run(double duration, State *x);
+int run(double duration, State *x)
 {
     const Problem problem = {0, 0, 0};
-    integrate(&problem, duration, x);
+    return integrate(&problem, duration, x);
 }
 """
 
@@ -59,6 +61,7 @@ def compiled(folder: Path, states: int, indicators: int) -> ctypes.CDLL:
     folder.joinpath("block.h").write_text(BLOCK.format(states=states, indicators=indicators))
     folder.joinpath("run.c").write_text(RUN)
     folder.joinpath("dop853.h").write_text(step_header())
+    folder.joinpath("rodas.h").write_text(rosenbrock_header())
     folder.joinpath("shared.h").write_text(shared_header())
     command = [host_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC", "-I.", f"-I{C_FILES}", "run.c"]
     subprocess.run([*command, "-o", "integrator.so", "-lm"], cwd=folder, check=True)
@@ -87,7 +90,9 @@ class CompiledIntegrator:
             ctypes.c_void_p.in_dll(library, name).value = ctypes.cast(function, ctypes.c_void_p).value
         ctypes.c_double.in_dll(library, "LONGEST_STEP").value = self._block.step_size
         values = (ctypes.c_double * size)(*x)
-        library.run(ctypes.c_double(duration), values)
+        failed = library.run(ctypes.c_double(duration), values)
+        if failed:
+            raise NotIntegrable(self._block.State._fields[failed - 1])
         return make(values)
 
 
@@ -105,6 +110,22 @@ def test_it_is_that_of_python_bit_by_bit(integrator: MakeIntegrator, T_mot: floa
     assert integrator(driveline.BLOCK).advance(x, u, p, duration) == Integrator(driveline.BLOCK).advance(
         x, u, p, duration
     )
+
+
+@settings(max_examples=30)
+@given(
+    T_mot=st.floats(-2000.0, 2000.0),
+    T_brake=st.floats(0.0, 20000.0),
+    v=st.floats(-20.0, 20.0),
+    z_br=st.floats(1e-4, 1e-3),
+    i=st.floats(1.0, 3.0),
+)
+def test_it_is_that_of_python_bit_by_bit_where_the_block_is_stiff(
+    integrator: MakeIntegrator, T_mot: float, T_brake: float, v: float, z_br: float, i: float
+) -> None:
+    u, x = driveline.Input(T_mot=T_mot, T_brake=T_brake), LIVELY._replace(v=v)
+    p = P._replace(recorded_load=False, z_br=z_br, J_2=0.001, i=i)
+    assert integrator(driveline.BLOCK).advance(x, u, p, 0.01) == Integrator(driveline.BLOCK).advance(x, u, p, 0.01)
 
 
 @given(at=st.floats(0.001, 0.099), slope=st.floats(0.0, 100.0), power=st.sampled_from([0, 1, 3, 9]))
