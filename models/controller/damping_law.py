@@ -2,8 +2,8 @@
 
     T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear],   k_d times k_gap in the gap
 
-with the motion T_pred ahead, when the torque will act; limited to T_damp_max. While the estimated twist
-is in the gap, but for at most t_land, the demand is limited to T_gap, so that the teeth land softly.
+with the motion T_pred ahead, when the torque will act. While the estimated twist is in the gap, but for at
+most t_land, the demand is limited to T_gap, so that the teeth land softly.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -12,7 +12,7 @@ from ..block.declaration import Real
 from ..block.operators import clip, logical_and, minimum, where
 from ..vehicle import CAR, HalfGap
 from .gains import GAINS
-from .parts import Motion
+from .parts import Addition, Motion
 
 
 class Parameters(NamedTuple):
@@ -24,7 +24,6 @@ class Parameters(NamedTuple):
     omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = GAINS["omega_w"]
     T_gap: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0)] = GAINS["T_gap"]
     t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0)] = GAINS["t_land"]
-    T_damp_max: Annotated[float, Real("N.m", "limit of the damping torque", 0.0, 2000.0)] = 60.0
 
 
 class LawState(NamedTuple):
@@ -38,12 +37,11 @@ def start(motion: Motion, p: Any) -> LawState:
     return LawState(washout=fed_back(motion, p), landing=0.0)
 
 
-def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[LawState, Any]:
+def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[LawState, Addition]:
     changing = fed_back(later(p.T_pred), p)
     landing = where(in_gap(motion, p), minimum(x.landing + T_s, p.t_land + T_s), 0.0)
-    softened = soft_landing(T_driver, landing, p) - T_driver
-    damping = clip(x.washout - changing, -p.T_damp_max, p.T_damp_max)
-    return LawState(washed_out(x.washout, changing, T_s, p), landing), softened + damping
+    added = Addition(damping=x.washout - changing, landing=soft_landing(T_driver, landing, p) - T_driver)
+    return LawState(washed_out(x.washout, changing, T_s, p), landing), added
 
 
 def in_gap(motion: Motion, p: Any) -> Any:

@@ -19,6 +19,13 @@ class Motion(NamedTuple):
     T_gear: Annotated[float, Real("N.m", "gear torque, motor side")]
 
 
+class Addition(NamedTuple):
+    """What a law adds to the driver's demand."""
+
+    damping: Annotated[float, Real("N.m", "torque against the oscillation")]
+    landing: Annotated[float, Real("N.m", "change of the demand that lets the teeth land softly")]
+
+
 class Estimator(Protocol):
     """Tells the motion of the drive train from motor torque, motor speed and wheel speed."""
 
@@ -66,8 +73,8 @@ class Law(Protocol):
         """State in which the motion of the start is taken for stationary."""
         ...
 
-    def update(self, x: Any, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[Any, Any]:
-        """Next state, and the torque to be added in N.m.
+    def update(self, x: Any, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[Any, Addition]:
+        """Next state, and what is to be added; the supervision limits it.
 
         Args:
             motion: of this sample.

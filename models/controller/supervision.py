@@ -1,23 +1,28 @@
 """What surrounds an estimator and a law: which signals to trust, when to act, and within what limits.
 
 In every sample the estimator goes one sample on and takes what was measured, the law says what to add
-to the driver's demand. Motor signals that cannot be trusted lead to fallback: the demand is passed
-through, the estimator starts anew from what it gets. A lost, late or absurd wheel speed only ends the
-mode that uses it. A demand that is not finite counts as zero. At rest the damping fades out and the
-estimator is held. Modes fade within t_fade; T_ref is finite and within T_max whatever comes in.
+to the driver's demand. Motor signals that have failed lead to fallback: the demand is passed through,
+estimator and law start anew, until the signals have proved themselves. A lost, late or absurd wheel speed
+only ends the mode that uses it. A demand that is not finite counts as zero. At rest the damping fades out
+and the estimator is held. Modes fade within t_fade. Whatever comes in, T_ref is finite and within T_max,
+and takes no more than T_take_max from the demand and adds no more than T_add_max to it.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Enumeration, Integer, Real, merged
-from ..block.operators import branch, clip, is_finite, logical_and, where
+from ..block.operators import branch, clip, is_finite, logical_and, logical_not, logical_or, where
 from ..block.types import SampledBlock
 from ..vehicle import CAR
-from . import rest
+from . import rest, swings, trust
 from . import signal_monitor as monitor
+from . import wheel_monitor as wheels
 from .fading import toward
-from .parts import Estimator, Law, Motion
+from .parts import Addition, Estimator, Law, Motion
 from .signal_monitor import MonitorState
+from .swings import SwingState
+from .trust import TrustState
+from .wheel_monitor import WheelState
 
 T_S = 0.002
 """Sample time in s."""
@@ -29,15 +34,21 @@ class Parameters(NamedTuple):
     """Of the supervision, for every controller."""
 
     T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
+    T_take_max: Annotated[float, Real("N.m", "largest torque taken from the demand", 0.0, 2000.0)] = 100.0
+    T_add_max: Annotated[float, Real("N.m", "largest torque added to the demand", 0.0, 2000.0)] = 60.0
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
+    t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1
+    t_proof: Annotated[float, Real("s", "good motor signals for so long end the fallback", 0.01, 1.0)] = 0.15
     t_frozen: Annotated[float, Real("s", "a speed or torque unchanged for so long is frozen", 0.01, 10.0)] = 0.1
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
     T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 2000.0
-    e_max: Annotated[float, Real("rad/s", "largest plausible error of the estimated speeds", 1.0, 1000.0)] = 40.0
+    e_max: Annotated[float, Real("rad/s", "largest distance of a usable wheel speed", 1.0, 1000.0)] = 40.0
+    e_jump: Annotated[float, Real("rad/s", "largest change of the motor speed in a sample", 1.0, 1000.0)] = 20.0
+    e_wheel: Annotated[float, Real("rad/s", "largest distance of the motor from the wheel speed", 1.0, 1000.0)] = 30.0
 
 
 class Input(NamedTuple):
@@ -56,11 +67,16 @@ class State(NamedTuple):
     estimator: Any
     law: Any
     monitor: MonitorState
+    wheels: WheelState
+    swings: SwingState
+    trust: TrustState
     level: Annotated[float, Real("1", "share of the damping that acts")]
     quiet: Annotated[float, Real("s", "time without demand and motion")]
-    added: Annotated[float, Real("N.m", "what full damping adds; held while signals are bad")]
+    opposing: Annotated[float, Real("N.m", "what the law would damp with")]
+    added: Addition
     T_ref: Annotated[float, Real("N.m", "torque reference")]
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
+    T_landing: Annotated[float, Real("N.m", "part of it that lets the teeth land softly")]
     ahead: Motion
     status: Annotated[Any, Real("1", "number of the status")]
 
@@ -84,6 +100,7 @@ class Output(NamedTuple):
             ),
         ),
     ]
+    T_landing: Annotated[float, Real("N.m", "part of T_damp that lets the teeth land softly")]
 
 
 def demand(u: Input, p: Any) -> Any:
@@ -104,7 +121,20 @@ def output(x: State, u: Input, p: Any) -> Output:
         phi_hat=x.ahead.phi,
         omega_2_hat=x.ahead.omega_2,
         status=x.status,
+        T_landing=x.T_landing,
     )
+
+
+def is_doubtful(signals: MonitorState, heard: WheelState) -> Any:
+    """Whether the motor signals are bad in this sample, or contradicted."""
+    return logical_or(signals.bad > 0.0, heard.apart > 0.0)
+
+
+def limited(torque: Any, T_driver: Any, p: Any) -> Any:
+    """What may be added to the demand: in its direction up to T_add_max, against it up to T_take_max."""
+    lower = where(T_driver > 0.0, p.T_take_max, p.T_add_max)
+    upper = where(T_driver < 0.0, p.T_take_max, p.T_add_max)
+    return clip(torque, -lower, upper)
 
 
 def supervised(name: str, description: str, module: str, estimator: Estimator, law: Law) -> SampledBlock:
@@ -117,61 +147,79 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
     def start(u: Input, p: Any) -> State:
         """Estimate from the motor signals of t = 0, the driver's demand passed through."""
         T_driver = demand(u, p)
-        signals, wheel = monitor.start(u, p), monitor.has_wheel_speed(u, p)
+        signals, wheel = monitor.start(u, p), wheels.has_wheel_speed(u, p)
         e = estimator.start(signals.omega_1, signals.T_mot, wheel, p)
         motion = estimator.motion(e, p)
         return State(
             estimator=e,
             law=law.start(motion, p),
             monitor=signals,
+            wheels=wheels.start(u, signals.omega_1, p),
+            swings=swings.start(T_driver),
+            trust=trust.start(p),
             level=where(u.enable, 1.0, 0.0),
             quiet=where(rest.is_still(T_driver, signals.omega_1, p), rest.longest(p), 0.0),
-            added=0.0,
+            opposing=0.0,
+            added=Addition(0.0, 0.0),
             T_ref=T_driver,
             T_damp=0.0,
+            T_landing=0.0,
             ahead=motion,
             status=status(u.enable, True, wheel),
         )
 
-    def measured(x: State, u: Input, p: Any) -> tuple[Any, MonitorState]:
-        """The states of the estimator and of the monitor with the signals of this sample."""
+    def measured(x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState]:
+        """The states of the estimator and of the monitors with the signals of this sample."""
         T_mot = monitor.torque(u.T_mot_est, x.monitor.T_mot, p)
         e = estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
-        omega_1_hat = estimator.motion(e, p).omega_1
-        e = estimator.take_motor_speed(e, monitor.near_speed(u.omega_1_meas, omega_1_hat, p), p)
-        usable = monitor.is_usable(x.monitor, u, estimator.motion(e, p).omega_2, p)
-        e = branch(usable, lambda: estimator.take_wheel_speed(e, monitor.message(u), T_S, p), lambda: e)
-        return e, monitor.update(x.monitor, u, omega_1_hat, x.T_ref, usable, T_S, p)
+        increment = estimator.motion(e, p).omega_1 - estimator.motion(x.estimator, p).omega_1
+        signals = monitor.update(x.monitor, u, increment, x.T_ref, T_S, p)
+        e = estimator.take_motor_speed(e, signals.omega_1, p)
+        heard = wheels.update(x.wheels, u, signals.omega_1, estimator.motion(e, p).omega_2, T_S, p)
+        e = branch(heard.usable, lambda: estimator.take_wheel_speed(e, heard.omega_2, T_S, p), lambda: e)
+        return e, signals, heard
 
     def update(x: State, u: Input, p: Any) -> State:
-        e, signals = measured(x, u, p)
-        trusted = monitor.trusts_motor(signals, p)
-        omega_1 = monitor.speed(u.omega_1_meas, estimator.motion(e, p).omega_1, p)
-        e = branch(trusted, lambda: e, lambda: estimator.restart(e, omega_1, signals.T_mot, p))
-
+        e, signals, heard = measured(x, u, p)
         T_driver = demand(u, p)
-        still = rest.is_still(T_driver, signals.omega_1, p)
-        quiet = rest.quiet_time(x.quiet, still, T_S, p)
+        quiet = rest.quiet_time(x.quiet, rest.is_still(T_driver, signals.omega_1, p), T_S, p)
         resting = rest.share(quiet, p)
+
+        confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
+        feeding = swings.feeds(x.swings)
+        trusting = trust.update(x.trust, signals.bad, heard.apart, feeding, confirmed, resting >= 1.0, T_S, p)
+        trusted = trust.is_trusted(trusting)
+        wheel = logical_and(wheels.hears_wheels(heard, u, p), trusted)
+
+        doubtful = logical_or(is_doubtful(signals, heard), is_doubtful(x.monitor, x.wheels))
+        afresh = logical_and(doubtful, logical_not(trusted))
+        e = branch(afresh, lambda: estimator.restart(e, signals.omega_1, signals.T_mot, p), lambda: e)
         e = branch(resting >= 1.0, lambda: estimator.restart(e, 0.0, 0.0, p), lambda: e)
 
         def later(h: Any) -> Motion:
             return estimator.motion_after(e, signals.T_mot, h, p)
 
-        acting, adding = law.update(x.law, estimator.motion(e, p), later, T_driver, T_S, p)
-        added = where(trusted, adding, x.added)
+        motion = estimator.motion(e, p)
+        before = branch(afresh, lambda: law.start(motion, p), lambda: x.law)
+        acting, adding = law.update(before, motion, later, T_driver, T_S, p)
+        added = branch(trusted, lambda: adding, lambda: x.added)
         level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
-        T_ref = clip(T_driver + level * (1.0 - resting) * added, -p.T_max, p.T_max)
-        wheel = logical_and(monitor.hears_wheels(signals, u, p), trusted)
+        share = level * (1.0 - resting)
+        T_ref = clip(T_driver + limited(share * (added.damping + added.landing), T_driver, p), -p.T_max, p.T_max)
         return State(
             estimator=estimator.finish(e, wheel, T_S, p),
             law=acting,
             monitor=signals,
+            wheels=heard,
+            swings=swings.update(x.swings, share * added.damping, T_driver, trusted, T_S, p),
+            trust=trusting,
             level=level,
             quiet=quiet,
+            opposing=adding.damping,
             added=added,
             T_ref=T_ref,
             T_damp=T_ref - T_driver,
+            T_landing=limited(share * added.landing, T_driver, p),
             ahead=later(T_S),
             status=status(u.enable, trusted, wheel),
         )

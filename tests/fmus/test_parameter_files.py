@@ -41,7 +41,7 @@ def test_a_vehicle_file_names_what_belongs_to_the_car(written: Callable[[str], P
 
 
 def test_a_file_of_gains_names_what_is_set_in_the_controller(written: Callable[[str], Path]) -> None:
-    assert read_parameters(written("k_d = 2.5\nT_damp_max = 40\n")) == {"k_d": 2.5, "T_damp_max": 40.0}
+    assert read_parameters(written("k_d = 2.5\nT_take_max = 40\n")) == {"k_d": 2.5, "T_take_max": 40.0}
     stored = read_parameters(ROOT / "models" / "controller" / "gains.toml")
     assert {name: PARAMETERS["DampingController"][name].start for name in stored} == stored
 

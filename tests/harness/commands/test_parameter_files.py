@@ -25,7 +25,7 @@ def given(built):
 @pytest.fixture
 def gains(tmp_path):
     path = tmp_path / "gains.toml"
-    path.write_text("k_d = 3.6\nT_damp_max = 80\n", encoding="utf-8")
+    path.write_text("k_d = 3.6\nT_take_max = 80\n", encoding="utf-8")
     return str(path)
 
 
@@ -35,7 +35,7 @@ def test_the_entries_reach_every_block_that_has_them(given, gains):
     of_T_max = {name: value for name, value in parameters.items() if name.endswith(".T_max")}
     assert of_i == {"plant.i": 12.0, "can.i": 12.0}
     assert of_T_max == {"motor.T_max": 250.0, "controller.T_max": 250.0}
-    assert (parameters["controller.k_d"], parameters["controller.T_damp_max"]) == (3.6, 80.0)
+    assert (parameters["controller.k_d"], parameters["controller.T_take_max"]) == (3.6, 80.0)
     assert "plant.k_s" not in parameters
 
 

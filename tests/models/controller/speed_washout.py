@@ -3,7 +3,7 @@
 from typing import Annotated, Any, NamedTuple
 
 from models.block.declaration import Real
-from models.controller.parts import Motion
+from models.controller.parts import Addition, Motion
 
 
 class Parameters(NamedTuple):
@@ -21,6 +21,8 @@ def start(motion: Motion, p: Any) -> WashoutState:
     return WashoutState(motion.omega_1)
 
 
-def update(x: WashoutState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[WashoutState, Any]:
+def update(
+    x: WashoutState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+) -> tuple[WashoutState, Addition]:
     changing = motion.omega_1 - x.slow
-    return WashoutState(x.slow + p.omega_v * T_s * changing), -p.k_v * changing
+    return WashoutState(x.slow + p.omega_v * T_s * changing), Addition(damping=-p.k_v * changing, landing=0.0)

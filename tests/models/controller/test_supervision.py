@@ -15,6 +15,7 @@ from models.controller.supervision import FALLBACK, OFF, T_S, WITH_WHEEL_SPEED, 
 from tests.models.controller.controllers import (
     ABSURD,
     OTHER,
+    OURS,
     ROLLING,
     any_input,
     any_signal,
@@ -145,7 +146,14 @@ def started(u: Input = ROLLING, **parameters: float) -> tuple[State, Any]:
 
 def test_it_starts_with_the_demand_and_what_is_measured() -> None:
     x, _ = started()
-    assert (x.T_ref, x.T_damp, x.added, x.quiet, x.level, x.status) == (50.0, 0.0, 0.0, 0.0, 1.0, WITH_WHEEL_SPEED)
+    assert (x.T_ref, x.T_damp, x.added, x.quiet, x.level, x.status) == (
+        50.0,
+        0.0,
+        (0.0, 0.0),
+        0.0,
+        1.0,
+        WITH_WHEEL_SPEED,
+    )
     assert x.estimator == (150.0, 150.0, 50.0, 1.0)
     assert x.law == (150.0,)
     assert (x.ahead.omega_1, x.ahead.T_gear) == (150.0, 50.0)
@@ -199,7 +207,7 @@ def test_a_message_far_from_the_estimate_is_not_taken() -> None:
 def test_what_the_law_says_is_added_to_the_demand() -> None:
     x, p = started()
     x = OTHER.update(x, ROLLING._replace(omega_1_meas=153.0), p)
-    assert (x.T_ref, x.T_damp, x.added) == (50.0 - p.k_v * 3.0, -p.k_v * 3.0, -p.k_v * 3.0)
+    assert (x.T_ref, x.T_damp, x.added) == (50.0 - p.k_v * 3.0, -p.k_v * 3.0, (-p.k_v * 3.0, 0.0))
     assert x.law.slow == 150.0 + p.omega_v * T_S * 3.0
 
 
@@ -207,7 +215,7 @@ def test_what_the_law_says_is_added_to_the_demand() -> None:
 def test_demand_and_damping_together_are_limited(side: float) -> None:
     x, p = started(ROLLING._replace(T_driver=side * 170.0))
     x = OTHER.update(x, ROLLING._replace(T_driver=side * 170.0, omega_1_meas=150.0 - side * 10.0), p)
-    assert (x.T_ref, x.T_damp, x.added) == (side * 180.0, side * 10.0, side * 20.0)
+    assert (x.T_ref, x.T_damp, x.added) == (side * 180.0, side * 10.0, (side * 20.0, 0.0))
 
 
 def test_the_damping_fades_in_and_out_with_its_switch() -> None:
@@ -216,7 +224,7 @@ def test_the_damping_fades_in_and_out_with_its_switch() -> None:
     for enable in [True] * 5 + [False] * 5:
         x = OTHER.update(x, ROLLING._replace(omega_1_meas=153.0, enable=enable), p)
         levels.append(x.level)
-        assert x.T_damp == pytest.approx(x.level * x.added, rel=1e-12)
+        assert x.T_damp == pytest.approx(x.level * x.added.damping, rel=1e-12)
     assert levels == [0.25, 0.5, 0.75, 1.0, 1.0, 0.75, 0.5, 0.25, 0.0, 0.0]
 
 
@@ -224,6 +232,7 @@ def test_the_damping_fades_out_at_rest() -> None:
     standing = Input(omega_1_meas=1.0)
     x, p = started(ROLLING, t_rest=2.0 * T_S, t_fade=4.0 * T_S, k_v=1.0, omega_v=0.0)
     x = x._replace(law=x.law._replace(slow=-9.0), estimator=x.estimator._replace(omega_1=1.0))
+    x = x._replace(monitor=x.monitor._replace(omega_1=1.0))
     torques = []
     for _ in range(7):
         x = OTHER.update(x, standing, p)
@@ -239,19 +248,108 @@ def test_signals_are_bridged_before_they_lead_to_fallback() -> None:
     for k in range(5):
         x = OTHER.update(x, ROLLING._replace(omega_1_meas=math.nan, T_mot_est=0.001 * k), p)
         seen.append((x.status, x.level))
-        assert x.added == pytest.approx(-10.0, abs=0.2)
+        assert x.added.damping == pytest.approx(-10.0, abs=0.2)
     assert seen == [(WITH_WHEEL_SPEED, 1.0)] * 2 + [(FALLBACK, 0.5), (FALLBACK, 0.0), (FALLBACK, 0.0)]
 
 
 def test_in_fallback_the_estimator_starts_anew_from_what_it_gets() -> None:
-    """From any plausible speed, however far from the estimate, and it is trusted in the next sample."""
-    x, p = started(ROLLING, t_bad=2.0 * T_S)
-    statuses = []
-    for k in range(5):
-        x = OTHER.update(x, ROLLING._replace(omega_1_meas=300.0 + k, T_mot_est=60.0 + k), p)
+    """From any plausible speed, however far from the estimate; it is trusted when it has proved itself."""
+    x, p = started(ROLLING._replace(valid=False), t_bad=2.0 * T_S, t_proof=3.0 * T_S, k_v=1.0, omega_v=0.0)
+    statuses, slow = [], []
+    for k in range(7):
+        x = OTHER.update(x, ROLLING._replace(valid=False, omega_1_meas=300.0 + k, T_mot_est=60.0 + k), p)
         statuses.append(x.status)
-    assert statuses == [WITH_WHEEL_SPEED] * 2 + [FALLBACK] + [WITH_WHEEL_SPEED] * 2
-    assert x.estimator.omega_1 == 304.0
+        slow.append(x.law.slow)
+    assert statuses == [WITHOUT_WHEEL_SPEED] * 2 + [FALLBACK] * 3 + [WITHOUT_WHEEL_SPEED] * 2
+    assert slow == [150.0] * 2 + [302.0] + [303.0] * 4, "the law starts anew with the first good sample"
+    assert x.estimator.omega_1 == 306.0
+
+
+def test_what_is_no_number_gives_estimator_and_law_a_new_start_when_it_is_over() -> None:
+    x, p = started(ROLLING._replace(valid=False), t_bad=0.0, k_v=1.0, omega_v=0.0)
+    for k, omega_1 in enumerate([math.nan] * 3 + [152.0] * 2):
+        x = OTHER.update(x, ROLLING._replace(valid=False, omega_1_meas=omega_1, T_mot_est=50.0 + k), p)
+    assert (x.estimator.omega_1, x.law.slow) == (152.0, 152.0)
+
+
+def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> None:
+    """For as long as it does: both cannot be right, and nothing says which one is."""
+    states = run(OTHER, [u._replace(omega_2_can=240.0) if k < 200 else u for k, u in enumerate(driven(1.0))])
+    statuses = [x.status for x in states]
+    first = statuses.index(FALLBACK)
+    assert first * T_S == pytest.approx(P.t_apart, abs=2.0 * T_S)
+    back = statuses.index(WITH_WHEEL_SPEED, first)
+    assert set(statuses[first:back]) == {FALLBACK}
+    assert (back - 200) * T_S == pytest.approx(P.t_proof, abs=0.02 + 2.0 * T_S), "a message comes every 20 ms"
+    assert set(statuses[back:]) == {WITH_WHEEL_SPEED}
+
+
+def test_damping_that_feeds_an_oscillation_lets_go_until_it_is_calm_and_confirmed() -> None:
+    swinging = shaken(0.5, valid=False)
+    swinging = [u._replace(omega_1_meas=150.0 + 4.0 * (u.omega_1_meas - 150.0)) for u in swinging]
+    alone, confirmed = driven(0.5, valid=False), driven(0.5)
+    statuses = [x.status for x in run(OTHER, swinging + alone + confirmed)[1:]]
+    let_go = statuses.index(FALLBACK)
+    assert let_go * T_S < 0.25
+    assert set(statuses[let_go : len(swinging) + len(alone)]) == {FALLBACK}
+    assert statuses[-1] == WITH_WHEEL_SPEED
+
+
+def test_damping_that_fed_an_oscillation_may_begin_anew_from_rest() -> None:
+    swinging = [u._replace(omega_1_meas=4.0 * (u.omega_1_meas - 150.0)) for u in shaken(0.5, valid=False)]
+    standing = [Input(T_mot_est=0.001 * (k % 2)) for k in range(400)]
+    statuses = [x.status for x in run(OTHER, swinging + standing)[1:]]
+    assert statuses[len(swinging) - 1] == FALLBACK
+    rests = round((P.t_rest + P.t_fade + P.t_proof) / T_S)
+    assert statuses[len(swinging) + rests - 20] == FALLBACK
+    assert statuses[len(swinging) + rests + 20] == WITHOUT_WHEEL_SPEED
+
+
+@pytest.mark.parametrize(
+    ("T_driver", "lower", "upper"),
+    [(0.1, -100.0, 60.0), (0.0, -60.0, 60.0), (-0.1, -60.0, 100.0)],
+)
+def test_less_may_be_added_to_the_demand_than_taken_from_it(T_driver: float, lower: float, upper: float) -> None:
+    p = P._replace(T_take_max=100.0, T_add_max=60.0)
+    for torque, left in (
+        (lower + 0.5, lower + 0.5),
+        (lower - 0.5, lower),
+        (upper - 0.5, upper - 0.5),
+        (upper + 1, upper),
+    ):
+        assert supervision.limited(torque, T_driver, p) == left
+
+
+@every_controller
+@given(
+    inputs=st.lists(any_input, min_size=1, max_size=40),
+    T_take_max=st.floats(0.0, 300.0),
+    T_add_max=st.floats(0.0, 300.0),
+)
+@settings(max_examples=75)
+def test_no_more_is_taken_and_added_than_is_said_whatever_comes_in(
+    block: SampledBlock, inputs: list[Input], T_take_max: float, T_add_max: float
+) -> None:
+    p = P._replace(T_take_max=T_take_max, T_add_max=T_add_max)
+    states = run(block, inputs, T_take_max=T_take_max, T_add_max=T_add_max)
+    for x, u in zip(states[1:], inputs, strict=True):
+        T_driver = supervision.demand(u, p)
+        assert x.T_damp == x.T_ref - T_driver
+        assert supervision.limited(x.T_damp, T_driver, p) == pytest.approx(x.T_damp, abs=1e-9)
+        assert supervision.limited(x.T_landing, T_driver, p) == x.T_landing
+
+
+def test_the_part_of_the_landing_is_shown() -> None:
+    """And fades as the whole does."""
+    afloat = ROLLING._replace(T_driver=120.0, T_mot_est=0.0)
+    inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(40)]
+    states = run(OURS, inputs, t_frozen=10.0, T_take_max=50.0)
+    assert {x.T_landing for x in states[2:30]} == {-50.0}, "no more than may be taken"
+    assert {x.T_landing for x in run(OURS, inputs, t_frozen=10.0)[2:30]} == {-60.0}
+    fading = run(OURS, [u._replace(enable=k < 10) for k, u in enumerate(inputs)], t_frozen=10.0)
+    for x in fading[1:40]:
+        assert x.T_landing == pytest.approx(-60.0 * x.level)
+        assert OURS.output(x, afloat, None).T_landing == x.T_landing
 
 
 def test_in_fallback_the_wheel_speed_is_not_in_use() -> None:
@@ -264,7 +362,7 @@ def test_the_state_moves_by_one_sample_a_sample() -> None:
     """Nothing of it is left behind."""
     states = run(OTHER, [u._replace(T_driver=50.0 + k % 7) for k, u in enumerate(shaken(0.1))])
     for a, b in pairwise(states[1:]):
-        for name in ("estimator", "law", "monitor", "added", "T_ref", "T_damp", "ahead"):
+        for name in ("estimator", "law", "monitor", "wheels", "swings", "added", "T_ref", "T_damp", "ahead"):
             assert getattr(a, name) != getattr(b, name), name
 
 

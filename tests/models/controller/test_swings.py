@@ -1,0 +1,72 @@
+"""The count of half swings: what is one, what explains it, and how many are too many."""
+
+import math
+
+import pytest
+
+from models.controller import swings
+from models.controller.supervision import Parameters
+from models.controller.swings import EXCUSE, MOST, SWING, T_FORGET, SwingState
+
+P = Parameters(T_max=100.0)
+T_S = T_FORGET / 8.0
+PEAK = SWING * P.T_max
+
+
+def after(torques: list[float], demands: list[float] | None = None) -> SwingState:
+    x = swings.start(50.0)
+    for torque, T_driver in zip(torques, demands or [50.0] * len(torques), strict=True):
+        x = swings.update(x, torque, T_driver, True, T_S, P)
+    return x
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_half_swing_reaches_over_a_torque_on_both_sides(side: float) -> None:
+    more = math.nextafter(PEAK, math.inf)
+    assert after([side * more, -side * more]).count == 1.0
+    assert after([side * PEAK, -side * more]).count == 0.0
+    assert after([side * more, -side * PEAK]).count == 0.0
+    assert swings.is_calm(side * PEAK, P)
+    assert not swings.is_calm(side * more, P)
+
+
+def test_every_change_of_side_is_one() -> None:
+    """One that takes several samples, too."""
+    assert after([20.0, -20.0, 20.0]).count == 2.0 - 1.0 / 8.0
+    assert after([20.0, 0.0, -20.0, -20.0]).count == 1.0 - 1.0 / 8.0
+    assert after([20.0, 20.0, 20.0]).count == 0.0
+
+
+def test_half_swings_are_forgotten() -> None:
+    assert after([20.0, -20.0] + [0.0] * 4).count == 0.5
+    assert after([20.0, -20.0] + [0.0] * 20).count == 0.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
+    changed = 50.0 + side * 0.25 * EXCUSE * P.T_max
+    counted = after([20.0, -20.0, 0.0, 0.0], [50.0, 50.0, changed, changed]).count
+    assert counted == pytest.approx(1.0 - 0.25 - 2.0 / 8.0)
+
+
+def test_nothing_is_counted_while_the_damping_is_faded_out() -> None:
+    x = swings.update(after([20.0]), -20.0, 60.0, False, T_S, P)
+    assert x == SwingState(side=0.0, count=0.0, T_driver=60.0)
+    assert swings.update(x, 20.0, 60.0, True, T_S, P).count == 0.0
+
+
+def test_an_oscillation_that_stays_is_found_with_its_third_half_swing() -> None:
+    """At 8 Hz."""
+    period = round(0.125 / 0.002)
+    x, found = swings.start(50.0), []
+    for k in range(2 * period):
+        torque = 30.0 * math.sin(2.0 * math.pi * k / period)
+        x = swings.update(x, torque, 50.0, True, 0.002, P)
+        found.append(swings.feeds(x))
+    assert found.index(True) / period == pytest.approx(1.1, abs=0.1)
+
+
+def test_it_feeds_from_a_number_on() -> None:
+    assert swings.feeds(SwingState(1.0, MOST, 0.0))
+    assert not swings.feeds(SwingState(1.0, math.nextafter(MOST, 0.0), 0.0))
+    assert swings.start(20.0) == SwingState(side=0.0, count=0.0, T_driver=20.0)

@@ -1,0 +1,153 @@
+"""The wheel monitor: messages just good enough and just not, to correct the estimate and as a witness."""
+
+import math
+from typing import Any
+
+import pytest
+
+from models.controller import wheel_monitor as wheels
+from models.controller.supervision import Input, Parameters
+from models.controller.wheel_monitor import LATE, SHARE, WheelState
+
+P = Parameters(omega_max=500.0, e_max=40.0, e_wheel=16.0, t_stale=1.0, t_apart=1.0)
+T_S = 0.25
+U = Input(omega_1_meas=150.0, omega_2_can=150.0, valid=True, counter=7)
+NO_NUMBERS = [math.nan, math.inf, -math.inf]
+
+each_side = pytest.mark.parametrize("side", [1.0, -1.0])
+
+
+def above(limit: float) -> float:
+    return math.nextafter(limit, math.inf)
+
+
+def heard(u: Input, x: WheelState | None = None, omega_1: float = 150.0, omega_2_hat: float = 150.0) -> WheelState:
+    """The state after a sample."""
+    x = wheels.start(U, 150.0, P) if x is None else x
+    return wheels.update(x, u, omega_1, omega_2_hat, T_S, P)
+
+
+def new(omega_2_can: float = 150.0, **signals: Any) -> Input:
+    return U._replace(omega_2_can=omega_2_can, counter=8)._replace(**signals)
+
+
+def test_what_is_no_number_says_no_speed() -> None:
+    for signal in NO_NUMBERS:
+        assert wheels.message(U._replace(omega_2_can=signal)) == 0.0
+        assert not wheels.has_wheel_speed(U._replace(omega_2_can=signal), P)
+        x = heard(new(signal), omega_2_hat=0.0)
+        assert (x.omega_2, x.usable, x.witness, x.silence) == (0.0, False, False, T_S)
+
+
+@each_side
+def test_a_wheel_speed_is_plausible_up_to_omega_max(side: float) -> None:
+    assert wheels.has_wheel_speed(U._replace(omega_2_can=side * 500.0), P)
+    assert not wheels.has_wheel_speed(U._replace(omega_2_can=side * above(500.0)), P)
+    assert not wheels.has_wheel_speed(U._replace(valid=False), P)
+
+
+@each_side
+def test_a_message_is_usable_up_to_e_max_from_the_estimate(side: float) -> None:
+    assert heard(new(side * 40.0), omega_2_hat=0.0).usable
+    assert not heard(new(side * above(40.0)), omega_2_hat=0.0).usable
+    assert heard(new(190.0)).usable
+    assert not heard(new(191.0)).usable
+
+
+def test_a_message_is_usable_once_and_while_it_is_valid() -> None:
+    assert not heard(U).usable, "it was there at the start"
+    for counter in (6, 8, -(2**31)):
+        assert heard(new(counter=counter)).usable
+        assert not heard(new(counter=counter, valid=False)).usable
+        assert not heard(new(counter=counter), heard(new(counter=counter))).usable
+
+
+def test_the_wheel_speed_is_in_use_while_usable_messages_keep_coming() -> None:
+    """For less than t_stale without one, and while it is valid."""
+    x, seen = wheels.start(U, 150.0, P), []
+    for _ in range(6):
+        seen.append((x.unused, wheels.hears_wheels(x, U, P)))
+        x = heard(U, x)
+    assert seen == [(0.0, True), (0.25, True), (0.5, True), (0.75, True), (1.0, False), (1.0, False)]
+    assert heard(new(), x).unused == 0.0
+    assert not wheels.hears_wheels(wheels.start(U, 150.0, P), U._replace(valid=False), P)
+
+
+def test_messages_are_a_witness_while_they_keep_coming() -> None:
+    """For less than t_stale without one, and while they are valid; be they near the estimate or not."""
+    x, seen = heard(new(), omega_2_hat=0.0), []
+    for _ in range(6):
+        seen.append((x.silence, x.witness))
+        x = heard(new(), x)
+    assert seen == [(0.0, True), (0.25, True), (0.5, True), (0.75, True), (1.0, False), (1.0, False)]
+    assert not heard(new(valid=False)).witness
+
+
+@each_side
+def test_messages_that_leap_by_e_max_away_from_the_estimate_are_doubted(side: float) -> None:
+    """Until one is usable again."""
+    x = heard(new(150.0 + side * above(40.0)))
+    assert (x.doubted, x.witness) == (False, True), "rounding: 40 more than 150"
+    x = heard(new(150.0 + side * 40.5))
+    assert (x.doubted, x.witness) == (True, False)
+    stays = heard(new(150.0 + side * 40.5, counter=9), x)
+    assert (stays.doubted, stays.witness) == (True, False)
+    back = heard(new(counter=10), stays)
+    assert (back.doubted, back.witness) == (False, True)
+
+
+def test_messages_that_leap_to_the_estimate_are_believed() -> None:
+    x = heard(new(200.0), omega_2_hat=200.0)
+    assert (x.doubted, x.witness) == (False, True)
+
+
+def test_messages_that_drift_away_are_believed() -> None:
+    x = heard(new(190.0), omega_2_hat=100.0)
+    assert (x.usable, x.doubted, x.witness) == (False, False, True)
+
+
+def test_no_message_no_leap() -> None:
+    assert not heard(U._replace(omega_2_can=250.0)).doubted
+    assert not heard(new(250.0, valid=False)).doubted
+
+
+def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
+    x = wheels.update(wheels.start(U, 150.0, P), U, 250.0, 150.0, 0.25 * LATE, P)
+    assert x.late == 175.0
+    assert heard(U, omega_1=250.0).late == 250.0, "with samples that are longer than that"
+
+
+@each_side
+def test_a_motor_speed_is_contradicted_from_e_wheel_and_a_share_of_the_wheel_speed_on(side: float) -> None:
+    u = new(200.0, counter=7)
+    limit = P.e_wheel + SHARE * 200.0
+    for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
+        assert heard(u, omega_1=200.0 + side * distance).apart == apart
+    backwards = new(-200.0, counter=7)
+    assert heard(backwards, omega_1=-200.0 + side * (limit - 0.01)).apart == 0.0
+
+
+def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
+    x, times = None, []
+    for k in range(7):
+        x = heard(new(150.0, counter=8 + k), x, omega_1=300.0)
+        times.append(x.apart)
+    assert times == [0.25, 0.5, 0.75, 1.0, 1.25, 1.25, 1.25]
+    assert heard(new(150.0, counter=20), x).apart == 0.0
+
+
+def test_only_a_witness_contradicts() -> None:
+    assert heard(U, omega_1=300.0).apart == T_S
+    assert heard(U._replace(valid=False), omega_1=300.0).apart == 0.0
+    assert heard(new(250.0), omega_1=100.0).apart == 0.0, "it has leapt"
+
+
+def test_at_the_start_all_that_is_plausible_is_believed() -> None:
+    x = wheels.start(U, 140.0, P)
+    assert x == WheelState(
+        counter=7.0, omega_2=150.0, usable=False, unused=0.0, silence=0.0,
+        doubted=False, witness=True, late=140.0, apart=0.0,
+    )  # fmt: skip
+    assert type(x.counter) is type(heard(U).counter) is float, "as it is declared"
+    deaf = wheels.start(U._replace(valid=False), 140.0, P)
+    assert (deaf.unused, deaf.silence, deaf.witness) == (1.0, 1.0, False)
