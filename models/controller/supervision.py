@@ -5,7 +5,8 @@ to the driver's demand. Motor signals that have failed lead to fallback: the dem
 estimator and law start anew, until the signals have proved themselves. A lost, late or absurd wheel speed
 only ends the mode that uses it. A demand that is not finite counts as zero. At rest the damping fades out
 and the estimator is held. Modes fade within t_fade. Whatever comes in, T_ref is finite and within T_max,
-and takes no more than T_take_max from the demand and adds no more than T_add_max to it.
+and takes no more than T_take_max from the demand and adds no more than T_add_max to it; T_add_max is also
+what the damping alone may take.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -34,8 +35,12 @@ class Parameters(NamedTuple):
     """Of the supervision, for every controller."""
 
     T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
-    T_take_max: Annotated[float, Real("N.m", "largest torque taken from the demand", 0.0, 2000.0)] = 100.0
-    T_add_max: Annotated[float, Real("N.m", "largest torque added to the demand", 0.0, 2000.0)] = 60.0
+    T_take_max: Annotated[
+        float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0)
+    ] = 100.0
+    T_add_max: Annotated[float, Real("N.m", "largest torque added to the demand, or taken by damping", 0.0, 2000.0)] = (
+        60.0
+    )
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1
@@ -130,6 +135,10 @@ def is_doubtful(signals: MonitorState, heard: WheelState) -> Any:
     return logical_or(signals.bad > 0.0, heard.apart > 0.0)
 
 
+def damping_limited(added: Addition, p: Any) -> Addition:
+    return added._replace(damping=clip(added.damping, -p.T_add_max, p.T_add_max))
+
+
 def limited(torque: Any, T_driver: Any, p: Any) -> Any:
     """What may be added to the demand: in its direction up to T_add_max, against it up to T_take_max."""
     lower = where(T_driver > 0.0, p.T_take_max, p.T_add_max)
@@ -202,7 +211,7 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
         motion = estimator.motion(e, p)
         before = branch(afresh, lambda: law.start(motion, p), lambda: x.law)
         acting, adding = law.update(before, motion, later, T_driver, T_S, p)
-        added = branch(trusted, lambda: adding, lambda: x.added)
+        added = branch(trusted, lambda: damping_limited(adding, p), lambda: x.added)
         level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
         share = level * (1.0 - resting)
         T_ref = clip(T_driver + limited(share * (added.damping + added.landing), T_driver, p), -p.T_max, p.T_max)

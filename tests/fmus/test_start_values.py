@@ -22,7 +22,7 @@ from tests import ROOT
 from tests.fmus.host import opened
 
 CAR = ROOT / "examples" / "cars" / "mid_size.toml"
-GAINS = "k_d = 4.0\nT_land = 70.0\n"
+GAINS = "k_d = 4.0\nT_gap = 70.0\n"
 
 
 @pytest.fixture(scope="module")

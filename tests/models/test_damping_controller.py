@@ -120,10 +120,19 @@ def test_the_torque_is_limited_to_180_newton_metres() -> None:
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_it_takes_at_most_100_and_adds_at_most_60_newton_metres(side: float) -> None:
+def test_damping_takes_and_adds_at_most_60_newton_metres(side: float) -> None:
     wild = [u._replace(omega_1_meas=150.0 + 12.0 * (u.omega_1_meas - 150.0)) for u in shaken(1.0, T_driver=side * 50.0)]
-    added = [side * x.T_damp for x in run(BLOCK, wild)]
-    assert (min(added), max(added)) == (-100.0, 60.0)
+    added = [x.T_damp - x.T_landing for x in run(BLOCK, wild)]
+    assert (min(added), max(added)) == (-60.0, 60.0)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_damping_and_landing_take_at_most_100_newton_metres(side: float) -> None:
+    """The motor runs away through the gap: 90 N.m for the landing, and more than 10 for the damping."""
+    afloat = ROLLING._replace(T_driver=side * 150.0, T_mot_est=0.0)
+    states = run(BLOCK, [afloat._replace(omega_1_meas=150.0 + side * 2.0 * k) for k in range(8)], k_d=20.0)
+    assert min(side * x.T_damp for x in states) == -100.0
+    assert min(side * x.T_landing for x in states) == -90.0
 
 
 def test_in_the_gap_the_demand_is_limited_to_60_newton_metres_for_a_tenth_of_a_second() -> None:
@@ -205,6 +214,9 @@ def test_good_signals_stay_good_with_half_of_every_threshold(
 ) -> None:
     """When the teeth cross the gap and back, with noise and delays, no signal is near to being found bad."""
     half = {name: 0.5 * getattr(P, name) for name in ("e_max", "e_jump", "e_wheel", "t_frozen", "t_stale", "omega_max")}
-    parameters = {"plant": {"v_0": v_0, "T_0": before}, "controller": {**half, "t_bad": 0.0, "t_apart": 0.0}}
+    parameters = {
+        "plant": {"v_0": v_0, "T_0": before},
+        "controller": {**half, "t_bad": 0.0, "t_apart": 0.5 * P.t_apart},
+    }
     y = monolithic.run(plant, step(before, after), 1.5, parameters)
     assert set(y["controller.status"]) == {WITH_WHEEL_SPEED}
