@@ -22,6 +22,7 @@ COMMANDS = {
     "simulate": "drive the loop through one manoeuvre and write its signals",
     "compare": "run the manoeuvres without and with damping and compare",
     "replay": "drive a recorded torque demand and road without and with damping",
+    "faults": "put faults on the controller's signals and judge what it makes of them",
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
     "coupling": "measure coupling error and dead time of the master",

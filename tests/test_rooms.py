@@ -26,12 +26,14 @@ ROOMS = {
     "harness.metrics": {"harness", "harness.manoeuvres"},
     "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
+    "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports"},
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
     | {"models", "models.block", "models.controller"},
     "harness": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"},
     "harness.commands": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"},
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
+    | {"harness.faults"},
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
 the analysis knows the models."""

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from models.block.types import Block, SampledBlock
+from models.block.types import Block
 
 from ..symbol import Symbol
 
@@ -38,9 +38,7 @@ def _without_sources(value: Any) -> Any:
 
 
 def output_dependencies(block: Block) -> dict[str, frozenset[str]]:
-    """For every output the inputs that it depends on directly; none for a sampled block."""
-    if isinstance(block, SampledBlock):
-        return {name: frozenset() for name in block.Output._fields}
+    """For every output the inputs that it depends on directly."""
     start = block.start(block.Input(), block.Parameters())
     u, p = _symbols(block.Input, named=True), _symbols(block.Parameters, named=False)
     y = block.output(_without_sources(start), u, p)

@@ -104,8 +104,9 @@ def _record(call: Call, sources: Any, factors: Any, sent: Any) -> CompiledCall:
     else:
         record.access = function
     record.count, record.references, record.values = count, addressof(references), addressof(values)
-    record.real = values._type_ is c_double
     record.sources = addressof(sources) if call.sources else None
+    # only what is real and was got is looked at
+    record.real = values._type_ is c_double and (bool(call.sources) or not call.instance.interface.any_value)
     record.factors = addressof(factors) if call.factors else None
     record.sent = addressof(sent) if call.sent else None
     return record

@@ -18,6 +18,7 @@ class Interface:
         variables: by name, in the order of the description; where they are mapped, as the loop sees them.
         factors: what values of mapped variables are multiplied by on their way into the loop.
         refused: names of the loop whose mapping does not fit.
+        any_value: NaN among the outputs is meant to be there.
     """
 
     def __init__(self, path: Path, limits: Limits = USUAL) -> None:
@@ -33,6 +34,7 @@ class Interface:
         self.variables: dict[str, ModelVariable] = {v.name: v for v in self.description.modelVariables}
         self.factors: dict[str, float] = {}
         self.refused: set[str] = set()
+        self.any_value = False
 
     def of_causality(self, causality: str) -> list[ModelVariable]:
         return [v for v in self.variables.values() if v.causality == causality]

@@ -80,6 +80,7 @@ class System:
         mapping: `instance.variable` of the loop -> variable of the FMU, see `harness.cosimulation.mapping`.
         own: instances whose FMUs are the project's; those of the others run in a process of their own.
         limits: of the others.
+        any_value: instances that put out NaN on purpose; with all others it ends the run.
         optional: inputs and parameters that an FMU may lack, and the value that it then stands for (None: any).
     """
 
@@ -92,6 +93,7 @@ class System:
     optional: Mapping[str, float | None] = field(default_factory=dict)
     own: frozenset[str] = frozenset()
     limits: Limits = USUAL
+    any_value: frozenset[str] = frozenset()
 
     @property
     def ports(self) -> dict[str, list[Port]]:

@@ -40,6 +40,8 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
         WiringError: lists everything that is missing, misnamed or of another type or unit.
     """
     interfaces = {name: Interface(path, system.limits) for name, path in system.instances.items()}
+    for name in system.any_value:
+        interfaces[name].any_value = True
     problems = list(mapping.apply(system, interfaces))
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
     found = Fit(system.without(absent), interfaces, absent)

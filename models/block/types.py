@@ -34,7 +34,7 @@ class _Block:
         module: where its equations stand; the docstring there explains them.
         Parameters, Input, State, Output: the declared named tuples.
         start: (u, p) -> x, the state at t = 0 with the inputs of that instant.
-        output: (x, u, p) -> y; a sampled block does not use u.
+        output: (x, u, p) -> y; a sampled block that uses u passes it on within the instant (native build only).
         tolerates_bad_input: inputs are not refused; the block itself copes with NaN and the absurd.
     """
 

@@ -1,0 +1,101 @@
+"""`driveline faults`: the controller under faults of its signals and on ice, case after case."""
+
+import argparse
+from pathlib import Path
+
+from ..cosimulation.system import BUILD, PLANTS
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, settings
+from .printing import Printer
+
+DESCRIPTION = """\
+Drives the loop through manoeuvres in which a signal of the controller fails, or the wheels lock or spin on ice, and
+judges each run: is the torque reference finite and limited, does the status say what is true, is everything as before
+0.5 s after the fault, is no oscillation left, does the drive train swing no more than without control?
+
+What fails, when, how much and for how long follows from the seed and the number of a case; half of the cases have two
+faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. One matrix
+of kinds of faults and judges is printed, for single faults and pairs together; cells count the runs that are not clean.
+
+The output folder gets faults.csv (all cases with what was measured), the page faults.md and, in its folder figures,
+the matrices as figures. --case runs one case again, and writes its signals and draws them.
+"""
+
+EXAMPLES = """\
+examples:
+  driveline faults                                        1000 cases, both plants
+  driveline faults --cases 10000 --seed 2
+  driveline faults --plant ValidationVehicle --cases 300
+  driveline faults --case 806                             one of them, drawn
+  driveline faults --controller my_controller.fmu         how good is mine?
+  driveline faults --json > faults.json
+
+exit code: 1 if a case is not clean
+"""
+
+MOST_CASES = 1_000_000
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--cases", type=_number, default=1000, metavar="COUNT", help="how many (default: %(default)s)")
+    parser.add_argument("--case", type=_number, metavar="NUMBER", help="only the case of this number, with a figure")
+    add_plant(parser, several=True)
+    add_loop(parser)
+    add_output(parser, "results/faults", "the cases, the page and the figures")
+    add_printing(parser, table=True)
+
+
+def _number(text: str) -> int:
+    number = int(text) if text.isascii() and text.isdecimal() and len(text) <= len(str(MOST_CASES)) else 0
+    if not 1 <= number <= MOST_CASES:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 to {MOST_CASES}")
+    return number
+
+
+def run(args: argparse.Namespace) -> int:
+    plants = list(dict.fromkeys(args.plant or PLANTS))
+    given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
+    injector = _injector()
+    # here and not above: mistakes and help are answered without them
+    from ..faults.campaign import campaign
+    from ..faults.report import announce, write, write_case
+
+    out = Printer(args)
+    if args.case is not None:
+        outcome, files = write_case(args.case, args.seed, injector, given, args.output)
+        outcomes = [outcome]
+        out.say(f"case {outcome.case}")
+    else:
+        outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
+        files = write(outcomes, _arguments(args), args.output)
+    if not out.silent:
+        announce(outcomes)
+    for file in files:
+        out.say(f"written: {file}")
+    out.document({"cases": [outcome.record for outcome in outcomes], "files": files})
+    return int(any(outcome.failed for outcome in outcomes))
+
+
+def _arguments(args: argparse.Namespace) -> str:
+    """What the page says of the command line that made it."""
+    plants = "".join(f" --plant {Path(plant).stem}" for plant in args.plant or ())
+    return f" --cases {args.cases} --seed {args.seed}{plants}"
+
+
+def _injector() -> Path:
+    """The FMU of SignalFaults, built where it is missing or stale.
+
+    Raises:
+        DrivelineError: it cannot be built here.
+    """
+    from fmus.builds import builders
+    from fmus.errors import BuildError
+    from fmus.origin import is_stale
+    from fmus.signal_faults import FMU
+
+    from ..errors import DrivelineError
+
+    path = BUILD / "native" / f"{FMU.name}.fmu"
+    try:
+        return builders("native")[0](FMU, BUILD) if is_stale(path) else path
+    except BuildError as reason:
+        raise DrivelineError(str(reason)) from reason

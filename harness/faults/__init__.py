@@ -1,0 +1,1 @@
+"""The fault campaign: bad signals and ice, and whether the controller copes."""

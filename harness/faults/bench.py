@@ -1,0 +1,194 @@
+"""The test bench: the loop with SignalFaults between the sensors and the controller, and the three runs of a case."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..cosimulation.runs import run
+from ..cosimulation.system import Connection, System, loop
+from ..cosimulation.wiring import fit
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.signals import Signal, lines
+from ..metrics.evaluate import at_samples
+from ..simulate import signals, start
+from .cases import DURATION, SITUATIONS, Case, Fault
+from .catalogue import ICE, LOCK, SPIN
+
+INSTANCE = "faults"
+"""Name of SignalFaults in the loop."""
+
+PASSES = {
+    "omega_1_meas": "omega_1_sent",
+    "T_mot_est": "T_mot_sent",
+    "omega_2_can": "omega_2_sent",
+    "valid": "valid_sent",
+    "counter": "counter_sent",
+}
+"""What the controller gets from SignalFaults, and what that gets in its place."""
+
+SLIPPERY = {"mu": ICE, "c_slip": 1e4}
+"""Parameters of a plant that make ice, the first that it has. Tyres without a limit of friction get slip instead."""
+
+Settings = Mapping[str, Any]
+"""Arguments of `harness.simulate.simulate` for the loop with a plant."""
+
+
+class Runs(NamedTuple):
+    """The runs of a case at the samples of the controller: with the faults of its signals, without these, and without
+    control. What happens on ice happens in all of them."""
+
+    faulty: np.ndarray
+    healthy: np.ndarray
+    undamped: np.ndarray
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the controller may demand, N.m: in total, and beside what the driver demands."""
+
+    T_max: float
+    T_damp_max: float
+
+
+class Bench:
+    """Runs cases; runs without faults that several cases have in common are made once."""
+
+    def __init__(self, injector: Path, settings: Mapping[str, Settings]) -> None:
+        """
+        Args:
+            injector: FMU of SignalFaults.
+            settings: of the loop with each plant.
+        """
+        self._injector = injector
+        self._settings = settings
+        self._made: dict[Any, np.ndarray] = {}
+
+    def runs(self, case: Case) -> Runs:
+        """The three runs of a case."""
+        on_ice = tuple(fault for fault in case.faults if not fault.kind.number)
+        common = case.plant, case.situation, case.noise, on_ice
+        return Runs(
+            faulty=self._run(*common, faults=tuple(fault for fault in case.faults if fault.kind.number)),
+            healthy=self._shared(*common, control=True),
+            undamped=self._shared(*common, control=False),
+        )
+
+    def limits(self, plant: str) -> Limits:
+        """As the parameters of the controller say."""
+        controller = fit(self._system(plant)).interfaces["controller"]
+        given = self._settings[plant]["parameters"]
+
+        def value(name: str) -> float:
+            variable = controller.variables.get(name)
+            start = float(variable.start) if variable and variable.start else np.inf
+            return float(given.get(f"controller.{name}", start))
+
+        return Limits(value("T_max"), value("T_damp_max"))
+
+    def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
+        key = plant, situation, noise, on_ice, control
+        if on_ice:
+            return self._run(*key[:4], control=control)
+        if key not in self._made:
+            self._made[key] = self._run(*key[:4], control=control)
+        return self._made[key]
+
+    def _run(
+        self,
+        plant: str,
+        situation: str,
+        noise: int,
+        on_ice: tuple[Fault, ...],
+        faults: Sequence[Fault] = (),
+        control: bool = True,
+    ) -> np.ndarray:
+        manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
+        system = self._system(plant)
+        results = run(
+            system,
+            DURATION,
+            inputs=signals(manoeuvre, control),
+            parameters=start(manoeuvre, noise)
+            | _slippery(system, on_ice)
+            | dict(self._settings[plant]["parameters"])
+            | _parameters(faults, noise),
+            label=manoeuvre.name,
+        )
+        return at_samples(results)
+
+    def _system(self, plant: str) -> System:
+        given = self._settings[plant]
+        blocks = {place: given[place] for place in ("controller", "motor", "can")}
+        system = loop(plant, given["folder"], given["build"], mapping=given["mapping"], **blocks)
+        return with_faults(system, self._injector)
+
+
+def with_faults(system: System, injector: Path) -> System:
+    """The loop with SignalFaults, an FMU, between the sensors and the controller."""
+    connections: list[Connection] = []
+    for connection in system.connections:
+        name = connection.target.removeprefix("controller.")
+        if connection.target.startswith("controller.") and name in PASSES:
+            connections.append(connection._replace(target=f"{INSTANCE}.{PASSES[name]}"))
+            connections.append(connection._replace(source=f"{INSTANCE}.{name}"))
+        else:
+            connections.append(connection)
+    instances = dict(system.instances)
+    controller = instances.pop("controller")
+    others = {name: instances.pop(name) for name in list(instances) if name != "motor"}
+    return replace(
+        system,
+        instances={**instances, INSTANCE: injector, "controller": controller, **others},
+        connections=tuple(connections),
+        own=system.own | {INSTANCE},
+        any_value=frozenset({INSTANCE}),
+    )
+
+
+def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
+    """Of SignalFaults."""
+    given: dict[str, float] = {f"{INSTANCE}.seed": seed}
+    for k, fault in enumerate(faults, 1):
+        values = {
+            "kind": fault.kind.number,
+            "signal": fault.kind.signal,
+            "begin": fault.begin,
+            "end": fault.end,
+            "size": fault.size,
+            "share": fault.share,
+        }
+        given |= {f"{INSTANCE}.{name}_{k}": value for name, value in values.items()}
+    return given
+
+
+def _slippery(system: System, on_ice: Sequence[Fault]) -> dict[str, float]:
+    """Parameters of the plant on ice."""
+    if not on_ice:
+        return {}
+    has = fit(system).interfaces["plant"].variables
+    return next(({f"plant.{name}": value} for name, value in SLIPPERY.items() if name in has), {})
+
+
+def _with(on_ice: Sequence[Fault], manoeuvre: Manoeuvre) -> Manoeuvre:
+    """The manoeuvre with brakes or torque that make the wheels lock or spin."""
+    for fault in on_ice:
+        pulse = lines((fault.begin, 0.0), (fault.begin, fault.size), (fault.end, fault.size), (fault.end, 0.0))
+        if fault.name == LOCK:
+            manoeuvre = replace(manoeuvre, T_brake=Sum(manoeuvre.T_brake, pulse))
+        elif fault.name == SPIN:
+            manoeuvre = replace(manoeuvre, T_driver=Sum(manoeuvre.T_driver, pulse))
+    return manoeuvre
+
+
+@dataclass(frozen=True)
+class Sum:
+    """The sum of two signals."""
+
+    first: Signal
+    second: Signal
+
+    def __call__(self, t: Any) -> np.ndarray:
+        return self.first(t) + self.second(t)

@@ -1,0 +1,144 @@
+"""What can go wrong: faults of the signals that the controller gets, and what happens on ice."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+MOTOR_SPEED, MOTOR_TORQUE, WHEEL_SPEED = 1, 2, 3
+"""Signals, as SignalFaults numbers them."""
+
+LATE, FROZEN, LOST, GAIN, OFFSET, NOISE, SPIKES, NO_NUMBER, FLAPPING, JUMPING = range(1, 11)
+"""What can happen to them, as SignalFaults numbers it."""
+
+ICE = 0.1
+"""Friction coefficient of ice."""
+
+Draw = Callable[[np.random.Generator], float]
+
+
+def fixed(value: float) -> Draw:
+    return lambda _: value
+
+
+def uniform(low: float, high: float) -> Draw:
+    return lambda rng: float(rng.uniform(low, high))
+
+
+def by_ratio(low: float, high: float) -> Draw:
+    """Uniform in the logarithm."""
+    return lambda rng: float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def either_sign(draw: Draw) -> Draw:
+    return lambda rng: draw(rng) * float(rng.choice((-1.0, 1.0)))
+
+
+ONE = fixed(1.0)
+LASTS = by_ratio(0.01, 1.0)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One thing that can go wrong.
+
+    Attributes:
+        signal, number: which signal and what happens to it, as SignalFaults numbers them; 0 for what is no fault of a
+            signal.
+        size, share: of the fault, drawn anew for each case.
+        meaning: of the size, with its unit.
+        lasts: how long in s; None: to the end of the run.
+        tolerable: the damping has to go on.
+    """
+
+    name: str
+    signal: int
+    number: int
+    meaning: str
+    size: Draw = ONE
+    share: Draw = ONE
+    lasts: Draw | None = LASTS
+    tolerable: bool = False
+
+
+def _of_each(signal: int, called: str, unit: str, largest: float, noise: float) -> tuple[Kind, ...]:
+    """What can happen to every signal."""
+
+    def kind(name: str, number: int, meaning: str, size: Draw = ONE, share: Draw = ONE) -> Kind:
+        return Kind(f"{called} {name}", signal, number, meaning, size, share, tolerable=signal == WHEEL_SPEED)
+
+    return (
+        kind("lost", LOST, "a share of 0 to 100 % does not arrive", share=uniform(0.0, 1.0)),
+        kind("late", LATE, "4 ms to 0.5 s", by_ratio(0.004, 0.5)),
+        kind("frozen", FROZEN, "the last value stays"),
+        kind("zero", GAIN, "reads 0", fixed(0.0)),
+        kind("offset", OFFSET, f"±5 to ±{largest:g} {unit}", either_sign(by_ratio(5.0, largest))),
+        kind("wrong sign", GAIN, "times -1", fixed(-1.0)),
+        kind("NaN", NO_NUMBER, "no number"),
+        kind("noise", NOISE, f"ten times the usual, {noise:g} {unit}", fixed(noise)),
+        kind(
+            "spikes",
+            SPIKES,
+            f"±10 to ±{3 * largest:g} {unit} in 0.5 to 20 % of the samples",
+            by_ratio(10.0, 3 * largest),
+            by_ratio(0.005, 0.2),
+        ),
+    )
+
+
+_KINDS = (
+    *_of_each(MOTOR_SPEED, "motor speed", "rad/s", 300.0, 1.5),
+    Kind("motor speed gain", MOTOR_SPEED, GAIN, "times 0.3 to 2", by_ratio(0.3, 2.0)),
+    *_of_each(MOTOR_TORQUE, "motor torque", "N.m", 100.0, 3.0),
+    Kind(
+        "motor torque ±30 %",
+        MOTOR_TORQUE,
+        GAIN,
+        "times 0.7 to 1.3, to the end",
+        uniform(0.7, 1.3),
+        lasts=None,
+        tolerable=True,
+    ),
+    *_of_each(WHEEL_SPEED, "wheel speed", "rad/s", 300.0, 1.5),
+    Kind("wheel speed gain", WHEEL_SPEED, GAIN, "times 0.3 to 2", by_ratio(0.3, 2.0), tolerable=True),
+    Kind(
+        "wheel radius ±5 %",
+        WHEEL_SPEED,
+        GAIN,
+        "times 0.95 to 1.05, to the end",
+        uniform(0.95, 1.05),
+        lasts=None,
+        tolerable=True,
+    ),
+    Kind(
+        "validity flaps",
+        WHEEL_SPEED,
+        FLAPPING,
+        "turned over and back every 2 to 200 ms",
+        by_ratio(0.002, 0.2),
+        tolerable=True,
+    ),
+    Kind(
+        "counter jumps",
+        WHEEL_SPEED,
+        JUMPING,
+        "to any number in 5 to 100 % of the samples",
+        share=uniform(0.05, 1.0),
+        tolerable=True,
+    ),
+    Kind("wheel lock on ice", 0, 0, "brakes of 4000 N.m", fixed(4000.0), lasts=uniform(0.2, 0.8), tolerable=True),
+    Kind("wheel spin on ice", 0, 0, "80 N.m more than before", fixed(80.0), lasts=uniform(0.2, 0.8), tolerable=True),
+)
+
+KINDS = {kind.name: kind for kind in _KINDS}
+
+LOCK, SPIN = "wheel lock on ice", "wheel spin on ice"
+
+
+def can_be_together(first: Kind, second: Kind) -> bool:
+    """Of two kinds, whether they are a pair: SignalFaults delays one signal at a time, and wheels lock or spin."""
+    same_slot = first.number == second.number and first.number in (0, LATE)
+    return first is not second and not same_slot
+
+
+PAIRS = tuple((a, b) for k, a in enumerate(_KINDS) for b in _KINDS[k + 1 :] if can_be_together(a, b))
