@@ -1,4 +1,4 @@
-"""The file of an FMU: the same content gives the same bytes, with sorted names and fixed dates."""
+"""The file of an FMU: the same content gives the same bytes, with sorted names and the date of the release."""
 
 import hashlib
 import os
@@ -7,7 +7,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-ZIP_DATE = (1980, 1, 1, 0, 0, 0)
+from .release import date
 
 
 def write_archive(files: Mapping[str, bytes], target: Path) -> None:
@@ -33,7 +33,7 @@ def write_archive(files: Mapping[str, bytes], target: Path) -> None:
 def _write(files: Mapping[str, bytes], target: Path) -> None:
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name in sorted(files):
-            entry = zipfile.ZipInfo(name, ZIP_DATE)
+            entry = zipfile.ZipInfo(name, date().timetuple()[:6])
             entry.create_system, entry.external_attr = 3, 0o100644 << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, files[name])

@@ -33,6 +33,11 @@ class Fmu:
         return self.block.module
 
     @property
+    def is_of_the_project(self) -> bool:
+        """Whether the block is one of the project's, not of a file of the user's own."""
+        return self.module.startswith("models.")
+
+    @property
     def equations(self) -> str:
         """Docstring of that module."""
         return sys.modules[self.module].__doc__ or ""

@@ -12,6 +12,7 @@ class BuildKind:
         capabilities: attributes of the element CoSimulation that are not the same in every build.
         log_categories: names and descriptions.
         needs: what the host must have, as HTML.
+        external: what it needs besides itself, as plain text; empty for nothing.
         inputs: how inputs are taken over a communication step, as HTML.
         source_files: C files in the folder sources that together are the FMU.
     """
@@ -20,5 +21,6 @@ class BuildKind:
     capabilities: dict[str, str]
     log_categories: dict[str, str]
     needs: str
+    external: str = ""
     inputs: str = "Inputs are held over a communication step."
     source_files: tuple[str, ...] = ()

@@ -1,7 +1,10 @@
 """What an output depends on, found by calling the block's own functions with symbols."""
 
+from collections.abc import Iterable, Iterator
+from itertools import product
 from typing import Any
 
+from models.block.declaration import Boolean, variables
 from models.block.types import Block
 
 from ..symbol import Symbol
@@ -37,16 +40,35 @@ def _without_sources(value: Any) -> Any:
     return make(items)
 
 
+def _cases(block: Block) -> Iterator[dict[str, bool]]:
+    """The values that the Boolean parameters can have; what one chooses and bars at the same time is no dependency."""
+    names = [v.name for v in variables(block.Parameters) if isinstance(v.declaration, Boolean)]
+    for values in product((False, True), repeat=len(names)):
+        yield dict(zip(names, values, strict=True))
+
+
+def _sources_in_all(block: Block, cases: Iterable[Any]) -> dict[str, frozenset[str]]:
+    """For every output what it was computed from in one or another of several outputs of the block."""
+    columns = zip(*cases, strict=True)
+    return {
+        name: frozenset().union(*map(sources, values))
+        for name, values in zip(block.Output._fields, columns, strict=True)
+    }
+
+
 def output_dependencies(block: Block) -> dict[str, frozenset[str]]:
     """For every output the inputs that it depends on directly."""
     start = block.start(block.Input(), block.Parameters())
     u, p = _symbols(block.Input, named=True), _symbols(block.Parameters, named=False)
-    y = block.output(_without_sources(start), u, p)
-    return {name: sources(value) for name, value in zip(y._fields, y, strict=True)}
+    x = _without_sources(start)
+    return _sources_in_all(block, (block.output(x, u, p._replace(**case)) for case in _cases(block)))
 
 
 def initial_dependencies(block: Block) -> dict[str, frozenset[str]]:
     """For every output the inputs and parameters that its initial value depends on."""
     u, p = _symbols(block.Input, named=True), _symbols(block.Parameters, named=True)
-    y = block.output(block.start(u, p), u, p)
-    return {name: sources(value) for name, value in zip(y._fields, y, strict=True)}
+    every = _sources_in_all(block, [block.output(block.start(u, p), u, p)])
+    chosen = [p._replace(**case) for case in _cases(block)]
+    known = _sources_in_all(block, (block.output(block.start(u, p), u, p) for p in chosen))
+    switches = frozenset(next(_cases(block)))
+    return {name: known[name] | (every[name] & switches) for name in every}

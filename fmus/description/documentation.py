@@ -51,8 +51,10 @@ SAMPLED = (
 
 
 def documentation(fmu: Fmu, kind: BuildKind) -> dict[str, bytes]:
-    """Page, picture and licence by their names in the FMU."""
+    """Page, picture, licence and what the FMU needs besides itself, by their names in the FMU."""
     files = {"documentation/index.html": page(fmu, kind).encode(), "model.png": picture(fmu.block)}
+    if kind.external:
+        files["documentation/externalDependencies.txt"] = kind.external.encode()
     if LICENSE.exists():
         files["documentation/licenses/license.txt"] = LICENSE.read_bytes()
     return files

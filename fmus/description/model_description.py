@@ -9,6 +9,7 @@ from models.block.declaration import Boolean, Enumeration, Integer, Real
 from models.block.types import SampledBlock
 
 from ..fmu import Fmu
+from ..release import ABOUT, date
 from .build_kind import BuildKind
 from .dependencies import initial_dependencies, output_dependencies
 from .units import base_exponents
@@ -24,13 +25,15 @@ CAPABILITIES = {
     "canSerializeFMUstate": "true",
 }
 
-DATE = "1980-01-01T00:00:00Z"
-"""Fixed, so that the same content gives the same bytes; it is the first that a zip file can hold."""
-
 
 def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
-    """The XML with that GUID."""
+    """The XML with that GUID.
+
+    Raises:
+        ValueError: the names of two variables differ in case only, which not every tool tells apart.
+    """
     all_variables = interface(fmu.block)
+    _check_names(all_variables)
     root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
@@ -38,9 +41,10 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
         guid=guid,
         description=fmu.block.description,
         generationTool=kind.tool,
-        generationDateAndTime=DATE,
+        generationDateAndTime=f"{date():%Y-%m-%dT%H:%M:%SZ}",
         variableNamingConvention="flat",
     )
+    root.attrib.update(ABOUT if fmu.is_of_the_project else {})
     _add_co_simulation(root, fmu, kind)
     _add_units(root, all_variables)
     _add_enumerations(root, all_variables)
@@ -55,6 +59,14 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     _add_structure(root, fmu, all_variables)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def _check_names(all_variables: Iterable[Variable]) -> None:
+    known: dict[str, str] = {}
+    for variable in all_variables:
+        other = known.setdefault(variable.name.casefold(), variable.name)
+        if other != variable.name:
+            raise ValueError(f"the variables {other} and {variable.name} differ in case only")
 
 
 def _add_co_simulation(root: Element, fmu: Fmu, kind: BuildKind) -> None:
@@ -109,6 +121,8 @@ def _add_variable(listed: Element, variable: Variable, sampled: bool) -> None:
     start = {} if variable.start is None else {"start": _text(variable.start)}
     scalar = SubElement(listed, "ScalarVariable", attributes)
     tag, attributes = _type(declaration)
+    if variable.causality != "parameter" and variable.nominal is not None:
+        attributes["nominal"] = _text(variable.nominal)
     SubElement(scalar, tag, attributes | start)
 
 
@@ -122,8 +136,7 @@ def _type(declaration: Any) -> tuple[str, dict[str, str]]:
         case Integer():
             return "Integer", _limits(declaration, Integer(""))
     limits = _limits(declaration, Real("1", ""))
-    nominal = {} if declaration.nominal is None else {"nominal": _text(declaration.nominal)}
-    return "Real", {"unit": declaration.unit, **limits, **nominal}
+    return "Real", {"unit": declaration.unit, **limits}
 
 
 def _limits(declaration: Any, unlimited: Any) -> dict[str, str]:

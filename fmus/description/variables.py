@@ -5,6 +5,8 @@ from typing import Any, NamedTuple
 from models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
 from models.block.operators import LARGEST
 
+from .units import NOMINAL
+
 
 class Variable(NamedTuple):
     """One variable of an FMU.
@@ -33,6 +35,13 @@ class Variable(NamedTuple):
         """Its unit; empty for what has none."""
         unit = self.declaration.unit if isinstance(self.declaration, Real) else ""
         return "" if unit == "1" else unit
+
+    @property
+    def nominal(self) -> float | None:
+        """How large it typically is; None for what no unit tells it of."""
+        if not isinstance(self.declaration, Real):
+            return None
+        return self.declaration.nominal or NOMINAL.get(self.declaration.unit)
 
     def bounds(self) -> tuple[Any, Any]:
         """Smallest and largest value allowed; both finite, so that a comparison refuses inf and NaN."""

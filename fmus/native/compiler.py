@@ -78,6 +78,8 @@ def all_binaries(name: str, sources: Mapping[str, bytes]) -> dict[str, bytes]:
         f"binaries/linux64/{name}.so": _compiled([*zig, "-target", LINUX], f"{name}.so", sources),
         f"binaries/win64/{name}.dll": _compiled_for_windows(zig, f"{name}.dll", sources),
         f"binaries/darwin64/{name}.dylib": universal(on_mac),
+        # the name of FMI 3, which some tools look for in an FMU of FMI 2.0 as well
+        f"binaries/aarch64-darwin/{name}.dylib": on_mac[MAC_ARM],
     }
 
 

@@ -20,6 +20,16 @@ from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES, LOG_DISCARD
 from .bundle import bundle, package_name, package_text, script_text
 
+EXTERNAL = """\
+Python 3.11 or later with its standard library, in the process of the host:
+- a host that is a Python program has it;
+- on Linux start another with LD_PRELOAD set to libpython3.11.so.1.0 (or a later one), and with PYTHONHOME if that
+  Python is not in a standard place;
+- on Windows have the python3.dll of such a Python on the PATH.
+On Linux also glibc 2.32 and libstdc++ with GLIBCXX_3.4.30 or later.
+No package needs to be installed in that Python.
+"""
+
 SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
 """Modules of PythonFMU that an FMU needs when it runs."""
 
@@ -50,6 +60,7 @@ def python_kind() -> BuildKind:
         needs="""The model is Python code inside this file, on the
 standard library alone. The host process must be a Python of version 3.11 or later, or have loaded
 libpython with its symbols visible (on Linux: LD_PRELOAD).""",
+        external=EXTERNAL,
     )
 
 

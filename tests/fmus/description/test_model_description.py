@@ -1,16 +1,29 @@
 """What an FMU says of itself is complete and true."""
 
 import math
+import sys
 import zipfile
+from dataclasses import replace
+from importlib.metadata import version
+from itertools import product
+from typing import Annotated, NamedTuple
 
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
 from fmus.catalogue import FMUS
+from fmus.description.build_kind import BuildKind
 from fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
+from fmus.description.model_description import model_description
 from fmus.description.units import base_exponents
 from fmus.description.variables import interface
+from fmus.errors import BuildError
+from fmus.fmu import Fmu
+from fmus.release import DATE, VERSION, date
+from models.block.declaration import Boolean, Real
+from models.block.operators import where
+from models.block.types import ContinuousBlock
 
 every_fmu = pytest.mark.parametrize("name", FMUS)
 
@@ -76,6 +89,55 @@ def test_an_unknown_unit_is_named():
         base_exponents("lbf.ft")
 
 
+def test_a_brake_does_not_act_on_the_body_at_once():
+    """In the design model through the tyre alone; with a recorded load it does not act at all."""
+    assert output_dependencies(FMUS["TwoMassDriveline"].block)["a_body"] == {"slope", "T_load_rec"}
+
+
+def test_what_a_boolean_parameter_chooses_and_bars_is_no_dependency_but_the_parameter_is_one():
+    class Chosen(NamedTuple):
+        on: Annotated[bool, Boolean("choose")] = False
+
+    class Two(NamedTuple):
+        a: Annotated[float, Real("1", "one")] = 0.0
+        b: Annotated[float, Real("1", "another")] = 0.0
+
+    block = ContinuousBlock(
+        name="Choice",
+        description="",
+        module=__name__,
+        Parameters=Chosen,
+        Input=Two,
+        State=Two,
+        Output=Two,
+        start=lambda u, p: Two(),
+        output=lambda x, u, p: Two(where(p.on, where(p.on, 0.0, u.a), u.b), where(p.on, u.a, u.b)),
+        derivative=lambda x, u, p: Two(),
+        step_size=0.001,
+    )
+    assert output_dependencies(block) == {"a": {"b"}, "b": {"a", "b"}}
+    assert initial_dependencies(block) == {"a": {"on", "b"}, "b": {"on", "a", "b"}}
+
+
+@every_fmu
+def test_every_output_that_is_said_to_follow_an_input_does(name):
+    """At one of some states at least, for one value of each Boolean parameter."""
+    block = FMUS[name].block
+    unseen = {(y, u) for y, on in output_dependencies(block).items() for u in on}
+    for values in product((False, True), (0.0, 10.0)):
+        p = block.Parameters()
+        given = dict(zip(("recorded_load", "v_0"), values, strict=True))
+        p = p._replace(**{n: value for n, value in given.items() if n in p._fields})
+        u = block.Input()
+        x = block.start(u, p)
+        before = block.output(x, u, p)._asdict()
+        for y, changed in sorted(unseen):
+            after = block.output(x, u._replace(**{changed: getattr(u, changed) + 0.3}), p)._asdict()
+            if after[y] != before[y]:
+                unseen.remove((y, changed))
+    assert unseen == set()
+
+
 def test_the_measured_speed_is_all_that_the_motor_feeds_through():
     assert output_dependencies(FMUS["MotorTorqueLoop"].block) == {
         "T_mot": frozenset(),
@@ -117,6 +179,59 @@ def test_an_output_changes_only_with_what_it_is_said_to_depend_on(name):
         if variable.causality == "input":
             now = block.output(x, new_u, p)._asdict()
             assert all(variable.name in at_once[y] for y in before if now[y] != before[y])
+
+
+@every_fmu
+def test_every_real_input_and_output_tells_how_large_it_is(description):
+    for v in description.modelVariables:
+        if v.causality != "parameter" and v.type == "Real":
+            assert float(v.nominal) > 0.0, v.name
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_no_two_names_differ_in_case_only(name):
+    names = [variable.name for variable in interface(FMUS[name].block)]
+    assert len({each.casefold() for each in names}) == len(names)
+
+
+def test_names_that_differ_in_case_only_are_refused():
+    block = FMUS["WheelSpeedCan"].block
+
+    class Twice(NamedTuple):
+        T_land: Annotated[float, Real("N.m", "a torque")] = 0.0
+        t_land: Annotated[float, Real("s", "a time")] = 0.0
+
+    fmu = Fmu(replace(block, Input=Twice), stop_time=1.0)
+    with pytest.raises(ValueError, match="the variables T_land and t_land differ in case only"):
+        model_description(fmu, BuildKind("", {}, {}, ""), "")
+
+
+@every_fmu
+def test_it_says_whose_it_is_and_of_which_release(description):
+    assert (description.version, description.author) == (VERSION, "the driveline-damping authors")
+    assert "driveline-damping" in description.copyright
+    assert description.license.startswith("BSD-3-Clause")
+    assert description.generationDateAndTime == f"{DATE}T00:00:00Z"
+    assert version("driveline-damping") == VERSION
+
+
+def test_of_a_block_of_the_users_own_nothing_is_said_that_only_the_user_knows():
+    fmu = Fmu(replace(FMUS["WheelSpeedCan"].block, module="my_can"), stop_time=1.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "my_can", sys.modules[__name__])
+        text = model_description(fmu, BuildKind("", {}, {}, ""), "").decode()
+    assert "author" not in text
+    assert "license" not in text
+
+
+def test_the_date_can_be_given_as_for_every_reproducible_build(monkeypatch):
+    for seconds, expected in ((315532800, "1980-01-01 00:00:00"), (4354819199, "2107-12-31 23:59:59")):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", str(seconds))
+        assert f"{date():%Y-%m-%d %H:%M:%S}" == expected
+    for seconds in ("315532799", "4354819200", "-1", "", "today", "1e9"):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", seconds)
+        with pytest.raises(BuildError, match=f"SOURCE_DATE_EPOCH = {seconds} is refused"):
+            date()
 
 
 def test_a_model_that_branches_on_data_is_caught():

@@ -50,6 +50,12 @@ def test_it_exports_fmi_functions_alone_and_asks_for_an_old_libc(native, tmp_pat
 
 
 @every_fmu
+def test_it_needs_nothing_besides_itself(native, name):
+    with zipfile.ZipFile(native / f"{name}.fmu") as archive:
+        assert not [entry for entry in archive.namelist() if "externalDependencies" in entry]
+
+
+@every_fmu
 def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
     assert native_builder(FMUS[name], tmp_path).read_bytes() == (native / f"{name}.fmu").read_bytes()
 

@@ -30,6 +30,7 @@ def test_one_small_file_holds_all_platforms_and_a_rebuild_gives_the_same_bytes(b
     with zipfile.ZipFile(path) as archive:
         names = set(archive.namelist())
     assert {f"binaries/linux64/{name}.so", f"binaries/win64/{name}.dll", f"binaries/darwin64/{name}.dylib"} <= names
+    assert f"binaries/aarch64-darwin/{name}.dylib" in names
     assert builder(FMUS[name], tmp_path / "twice").read_bytes() == path.read_bytes()
 
 

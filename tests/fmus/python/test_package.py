@@ -12,6 +12,7 @@ import pytest
 from fmus.catalogue import FMUS
 from fmus.python.bundle import imported, source_path
 from fmus.python.packaging import build
+from fmus.release import DATE
 from tests import ROOT
 from tests.fmus.host import opened
 
@@ -101,13 +102,19 @@ def test_the_archive_holds_what_runs_and_nothing_else(built, name):
         infos = archive.infolist()
     names = [info.filename for info in infos]
     assert names == sorted(names)
-    assert {info.date_time for info in infos} == {(1980, 1, 1, 0, 0, 0)}
+    assert {info.date_time for info in infos} == {(*map(int, DATE.split("-")), 0, 0, 0)}
     assert {info.compress_type for info in infos} == {zipfile.ZIP_DEFLATED}
     assert {f"binaries/{where}" for where in (f"linux64/{name}.so", f"win64/{name}.dll")} <= set(names)
     assert not [n for n in names if "builder" in n or "deploy" in n or "__pycache__" in n or n.endswith(".pyc")]
     carried = {Path(n).stem for n in names if "/models/" in n}
     blocks = {fmu.module.split(".")[1] for fmu in FMUS.values()}
     assert carried & blocks == {FMUS[name].module.split(".")[1]}
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_what_it_needs_of_the_machine_is_told_where_the_standard_says(built, name):
+    with zipfile.ZipFile(built / f"{name}.fmu") as archive:
+        assert "Python 3.11 or later" in archive.read("documentation/externalDependencies.txt").decode()
 
 
 @pytest.mark.parametrize("name", FMUS)

@@ -1,0 +1,35 @@
+"""Which release of the project FMUs are of, and who made it."""
+
+import os
+from datetime import UTC, datetime
+
+from .errors import BuildError
+
+VERSION, DATE = "0.1.0", "2026-11-21"
+"""Of the sources; the date goes with the version, so that the same sources give the same bytes on any day."""
+
+AUTHOR = "the driveline-damping authors"
+ABOUT = {
+    "version": VERSION,
+    "author": AUTHOR,
+    "copyright": f"Copyright (c) 2026, {AUTHOR}",
+    "license": "BSD-3-Clause, see documentation/licenses/license.txt",
+}
+"""Attributes of the description of the project's own FMUs."""
+
+EARLIEST, LATEST = 315_532_800, 4_354_819_199
+"""In s since 1970: the years 1980 to 2107, which the dates in a zip file can tell."""
+
+
+def date() -> datetime:
+    """When an FMU that is built now was made: the date of the release, or that of the variable SOURCE_DATE_EPOCH.
+
+    Raises:
+        BuildError: the variable is no number of seconds that a zip file can tell.
+    """
+    seconds = os.environ.get("SOURCE_DATE_EPOCH")
+    if seconds is None:
+        return datetime.fromisoformat(DATE).replace(tzinfo=UTC)
+    if not (seconds.isdecimal() and EARLIEST <= int(seconds) <= LATEST):
+        raise BuildError(f"SOURCE_DATE_EPOCH = {seconds} is refused; allowed is {EARLIEST} to {LATEST} (s since 1970)")
+    return datetime.fromtimestamp(int(seconds), UTC)
