@@ -1,50 +1,86 @@
 """`driveline check`: compliance of FMUs, for people and for CI."""
 
 import argparse
+import json
 from pathlib import Path
 
-from .options import add_printing
-from .printing import Printer
+from .options import add_limits, add_printing, limits
 
 DESCRIPTION = """\
 Checks any FMI 2.0 Co-Simulation FMU: its archive, its model description (with fmpy, and what fmpy does
 not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
-reset, several instances, saved states), the latter in processes of their own.
+reset, several instances, saved states), the latter in a process of its own.
 
-Exit code 0: nothing found; 1: findings, each on a line of its own; 2: no such file.
+A finding is an error (hosts fail), a warning (tools complain) or a note (people miss something).
+Exit code 0: no errors; 1: errors, with --strict any finding; 2: no such file. docs/check.md lists the rules.
 """
 
 EXAMPLES = """\
 examples:
   driveline check build/TwoMassDriveline.fmu
-  driveline check build/*.fmu
-  driveline check --json build/*.fmu > findings.json
+  driveline check --strict build/*.fmu
+  driveline check --quick --ignore archive-pages --ignore origin their_car.fmu
+  driveline check --format junit build/*.fmu > findings.xml
 """
+
+FORMATS = ("text", "json", "junit")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     files = parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
     files.complete = "file"  # type: ignore[attr-defined]
+    parser.add_argument("--strict", action="store_true", help="warnings and notes count as errors do")
+    parser.add_argument("--quick", action="store_true", help="of the behaviours only the first steps of a run")
+    parser.add_argument(
+        "--ignore", action="append", default=[], metavar="RULE", type=rule, help="leave out this rule (repeatable)"
+    )
+    parser.add_argument(
+        "--format", choices=FORMATS, default="text", help="lines, one document or JUnit XML (default: %(default)s)"
+    )
+    add_limits(parser)
     add_printing(parser, table=True)
+
+
+def rule(text: str) -> str:
+    """The name of a rule."""
+    from ..compliance.check import RULES
+    from ..names import nearest
+
+    names = [rule.name for rule in RULES]
+    if text not in names:
+        raise argparse.ArgumentTypeError(f"there is no rule {text!r}; {nearest(text, names)}")
+    return text
 
 
 def run(args: argparse.Namespace) -> int:
     from ..compliance.check import check
+    from ..compliance.junit import junit
+    from ..compliance.rule import Severity
     from ..reports.terminal import print_verdict
 
-    out = Printer(args)
-    found = []
-    for path in args.fmus:
-        out.say(str(path))
-        verdicts = []
-        for verdict in check(path):
+    style = "json" if args.json else args.format
+    failing = {severity.value for severity in Severity} if args.strict else {Severity.ERROR.value}
+    found = {}
+    for path in dict.fromkeys(args.fmus):
+        if style == "text" and not args.quiet:
+            print(path)
+        found[str(path)] = verdicts = []
+        for verdict in check(path, limits(args), args.quick, args.ignore):
             verdicts.append(verdict)
-            if not out.silent:
-                print_verdict(verdict.title, verdict.problems)
-            elif not out.json:
-                print("".join(f"{path}: {problem}\n" for problem in verdict.problems), end="")
-        found.append({"fmu": path, "verdicts": [verdict._asdict() for verdict in verdicts]})
-    findings = sum(len(verdict["problems"]) for fmu in found for verdict in fmu["verdicts"])
-    out.say(f"{findings or 'no'} finding{'s' * (findings != 1)} in {len(args.fmus)} FMU(s)")
-    out.document({"findings": findings, "fmus": found})
-    return 1 if findings else 0
+            if style == "text" and not args.quiet:
+                print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule)
+            elif style == "text":
+                print("".join(f"{path}: {verdict.severity}: {problem}\n" for problem in verdict.problems), end="")
+    every = [verdict for verdicts in found.values() for verdict in verdicts]
+    counts = {
+        severity.value: sum(len(v.problems) for v in every if v.severity == severity.value) for severity in Severity
+    }
+    if style == "json":
+        fmus = [{"fmu": name, "verdicts": [v._asdict() for v in verdicts]} for name, verdicts in found.items()]
+        print(json.dumps({"findings": sum(counts.values()), **counts, "fmus": fmus}, indent=2))
+    elif style == "junit":
+        print(junit(found, failing))
+    elif not args.quiet:
+        told = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items() if count)
+        print(f"{told or 'no findings'} in {len(found)} FMU(s)")
+    return 1 if any(counts[severity] for severity in failing) else 0

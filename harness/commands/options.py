@@ -13,6 +13,7 @@ from fmus.errors import BuildError
 from fmus.options import add_parameter_files, folder, output_folder
 from fmus.origin import is_stale, origin_of
 
+from ..cosimulation.limits import USUAL, Limits
 from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, System, chosen_build, loop
 from ..errors import DrivelineError
 
@@ -91,6 +92,7 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=seed, default=1, help="of the sensor noise (default: %(default)s)")
     parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     add_fmus(parser)
+    add_limits(parser)
 
 
 def add_fmus(parser: argparse.ArgumentParser) -> None:
@@ -102,6 +104,29 @@ def add_fmus(parser: argparse.ArgumentParser) -> None:
         help="of the built FMUs, with the native ones in its folder native (default: %(default)s)",
     )
     action.complete = "directory"  # type: ignore[attr-defined]
+
+
+def add_limits(parser: argparse.ArgumentParser) -> None:
+    """What FMUs that are not ours may take; `limits` reads it."""
+    parser.add_argument(
+        "--time-limit",
+        type=seconds,
+        default=USUAL.call,
+        metavar="SECONDS",
+        help="how long a call of an FMU that is given by its path may last (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--unpacked-limit",
+        type=megabytes,
+        default=USUAL.unpacked,
+        metavar="MB",
+        help=f"how much it may unpack to (default: {USUAL.unpacked / 1e6:.0f})",
+    )
+
+
+def limits(args: argparse.Namespace) -> Limits:
+    """What the options of `add_limits` say."""
+    return Limits(args.time_limit, args.unpacked_limit)
 
 
 def add_output(parser: argparse.ArgumentParser, default: str, files: str) -> None:
@@ -161,6 +186,17 @@ def seconds(text: str) -> float:
     return number
 
 
+def megabytes(text: str) -> int:
+    """A size above 0 MB, in bytes."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not (isfinite(number) and number > 0.0):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size above 0 MB")
+    return round(number * 1e6)
+
+
 def blocks(args: argparse.Namespace) -> dict[str, Any]:
     """The blocks of the loop beside the plant."""
     return {place: getattr(args, place) for place in OTHERS}
@@ -176,13 +212,14 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     from ..cosimulation.mapping import parsed
 
     mapping = parsed(args.map)
-    system = loop(plant, args.fmus, build, mapping=mapping, **blocks(args))
+    system = loop(plant, args.fmus, build, mapping=mapping, limits=limits(args), **blocks(args))
     return {
         "parameters": _from_files(args, system) | dict(args.assignments),
         "seed": args.seed,
         "folder": args.fmus,
         "build": build,
         "mapping": mapping,
+        "limits": limits(args),
         **blocks(args),
     }
 

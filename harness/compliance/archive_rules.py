@@ -1,49 +1,87 @@
-"""Rules for the archive of an FMU."""
+"""Rules for the archive of an FMU, which are given its path; those for what is never unpacked the limits as well."""
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
-from zipfile import BadZipFile, ZipFile
 
-EXPECTED = {
-    "modelDescription.xml": "FMI asks for it",
-    "documentation/index.html": "the page that tools show",
-    "model.png": "the picture that tools show",
-}
+from ..cosimulation import archive
+from ..cosimulation.limits import Limits
+from .rule import Rule, Severity
+
+PAGES = {"documentation/index.html": "the page that tools show", "model.png": "the picture that tools show"}
 
 EXTENSIONS = {".so", ".dll", ".dylib"}
 
 
-def archive(path: Path) -> Iterator[str]:
-    """Files that are missing, or that some host cannot unpack or should not find."""
-    try:
-        with ZipFile(path) as file:
-            broken = file.testzip()
-            entries = file.infolist()
-    except BadZipFile as error:
-        yield f"it is not a zip archive: {error}"
-        return
-    if broken:
-        yield f"{broken} is damaged"
-    names = [entry.orig_filename for entry in entries]
-    for name, why in EXPECTED.items():
+def _refusing(name: str, title: str) -> Rule:
+    """What `harness.cosimulation.archive` refuses under that name."""
+
+    def problems(path: Path, limits: Limits) -> Iterator[str]:
+        found = archive.problems(archive.entries(path), limits)
+        return (problem.text for problem in found if problem.rule == name)
+
+    return Rule(name, Severity.ERROR, title, problems)
+
+
+def damaged(path: Path) -> Iterator[str]:
+    """Entries that do not unpack to what they were."""
+    if damage := archive.damage(path):
+        yield damage
+
+
+def duplicates(path: Path) -> Iterator[str]:
+    """Entries of the same name."""
+    for name, count in sorted(Counter(_names(path)).items()):
+        if count > 1:
+            yield f"{name} is there more than once"
+
+
+def not_ascii(path: Path) -> Iterator[str]:
+    """Names that some hosts do not unpack as they are."""
+    for name in _names(path):
+        if not (name.isascii() and name.isprintable()):
+            yield f"{name} is not plain ASCII"
+
+
+def leftovers(path: Path) -> Iterator[str]:
+    """Files that no host should find."""
+    for name in _names(path):
+        if name.endswith(".pyc") or "__pycache__" in name.split("/"):
+            yield f"{name} is a leftover of the Python that built it"
+
+
+def no_binary(path: Path) -> Iterator[str]:
+    """Whether there are sources alone."""
+    binaries = {PurePosixPath(name).suffix for name in _names(path) if name.startswith("binaries/")}
+    if not EXTENSIONS & binaries:
+        yield "there is no binary for any platform"
+
+
+def no_pages(path: Path) -> Iterator[str]:
+    """What people look at first."""
+    names = _names(path)
+    for name, why in PAGES.items():
         if name not in names:
             yield f"{name} is missing ({why})"
-    binaries = {PurePosixPath(name).suffix for name in names if name.startswith("binaries/")}
-    if not binaries & EXTENSIONS:
-        yield "there is no binary for any platform"
-    for name in sorted({name for name in names if names.count(name) > 1}):
-        yield f"{name} is there more than once"
-    for name in names:
-        yield from _path_problems(name)
 
 
-def _path_problems(name: str) -> Iterator[str]:
-    parts = PurePosixPath(name).parts
-    if "\\" in name:
-        yield f"{name} has a backslash in its path"
-    if name.startswith("/") or ".." in parts:
-        yield f"{name} leaves the folder of the FMU"
-    if not name.isascii():
-        yield f"{name} is not plain ASCII"
-    if "__pycache__" in parts or name.endswith(".pyc"):
-        yield f"{name} is a leftover of the Python that built it"
+def _names(path: Path) -> list[str]:
+    return [entry.orig_filename for entry in archive.entries(path)]
+
+
+REFUSING_RULES = (
+    _refusing("archive-size", "the archive unpacks to no more than the limit"),
+    _refusing("archive-path", "no entry of the archive leads outside"),
+    _refusing("archive-link", "no entry of the archive is a link"),
+    _refusing("archive-encrypted", "no entry of the archive is encrypted"),
+    _refusing("archive-method", "the archive is packed as FMI asks"),
+)
+
+ARCHIVE_RULES = (
+    Rule("archive-damaged", Severity.ERROR, "the archive is not damaged", damaged),
+    Rule("archive-duplicate", Severity.WARNING, "no entry of the archive is there twice", duplicates),
+    Rule("archive-name", Severity.WARNING, "the names in the archive are plain ASCII", not_ascii),
+    Rule("archive-binary", Severity.WARNING, "there is a binary", no_binary),
+    Rule("archive-leftover", Severity.NOTE, "nothing was left behind in the archive", leftovers),
+    Rule("archive-pages", Severity.NOTE, "there are a page and a picture", no_pages),
+)

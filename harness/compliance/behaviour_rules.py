@@ -1,15 +1,15 @@
-"""Rules for what an FMU does. Each function runs it and yields what it does wrong."""
+"""Rules for what an FMU does. Each function is given its interface, runs it and yields what it does wrong."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from math import inf, isfinite, sin
-from pathlib import Path
 from typing import Any
 
 from fmpy.model_description import ModelVariable
 
 from ..cosimulation.instance import Instance, instantiated
 from ..cosimulation.interface import Interface, type_of
+from .rule import Rule, Severity
 
 Outputs = list[tuple[str, Any]]
 
@@ -79,40 +79,45 @@ class Host:
 
 
 @contextmanager
-def hosted(path: Path, name: str = "checked") -> Iterator[Host]:
-    with instantiated(name, Interface(path)) as instance:
+def hosted(interface: Interface, name: str = "checked") -> Iterator[Host]:
+    with instantiated(name, interface) as instance:
         yield Host(instance)
         instance.call("terminate")
 
 
-def default_experiment(path: Path) -> Iterator[str]:
+def default_experiment(interface: Interface, most_steps: int = MOST_STEPS) -> Iterator[str]:
     """Runs the default experiment; every variable can be read before and after."""
-    with hosted(path) as host:
+    with hosted(interface) as host:
         host.start()
-        everything = list(host.instance.interface.variables.values())
+        everything = list(interface.variables.values())
         host.read(everything)
         first = last = host.outputs()
-        for _ in range(min(round(host.stop / host.step_size), MOST_STEPS)):
+        for _ in range(min(round(host.stop / host.step_size), most_steps)):
             last = host.advance(host.step_size)
         host.read(everything)
     yield from _not_finite(first, "at the start")
     yield from _not_finite(last, "at the end")
 
 
-def any_step_size(path: Path) -> Iterator[str]:
+def beginning(interface: Interface) -> Iterator[str]:
+    """The first steps of the default experiment."""
+    return default_experiment(interface, STEPS)
+
+
+def any_step_size(interface: Interface) -> Iterator[str]:
     """Small, large and odd steps, if the FMU says that it can handle them."""
-    if not _claims(path, "canHandleVariableCommunicationStepSize"):
+    if not _claims(interface, "canHandleVariableCommunicationStepSize"):
         return
-    with hosted(path) as host:
+    with hosted(interface) as host:
         host.start()
         for factor in STEP_FACTORS:
             size = factor * host.step_size
             yield from _not_finite(host.advance(size), f"after a step of {size:g} s")
 
 
-def repeats_after_reset(path: Path) -> Iterator[str]:
+def repeats_after_reset(interface: Interface) -> Iterator[str]:
     """The same run before and after fmi2Reset."""
-    with hosted(path) as host:
+    with hosted(interface) as host:
         host.start()
         first = host.run(STEPS)
         host.instance.call("reset")
@@ -120,14 +125,14 @@ def repeats_after_reset(path: Path) -> Iterator[str]:
         yield from _differences(first, host.run(STEPS), "after reset")
 
 
-def instances_are_separate(path: Path) -> Iterator[str]:
+def instances_are_separate(interface: Interface) -> Iterator[str]:
     """One instance alone, and the same beside another one that runs ahead of it."""
-    if _claims(path, "canBeInstantiatedOnlyOncePerProcess"):
+    if _claims(interface, "canBeInstantiatedOnlyOncePerProcess"):
         return
-    with hosted(path) as host:
+    with hosted(interface) as host:
         host.start()
         alone = host.run(STEPS)
-    with hosted(path, "checked") as host, hosted(path, "other") as other:
+    with hosted(interface, "checked") as host, hosted(interface, "other") as other:
         other.start()
         other.run(STEPS // 2)
         host.start()
@@ -138,11 +143,11 @@ def instances_are_separate(path: Path) -> Iterator[str]:
         yield from _differences(alone, beside, "beside another instance")
 
 
-def states_are_restored(path: Path) -> Iterator[str]:
+def states_are_restored(interface: Interface) -> Iterator[str]:
     """The run after a restored state is the one before, bit by bit, if the FMU claims so."""
-    if not _claims(path, "canGetAndSetFMUstate"):
+    if not _claims(interface, "canGetAndSetFMUstate"):
         return
-    with hosted(path) as host:
+    with hosted(interface) as host:
         host.start()
         host.run(STEPS)
         position = host.step, host.time
@@ -151,7 +156,7 @@ def states_are_restored(path: Path) -> Iterator[str]:
         host.instance.call("setFMUstate", state)
         host.step, host.time = position
         yield from _differences(first, host.run(STEPS), "after the state was restored")
-        if _claims(path, "canSerializeFMUstate"):
+        if _claims(interface, "canSerializeFMUstate"):
             saved = host.instance.call("serializeFMUstate", state)
             revived = host.instance.call("deSerializeFMUstate", saved)
             host.instance.call("setFMUstate", revived)
@@ -161,8 +166,8 @@ def states_are_restored(path: Path) -> Iterator[str]:
         host.instance.call("freeFMUstate", state)
 
 
-def _claims(path: Path, capability: str) -> bool:
-    return bool(getattr(Interface(path).description.coSimulation, capability))
+def _claims(interface: Interface, capability: str) -> bool:
+    return bool(getattr(interface.description.coSimulation, capability))
 
 
 def _not_finite(outputs: Outputs, when: str) -> Iterator[str]:
@@ -180,3 +185,16 @@ def _differences(expected: list[Outputs], actual: list[Outputs], when: str) -> I
             if not same and name not in told:
                 told.add(name)
                 yield f"{name} is {other} {when}, but was {one}, at step {k}"
+
+
+RUNS = "the default experiment runs, outputs are finite"
+
+BEHAVIOUR_RULES = (
+    Rule("runs", Severity.ERROR, RUNS, default_experiment),
+    Rule("steps", Severity.ERROR, "steps of any size are accepted, if it claims so", any_step_size),
+    Rule("reset", Severity.ERROR, "a second run after reset is the same", repeats_after_reset),
+    Rule("instances", Severity.ERROR, "two instances do not see each other", instances_are_separate),
+    Rule("states", Severity.ERROR, "saved states are restored, if it claims so", states_are_restored),
+)
+
+QUICK_RULES = (Rule("runs", Severity.ERROR, RUNS, beginning),)

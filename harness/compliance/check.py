@@ -1,110 +1,87 @@
 """Whether an FMU keeps the FMI 2.0 standard for Co-Simulation, and our rules beyond it."""
 
-import tempfile
-from collections.abc import Callable, Iterable, Iterator
-from multiprocessing import get_context
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
 
+from ..cosimulation import archive
+from ..cosimulation.apart import Apart
 from ..cosimulation.interface import Interface
-from ..errors import DrivelineError
-from . import archive_rules, behaviour_rules, description_rules
-
-TIME_LIMIT = 300.0
-"""Seconds after which a behaviour counts as hanging."""
-
-
-class Check(NamedTuple):
-    """A rule and the function that lists what breaks it."""
-
-    title: str
-    problems: Callable[[Path], Iterable[str]]
+from ..cosimulation.limits import USUAL, Limits
+from ..errors import DrivelineError, SimulationError
+from .archive_rules import ARCHIVE_RULES, REFUSING_RULES
+from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
+from .description_rules import DESCRIPTION_RULES
+from .rule import Rule, Severity, Verdict
 
 
-class Verdict(NamedTuple):
-    """What a check found: nothing, if the FMU keeps the rule."""
-
-    title: str
-    problems: list[str]
+def _unreadable(path: Path, limits: Limits) -> Iterable[str]:
+    Interface(path, limits)
+    return ()
 
 
-FILE_CHECKS = (
-    Check("archive is portable and complete", archive_rules.archive),
-    Check("model description is valid (fmpy)", description_rules.standard),
-    Check("variables have units, bounds and descriptions", description_rules.variables),
-    Check("model structure tells dependencies", description_rules.structure),
-    Check("experiment and origin are given", description_rules.experiment),
-)
+READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU", _unreadable)
 
-BEHAVIOUR_CHECKS = (
-    Check("default experiment runs, outputs are finite", behaviour_rules.default_experiment),
-    Check("steps of any size are accepted, if it claims so", behaviour_rules.any_step_size),
-    Check("a second run after reset is the same", behaviour_rules.repeats_after_reset),
-    Check("two instances do not see each other", behaviour_rules.instances_are_separate),
-    Check("saved states are restored, if it claims so", behaviour_rules.states_are_restored),
-)
+RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BEHAVIOUR_RULES)
 
 
-def check(path: Path) -> Iterator[Verdict]:
-    """Checks an FMU, one verdict after the other, the first being whether it can be read at all.
+def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Collection[str] = ()) -> Iterator[Verdict]:
+    """Checks an FMU, one verdict after the other; one that cannot be unpacked or read is not looked at any further.
 
-    Each behaviour is tried in a process of its own: an FMU may crash its host, and the host must
-    end with exit code 0.
+    The behaviours are tried in a process of their own; an FMU that ends it in the default experiment is not tried
+    any further.
+
+    Args:
+        quick: whether only the beginning of the default experiment is tried.
+        ignored: names of rules that are left out.
 
     Raises:
         DrivelineError: there is no such file.
     """
     if not path.is_file():
         raise DrivelineError(f"there is no FMU {path}")
-    title = "it is an FMI 2.0 Co-Simulation FMU"
-    unreadable = _attempt(_readable, path)
-    yield Verdict(title, unreadable)
-    if unreadable:
+
+    def kept(rules: Iterable[Rule]) -> Iterator[Rule]:
+        return (rule for rule in rules if rule.name not in ignored)
+
+    if not _is_archive(path):
+        yield READABLE.judge(path, limits)
         return
-    for title, problems in FILE_CHECKS:
-        yield Verdict(title, _attempt(problems, path))
-    for title, problems in BEHAVIOUR_CHECKS:
-        yield Verdict(title, _isolated(problems, path))
+    refused = [rule.judge(path, limits) for rule in kept(REFUSING_RULES)]
+    yield from refused
+    if any(verdict.problems for verdict in refused):
+        return
+    yield from (rule.judge(path) for rule in kept(ARCHIVE_RULES))
+    readable = READABLE.judge(path, limits)
+    yield readable
+    if readable.problems:
+        return
+    interface = Interface(path, limits)
+    yield from (rule.judge(interface) for rule in kept(DESCRIPTION_RULES))
+    yield from _behaviour(interface, list(kept(QUICK_RULES if quick else BEHAVIOUR_RULES)), limits)
 
 
-def _readable(path: Path) -> Iterable[str]:
-    Interface(path)
-    return ()
-
-
-def _attempt(problems: Callable[[Path], Iterable[str]], path: Path) -> list[str]:
-    """Problems, one of which may be that the FMU cannot be read or refuses a call."""
-    found: list[str] = []
+def _is_archive(path: Path) -> bool:
     try:
-        found.extend(problems(path))
-    except DrivelineError as error:
-        found.append(str(error))
-    return found
+        archive.entries(path)
+    except DrivelineError:
+        return False
+    return True
 
 
-def _isolated(problems: Callable[[Path], Iterable[str]], path: Path) -> list[str]:
-    context = get_context("spawn")
-    receiver, sender = context.Pipe(duplex=False)
-    # of a host that crashes nothing else would remove what it has unpacked
-    with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
-        host = context.Process(target=_host, args=(problems, path, folder, sender))
-        host.start()
-        sender.close()
-        try:
-            found = receiver.recv() if receiver.poll(TIME_LIMIT) else [f"no end after {TIME_LIMIT:g} s"]
-        except EOFError:
-            found = []
-        host.join(10.0)
-        if host.is_alive():
-            host.kill()
-            host.join()
-    if host.exitcode:
-        found.append(f"its host process ended with exit code {host.exitcode}")
-    return found
-
-
-def _host(problems: Callable[[Path], Iterable[str]], path: Path, folder: str, sender: Any) -> None:
-    tempfile.tempdir = folder
-    sender.send(_attempt(problems, path))
-    sender.close()
+def _behaviour(interface: Interface, rules: Iterable[Rule], limits: Limits) -> Iterator[Verdict]:
+    """Tries the FMU in a process, and in another one after it has ended that."""
+    apart = None
+    try:
+        for rule in rules:
+            apart = apart or Apart([interface.path.name] * 2, limits.call)
+            try:
+                yield apart.ask(rule.judge, interface)
+            except SimulationError as error:
+                apart.close()
+                apart = None
+                yield rule.verdict([str(error)])
+                if rule.name == BEHAVIOUR_RULES[0].name:
+                    return
+    finally:
+        if apart:
+            apart.close()

@@ -1,68 +1,104 @@
-"""Rules for the model description of an FMU."""
+"""Rules for the model description of an FMU: each is given its interface."""
 
 from collections.abc import Iterator
 from math import inf
-from pathlib import Path
 
 from fmpy.model_description import ModelVariable
 from fmpy.validation import validate_fmu
 
 from ..cosimulation.interface import Interface, unit_of
+from .rule import Rule, Severity
 
 
-def standard(path: Path) -> list[str]:
+def _public(interface: Interface) -> list[ModelVariable]:
+    return [v for v in interface.variables.values() if v.causality != "local"]
+
+
+def standard(interface: Interface) -> list[str]:
     """What fmpy finds: the XML schema, names, start values, causalities, units, InitialUnknowns."""
-    return [str(problem) for problem in validate_fmu(str(path))]
+    try:
+        return [str(problem) for problem in validate_fmu(str(interface.path))]
+    except Exception as error:  # fmpy raises bare exceptions
+        return [f"fmpy cannot read it: {error}"]
 
 
-def variables(path: Path) -> Iterator[str]:
-    """Public variables without unit or description, start values out of bounds, shared references."""
-    public = [v for v in Interface(path).variables.values() if v.causality != "local"]
-    for variable in public:
+def units(interface: Interface) -> Iterator[str]:
+    """Public variables without unit."""
+    for variable in _public(interface):
         if variable.type == "Real" and unit_of(variable) is None:
             yield f'{variable.name} has no unit ("1" if it has no dimension)'
+
+
+def descriptions(interface: Interface) -> Iterator[str]:
+    """Public variables without description."""
+    for variable in _public(interface):
         if not variable.description:
             yield f"{variable.name} has no description"
-        yield from _start_out_of_bounds(variable)
+
+
+def bounds(interface: Interface) -> Iterator[str]:
+    """Start values that are out of bounds."""
+    for variable in _public(interface):
+        if variable.type not in ("Real", "Integer") or variable.start is None:
+            continue
+        declared = variable.declaredType
+        lower = variable.min or (declared.min if declared else None) or -inf
+        upper = variable.max or (declared.max if declared else None) or inf
+        if not float(lower) <= float(variable.start) <= float(upper):
+            yield f"{variable.name} starts at {variable.start}, out of [{lower}, {upper}]"
+
+
+def references(interface: Interface) -> Iterator[str]:
+    """Public variables that share a value reference."""
     seen: dict[tuple[str, int], str] = {}
-    for variable in public:
+    for variable in _public(interface):
         key = (str(variable.type), variable.valueReference)
         if key in seen:
             yield f"{variable.name} has the value reference of {seen[key]}"
         seen[key] = variable.name
 
 
-def _start_out_of_bounds(variable: ModelVariable) -> Iterator[str]:
-    if variable.type not in ("Real", "Integer") or variable.start is None:
-        return
-    declared = variable.declaredType
-    lower = variable.min or (declared.min if declared else None) or -inf
-    upper = variable.max or (declared.max if declared else None) or inf
-    if not float(lower) <= float(variable.start) <= float(upper):
-        yield f"{variable.name} starts at {variable.start}, out of [{lower}, {upper}]"
-
-
-def structure(path: Path) -> Iterator[str]:
+def structure(interface: Interface) -> Iterator[str]:
     """Outputs that do not say what they depend on: tools then see algebraic loops everywhere."""
-    description = Interface(path).description
-    for unknown in description.outputs:
+    for unknown in interface.description.outputs:
         if unknown.dependencies is None and unknown.variable is not None:
             yield f"output {unknown.variable.name} does not tell its dependencies"
 
 
-def experiment(path: Path) -> Iterator[str]:
-    """What a tool shows before the first run."""
-    interface = Interface(path)
-    description = interface.description
-    default = description.defaultExperiment
+def experiment(interface: Interface) -> Iterator[str]:
+    """What a tool runs first."""
+    default = interface.description.defaultExperiment
     if default is None or default.stopTime is None or default.stepSize is None:
         yield "DefaultExperiment lacks stopTime or stepSize"
+
+
+def origin(interface: Interface) -> Iterator[str]:
+    """What a tool shows before the first run."""
+    description = interface.description
     for attribute in ("description", "generationTool", "generationDateAndTime"):
         if not getattr(description, attribute):
             yield f"{attribute} is not given"
     if not (description.generationDateAndTime or "Z").endswith("Z"):
         yield "generationDateAndTime does not end in Z, as FMI asks"
-    if description.coSimulation is not None and description.coSimulation.needsExecutionTool:
-        yield "needsExecutionTool is true: some tools refuse such FMUs"
     if not description.logCategories:
         yield "there are no log categories"
+
+
+def execution_tool(interface: Interface) -> Iterator[str]:
+    """Whether it claims to need the tool that made it."""
+    cosimulation = interface.description.coSimulation
+    if cosimulation is not None and cosimulation.needsExecutionTool:
+        yield "needsExecutionTool is true: some tools refuse such FMUs"
+
+
+DESCRIPTION_RULES = (
+    Rule("schema", Severity.ERROR, "the model description is valid (fmpy)", standard),
+    Rule("bounds", Severity.ERROR, "start values are within their bounds", bounds),
+    Rule("units", Severity.WARNING, "variables have units", units),
+    Rule("references", Severity.WARNING, "variables have value references of their own", references),
+    Rule("dependencies", Severity.WARNING, "outputs tell their dependencies", structure),
+    Rule("execution-tool", Severity.WARNING, "it needs no other tool", execution_tool),
+    Rule("experiment", Severity.WARNING, "there is a default experiment", experiment),
+    Rule("descriptions", Severity.NOTE, "variables have descriptions", descriptions),
+    Rule("origin", Severity.NOTE, "it tells what made it", origin),
+)

@@ -104,6 +104,8 @@ class Instance:
             return getattr(self.slave, function)(*arguments, **named)
         except FMICallException as error:
             raise self.failure(error.function, error.status) from error
+        except Exception as error:  # fmpy does not expect every value
+            raise SimulationError(f"{self.label}: {function} failed: {plain(error)}") from error
 
     @property
     def label(self) -> str:

@@ -22,11 +22,16 @@ def print_table(table: Table) -> None:
     (console if console.is_terminal else Console(width=max(console.width, 120))).print(table)
 
 
-def print_verdict(title: str, problems: Sequence[str]) -> None:
+SEVERITY_STYLES = {"error": "red", "warning": "yellow", "note": "cyan"}
+
+
+def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str) -> None:
     """Prints a rule, whether it is kept, and each problem on a line of its own."""
     console = Console(highlight=False, soft_wrap=True)
-    mark = Text("  FOUND ", style="red") if problems else Text("  ok    ", style="green")
-    console.print(mark + title)
+    if problems:
+        console.print(Text(f"  {severity:8}", style=SEVERITY_STYLES[severity]) + f"not: {title} [{rule}]", markup=False)
+    else:
+        console.print(Text("  ok      ", style="green") + title)
     for problem in problems:
         console.print(Text(f"        - {problem}"))
 

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from importlib.metadata import version
+from xml.etree import ElementTree
 
 import pytest
 from fmpy.util import read_csv
@@ -13,7 +14,7 @@ from harness.cosimulation.system import PLANTS
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics
 from tests import ROOT
-from tests.foreign import build_car
+from tests.foreign import build_car, tampered
 
 
 def answer(capsys, *arguments):
@@ -254,3 +255,24 @@ def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
     code, out, _ = answer(capsys, "check", "--json", str(faulty))
     document = json.loads(out)
     assert (code, document["findings"], document["fmus"][0]["fmu"]) == (1, 1, str(faulty))
+
+
+def test_check_fails_for_errors_alone_unless_it_is_strict(capsys, built, tmp_path):
+    path = tampered(built / "MotorTorqueLoop.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(' unit="s"', ""))
+    code, out, _ = answer(capsys, "check", "--quick", str(path))
+    assert code == 0
+    assert "has no unit" in out
+    assert answer(capsys, "check", "--quick", "--strict", str(path))[0] == 1
+    assert answer(capsys, "check", "--quick", "--strict", "--ignore", "units", str(path))[0] == 0
+    code, _, err = answer(capsys, "check", "--ignore", "unit", str(path))
+    assert code == 2
+    assert "did you mean units" in err
+
+
+def test_check_writes_junit(capsys, tmp_path):
+    faulty = tmp_path / "faulty.fmu"
+    faulty.write_text("no archive")
+    code, out, _ = answer(capsys, "check", "--format", "junit", str(faulty))
+    (suite,) = ElementTree.fromstring(out)
+    assert (code, suite.get("name"), suite.get("failures")) == (1, str(faulty), "1")
+    assert "not an FMU" in suite.findall("testcase/failure")[0].get("message", "")

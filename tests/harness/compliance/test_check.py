@@ -2,15 +2,19 @@
 
 import re
 import tempfile
-from itertools import islice
 from zipfile import ZipFile
 
 import pytest
 
-from harness.compliance.check import FILE_CHECKS, check
+from harness.compliance.behaviour_rules import BEHAVIOUR_RULES
+from harness.compliance.check import RULES, check
+from harness.cosimulation.limits import Limits
 from harness.cosimulation.system import PLANTS
 from harness.errors import DrivelineError
+from tests import ROOT
 from tests.foreign import RELAY, build_relay, tampered
+from tests.foreign.archives import HOSTILE
+from tests.foreign.stranger import build_stranger
 
 PLANT = f"{PLANTS[0]}.fmu"
 
@@ -21,7 +25,7 @@ def findings(path):
 
 def file_findings(path):
     """Those that need no run of the FMU."""
-    verdicts = islice(check(path), 1 + len(FILE_CHECKS))
+    verdicts = check(path, ignored=[rule.name for rule in BEHAVIOUR_RULES])
     return "\n".join(problem for verdict in verdicts for problem in verdict.problems)
 
 
@@ -119,3 +123,64 @@ def test_what_cannot_be_read_gets_one_finding(tmp_path):
     assert len(findings(path)) == 1
     with pytest.raises(DrivelineError, match="there is no FMU"):
         findings(tmp_path / "none.fmu")
+
+
+def broken(path, **options):
+    """Rule, severity and what was found, of each rule that is broken."""
+    return {v.rule: (v.severity, "\n".join(v.problems)) for v in check(path, **options) if v.problems}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_a_hostile_archive_is_an_error_of_its_own_rule(tmp_path, unpacked, kind):
+    spoil, rule, message = HOSTILE[kind]
+    path = build_stranger(tmp_path)
+    spoil(path)
+    severity, text = broken(path, quick=True)[rule]
+    assert severity == "error"
+    assert re.search(message, text)
+    assert list(unpacked.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("does", "rules", "finding"),
+    [
+        ({"IN_DO_STEP": "exit(0)"}, {"runs"}, "exit code 0, in fmi2DoStep at 0 s"),
+        ({"IN_INSTANTIATE": "exit(0)"}, {"runs"}, "exit code 0, in fmi2Instantiate"),
+        ({"IN_DO_STEP": "raise(SIGSEGV)"}, {"runs"}, r"crashed \(SIGSEGV\) in fmi2DoStep"),
+        ({"IN_DO_STEP": "for (;;) {}"}, {"runs"}, r"did not return from fmi2DoStep at 0 s within 0\.5 s"),
+        ({"IN_RESET": "raise(SIGSEGV)"}, {"reset"}, r"crashed \(SIGSEGV\) in fmi2Reset"),
+        (
+            {"IN_DO_STEP": "return -1"},
+            {"runs", "steps", "reset", "instances"},
+            "answered fmi2DoStep with the status -1",
+        ),
+        ({"IN_GET_REAL": "values[0] = NAN"}, {"runs", "steps"}, "is nan"),
+    ],
+)
+def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, unpacked, does, rules, finding):
+    path = build_stranger(tmp_path, **does)
+    errors = {
+        name: text for name, (severity, text) in broken(path, limits=Limits(call=0.5)).items() if severity == "error"
+    }
+    assert errors.keys() == rules
+    assert all(re.search(finding, text) for text in errors.values())
+    assert list(unpacked.iterdir()) == []
+
+
+def test_quick_makes_the_first_steps_alone(tmp_path):
+    later = build_stranger(tmp_path, IN_DO_STEP="if (time > 0.15) exit(0)", IN_RESET="exit(0)")
+    assert not {"runs", "reset"} & broken(later, quick=True).keys()
+    assert "runs" in broken(later)
+
+
+def test_an_ignored_rule_is_not_tried(tmp_path):
+    path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
+    severities = {rule: severity for rule, (severity, _) in broken(path).items()}
+    assert severities == {"archive-pages": "note", "dependencies": "warning", "origin": "note", "runs": "error"}
+    assert "runs" not in broken(path, ignored=["runs"])
+
+
+def test_the_page_lists_the_rules():
+    page = (ROOT / "docs" / "check.md").read_text()
+    rows = [line for line in page.splitlines() if line.startswith("| `")]
+    assert rows == [f"| `{rule.name}` | {rule.severity.value} | {rule.title} |" for rule in RULES]

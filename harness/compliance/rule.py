@@ -1,0 +1,59 @@
+"""A rule of `driveline check`, and what became of it."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple
+
+from ..errors import DrivelineError
+from ..plain import plain
+
+
+class Severity(Enum):
+    """How bad it is to break a rule: hosts fail, tools complain, or people miss something."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+class Verdict(NamedTuple):
+    """What a rule found: nothing, if the FMU keeps it.
+
+    Attributes:
+        rule: its name.
+        severity: the value of its Severity.
+    """
+
+    rule: str
+    severity: str
+    title: str
+    problems: list[str]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule.
+
+    Attributes:
+        name: by which it can be ignored.
+        title: what an FMU does that keeps it.
+        problems: lists what breaks it.
+    """
+
+    name: str
+    severity: Severity
+    title: str
+    problems: Callable[..., Iterable[str]]
+
+    def judge(self, *subject: Any) -> Verdict:
+        """What breaks it; one thing may be that the FMU cannot be read or refuses a call."""
+        found: list[str] = []
+        try:
+            found.extend(map(plain, self.problems(*subject)))
+        except DrivelineError as error:
+            found.append(plain(error))
+        return self.verdict(found)
+
+    def verdict(self, problems: list[str]) -> Verdict:
+        return Verdict(self.name, self.severity.value, self.title, problems)
