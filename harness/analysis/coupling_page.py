@@ -19,9 +19,11 @@ rounding are off; delays and losses on the bus are the same in all runs.
 
 Over a step from t to t + h,
 
-- **propagated** (the default) gives every FMU the values of t. A continuous signal then goes on: along a straight line
-  to its value at t + h if the FMU that puts it out has been stepped before ({interpolated}), else along its
-  derivative ({extrapolated}), if the FMUs can; if they cannot (Python builds, FMUs from elsewhere), it is held.
+- **propagated** (the default) gives every FMU the values of t. A continuous signal then goes on, if the FMUs can. If
+  the FMU that puts it out has been stepped before, it interpolates ({interpolated}), along the straight line nearest
+  to the cubic through its values and derivatives at t and t + h, or along the chord where derivatives are not told.
+  Else it extrapolates along its derivative ({extrapolated}). If the FMUs cannot (Python builds, FMUs from
+  elsewhere), it is held.
   At t + h outputs go on to inputs along the declared dependencies until every output is that of t + h with the inputs
   of t + h: `motor.omega_1_meas` follows from `plant.omega_1`, so the motor is asked again after the plant. Declared
   dependencies that form an algebraic loop are refused before the run;
@@ -33,8 +35,8 @@ Over a step from t to t + h,
 What that does:
 
 - A continuous FMU that holds what it gets over the step gets the value of t late by h/2 on average and that
-  of t + h early by h/2. On a straight line nothing is late or early, and the error is that of the line: it falls
-  with the square of the step.
+  of t + h early by h/2. On a straight line nothing is late or early: with derivatives the error falls with the
+  fourth power of the step, without with the square.
 - A sampled FMU ticks at t, with what it gets for the step: the value of t is exact there, that of t + h
   early by h. What it computed before changes at its tick: the value of t is exact, that of t + h early
   by h.

@@ -16,6 +16,7 @@ from fmpy.model_description import ModelVariable
 
 from .instance import Instance
 from .interface import type_of
+from .lines import Line, slope, start
 from .row import KINDS, Layout
 
 
@@ -29,8 +30,8 @@ class Call(NamedTuple):
         sources: of the values that are set, in bytes from the beginning of the row.
         factors: what the FMU's values are multiplied by to be those of the row; empty: they are the same.
         names: of the variables whose values are set or got.
-        sent: of a call that sets rates: the inputs as they were set last, to be forgotten since they now move.
-        step_size: in s; of a call that sets rates: those of straight lines from what was sent to the sources.
+        lines: along which inputs are set to move; once they do, what was sent before is forgotten.
+        step_size: in s, of calls that depend on it.
     """
 
     instance: Instance
@@ -41,7 +42,7 @@ class Call(NamedTuple):
     sources: Sequence[int] = ()
     factors: Sequence[float] = ()
     names: Sequence[str] = ()
-    sent: Sequence[c_double] = ()
+    lines: Sequence[Line] = ()
     step_size: c_double | None = None
 
     @property
@@ -96,46 +97,38 @@ def receives(instance: Instance, row: bytearray, layout: Layout, outputs: Collec
     return calls
 
 
-def receives_rates(instance: Instance, row: bytearray, places: Mapping[str, int]) -> Call:
-    """The call that reads output derivatives into the memory behind the row, which has a place for each name."""
-    prefix = f"{instance.name}."
-    variables = [instance.interface.variables[n.removeprefix(prefix)] for n in places if n.startswith(prefix)]
-    values = (c_double * len(variables)).from_buffer(row, places[prefix + variables[0].name])
+def receives_rates(instance: Instance, row: bytearray, outputs: Sequence[str], place: int) -> Call:
+    """The call that reads output derivatives into the memory behind the row, from that byte on."""
+    variables = [instance.interface.variables[name] for name in outputs]
+    values = (c_double * len(variables)).from_buffer(row, place)
     return _converted(_access(instance, "fmi2GetRealOutputDerivatives", variables, values, _first_order(variables)))
 
 
-def sends_rates(
-    instance: Instance,
-    inputs: Sequence[str],
-    sources: Sequence[int],
-    row: bytearray,
-    sent: Call,
-    step_size: c_double | None,
-) -> Call:
-    """The call that sets input derivatives.
-
-    Args:
-        sources: first bytes in the row of the values at the end of the step, or of the derivatives.
-        sent: the call that sets the inputs.
-        step_size: of lines to the end of the step; None: the sources are the derivatives.
-    """
+def moves(instance: Instance, inputs: Sequence[str], lines: Sequence[Line], step_size: c_double) -> list[Call]:
+    """Calls that let inputs move along lines during the step, of the size in s at that moment."""
     variables = [instance.interface.variables[name] for name in inputs]
-    values = (c_double * len(variables))()
-    call = _access(instance, "fmi2SetRealInputDerivatives", variables, values, _first_order(variables))
-    references, _, buffer = sent.arguments
-    places = [list(references).index(v.valueReference) for v in variables]
-    before = [c_double.from_buffer(buffer, sizeof(c_double) * place) for place in places]
-    now = [c_double.from_buffer(row, source) for source in sources]
-    factors = call.factors or [1.0] * len(variables)
+    rates, starts = (c_double * len(variables))(), (c_double * len(variables))()
+    move = _access(instance, "fmi2SetRealInputDerivatives", variables, rates, _first_order(variables))
+    begin = _access(instance, "fmi2SetReal", variables, starts)
 
-    def run() -> int:
-        for n, (source, last, factor) in enumerate(zip(now, before, factors, strict=True)):
-            value = source.value / factor
-            values[n] = value if step_size is None else (value - last.value) / step_size.value
-            last.value = nan
-        return call.run()
+    def run_begin() -> int:
+        starts[:] = [start(line, step_size.value) for line in lines]
+        return begin.run()
 
-    return call._replace(run=run, sources=sources, sent=before, step_size=step_size)
+    def run_move() -> int:
+        rates[:] = [slope(line, step_size.value) for line in lines]
+        for line in lines:
+            line.sent.value = nan
+        return move.run()
+
+    kept = {"lines": lines, "step_size": step_size, "factors": ()}
+    calls = [begin._replace(run=run_begin, **kept), move._replace(run=run_move, **kept)]
+    return calls if any(line.after is not None for line in lines) else calls[1:]
+
+
+def sent(call: Call, name: str) -> c_double:
+    """Where a call that sets inputs keeps what it has set last."""
+    return c_double.from_buffer(call.arguments[-1], sizeof(c_double) * list(call.names).index(name))
 
 
 def _first_order(variables: Sequence[ModelVariable]) -> Any:

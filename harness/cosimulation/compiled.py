@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from .calls import Call
+from .lines import Line
 from .steps import Refusal
 from .whereabouts import NUMBERS, current
 
@@ -36,6 +37,18 @@ def _library() -> CDLL | None:
 LIBRARY = _library()
 
 
+class CompiledLine(Structure):
+    """`Line` in steps.c."""
+
+    _fields_ = (
+        ("sent", c_void_p),
+        ("factor", c_double),
+        ("end", c_void_p),
+        ("before", c_void_p),
+        ("after", c_void_p),
+    )
+
+
 class CompiledCall(Structure):
     """`Call` in steps.c."""
 
@@ -54,7 +67,7 @@ class CompiledCall(Structure):
         ("function", c_int32),
         ("rates", c_void_p),
         ("orders", c_void_p),
-        ("sent", c_void_p),
+        ("lines", c_void_p),
     )
 
 
@@ -71,9 +84,9 @@ class CompiledSteps:
         # the records hold bare addresses: of these, and of what the calls keep
         self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
         self._factors = [(c_double * len(call.factors))(*call.factors) for call in calls]
-        self._sent = [(c_void_p * len(call.sent))(*map(addressof, call.sent)) for call in calls]
+        self._lines = [(CompiledLine * len(call.lines))(*map(_line, call.lines)) for call in calls]
         self._loop = (
-            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors, self._sent)),
+            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors, self._lines)),
             c_size_t(self._turn),
             c_size_t(len(calls)),
             (c_char * len(row)).from_buffer(row),
@@ -90,11 +103,19 @@ class CompiledSteps:
         return Refusal(self._calls[refused.value], status.value, step, step + (refused.value >= self._turn))
 
 
-def _record(call: Call, sources: Any, factors: Any, sent: Any) -> CompiledCall:
+def _line(line: Line) -> CompiledLine:
+    return CompiledLine(_address(line.sent), line.factor, *map(_address, (line.end, line.before, line.after)))
+
+
+def _address(number: c_double | None) -> int | None:
+    return None if number is None else addressof(number)
+
+
+def _record(call: Call, sources: Any, factors: Any, lines: Any) -> CompiledCall:
     record = CompiledCall(component=call.instance.component)
     record.instance, record.function = call.instance.number, NUMBERS[call.function]
     function = cast(call.instance.slave.dll[call.function], c_void_p)
-    record.step_size = None if call.step_size is None else addressof(call.step_size)
+    record.step_size = _address(call.step_size)
     if call.function == "fmi2DoStep":
         record.do_step = function
         return record
@@ -108,5 +129,5 @@ def _record(call: Call, sources: Any, factors: Any, sent: Any) -> CompiledCall:
     # only what is real and was got is looked at
     record.real = values._type_ is c_double and (bool(call.sources) or not call.instance.interface.any_value)
     record.factors = addressof(factors) if call.factors else None
-    record.sent = addressof(sent) if call.sent else None
+    record.lines = addressof(lines) if call.lines else None
     return record

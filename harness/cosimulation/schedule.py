@@ -5,8 +5,8 @@ comes later gets what those before it put out at the end of the step. Jacobi giv
 outputs of the beginning of the step.
 
 The propagated scheme gives all of them the values of the beginning, too, but lets continuous signals
-move over the step: along a straight line to the value at its end where the source has been stepped
-before, else along the derivative of the source. At the end, outputs go on to inputs along the declared
+move over the step: along a straight line that fits what the source did (lines.py) where that has been
+stepped before, else along the derivative of the source. At the end, outputs go on to inputs along the declared
 dependencies, so that every output is that of its instant, with the inputs of that instant.
 """
 
@@ -47,21 +47,22 @@ class Get(NamedTuple):
 
 
 class GetRates(NamedTuple):
-    """Output derivatives of an instance are read."""
+    """Output derivatives of an instance are read, at the beginning of the step or at its end."""
 
     instance: str
     outputs: Sequence[str]
+    at_end: bool = False
 
 
-class SetRates(NamedTuple):
-    """Input derivatives of an instance are set: those with which the inputs interpolate, or extrapolate."""
+class Move(NamedTuple):
+    """Inputs of an instance are set to move during the step: they interpolate, or extrapolate."""
 
     instance: str
     inputs: Sequence[str]
     transfer: Transfer
 
 
-Action = Set | Step | Get | GetRates | SetRates
+Action = Set | Step | Get | GetRates | Move
 
 
 class Schedule(NamedTuple):
@@ -132,26 +133,28 @@ def _propagated(system: System, interfaces: Mapping[str, Interface]) -> Schedule
     feedthrough = Feedthrough(system, interfaces)
     how = transfers(system, interfaces)
     feeds = {target: source for source, target, _ in system.connections}
-    targets = {t: [name for name in how if how[name] is t] for t in Transfer}
-    slopes = _by_instance(feeds[target] for target in targets[Transfer.EXTRAPOLATED])
+    lines, tangents = (
+        _by_instance(n for n in how if how[n] is t) for t in (Transfer.INTERPOLATED, Transfer.EXTRAPOLATED)
+    )
+    ends = _by_instance(feeds[name] for name in how if how[name] is Transfer.INTERPOLATED)
+    rates = _by_instance(feeds[name] for name in how if how[name] is not Transfer.HELD)
+    rates = {name: outputs for name, outputs in rates.items() if _claims(interfaces[name]).maxOutputDerivativeOrder}
     begin: list[Action] = [
         *(Set(name) for name in interfaces),
-        *(GetRates(*item) for item in slopes.items()),
-        *(SetRates(*item, Transfer.EXTRAPOLATED) for item in _by_instance(targets[Transfer.EXTRAPOLATED]).items()),
+        *(GetRates(*item) for item in rates.items()),
+        *(Move(*item, Transfer.EXTRAPOLATED) for item in tangents.items()),
     ]
-    lines = _by_instance(targets[Transfer.INTERPOLATED])
-    ends = _by_instance(feeds[target] for target in targets[Transfer.INTERPOLATED])
     known: set[str] = set()
-    for name in interfaces:
+    for name, interface in interfaces.items():
         if name in lines:
-            begin.append(SetRates(name, lines[name], Transfer.INTERPOLATED))
+            begin.append(Move(name, lines[name], Transfer.INTERPOLATED))
         begin.append(Step(name))
         if name in ends:
-            free = [
-                v.name for v in interfaces[name].of_causality("output") if not feedthrough.inputs[f"{name}.{v.name}"]
-            ]
+            free = [v.name for v in interface.of_causality("output") if not feedthrough.inputs[f"{name}.{v.name}"]]
             begin.append(Get(name, list(dict.fromkeys([*free, *ends[name]]))))
             known.update(f"{name}.{output}" for output in free)
+            if name in rates:
+                begin.append(GetRates(name, ends[name], at_end=True))
     return Schedule(begin, list(_propagation(feedthrough, known)))
 
 

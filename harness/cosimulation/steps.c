@@ -26,6 +26,15 @@ struct whereabouts {
 
 EXPORT struct whereabouts *whereabouts;
 
+/* struct CompiledLine in compiled.py: Line in lines.py */
+typedef struct {
+    double *sent;
+    double factor;
+    const double *end;
+    const double *before;
+    const double *after;
+} Line;
+
 /* struct CompiledCall in compiled.py */
 typedef struct {
     int32_t (*access)(void *component, const uint32_t *references, size_t count, void *values);
@@ -37,12 +46,12 @@ typedef struct {
     const uint32_t *sources;  /* of what is set: bytes from the beginning of the row; null: nothing is set */
     const double *factors;    /* the FMU's values times these are those of the row; null: they are the same */
     int32_t real;             /* the values are double, else int32_t */
-    const double *step_size;  /* in s; of rates that are set: those of straight lines from what was sent */
+    const double *step_size;  /* in s, of calls that depend on it */
     int32_t instance;         /* numbers for whereabouts */
     int32_t function;
     int32_t (*rates)(void *component, const uint32_t *references, size_t count, const int32_t *orders, void *values);
     const int32_t *orders;
-    double *const *sent;      /* of rates that are set: the inputs as they were set last */
+    const Line *lines;        /* along which inputs are set to move; null: none */
 } Call;
 
 /* Whether the values of the row that feed the inputs have changed; then they are taken over. */
@@ -80,19 +89,39 @@ static void convert(const Call *call)
     }
 }
 
-/* The rates with which inputs go on from what was sent, to values or with derivatives in the row. What was sent
- * is forgotten: the inputs move now. */
-static void aim(const Call *call, const unsigned char *row)
+/* The slope and the start of a line for a step of h s, as in lines.py. */
+static double slope(const Line *line, double h)
 {
-    double *rates = call->values;
+    if (!line->end) {
+        return *line->before / line->factor;
+    }
+    const double way = *line->end / line->factor - *line->sent;
+    if (!line->after) {
+        return way / h;
+    }
+    return (1.2 * way - 0.1 * h * ((*line->before + *line->after) / line->factor)) / h;
+}
+
+static double start(const Line *line, double h)
+{
+    if (!line->after) {
+        return *line->sent;
+    }
+    const double way = *line->end / line->factor - *line->sent;
+    const double mean = *line->sent + 0.5 * way + h * ((*line->before - *line->after) / line->factor) / 12.0;
+    return mean - 0.5 * h * slope(line, h);
+}
+
+/* What is set so that inputs move along lines; once they do, what was sent before is forgotten. */
+static void aim(const Call *call)
+{
+    double *values = call->values;
     for (size_t i = 0; i < call->count; i++) {
-        double value;
-        memcpy(&value, row + call->sources[i], sizeof value);
-        if (call->factors) {
-            value /= call->factors[i];
+        const Line *line = &call->lines[i];
+        values[i] = call->rates ? slope(line, *call->step_size) : start(line, *call->step_size);
+        if (call->rates) {
+            *line->sent = NAN;
         }
-        rates[i] = call->step_size ? (value - *call->sent[i]) / *call->step_size : value;
-        *call->sent[i] = NAN;
     }
 }
 
@@ -111,8 +140,8 @@ static int all_finite(const Call *call)
 /* Makes the call; what it puts out is looked at. */
 static int32_t made(const Call *call, const unsigned char *row)
 {
-    if (call->sent) {
-        aim(call, row);
+    if (call->lines) {
+        aim(call);
     } else if (call->sources && !changed(call, row)) {
         return FMI2_OK;
     }
@@ -130,7 +159,7 @@ static int32_t made(const Call *call, const unsigned char *row)
     if (call->factors && !call->sources) {
         convert(call);
     }
-    if (call->real && !call->sources && !all_finite(call)) {
+    if (call->real && !call->sources && !call->lines && !all_finite(call)) {
         return status == FMI2_OK || status == FMI2_WARNING ? NOT_FINITE : status;
     }
     return status;

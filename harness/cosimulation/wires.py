@@ -1,13 +1,14 @@
 """The calls of a loop in the order in which they are made."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from ctypes import c_double, sizeof
 from typing import NamedTuple
 
-from .calls import Call, advance, receives, receives_rates, sends, sends_rates
+from .calls import Call, advance, moves, receives, receives_rates, sends, sent
 from .instance import Instance
+from .lines import Line
 from .row import Layout
-from .schedule import Action, Get, GetRates, Set, SetRates, Step, Transfer, schedule
+from .schedule import Action, Get, GetRates, Move, Set, Step, Transfer, schedule
 from .steps import MakeSteps, Steps
 from .system import Scheme
 from .wiring import Fit
@@ -48,8 +49,13 @@ def wired(
     """
     plan = schedule(scheme, fitted.system, fitted.interfaces)
     layout = Layout(fitted.interfaces, inputs)
-    rates = [f"{a.instance}.{name}" for a in plan.begin if isinstance(a, GetRates) for name in a.outputs]
-    places = {name: layout.dtype.itemsize + sizeof(c_double) * n for n, name in enumerate(rates)}
+    rates = [
+        (f"{action.instance}.{name}", action.at_end)
+        for action in plan.begin
+        if isinstance(action, GetRates)
+        for name in action.outputs
+    ]
+    places = {rate: layout.dtype.itemsize + sizeof(c_double) * n for n, rate in enumerate(rates)}
     row = bytearray(layout.dtype.itemsize + sizeof(c_double) * len(rates))
     feeds = {target: source for source, target, _ in fitted.system.connections}
     sources = {name: name for name in inputs} | feeds
@@ -66,14 +72,20 @@ def wired(
                 return [advance(instance, row, step_size)]
             case Get(_, outputs):
                 return receives(instance, row, layout, outputs)
-            case GetRates():
-                return [receives_rates(instance, row, places)]
-            case SetRates(_, variables, transfer):
-                lines = transfer is Transfer.INTERPOLATED
-                place: Callable[[str], int] = layout.offset if lines else places.__getitem__
-                ends = [place(feeds[f"{name}.{variable}"]) for variable in variables]
-                # of the calls that set its inputs, the first is that for Reals
-                return [sends_rates(instance, variables, ends, row, send[name][0], step_size if lines else None)]
+            case GetRates(_, outputs, at_end):
+                return [receives_rates(instance, row, outputs, places[f"{name}.{outputs[0]}", at_end])]
+            case Move(_, variables, transfer):
+                return moves(instance, variables, [line(name, v, transfer) for v in variables], step_size)
+
+    def line(name: str, variable: str, transfer: Transfer) -> Line:
+        source = feeds[f"{name}.{variable}"]
+        place = [layout.offset(source), places.get((source, False)), places.get((source, True))]
+        if transfer is Transfer.EXTRAPOLATED:
+            place[0] = place[2] = None
+        end, before, after = (None if p is None else c_double.from_buffer(row, p) for p in place)
+        # of the calls that set inputs, the first is that for Reals
+        last = sent(send[name][0], variable)
+        return Line(last, by_name[name].interface.factors.get(variable, 1.0), end, before, after)
 
     begin, end = ([call for action in actions for call in bound(action)] for actions in plan)
     read = schedule(Scheme.GAUSS_SEIDEL, fitted.system, fitted.interfaces).begin

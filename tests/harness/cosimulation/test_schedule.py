@@ -8,7 +8,7 @@ import pytest
 from harness.cosimulation.feedthrough import Feedthrough, declared
 from harness.cosimulation.interface import Interface
 from harness.cosimulation.runs import run
-from harness.cosimulation.schedule import Get, Set, SetRates, Step, Transfer, schedule, transfers
+from harness.cosimulation.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
 from harness.cosimulation.system import Connection, Scheme, System, loop
 from harness.cosimulation.wiring import fit
 from harness.errors import SimulationError, WiringError
@@ -50,7 +50,7 @@ def test_native_fmus_interpolate_the_torque_and_extrapolate_the_speed(native):
     system = loop(folder=native.parent, build="native")
     assert how(system) == {"plant.T_mot": Transfer.INTERPOLATED, "motor.omega_1": Transfer.EXTRAPOLATED}
     begin = planned(system).begin
-    assert begin.index(Step("motor")) < begin.index(SetRates("plant", ["T_mot"], Transfer.INTERPOLATED))
+    assert begin.index(Step("motor")) < begin.index(Move("plant", ["T_mot"], Transfer.INTERPOLATED))
 
 
 def test_fmus_that_run_python_hold_both(built):
