@@ -6,9 +6,9 @@ answered at once.
 """
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
+from errno import ENOSPC
 from importlib import import_module
 from types import ModuleType
 from typing import NoReturn
@@ -16,6 +16,7 @@ from typing import NoReturn
 from .errors import DrivelineError
 from .names import nearest
 from .progress import hidden
+from .stopping import forget_stdout, stoppable
 
 COMMANDS = {
     "build": "build the FMUs",
@@ -36,7 +37,9 @@ First `driveline build`, then for example `driveline simulate --manoeuvre tipin1
 `driveline COMMAND --help` explains a command.
 """
 
-EXIT_CODES = "exit codes: 0 done, 1 something went wrong or there are findings, 2 wrong use"
+EXIT_CODES = (
+    "exit codes: 0 done, 1 something went wrong or there are findings, 2 wrong use, 128 + n stopped by signal n"
+)
 
 SHELLS = ("bash", "zsh", "tcsh")
 
@@ -123,28 +126,36 @@ def parser() -> Parser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs `driveline`; returns its exit code, see EXIT_CODES; 130 if it was stopped at the keyboard.
+    """Runs `driveline`; returns its exit code, see EXIT_CODES; 130 stopped at the keyboard, 128 + n by signal n.
 
     Args:
         arguments: without the name of the program; None for those of the process.
     """
-    args = parser().parse_args(arguments)
+    name = "driveline"
     try:
-        with hidden(getattr(args, "quiet", False) or getattr(args, "json", False)):
-            return command(args.command).run(args)
+        with stoppable():
+            try:
+                args = parser().parse_args(arguments)
+                name = f"driveline {args.command}"
+                with hidden(getattr(args, "quiet", False) or getattr(args, "json", False)):
+                    return command(args.command).run(args)
+            finally:
+                if sys.stdout:
+                    sys.stdout.flush()
     except BrokenPipeError:
-        # the reader has gone; nothing may be flushed to it at exit either
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        forget_stdout()  # the reader has gone
         return 1
     except DrivelineError as error:
-        print(f"driveline {args.command}: {error}", file=sys.stderr)
+        print(f"{name}: {error}", file=sys.stderr)
         return error.exit_code
     except OSError as error:
-        print(f"driveline {args.command}: {error}", file=sys.stderr)
+        print(f"{name}: {error}", file=sys.stderr)
+        if error.errno == ENOSPC:
+            forget_stdout()  # perhaps it is stdout that is full
         return 1
     except MemoryError as error:
-        print(f"driveline {args.command}: not enough memory: {error}", file=sys.stderr)
+        print(f"{name}: not enough memory: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        print(f"driveline {args.command}: stopped", file=sys.stderr)
-        return 130
+    except KeyboardInterrupt as stop:
+        print(f"{name}: stopped", file=sys.stderr)
+        return getattr(stop, "exit_code", 130)

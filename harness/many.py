@@ -17,6 +17,7 @@ import sys
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import ExitStack, closing
 from pathlib import Path
+from pickle import loads
 from tempfile import TemporaryDirectory
 from textwrap import shorten
 from typing import Any, NoReturn, TypeVar
@@ -24,6 +25,7 @@ from typing import Any, NoReturn, TypeVar
 from .cosimulation.runs import kept_loaded
 from .errors import DrivelineError, SimulationError
 from .progress import progress
+from .stopping import uninterrupted_children
 
 Case = TypeVar("Case")
 Answer = TypeVar("Answer")
@@ -64,27 +66,34 @@ def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Generato
         for case in cases:
             try:
                 answer = function(case)
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 _raise(error, case)
             yield answer
 
 
 def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count: int) -> Generator[Answer, None, None]:
     """New interpreters (FMUs that run Python do not survive a fork); nothing of them is left at the end."""
+    from multiprocessing import resource_tracker
+
     from loky import ProcessPoolExecutor
+    from loky.backend import resource_tracker as lokys_tracker
     from loky.process_executor import BrokenProcessPool
 
     with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
+        for tracker in (resource_tracker, lokys_tracker):  # beginning the first lets interruptions through again
+            with uninterrupted_children():
+                tracker.ensure_running()
         pool = ProcessPoolExecutor(count, initializer=_begin, initargs=(Path(folder), function))
         unfinished = True
         try:
-            futures = [pool.submit(_answer, case) for case in cases]
+            with uninterrupted_children():
+                futures = [pool.submit(_answer, case) for case in cases]
             for case, future in zip(cases, futures, strict=True):
                 try:
                     answer = future.result()
                 except BrokenProcessPool as error:
                     raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
-                except Exception as error:
+                except (Exception, SystemExit) as error:
                     _raise(error, case)
                 yield answer
             unfinished = False
@@ -107,14 +116,38 @@ def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
 
 
 def _answer(case: Any) -> Any:
-    return _function(case)
+    """In a worker: what cannot be sent to the process that waits is told in words."""
+    from cloudpickle import dumps
+
+    try:
+        return _function(case)
+    except SystemExit:
+        raise
+    except BaseException as error:
+        try:
+            loads(dumps(error))
+        except Exception:
+            raise SimulationError(_words(error)) from None
+        raise
 
 
-def _raise(error: Exception, case: object) -> NoReturn:
+def _raise(error: BaseException, case: object) -> NoReturn:
+    """Raises the error with its case; what would end the process or a generator, as a SimulationError."""
     if isinstance(error, DrivelineError):
         raise type(error)(f"{_text(case)}: {error}") from error
+    if isinstance(error, (StopIteration, SystemExit)):
+        raise SimulationError(f"{_text(case)}: {_words(error)}") from error
     error.add_note(f"in {_text(case)}")
     raise error
+
+
+def _words(error: BaseException) -> str:
+    """An error in words, even one that cannot be printed."""
+    try:
+        text = str(error)
+    except Exception:
+        text = ""
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
 def _text(case: object) -> str:

@@ -3,13 +3,15 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
 from importlib.util import find_spec
 from time import monotonic
 
 QUIET = 1.0
 """Seconds that a run may take in silence."""
 
-_hidden = False
+_hidden = ContextVar("hidden", default=False)
+"""Each thread has its own."""
 
 
 def chunks(length: int, size: int = 200) -> Iterator[range]:
@@ -24,7 +26,7 @@ def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
 
     Within it nothing else shows progress.
     """
-    silent, began, show = _hidden or not _visible(), monotonic(), None
+    silent, began, show = _hidden.get() or not _visible(), monotonic(), None
     with hidden(), ExitStack() as stack:
 
         def done(count: int) -> None:
@@ -40,12 +42,11 @@ def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
 @contextmanager
 def hidden(wanted: bool = True) -> Iterator[None]:
     """Within it nothing shows progress, if that is wanted."""
-    global _hidden
-    outer, _hidden = _hidden, _hidden or wanted
+    outer = _hidden.set(_hidden.get() or wanted)
     try:
         yield
     finally:
-        _hidden = outer
+        _hidden.reset(outer)
 
 
 def _visible() -> bool:

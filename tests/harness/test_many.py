@@ -101,6 +101,32 @@ def test_any_other_error_keeps_its_type_and_gets_a_note(workers):
     assert error.value.__notes__ == ["in case 0"]
 
 
+class Foreign(Exception):
+    """Cannot be made of its message, as pickle does."""
+
+    def __init__(self, name, number):
+        super().__init__(f"{name} refused {number}")
+
+
+def foreign(case):
+    if case == "foreign":
+        raise Foreign("pump", 7)
+    if case == "exit":
+        sys.exit(0)
+    raise StopIteration(3)
+
+
+@pytest.mark.parametrize(
+    ("case", "said"), [("foreign", "Foreign: pump refused 7"), ("exit", "SystemExit: 0"), ("stop", "StopIteration: 3")]
+)
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_error_that_cannot_travel_is_named_with_its_case(case, said, workers):
+    if (case, workers) == ("foreign", 1):
+        pytest.skip("it need not travel")
+    with pytest.raises(SimulationError, match=f"^case {case}: {said}$"):
+        run_many(foreign, [case, "other"], workers)
+
+
 def test_a_long_case_is_shortened():
     with pytest.raises(ValueError, match="could not convert") as error:
         run_many(float, ["word " * 1000], workers=1)

@@ -2,6 +2,7 @@
 
 import io
 from contextlib import redirect_stderr
+from threading import Event, Thread
 
 import pytest
 
@@ -85,3 +86,23 @@ def test_what_is_hidden_is_not_shown():
     assert "first" not in shown.getvalue()
     assert "second" in shown.getvalue()
     assert "third" not in shown.getvalue()
+
+
+def test_threads_do_not_hide_each_others_progress():
+    inside, outside = Event(), Event()
+
+    def hide():
+        with hidden():
+            inside.set()
+            outside.wait(10.0)
+
+    thread = Thread(target=hide)
+    thread.start()
+    inside.wait(10.0)
+    with redirect_stderr(Terminal()) as shown:
+        make("here")
+        outside.set()
+        thread.join()
+        make("later")
+    assert "here" in shown.getvalue()
+    assert "later" in shown.getvalue()

@@ -1,0 +1,73 @@
+"""However a command is stopped, it says so in one line and leaves nothing behind."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from harness.cli import main
+from tests import ROOT
+
+COMPARE = [sys.executable, "-m", "harness", "compare", "--manoeuvre", "drive"]
+
+
+@pytest.mark.parametrize(
+    ("number", "whole_group", "code"),
+    [(signal.SIGTERM, False, 143), (signal.SIGHUP, True, 129), (signal.SIGINT, True, 130)],
+)
+def test_a_signal_ends_the_workers_and_leaves_nothing(
+    built: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, code: int
+) -> None:
+    """A terminal that closes or Ctrl-C reaches every process of the group, a `kill` only the first."""
+    temporary, results = tmp_path / "temporary", tmp_path / "results"
+    temporary.mkdir()
+    process = subprocess.Popen(
+        [*COMPARE, "--fmus", str(built), "--build", "python", "--output", str(results)],
+        env=os.environ | {"TMPDIR": str(temporary)},
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(temporary.rglob("*.so")) and time.monotonic() < deadline:
+        time.sleep(0.02)  # until a worker has unpacked an FMU
+    os.killpg(process.pid, number) if whole_group else process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (code, "", "driveline compare: stopped\n")
+    assert list(temporary.iterdir()) == []
+    assert [path for path in results.rglob("*") if path.is_file()] == []
+
+
+def test_a_signal_that_is_ignored_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert main(["design", "--quiet"]) == 0
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize(("arguments", "code"), [(["--help"], 0), (["design"], 1), (["nothing"], 2)])
+def test_a_reader_that_has_gone_is_no_traceback(arguments: list[str], code: int) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "harness", *arguments]
+    done = subprocess.run(command, cwd=ROOT, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+    assert "BrokenPipe" not in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_full_device_is_named_in_one_line() -> None:
+    command = [sys.executable, "-m", "harness", "design"]
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "driveline design: [Errno 28] No space left on device\n")
