@@ -2,11 +2,13 @@
 
 import ctypes
 import zlib
+from dataclasses import replace
 
 import pytest
 from fmpy.fmi1 import FMICallException
 
 from fmus.catalogue import FMUS
+from models.block.declaration import with_defaults
 from tests.fmus.host import opened
 
 OK, DISCARD, ERROR = 0, 2, 3
@@ -218,3 +220,11 @@ def test_a_reset_instance_is_as_new(native, tmp_path, name):
         host.step(3.0, 0.01)
         host.fmu.reset()
         assert host.fmu.serializeFMUstate(host.fmu.getFMUstate()) == new
+
+
+def test_the_first_variable_too_starts_where_it_is_declared(native_builder, tmp_path):
+    fmu = FMUS["MotorTorqueLoop"]
+    block = replace(fmu.block, Input=with_defaults(fmu.block.Input, {"T_ref": 5.0}))
+    with opened(native_builder(replace(fmu, block=block), tmp_path), tmp_path / "unpacked") as host:
+        assert host.variables["T_ref"].valueReference == "0"
+        assert host.get("T_ref") == 5.0
