@@ -226,5 +226,5 @@ def test_the_first_variable_too_starts_where_it_is_declared(native_builder, tmp_
     fmu = FMUS["MotorTorqueLoop"]
     block = replace(fmu.block, Input=with_defaults(fmu.block.Input, {"T_ref": 5.0}))
     with opened(native_builder(replace(fmu, block=block), tmp_path), tmp_path / "unpacked") as host:
-        assert host.variables["T_ref"].valueReference == "0"
+        assert host.variables["T_ref"].valueReference == 0
         assert host.get("T_ref") == 5.0
