@@ -1,4 +1,4 @@
-"""Sentences about names that are not known, and how text from anywhere stands in a sentence."""
+"""Sentences about names that are not known."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -15,9 +15,3 @@ def nearest(name: str, known: Iterable[str]) -> str:
     if close:
         return f"did you mean {' or '.join(close)}?"
     return f"known are: {', '.join(names)}"
-
-
-def printable(text: str, most: int = 60) -> str:
-    """The text in one line, what cannot be printed escaped, cut after so many characters."""
-    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
-    return shown if len(shown) <= most else f"{shown[: most - 3]}..."

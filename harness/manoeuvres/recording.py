@@ -9,10 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import DrivelineError
-from ..names import nearest, printable
+from ..names import nearest
+from ..plain import plain
 
 GAP_LIMIT = 3.0
 """Longest step of time that is still no gap, in median steps."""
+
+LONGEST_CELL = 60
+"""Characters of a cell that are shown."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +84,7 @@ def read_recording(path: Path) -> Recording:
 def _read(path: Path) -> Recording:
     with path.open(newline="", encoding="utf-8-sig") as file:
         rows = csv.reader(file)
-        header = [printable(cell) for cell in next(rows, [])]
+        header = [plain(cell, LONGEST_CELL) for cell in next(rows, [])]
         places = {quantity: _find(path, header, column) for quantity, column in COLUMNS.items()}
         lines, table = [], []
         for row in rows:
@@ -134,7 +138,7 @@ def _number(path: Path, line: int, header: list[str], row: list[str], place: int
         value = math.nan
     if not math.isfinite(value):
         raise RecordingError(
-            f"{path}, line {line}, column {header[place].strip()}: {printable(cell) or 'nothing'} "
+            f"{path}, line {line}, column {header[place].strip()}: {plain(cell, LONGEST_CELL) or 'nothing'} "
             f"is not a finite number"
         )
     return value

@@ -1,9 +1,10 @@
 """All fuzz targets by name."""
 
-from . import calls, options, parameter_files, recordings
+from . import archives, calls, options, parameter_files, recordings
 
 TARGETS = {
     "calls": calls.TARGET,
+    "archives": archives.TARGET,
     "recordings": recordings.TARGET,
     "parameter_files": parameter_files.TARGET,
     "options": options.TARGET,

@@ -1,0 +1,101 @@
+"""FMUs whose archive or model description is damaged."""
+
+import re
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from zipfile import ZipFile, ZipInfo
+
+from fmus.builds import build_fmus
+from harness.cosimulation.system import NATIVE, PLANTS, loop
+from harness.cosimulation.wiring import fit
+from harness.errors import DrivelineError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import simulate
+
+from .damage import ODD, spoiled_bytes, spoiled_text
+from .target import Attempt, Target, Unclean
+
+DESCRIPTION = "modelDescription.xml"
+ATTRIBUTE = re.compile(r' (\w+)="([^"]*)"')
+LONGEST = 1000
+"""Characters of a refusal, for every name of a file in it."""
+RUNS = 0.05
+"""Share of the FMUs that are still taken which are run."""
+
+
+def other_attribute(xml: str, random: Random) -> str:
+    """An attribute is left out, doubled or given another value."""
+    place = random.choice(list(ATTRIBUTE.finditer(xml)))
+    odd = random.choice(ODD).replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    new = random.choice(("", 2 * place[0], *3 * (f' {place[1]}="{odd}"',)))
+    return xml[: place.start()] + new + xml[place.end() :]
+
+
+def other_entry(entry: ZipInfo, random: Random) -> ZipInfo:
+    """An entry under another name, as a link, or of another kind."""
+    other = ZipInfo(
+        random.choice((f"../{entry.filename}", f"/{entry.filename}", entry.filename.upper(), "a/../b", "x:y"))
+    )
+    if random.random() < 0.3:
+        other = ZipInfo(entry.filename)
+        other.external_attr = (stat.S_IFLNK | 0o777) << 16
+    return other
+
+
+def damaged(sound: Path, path: Path, random: Random) -> None:
+    kind = random.choice((other_attribute, other_attribute, spoiled_text, other_entry, spoiled_bytes))
+    if kind is spoiled_bytes:
+        path.write_bytes(spoiled_bytes(sound.read_bytes(), random))
+        return
+    with ZipFile(sound) as source, ZipFile(path, "w") as target:
+        chosen = random.choice(source.infolist()).filename
+        for entry in source.infolist():
+            content = source.read(entry)
+            if kind is other_entry and entry.filename == chosen:
+                entry = other_entry(entry, random)
+            elif kind in (other_attribute, spoiled_text) and entry.filename == DESCRIPTION:
+                content = kind(content.decode(), random).encode("utf-8", "surrogatepass")
+            target.writestr(entry, content)
+
+
+@contextmanager
+def attempts(folder: Path) -> Iterator[Attempt]:
+    list(build_fmus((), folder, "native"))
+    sound, path, temporary = folder / NATIVE / f"{PLANTS[0]}.fmu", folder / "theirs.fmu", folder / "temporary"
+    temporary.mkdir()
+
+    def attempt(random: Random) -> str:
+        damaged(sound, path, random)
+        try:
+            fit(loop(str(path), folder, NATIVE))
+            if random.random() > RUNS:
+                return "fits"
+            simulate(MANOEUVRES["tipin0"], plant=str(path), folder=folder, build=NATIVE)
+        except DrivelineError as refusal:
+            lines = str(refusal).splitlines()
+            if not all(line.isprintable() and len(line) <= LONGEST for line in lines):
+                raise Unclean(f"{lines}") from refusal
+            return "refused"
+        finally:
+            if left := list(temporary.iterdir()):
+                raise Unclean(f"left behind: {left}")
+        return "runs"
+
+    usual, tempfile.tempdir = tempfile.tempdir, str(temporary)
+    try:
+        yield attempt
+    finally:
+        tempfile.tempdir = usual
+
+
+TARGET = Target(
+    "damaged archives and model descriptions of FMUs",
+    "a run, or lines that refuse it; nothing left behind",
+    attempts,
+    short=60,
+    long=20_000,
+)
