@@ -47,18 +47,20 @@ def other_entry(entry: ZipInfo, random: Random) -> ZipInfo:
 
 
 def damaged(sound: Path, path: Path, random: Random) -> None:
-    kind = random.choice((other_attribute, other_attribute, spoiled_text, other_entry, spoiled_bytes))
-    if kind is spoiled_bytes:
+    """Writes a damaged copy of an FMU."""
+    kind = random.choice(("description", "description", "entry", "bytes"))
+    if kind == "bytes":
         path.write_bytes(spoiled_bytes(sound.read_bytes(), random))
         return
     with ZipFile(sound) as source, ZipFile(path, "w") as target:
-        chosen = random.choice(source.infolist()).filename
+        chosen = random.choice(source.infolist()).filename if kind == "entry" else DESCRIPTION
         for entry in source.infolist():
             content = source.read(entry)
-            if kind is other_entry and entry.filename == chosen:
+            if entry.filename == chosen and kind == "entry":
                 entry = other_entry(entry, random)
-            elif kind in (other_attribute, spoiled_text) and entry.filename == DESCRIPTION:
-                content = kind(content.decode(), random).encode("utf-8", "surrogatepass")
+            elif entry.filename == chosen:
+                spoil = random.choice((other_attribute, other_attribute, spoiled_text))
+                content = spoil(content.decode(), random).encode("utf-8", "surrogatepass")
             target.writestr(entry, content)
 
 
