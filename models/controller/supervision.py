@@ -163,7 +163,7 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
             estimator=e,
             law=law.start(motion, p),
             monitor=signals,
-            wheels=wheels.start(u, signals.omega_1, p),
+            wheels=wheels.start(u, signals.omega_1, signals.T_mot, p),
             swings=swings.start(T_driver),
             trust=trust.start(p),
             level=where(u.enable, 1.0, 0.0),
@@ -184,7 +184,8 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
         increment = estimator.motion(e, p).omega_1 - estimator.motion(x.estimator, p).omega_1
         signals = monitor.update(x.monitor, u, increment, x.T_ref, T_S, p)
         e = estimator.take_motor_speed(e, signals.omega_1, p)
-        heard = wheels.update(x.wheels, u, signals.omega_1, estimator.motion(e, p).omega_2, T_S, p)
+        omega_2_hat = estimator.motion(e, p).omega_2
+        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, omega_2_hat, T_S, p)
         e = branch(heard.usable, lambda: estimator.take_wheel_speed(e, heard.omega_2, T_S, p), lambda: e)
         return e, signals, heard
 

@@ -4,6 +4,9 @@ A message corrects the estimate when it is new, valid, finite, in range and near
 use while such messages keep coming. Any message that says a speed is a witness against a motor speed that
 is far from it, unless it is the messages that have leapt: then they are doubted, until one corrects the
 estimate again.
+
+The teeth of a wheel do not tell its direction. It is taken from the motor when the wheel speed becomes
+known, and kept for as long as it is: a car that turns round passes the speeds at which it is not known.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -18,12 +21,17 @@ LATE = 0.025
 SHARE = 0.06
 """Of the wheel speed, by which the motor speed may differ from it more: the error of the wheel radius."""
 
+PUSH = 0.25
+"""Motor torque over T_max with which no car rolls backwards."""
+
 
 class WheelState(NamedTuple):
     """State of the wheel monitor."""
 
     counter: Annotated[float, Real("1", "counter of the message received last")]
-    omega_2: Annotated[float, Real("rad/s", "speed received last")]
+    omega_2: Annotated[float, Real("rad/s", "speed received last, with its direction")]
+    known: Annotated[bool, Boolean("the messages say a speed")]
+    direction: Annotated[float, Real("1", "1 forwards, -1 backwards")]
     usable: Annotated[bool, Boolean("a message has come that corrects the estimate")]
     unused: Annotated[float, Real("s", "time since such a message")]
     silence: Annotated[float, Real("s", "time since a message that says a speed")]
@@ -33,11 +41,14 @@ class WheelState(NamedTuple):
     apart: Annotated[float, Real("s", "time for which messages contradict the motor speed")]
 
 
-def start(u: Any, omega_1: Any, p: Any) -> WheelState:
+def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
     known = has_wheel_speed(u, p)
+    direction = direction_of(omega_1, T_mot, p)
     return WheelState(
         counter=1.0 * u.counter,
-        omega_2=message(u),
+        omega_2=direction * message(u),
+        known=known,
+        direction=direction,
         usable=False,
         unused=where(known, 0.0, p.t_stale),
         silence=where(known, 0.0, p.t_stale),
@@ -53,20 +64,26 @@ def has_wheel_speed(u: Any, p: Any) -> Any:
 
 
 def message(u: Any) -> Any:
-    """The received wheel speed in rad/s; zero where it is not finite."""
-    return where(is_finite(u.omega_2_can), u.omega_2_can, 0.0)
+    """Magnitude of the received wheel speed in rad/s; zero where it is not finite."""
+    return where(is_finite(u.omega_2_can), abs(u.omega_2_can), 0.0)
 
 
-def update(x: WheelState, u: Any, omega_1: Any, omega_2_hat: Any, T_s: Any, p: Any) -> WheelState:
+def direction_of(omega_1: Any, T_mot: Any, p: Any) -> Any:
+    """Of a car whose motor turns with omega_1 (rad/s) under the torque T_mot (N.m)."""
+    return where(logical_and(omega_1 < 0.0, T_mot < PUSH * p.T_max), -1.0, 1.0)
+
+
+def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_s: Any, p: Any) -> WheelState:
     """The state after one sample.
 
     Args:
         u: input with omega_2_can, valid, counter.
-        omega_1: motor speed in use, rad/s.
+        omega_1, T_mot: motor speed and torque in use, rad/s and N.m.
         omega_2_hat: estimate before the message, rad/s.
     """
-    omega_2 = message(u)
     known = has_wheel_speed(u, p)
+    direction = where(x.known, x.direction, direction_of(omega_1, T_mot, p))
+    omega_2 = direction * message(u)
     new = logical_and(u.counter != x.counter, known)
     usable = logical_and(new, abs(omega_2 - omega_2_hat) <= p.e_max)
     leapt = logical_and(new, abs(omega_2 - x.omega_2) > p.e_max)
@@ -78,6 +95,8 @@ def update(x: WheelState, u: Any, omega_1: Any, omega_2_hat: Any, T_s: Any, p: A
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=omega_2,
+        known=known,
+        direction=direction,
         usable=usable,
         unused=where(usable, 0.0, minimum(x.unused + T_s, p.t_stale)),
         silence=silence,

@@ -23,8 +23,8 @@ def above(limit: float) -> float:
 
 def heard(u: Input, x: WheelState | None = None, omega_1: float = 150.0, omega_2_hat: float = 150.0) -> WheelState:
     """The state after a sample."""
-    x = wheels.start(U, 150.0, P) if x is None else x
-    return wheels.update(x, u, omega_1, omega_2_hat, T_S, P)
+    x = wheels.start(U, 150.0, 0.0, P) if x is None else x
+    return wheels.update(x, u, omega_1, 0.0, omega_2_hat, T_S, P)
 
 
 def new(omega_2_can: float = 150.0, **signals: Any) -> Input:
@@ -48,8 +48,8 @@ def test_a_wheel_speed_is_plausible_up_to_omega_max(side: float) -> None:
 
 @each_side
 def test_a_message_is_usable_up_to_e_max_from_the_estimate(side: float) -> None:
-    assert heard(new(side * 40.0), omega_2_hat=0.0).usable
-    assert not heard(new(side * above(40.0)), omega_2_hat=0.0).usable
+    assert heard(new(0.0), omega_2_hat=side * 40.0).usable
+    assert not heard(new(0.0), omega_2_hat=side * above(40.0)).usable
     assert heard(new(190.0)).usable
     assert not heard(new(191.0)).usable
 
@@ -64,13 +64,13 @@ def test_a_message_is_usable_once_and_while_it_is_valid() -> None:
 
 def test_the_wheel_speed_is_in_use_while_usable_messages_keep_coming() -> None:
     """For less than t_stale without one, and while it is valid."""
-    x, seen = wheels.start(U, 150.0, P), []
+    x, seen = wheels.start(U, 150.0, 0.0, P), []
     for _ in range(6):
         seen.append((x.unused, wheels.hears_wheels(x, U, P)))
         x = heard(U, x)
     assert seen == [(0.0, True), (0.25, True), (0.5, True), (0.75, True), (1.0, False), (1.0, False)]
     assert heard(new(), x).unused == 0.0
-    assert not wheels.hears_wheels(wheels.start(U, 150.0, P), U._replace(valid=False), P)
+    assert not wheels.hears_wheels(wheels.start(U, 150.0, 0.0, P), U._replace(valid=False), P)
 
 
 def test_messages_are_a_witness_while_they_keep_coming() -> None:
@@ -86,8 +86,8 @@ def test_messages_are_a_witness_while_they_keep_coming() -> None:
 @each_side
 def test_messages_that_leap_by_e_max_away_from_the_estimate_are_doubted(side: float) -> None:
     """Until one is usable again."""
-    x = heard(new(150.0 + side * above(40.0)))
-    assert (x.doubted, x.witness) == (False, True), "rounding: 40 more than 150"
+    x = heard(new(150.0 + side * 40.0), omega_2_hat=0.0)
+    assert (x.doubted, x.witness) == (False, True)
     x = heard(new(150.0 + side * 40.5))
     assert (x.doubted, x.witness) == (True, False)
     stays = heard(new(150.0 + side * 40.5, counter=9), x)
@@ -112,7 +112,7 @@ def test_no_message_no_leap() -> None:
 
 
 def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
-    x = wheels.update(wheels.start(U, 150.0, P), U, 250.0, 150.0, 0.25 * LATE, P)
+    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 150.0, 0.25 * LATE, P)
     assert x.late == 175.0
     assert heard(U, omega_1=250.0).late == 250.0, "with samples that are longer than that"
 
@@ -123,8 +123,31 @@ def test_a_motor_speed_is_contradicted_from_e_wheel_and_a_share_of_the_wheel_spe
     limit = P.e_wheel + SHARE * 200.0
     for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
         assert heard(u, omega_1=200.0 + side * distance).apart == apart
-    backwards = new(-200.0, counter=7)
-    assert heard(backwards, omega_1=-200.0 + side * (limit - 0.01)).apart == 0.0
+    backwards = wheels.start(new(200.0, counter=7), -200.0, 0.0, P)
+    for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
+        assert heard(u, backwards, omega_1=-200.0 + side * distance).apart == apart
+
+
+@pytest.mark.parametrize("sent", [60.0, -60.0])
+def test_the_direction_is_that_of_the_motor_when_the_speed_becomes_known(sent: float) -> None:
+    """Whether the bus sends a sign or not; the motor may turn round no more while it is known."""
+    standing = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
+    x = heard(new(sent), standing, omega_1=-60.0, omega_2_hat=-60.0)
+    assert (x.direction, x.omega_2, x.usable) == (-1.0, -60.0, True)
+    assert heard(new(sent), x, omega_1=60.0).omega_2 == -60.0
+    unknown = heard(new(sent, valid=False), x, omega_1=60.0)
+    assert heard(new(sent), unknown, omega_1=60.0).omega_2 == 60.0
+    for omega_1, direction in ((0.0, 1.0), (-5e-324, -1.0)):
+        assert wheels.direction_of(omega_1, 0.0, P) == direction
+
+
+def test_no_car_rolls_backwards_against_a_quarter_of_the_torque() -> None:
+    p = P._replace(T_max=100.0)
+    assert wheels.direction_of(-60.0, 25.0, p) == 1.0
+    assert wheels.direction_of(-60.0, math.nextafter(25.0, 0.0), p) == -1.0
+    x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
+    assert wheels.update(x, new(60.0), -60.0, 180.0, -60.0, T_S, P).omega_2 == 60.0
+    assert wheels.start(U, -60.0, 180.0, P).direction == 1.0
 
 
 def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
@@ -143,11 +166,11 @@ def test_only_a_witness_contradicts() -> None:
 
 
 def test_at_the_start_all_that_is_plausible_is_believed() -> None:
-    x = wheels.start(U, 140.0, P)
+    x = wheels.start(U, 140.0, 0.0, P)
     assert x == WheelState(
-        counter=7.0, omega_2=150.0, usable=False, unused=0.0, silence=0.0,
+        counter=7.0, omega_2=150.0, known=True, direction=1.0, usable=False, unused=0.0, silence=0.0,
         doubted=False, witness=True, late=140.0, apart=0.0,
     )  # fmt: skip
     assert type(x.counter) is type(heard(U).counter) is float, "as it is declared"
-    deaf = wheels.start(U._replace(valid=False), 140.0, P)
+    deaf = wheels.start(U._replace(valid=False), 140.0, 0.0, P)
     assert (deaf.unused, deaf.silence, deaf.witness) == (1.0, 1.0, False)

@@ -1,0 +1,170 @@
+"""Hours of healthy driving: is any sample of them in fallback, and how near did the monitors come to it?
+
+    python -m harness.analysis.healthy_hours --hours 24
+
+Drives of a minute each, at random but reproducible: pedal, brake and slope, from parking to motorway, with
+the sensor errors of the specification (noise, tolerances of torque and wheel radius, lost messages), on both
+plants and on ice, where wheels spin and lock. The residuals of the monitors are shown over their thresholds.
+"""
+
+import argparse
+from collections.abc import Iterable
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scipy.signal import lfilter
+
+from models.controller import swings, wheel_monitor
+from models.controller.signal_monitor import STILL
+from models.controller.supervision import FALLBACK, T_S
+from models.damping_controller import BLOCK
+
+from ..cosimulation.system import PLANTS
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.signals import lines
+from ..many import run_many
+from ..simulate import simulate
+
+P = BLOCK.Parameters()
+MINUTE = 60.0
+TICK = round(T_S / 1e-3)
+
+
+class Road(NamedTuple):
+    """A plant on a surface: what the driver asks for at most, N.m at the motor and at the wheels, and dares to."""
+
+    plant: str
+    mu: float
+    T_driver: float
+    T_brake: float
+    harsh: float
+
+
+ROADS = {
+    "design model": Road(PLANTS[0], 1.0, 180.0, 2400.0, 0.1),
+    "vehicle": Road(PLANTS[1], 1.0, 180.0, 2400.0, 0.1),
+    "vehicle on ice": Road(PLANTS[1], 0.1, 25.0, 200.0, 0.1),
+}
+HARSH_TORQUE, HARSH_BRAKE = 120.0, 4000.0
+"""N.m that spin the wheels on ice, and lock them on any road; half a second of that now and then."""
+
+
+class Found(NamedTuple):
+    """What a drive showed: samples in fallback, and the largest residuals over their thresholds."""
+
+    samples: int
+    fallback: int
+    jump: float
+    contradiction: float
+    half_swings: float
+    frozen: float
+
+
+def drive(road: Road, seed: int) -> tuple[Manoeuvre, dict[str, float]]:
+    """A minute on the road, and the errors of the sensors."""
+    random = np.random.default_rng(seed)
+    v = v_0 = float(random.choice([0.0, random.uniform(1.0, 35.0)]))
+    T = 0.0 if v == 0.0 else float(random.uniform(-0.2, 0.5) * road.T_driver)
+    pedal, brake, t = [(0.0, T), (0.3, T)], [(0.0, 0.0), (0.3, 0.0)], 0.3
+    while t < MINUTE:
+        T, T_brake, lasts = action(road, v, random)
+        rises = float(random.uniform(0.002, 0.3))
+        pedal += [(t + rises, T), (t + rises + lasts, T)]
+        brake += [(t + rises, T_brake), (t + rises + lasts, T_brake)]
+        v = max(0.0, v + (rises + lasts) * acceleration(road, v, T, T_brake))
+        t += rises + lasts
+    name = f"healthy {seed}"
+    slope = lines((0.0, 0.0), (1.0, float(random.uniform(-0.04, 0.04))))
+    manoeuvre = Manoeuvre(name, "healthy driving", MINUTE, v_0, lines(*pedal), lines(*brake), slope)
+    errors = {"can.g_w2": random.uniform(0.98, 1.02), "can.loss": random.choice([0.0, 0.1])}
+    errors |= {"motor.g_T": random.uniform(0.95, 1.05), "motor.o_T": random.uniform(-1.5, 1.5)}
+    return manoeuvre, {name: float(value) for name, value in errors.items()}
+
+
+def action(road: Road, v: float, random: np.random.Generator) -> tuple[float, float, float]:
+    """What the driver does next at the speed v (m/s): T_driver and T_brake in N.m, for how long in s."""
+    dares = random.random() < road.harsh
+    if v > 38.0 or (v > 2.0 and random.random() < 0.2):
+        T_brake = HARSH_BRAKE if dares else float(random.uniform(0.1, 1.0) * road.T_brake)
+        return float(random.uniform(-0.2, 0.0) * road.T_driver), T_brake, 0.5 if dares else random.uniform(0.3, 2.0)
+    if v < 0.5 and random.random() < 0.5:
+        return 0.0, 300.0, float(random.uniform(0.5, 2.0))
+    if dares:
+        return HARSH_TORQUE, 0.0, 0.5
+    low = 0.1 if v < 2.0 else -0.25
+    return float(random.uniform(low, 1.0) * road.T_driver), 0.0, float(random.choice([0.1, 0.5, 2.0]))
+
+
+def acceleration(road: Road, v: float, T: float, T_brake: float) -> float:
+    """Of the car as a point of mass, m/s2: only to keep it on the road."""
+    force = np.clip((9.0 * T - T_brake) / 0.29, -8500.0 * road.mu, 8500.0 * road.mu)
+    return float(force - 170.0 - 0.42 * v * v) / 1700.0
+
+
+def found(road: Road, seed: int) -> Found:
+    manoeuvre, errors = drive(road, seed)
+    surface = {"plant.mu": road.mu} if road.mu != 1.0 else {}
+    rows = simulate(manoeuvre, road.plant, parameters={**errors, **surface}, seed=seed)[::TICK]
+    omega_1 = rows["motor.omega_1_meas"]
+    return Found(
+        samples=len(rows),
+        fallback=int(np.count_nonzero(rows["controller.status"] == FALLBACK)),
+        jump=float(abs(np.diff(omega_1)).max()) / P.e_jump,
+        contradiction=longest(contradicted(rows)) * T_S / P.t_apart,
+        half_swings=half_swings(rows) / swings.MOST,
+        frozen=longest((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > STILL)) * T_S / P.t_frozen,
+    )
+
+
+def contradicted(rows: np.ndarray) -> np.ndarray:
+    """Whether the wheel speed, where it is valid, is far from the motor speed (wheel_monitor)."""
+    share = T_S / wheel_monitor.LATE
+    omega_1, omega_2 = rows["motor.omega_1_meas"], rows["can.omega_2_can"]
+    late, _ = lfilter([share], [1.0, share - 1.0], omega_1, zi=[(1.0 - share) * omega_1[0]])
+    far = abs(omega_2 - abs(late)) > P.e_wheel + wheel_monitor.SHARE * abs(omega_2)
+    return far & (rows["can.valid"] != 0.0)
+
+
+def longest(condition: np.ndarray) -> int:
+    """Samples for which it holds in a row."""
+    changes = np.flatnonzero(np.diff(np.concatenate(([0], condition.astype(int), [0]))))
+    return int(max(changes[1::2] - changes[::2], default=0))
+
+
+def half_swings(rows: np.ndarray) -> float:
+    """Most half swings of the damping torque that nothing explains (swings)."""
+    damping, T_driver = rows["controller.T_damp"] - rows["controller.T_landing"], rows["controller.T_driver"]
+    x, most = swings.start(float(T_driver[0])), 0.0
+    for torque, demand in zip(damping.tolist(), T_driver.tolist(), strict=True):
+        x = swings.update(x, torque, demand, True, T_S, P)
+        most = max(most, x.count)
+    return most
+
+
+def worst(drives: Iterable[Found]) -> Found:
+    """The sum of the samples, the largest of the residuals."""
+    columns = list(zip(*drives, strict=True))
+    return Found(*map(sum, columns[:2]), *map(max, columns[2:]))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--hours", type=float, default=24.0, help="simulated, shared by the roads (default: 24)")
+    parser.add_argument("--workers", type=int, help="processes (default: one a core)")
+    options = parser.parse_args(arguments)
+    drives = max(1, round(options.hours * 3600.0 / MINUTE / len(ROADS)))
+    table = Table("road", "hours", "samples", "in fallback", "jump", "contradiction", "half swings", "frozen")
+    for name, road in ROADS.items():
+        of = worst(run_many(partial(found, road), range(1, drives + 1), options.workers, label=name))
+        hours = of.samples * T_S / 3600.0
+        table.add_row(name, f"{hours:.2f}", f"{of.samples}", f"{of.fallback}", *(f"{value:.2f}" for value in of[2:]))
+    console = Console()
+    console.print(table)
+    console.print("The residuals are the largest, over the thresholds from which on they count as a fault.")
+
+
+if __name__ == "__main__":
+    main()
