@@ -7,7 +7,7 @@
   raises an exception. `own_class` gives every instance a class of its own, so that `fmi_class_call` knows
   whose references to take back.
 - At the exit of the process the binary destroys a static object twice: a use after free, which now and
-  then ends in an abort. `dismiss_guard` has it destroyed in time, while that is harmless.
+  then ends in an abort (in some hosts always). `dismiss_guard` has it destroyed in time, while that is harmless.
 - Every instantiation gives up a reference to the globals of the main script that it does not own, and
   leaves the resources folder at the head of the host's sys.path. `undo_loading` mends both.
 """
@@ -76,13 +76,24 @@ def undo_loading(script_globals: dict[str, Any], script_locals: Any) -> None:
         _hold(script_globals)
 
 
-def dismiss_guard(resources: str, model_identifier: str) -> None:
-    """To be called while an instance is made, in a host that is Python.
+_told_to_end: set[str] = set()
+"""Binaries whose guard is destroyed first when the process ends."""
 
-    The guard is made anew for every instance; it is there to finalize an interpreter that the binary
-    itself has initialized, which a host that is Python (it has a command line) never needs. In any
-    other host it stays.
+
+def dismiss_guard(resources: str, model_identifier: str) -> None:
+    """To be called while an instance is made.
+
+    The guard is there to finalize an interpreter that the binary itself has initialized. A host that is Python
+    (it has a command line) never needs that; there the guard, made anew for every instance, is destroyed at once.
+    In any other host it is destroyed when the process ends, before the binary's own static objects are: what
+    is registered last with the C library is called first, and the binary stays loaded once it was.
     """
-    binary = Path(resources).parent / "binaries" / "linux64" / f"{model_identifier}.so"
-    if sys.platform == "linux" and sys.orig_argv and binary.exists():
-        ctypes.CDLL(str(binary), mode=os.RTLD_NOLOAD | os.RTLD_NOW).finalizePythonInterpreter()
+    path = Path(resources).parent / "binaries" / "linux64" / f"{model_identifier}.so"
+    if sys.platform != "linux" or not path.exists():
+        return
+    binary = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_NOW)
+    if sys.orig_argv:
+        binary.finalizePythonInterpreter()
+    elif str(path) not in _told_to_end:
+        _told_to_end.add(str(path))
+        ctypes.CDLL(None)["__cxa_atexit"](binary.finalizePythonInterpreter, None, None)

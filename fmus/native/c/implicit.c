@@ -131,7 +131,7 @@ static double try_step(const Problem *problem, const Start *from, Vector J[STATE
         const double e = last / (TOLERANCE * ((fabs(end[n]) > x ? fabs(end[n]) : x) + SMALL));
         total += e * e;
     }
-    return sqrt(total / STATES);
+    return sqrt(total / (double)STATES);
 }
 
 /* Of the length of a step after one with that error. */
