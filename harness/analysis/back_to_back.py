@@ -99,7 +99,14 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
     steps = len(next(iter(given.inputs.values()))) - 1
     inputs: dict[str, Source] = {f"block.{name}": samples for name, samples in given.inputs.items()}
     parameters = {f"block.{name}": value for name, value in given.parameters.items()}
-    results = run(System({"block": path}), steps * STEP_SIZE, STEP_SIZE, inputs, parameters, label=path.stem)
+    results = run(
+        System({"block": path}, own=frozenset({"block"})),
+        steps * STEP_SIZE,
+        STEP_SIZE,
+        inputs,
+        parameters,
+        label=path.stem,
+    )
     columns = {name: name.removeprefix("block.") for name in results.dtype.names or () if name not in inputs}
     chosen = results[list(columns)]
     chosen.dtype.names = tuple(columns.values())

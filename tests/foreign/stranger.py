@@ -12,7 +12,8 @@ from . import UNITS
 
 SOURCE = Path(__file__).with_name("stranger.c")
 
-INPUTS, PARAMETERS = ("T_mot", "T_brake", "slope"), ("v_0", "T_0")
+INPUTS = ("T_mot", "T_brake", "slope")
+PARAMETERS = {"v_0": 0.0, "T_0": 0.0, "i": 9.0, "r": 0.3, "m": 1500.0, "g": 9.81, "c_rr": 0.01, "c_wa": 0.4}
 OUTPUTS = ("omega_1", "omega_2", "omega_wheel_L", "omega_wheel_R", "T_gear", "v", "a_body")
 
 
@@ -35,13 +36,16 @@ def description() -> str:
     """The model description of the plant."""
     variables = [
         *(_variable(name, 'causality="input"', ' start="0"') for name in INPUTS),
-        *(_variable(name, 'causality="parameter" variability="fixed"', ' start="0"') for name in PARAMETERS),
+        *(
+            _variable(name, 'causality="parameter" variability="fixed"', f' start="{value}"')
+            for name, value in PARAMETERS.items()
+        ),
         *(_variable(name, 'causality="output"') for name in OUTPUTS),
     ]
     numbered = "".join(text.format(k) for k, text in enumerate(variables))
     first = len(INPUTS) + len(PARAMETERS) + 1
     outputs = "".join(f'<Unknown index="{first + k}"/>' for k in range(len(OUTPUTS)))
-    units = "".join(f'<Unit name="{unit}"/>' for unit in sorted(set(UNITS.values())))
+    units = "".join(f'<Unit name="{unit}"/>' for unit in sorted({*UNITS.values(), "1"}))
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="stranger" guid="stranger">
 <CoSimulation modelIdentifier="stranger" canHandleVariableCommunicationStepSize="true"/>
@@ -55,5 +59,5 @@ def description() -> str:
 def _variable(name: str, causality: str, start: str = "") -> str:
     return (
         f'<ScalarVariable name="{name}" valueReference="{{}}" description="of a stranger" {causality}>'
-        f'<Real unit="{UNITS[name]}"{start}/></ScalarVariable>'
+        f'<Real unit="{UNITS.get(name, "1")}"{start}/></ScalarVariable>'
     )

@@ -67,7 +67,7 @@ def test_an_archive_may_unpack_to_the_limit_and_no_further(stranger, tmp_path):
             r'declaredType="None" which has not been defined',
         ),
         ('stepSize="0.001"', 'stepSize="often"', "stepSize of DefaultExperiment is 'often'"),
-        ('index="6"', 'index="600"', "index of an Unknown in ModelStructure is '600'; there are 12"),
+        ('index="12"', 'index="600"', "index of an Unknown in ModelStructure is '600'; there are 18"),
         ("<ModelVariables>", "<ModelVariables", "cannot be read"),
         ("<fmiModelDescription", "<!DOCTYPE x><fmiModelDescription", "declares a document type"),
     ],
