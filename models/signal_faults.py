@@ -22,7 +22,7 @@ from typing import Annotated, Any, NamedTuple
 
 from .block.declaration import Boolean, Integer, Real
 from .block.noise import normals, uniform
-from .block.operators import LARGEST, branch, clip, floor, logical_and, logical_not, logical_or, where
+from .block.operators import LARGEST, branch, clip, floor, logical_and, logical_not, logical_or, maximum, where
 from .block.types import SampledBlock
 
 T_S = 0.002
@@ -185,7 +185,8 @@ def altered(y: Signals, fault: Fault, sample: Any, p: Parameters) -> Signals:
     """The signals y after what the fault does to their values."""
     now, strikes = acts(fault, sample), _strikes(fault, y.counter, sample, p)
     index = _index(fault, y.counter, sample)
-    turned = logical_and(fault.kind == FLAPPING, floor((sample * T_S - fault.begin) / fault.size) % 2.0 == 0.0)
+    times = floor(((sample + 0.5) * T_S - fault.begin) / maximum(fault.size, T_S))
+    turned = logical_and(fault.kind == FLAPPING, times % 2.0 == 0.0)
     jumps = logical_and(logical_and(now, fault.kind == JUMPING), strikes)
 
     def value(right: Any, signal: int) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cosimulation.runs import run
 from ..cosimulation.system import Connection, System, loop
-from ..cosimulation.wiring import fit
+from ..cosimulation.wiring import Fit, fit
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines
 from ..metrics.evaluate import at_samples
@@ -47,10 +47,11 @@ class Runs(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """What the controller may demand, N.m: in total, and beside what the driver demands."""
+    """What the controller may demand, what it may add to the driver's demand, and take from it, N.m."""
 
     T_max: float
-    T_damp_max: float
+    T_add_max: float
+    T_take_max: float
 
 
 class Bench:
@@ -65,6 +66,7 @@ class Bench:
         self._injector = injector
         self._settings = settings
         self._made: dict[Any, np.ndarray] = {}
+        self._fitted: dict[str, Fit] = {}
 
     def runs(self, case: Case) -> Runs:
         """The three runs of a case."""
@@ -78,7 +80,7 @@ class Bench:
 
     def limits(self, plant: str) -> Limits:
         """As the parameters of the controller say."""
-        controller = fit(self._system(plant)).interfaces["controller"]
+        controller = self._fit(plant).interfaces["controller"]
         given = self._settings[plant]["parameters"]
 
         def value(name: str) -> float:
@@ -86,7 +88,7 @@ class Bench:
             start = float(variable.start) if variable and variable.start else np.inf
             return float(given.get(f"controller.{name}", start))
 
-        return Limits(value("T_max"), value("T_damp_max"))
+        return Limits(value("T_max"), value("T_add_max"), value("T_take_max"))
 
     def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
         key = plant, situation, noise, on_ice, control
@@ -106,18 +108,22 @@ class Bench:
         control: bool = True,
     ) -> np.ndarray:
         manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
-        system = self._system(plant)
         results = run(
-            system,
+            self._system(plant),
             DURATION,
             inputs=signals(manoeuvre, control),
             parameters=start(manoeuvre, noise)
-            | _slippery(system, on_ice)
+            | (_slippery(self._fit(plant)) if on_ice else {})
             | dict(self._settings[plant]["parameters"])
             | _parameters(faults, noise),
             label=manoeuvre.name,
         )
         return at_samples(results)
+
+    def _fit(self, plant: str) -> Fit:
+        if plant not in self._fitted:
+            self._fitted[plant] = fit(self._system(plant))
+        return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
         given = self._settings[plant]
@@ -164,11 +170,9 @@ def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
     return given
 
 
-def _slippery(system: System, on_ice: Sequence[Fault]) -> dict[str, float]:
+def _slippery(fitted: Fit) -> dict[str, float]:
     """Parameters of the plant on ice."""
-    if not on_ice:
-        return {}
-    has = fit(system).interfaces["plant"].variables
+    has = fitted.interfaces["plant"].variables
     return next(({f"plant.{name}": value} for name, value in SLIPPERY.items() if name in has), {})
 
 

@@ -92,8 +92,11 @@ def excess_of_T_ref(seen: Evidence) -> float:
 
 
 def excess_of_T_damp(seen: Evidence) -> float:
-    """By how much what the controller adds to the demand is beyond T_damp_max, N.m."""
-    return float(np.abs(seen.runs.faulty["controller.T_damp"]).max()) - seen.limits.T_damp_max
+    """By how much what the controller adds in the direction of the demand is beyond T_add_max, or against it beyond
+    T_take_max, N.m."""
+    T_damp, T_driver = seen.runs.faulty["controller.T_damp"][1:], seen.runs.faulty["controller.T_driver"][:-1]
+    taken = np.where(T_damp * T_driver < 0.0, seen.limits.T_take_max, seen.limits.T_add_max)
+    return float((np.abs(T_damp) - taken).max())
 
 
 def time_blind(seen: Evidence) -> float:
@@ -205,7 +208,7 @@ def _largest_before(x: np.ndarray, samples: int) -> np.ndarray:
 
 JUDGES = (
     Judge("limited", "N.m", 1e-9, "T_ref beyond T_max (inf: not finite)", excess_of_T_ref),
-    Judge("authority", "N.m", 1e-9, "added torque beyond T_damp_max", excess_of_T_damp),
+    Judge("authority", "N.m", 1e-9, "torque added beyond T_add_max, or taken beyond T_take_max", excess_of_T_damp),
     Judge("noticed", "s", NOTICED + 1e-9, "time for which a wrong motor signal is used", time_blind),
     Judge("stale", "s", STALE + 1e-9, "time for which a bad message counts as wheel speed", time_deaf),
     Judge("false alarm", "s", 1e-9, "time in fallback that no fault calls for", time_of_false_alarm),
