@@ -258,4 +258,5 @@ BLOCK = SampledBlock(
     output=output,
     update=update,
     sample_time=T_S,
+    gives_bad_output=True,
 )

@@ -127,6 +127,7 @@ VARIABLES = """/* {name}: its variables as its host sees them, written by build_
 static const char *const model_name = "{name}";
 static const char *const model_guid = "{guid}";
 static const int copes_with_bad_input = {copes}; /* inputs are not refused */
+static const int gives_bad_output = {bad_output}; /* NaN may be what it is for */
 static const unsigned variable_count = {count};
 
 static const Variable variables[{count}] = {{
@@ -155,6 +156,7 @@ def variables_header(fmu: Fmu, guid: str) -> str:
         module=fmu.module,
         guid=guid,
         copes=int(block.tolerates_bad_input),
+        bad_output=int(block.gives_bad_output),
         count=len(listed),
         rows="\n".join(map(_row, listed)),
         inputs=_names(records["u"]),

@@ -34,8 +34,9 @@ class _Block:
         module: where its equations stand; the docstring there explains them.
         Parameters, Input, State, Output: the declared named tuples.
         start: (u, p) -> x, the state at t = 0 with the inputs of that instant.
-        output: (x, u, p) -> y; a sampled block that uses u passes it on within the instant (native build only).
+        output: (x, u, p) -> y; a sampled block that uses u passes it on within the instant (native only).
         tolerates_bad_input: inputs are not refused; the block itself copes with NaN and the absurd.
+        gives_bad_output: NaN among the outputs is no mistake, but what the block is for (native build only).
     """
 
     name: str
@@ -48,6 +49,7 @@ class _Block:
     start: Callable[[Any, Any], Any]
     output: Callable[[Any, Any, Any], Any]
     tolerates_bad_input: bool = False
+    gives_bad_output: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

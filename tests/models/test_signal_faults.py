@@ -1,6 +1,7 @@
 """Each fault does to its signal what it says, from its begin to its end, and nothing to the others."""
 
 from math import isnan
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def sent(k):
     return Input(float(k), 1000.0 + k, 2000.0 + 10.0 * message, True, message)
 
 
-def passed(samples=150, **given):
+def passed(samples=150, **given: Any) -> list[Any]:
     """What goes out in each sample, as one array a signal, and what was sent."""
     p = Parameters(**given)
     runner = SampledRunner(BLOCK, sent(0), p)
@@ -46,7 +47,8 @@ def passed(samples=150, **given):
     for k in range(samples):
         out.append(Signals(*runner.output(sent(k))))
         runner.advance(sent(k), T_S)
-    return [Signals(*map(np.array, zip(*rows, strict=True))) for rows in (out, [sent(k) for k in range(samples)])]
+    arrays: Any = np.array
+    return [Signals(*map(arrays, zip(*rows, strict=True))) for rows in (out, [sent(k) for k in range(samples)])]
 
 
 def fault(kind, signal, size=1.0, share=1.0):

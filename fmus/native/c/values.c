@@ -69,7 +69,7 @@ Status check_outputs(const Instance *instance, Memory *memory, double step_size)
     for (unsigned k = 0; k < variable_count; k++) {
         const double value = *place_of(&memory->values, &variables[k]);
         char text[NUMBER_LENGTH], size[NUMBER_LENGTH];
-        if (variables[k].causality == OUTPUT && !(fabs(value) <= DBL_MAX))
+        if (variables[k].causality == OUTPUT && !gives_bad_output && !(fabs(value) <= DBL_MAX))
             return refuse(
                 instance,
                 NOT_FINITE(write_number(size, step_size), variables[k].name, write_number(text, value)));
