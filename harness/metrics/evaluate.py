@@ -125,9 +125,10 @@ def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
 def impact_speed(results: np.ndarray, t_0: float) -> float:
     """Largest speed in rad/s, motor side, with which the teeth meet from t_0 on; 0 if they never do.
 
-    The gap closes between two rows when T_gear leaves zero or changes its sign. The speed is that of
-    the twist, omega_1 - omega_2, as the mean of the two rows. In the design model this is the speed of
-    the teeth. In a plant with compliance behind the gear it contains the twisting of that compliance,
+    The gap closes between two rows when T_gear leaves zero or changes its sign, at the moment to which its
+    rise after them leads back. The speed is that of the twist, omega_1 - omega_2, at this moment: as it grew in
+    the gap before, or between the two rows where these are not both in the gap. In the design model this is
+    the speed of the teeth. In a plant with compliance behind the gear it contains the twisting of that compliance,
     which is small because it carries no torque while the gap is open; the interface that every plant
     shares shows no more.
 
@@ -140,9 +141,19 @@ def impact_speed(results: np.ndarray, t_0: float) -> float:
     rows_apart = np.diff(loaded)[np.diff(side[loaded]) != 0]
     if len(rows_apart) and (rows_apart == 1).all():
         raise Absent("the gear torque is never zero between both flanks: the plant shows no backlash")
-    closes = closes[results["time"][closes] >= t_0 - 1e-9]
+    closes = closes[(results["time"][closes] >= t_0 - 1e-9) & (closes > 0) & (closes < len(side) - 2)]
     speed = np.abs(results["plant.omega_1"] - results["plant.omega_2"])
-    return float((0.5 * (speed[closes] + speed[closes + 1])).max(initial=0.0))
+    in_gap = (side[closes - 1] == 0) & (side[closes] == 0)
+    growth = np.where(in_gap, speed[closes] - speed[closes - 1], speed[closes + 1] - speed[closes])
+    part = _part_of_interval(results["plant.T_gear"], closes)
+    return float((speed[closes] + part * growth).max(initial=0.0))
+
+
+def _part_of_interval(T_gear: np.ndarray, closes: np.ndarray) -> np.ndarray:
+    """After what share of the interval from these rows on the torque begins that the two rows after it show."""
+    first, rise = T_gear[closes + 1], T_gear[closes + 2] - T_gear[closes + 1]
+    since = np.divide(first, rise, out=np.full(len(closes), 0.5), where=rise * first > 0.0)
+    return 1.0 - np.clip(since, 0.0, 1.0)
 
 
 def plateau_swing(t: np.ndarray, T_gear: np.ndarray, plateau_ends: tuple[float, ...]) -> float:

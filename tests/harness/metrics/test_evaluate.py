@@ -171,12 +171,26 @@ def test_swing_needs_a_complete_piece():
 
 
 def test_impact_speed_is_the_speed_of_the_twist_when_the_torque_leaves_zero():
-    T_gear = np.array([-1.0, 0.0, 0.0, 5.0, 9.0, 0.0, 0.0, -2.0, 3.0])
-    speed = np.array([50.0, 10.0, 20.0, 30.0, 99.0, 99.0, 8.0, -12.0, 6.0])
+    """At the moment to which the rise of the torque leads back: 3/4, then 1/2 of an interval after the last zero."""
+    T_gear = np.array([-1.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.0, -2.0, -6.0])
+    speed = np.array([50.0, 10.0, 20.0, 99.0, 99.0, 4.0, 8.0, -12.0, 6.0])
     results = run(duration=8e-3, T_gear=T_gear, omega_1=100.0 + speed, omega_2=100.0)
-    assert impact_speed(results, 0.0) == 25.0
-    assert impact_speed(results, 0.004) == 10.0
+    assert impact_speed(results, 0.0) == 27.5
+    assert impact_speed(results, 0.003) == 10.0
     assert impact_speed(results, 0.1) == 0.0
+
+
+@pytest.mark.parametrize("interval", [1e-3, 1e-4])
+def test_impact_speed_does_not_depend_on_the_rows(interval):
+    """The twist speeds up by 2000 rad/s2 from one flank to the other, where a spring takes it up."""
+    t = np.arange(round(0.1 / interval) + 1) * interval
+    moving = np.clip(t - 0.0503, 0.0, None)
+    meeting = np.sqrt(2.0 * 0.4 / 2000.0)
+    twist, speed = np.minimum(1000.0 * moving**2, 0.4), np.minimum(2000.0 * moving, 2000.0 * meeting)
+    into = 2000.0 * meeting * np.clip(moving - meeting, 0.0, None)
+    assert twist.max() == 0.4
+    results = run(duration=0.1, interval=interval, T_gear=200.0 * into, omega_1=100.0 + speed, omega_2=100.0)
+    assert impact_speed(results, 0.0) == pytest.approx(2000.0 * meeting, rel=0.001)
 
 
 def test_plateau_swing_is_the_swing_left_on_the_plateaus():
