@@ -20,8 +20,8 @@ setup: $(READY) ## the virtual environment alone
 
 demo: $(READY) ## build the FMUs, compare with and without damping, replay a short drive
 	$(BIN)/driveline build
-	$(BIN)/driveline compare
-	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv
+	$(BIN)/driveline compare --replace
+	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv --replace
 
 test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
@@ -60,7 +60,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
-	$(BIN)/driveline compare
+	$(BIN)/driveline compare --replace
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
 		cat results/compare/table.md; } > docs/results.md
 	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png

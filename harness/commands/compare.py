@@ -2,12 +2,13 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
-from ..cosimulation.system import PLANTS
+from ..cosimulation.system import PLANTS, loop
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, settings
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, distinguishing, settings
 from .printing import Printer
 
 LEGEND = legend(Metrics)
@@ -41,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_plant(parser, several=True)
     add_loop(parser)
-    add_output(parser, "results/compare", "tables, figures and the signals of every run")
+    add_output(parser, "results/compare", "tables, figures and the signals of every run", of_a_run=True)
     add_printing(parser, table=True)
 
 
@@ -50,11 +51,22 @@ def run(args: argparse.Namespace) -> int:
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
+    from ..cosimulation.wiring import fit
+    from ..provenance import require_same_run, write_record
     from ..reports.terminal import print_table, runs_table
 
     out = Printer(args)
     todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
     given = {plant: settings(args, plant, build) for plant, build in builds.items()}
+    systems = {
+        plant: loop(plant, args.fmus, build, mapping=given[plant]["mapping"], **blocks(args))
+        for plant, build in builds.items()
+    }
+    record, tables = args.output / "compare.json", [args.output / name for name in ("table.md", "metrics.csv")]
+    same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
+    same["manoeuvres"] = list(dict.fromkeys(case.manoeuvre for case in todo))
+    if not args.replace:
+        require_same_run(record, same, tables)
     outcomes = run_cases(todo, args.output / "runs", given)
     rows = [outcome.row for outcome in outcomes]
     if not out.silent:
@@ -64,11 +76,20 @@ def run(args: argparse.Namespace) -> int:
     out.say(f"{LEGEND}\n")
     files = write_tables(outcomes, args.output)
     figures = write_figures(outcomes, args.output)
+    fits = {Path(plant).stem: fit(system) for plant, system in systems.items()}
+    read = [args.vehicle, args.parameters]
+    for case in todo:
+        path = args.output / "runs" / f"{case.file_name}.csv"
+        own = distinguishing(given[case.plant], systems[case.plant], MANOEUVRES[case.manoeuvre])
+        one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
+        write_record(path.with_suffix(".json"), one, {case.plant_name: fits[case.plant_name]}, [path], read)
+    write_record(record, same, fits, [*files, *figures], read)
     out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
     out.say(f"tables:  {' '.join(str(path) for path in files)}")
     for figure in figures:
         if figure.suffix == ".png":
             out.say(f"figure:  {figure} (and .pdf)")
     out.say(f"signals: {args.output / 'runs'}/*.csv ({len(outcomes)} runs)")
+    out.say(f"made by: {record} (version, FMUs, parameters, units), and one beside the signals of every run")
     out.document({"runs": [outcome.record for outcome in outcomes], "files": [*files, *figures]})
     return 0

@@ -16,6 +16,7 @@ from fmus.origin import is_stale, origin_of
 from ..cosimulation.limits import USUAL, Limits
 from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, System, chosen_build, loop
 from ..errors import DrivelineError
+from ..manoeuvres.manoeuvre import Manoeuvre
 
 LOG = logging.getLogger(__name__)
 
@@ -129,8 +130,11 @@ def limits(args: argparse.Namespace) -> Limits:
     return Limits(args.time_limit, args.unpacked_limit)
 
 
-def add_output(parser: argparse.ArgumentParser, default: str, files: str) -> None:
-    """--output, the folder for everything that the command writes; `files` says what that is."""
+def add_output(parser: argparse.ArgumentParser, default: str, files: str, of_a_run: bool = False) -> None:
+    """--output, the folder for everything that the command writes; `files` says what that is.
+
+    Where they are the results of a run that options distinguish, --replace too.
+    """
     action = parser.add_argument(
         "--output",
         type=output_folder,
@@ -139,6 +143,8 @@ def add_output(parser: argparse.ArgumentParser, default: str, files: str) -> Non
         help=f"for {files} (default: %(default)s)",
     )
     action.complete = "directory"  # type: ignore[attr-defined]
+    if of_a_run:
+        parser.add_argument("--replace", action="store_true", help="replace results that are those of another run")
 
 
 def add_printing(parser: argparse.ArgumentParser, table: bool = False) -> None:
@@ -221,6 +227,24 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
         "mapping": mapping,
         "limits": limits(args),
         **blocks(args),
+    }
+
+
+def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:
+    """What distinguishes a run of the loop from others: all that was set, and the FMUs.
+
+    Args:
+        given: of `settings`.
+        manoeuvre: None: several.
+    """
+    from ..simulate import start
+
+    own = start(manoeuvre, given["seed"]) if manoeuvre else {}
+    return {
+        "fmus": {name: str(path) for name, path in system.instances.items()},
+        "parameters": own | given["parameters"],
+        "seed": given["seed"],
+        "mapping": given["mapping"],
     }
 
 

@@ -1,6 +1,7 @@
 """`driveline replay`: a recorded drive through the simulated vehicle, without and with damping."""
 
 import argparse
+from hashlib import sha256
 from pathlib import Path
 
 from ..cosimulation.system import PLANTS, loop
@@ -8,7 +9,7 @@ from ..errors import DrivelineError
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, seconds, settings
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, distinguishing, seconds, settings
 from .printing import Printer
 
 LEGEND = legend(RideMetrics)
@@ -48,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
     )
     add_loop(parser)
-    add_output(parser, "results/replay", "the metrics, the signals and the figure")
+    add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
     add_printing(parser, table=True)
 
 
@@ -60,6 +61,7 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
     from ..manoeuvres.road import RoadLoad, road, torque_limit
+    from ..provenance import require_same_run, write_record
     from ..replay import records, replay, write
     from ..reports.terminal import print_table, rides_reasons, rides_table
 
@@ -70,6 +72,11 @@ def run(args: argparse.Namespace) -> int:
     interfaces, parameters = fit(system).interfaces, given["parameters"]
     load = RoadLoad.of_plant(interfaces["plant"], parameters)
     manoeuvre = road(recording, load, args.held, torque_limit(interfaces["motor"], parameters))
+    record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
+    same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held}
+    same |= distinguishing(given, system, manoeuvre)
+    if not args.replace:
+        require_same_run(record, same, [metrics])
     out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {plant}, {build} FMUs, without and with damping")
     rides = replay(manoeuvre, recording, args.plant, **given)
     if not out.silent:
@@ -78,7 +85,9 @@ def run(args: argparse.Namespace) -> int:
         out.say(reason)
     out.say(f"{LEGEND}\n")
     files = write(rides, recording, plant, args.output)
-    for file in files:
+    read = [args.recording, args.vehicle, args.parameters]
+    write_record(record, same, {plant: fit(system)}, files, read)
+    for file in (*files, record):
         out.say(f"written: {file}")
     out.document({"runs": records(rides, recording, plant), "files": files})
     return 0

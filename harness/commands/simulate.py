@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
-from ..cosimulation.system import Scheme
+from ..cosimulation.system import Scheme, loop
 from ..manoeuvres.catalogue import MANOEUVRES
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, seconds, settings
+from .options import add_loop, add_output, add_plant, add_printing, blocks, built, distinguishing, seconds, settings
 from .printing import Printer
 
 DESCRIPTION = """\
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="when outputs reach inputs: at their instant, one FMU after the other, or a step later; "
         "docs/coupling.md shows what that does (default: %(default)s)",
     )
-    add_output(parser, "results/simulate", "the signals and the figure")
+    add_output(parser, "results/simulate", "the signals and the figure", of_a_run=True)
     parser.add_argument("--plot", action="store_true", help="draw speeds, torques and the motion of the body")
     add_printing(parser)
 
@@ -66,12 +66,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
+    from ..cosimulation.wiring import fit
+    from ..provenance import require_same_run, write_record
     from ..reports.csv_file import write_csv
     from ..simulate import simulate
 
     out = Printer(args)
     manoeuvre = MANOEUVRES[args.manoeuvre]
     plant = Path(args.plant).stem
+    name = f"{plant}_{manoeuvre.name}_{args.control}"
+    signals, record = args.output / f"{name}.csv", args.output / f"{name}.json"
+    given = settings(args, args.plant, build)
+    system = loop(args.plant, args.fmus, build, mapping=given["mapping"], **blocks(args))
+    same = {"manoeuvre": manoeuvre.name, "damping": args.control, "step_size": args.step, "scheme": args.scheme}
+    same |= distinguishing(given, system, manoeuvre)
+    if not args.replace:
+        require_same_run(record, same, [signals])
     began = perf_counter()
     results = simulate(
         manoeuvre,
@@ -79,20 +89,23 @@ def run(args: argparse.Namespace) -> int:
         control=args.control == "on",
         step_size=args.step,
         scheme=Scheme(args.scheme),
-        **settings(args, args.plant, build),
+        **given,
     )
     took = perf_counter() - began
     out.say(
         f"{manoeuvre.name} on {plant}, {build} FMUs, damping {args.control}: {manoeuvre.duration:g} s in {took:.2f} s"
     )
-    name = f"{plant}_{manoeuvre.name}_{args.control}"
-    signals = args.output / f"{name}.csv"
     write_csv(results, signals)
     out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
+    files = [signals]
     if args.plot:
         from ..reports.run_figure import plot_run
 
         title = f"{plant}, {manoeuvre.description}, damping {args.control}"
         for figure in plot_run(results, title, args.output / name):
+            files.append(figure)
             out.say(f"figure:  {figure}")
+    fits = {plant: fit(system)}
+    write_record(record, same, fits, files, [args.vehicle, args.parameters])
+    out.say(f"made by: {record} (version, FMUs, parameters, units)")
     return 0

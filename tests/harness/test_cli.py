@@ -173,7 +173,7 @@ def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):
     said, folder = simulate("--step", "0.002", "--plot", "--quiet")
     assert said == (0, "", "")
     assert {path.name for path in folder.iterdir()} == {
-        f"TwoMassDriveline_tipin15_on.{kind}" for kind in ("csv", "png", "pdf")
+        f"TwoMassDriveline_tipin15_on.{kind}" for kind in ("csv", "json", "png", "pdf")
     }
 
 

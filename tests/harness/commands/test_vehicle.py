@@ -51,5 +51,5 @@ def test_what_a_vehicle_file_does_not_reach_is_said(
     assert "has no parameter J_1: the file reaches the other blocks alone" in caplog.text
     assert "the gains of the default car" in caplog.text
     caplog.clear()
-    assert main([*options, "--parameters", str(gains)]) == 0
+    assert main([*options, "--parameters", str(gains), "--replace"]) == 0
     assert caplog.text == ""

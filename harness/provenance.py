@@ -1,0 +1,110 @@
+"""What made a result: a JSON file beside it, and by it two runs that are not the same are told apart."""
+
+import hashlib
+import json
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from .cosimulation.interface import unit_of
+from .cosimulation.wiring import Fit
+from .errors import DrivelineError
+from .reports.files import write_text
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Path]) -> None:
+    """Refuses to replace results of another run.
+
+    Args:
+        record: the JSON file that tells what made the results that are there.
+        run: all that distinguishes the run that is to be made.
+        results: files that it will write, as far as their names are known.
+
+    Raises:
+        DrivelineError: there are results of another run, or of one that nothing tells of.
+    """
+    there = next((path for path in results if path.is_file()), record if record.is_file() else None)
+    if there is None:
+        return
+    try:
+        before = json.loads(record.read_text(encoding="utf-8"))["run"]
+    except (OSError, ValueError, KeyError, TypeError):
+        reason = f"is there, and {record} does not tell of which run it is"
+    else:
+        changed = next(_differences(before, json.loads(_text(run))), None)
+        if changed is None:
+            return
+        reason = f"is of another run ({changed})"
+    raise DrivelineError(f"{there} {reason}; choose another --output, or --replace it")
+
+
+def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
+    """In what two runs differ, in words."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in sorted(before.keys() | now.keys()):
+            yield from _differences(before.get(key), now.get(key), f"{name} {key}".strip())
+    elif before != now:
+        yield f"{name}: {'not set' if before is None else before} there, {'not set' if now is None else now} here"
+
+
+def write_record(
+    record: Path, run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
+) -> None:
+    """Writes what made the files of a run.
+
+    Args:
+        run: all that distinguishes it.
+        fits: the systems that ran, by their plants.
+        files: that it has written.
+        inputs: files beside the FMUs that it has read.
+    """
+    content = {
+        "program": f"driveline-damping {version('driveline-damping')}",
+        "commit": commit(),
+        "command_line": shlex.join(sys.argv),
+        "run": run,
+        "fmus": {
+            plant: {name: {"file": path, "digest": _digest(path)} for name, path in fit.system.instances.items()}
+            for plant, fit in fits.items()
+        },
+        "inputs": {str(path): _digest(path) for path in inputs if path is not None},
+        "files": [path.name for path in files],
+        "units": {name: unit for fit in fits.values() for name, unit in units(fit).items()},
+    }
+    write_text(_text(content), record)
+
+
+def units(fit: Fit) -> dict[str, str]:
+    """The unit of every column of the results that has one."""
+    given = {port.name for port in fit.system.inputs}
+    return {"time": "s"} | {
+        f"{instance}.{name}": unit
+        for instance, interface in fit.interfaces.items()
+        for name, variable in interface.variables.items()
+        if (variable.causality == "output" or f"{instance}.{name}" in given) and (unit := unit_of(variable))
+    }
+
+
+def commit() -> str | None:
+    """The commit of the checkout, with -dirty if files have changed since; None if there is none."""
+    if not (ROOT / ".git").exists():
+        return None
+    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+def _digest(path: Path) -> str:
+    return f"sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}"
+
+
+def _text(content: Any) -> str:
+    return json.dumps(content, indent=2, default=str) + "\n"

@@ -1,0 +1,94 @@
+"""Results tell what made them, and are not replaced by those of another run."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import pytest
+from fmpy.util import read_csv
+
+from harness.cli import main
+from harness.cosimulation.interface import Interface
+from harness.errors import DrivelineError
+from harness.provenance import require_same_run
+
+RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
+NAME = "TwoMassDriveline_prbs15_on"
+
+
+@pytest.fixture(scope="module")
+def made(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with the results of a run."""
+    folder = tmp_path_factory.mktemp("results")
+    gains = folder / "gains.toml"
+    gains.write_text("k_d = 2.5\n", encoding="utf-8")
+    given = ["--parameters", str(gains), "--set", "plant.J_1=0.07", "--seed", "5"]
+    assert main([*RUN, *given, "--fmus", str(both_built), "--output", str(folder)]) == 0
+    return folder
+
+
+def test_a_record_tells_what_made_the_signals(made: Path, both_built: Path) -> None:
+    record = json.loads((made / f"{NAME}.json").read_text(encoding="utf-8"))
+    assert record["program"].startswith("driveline-damping ")
+    assert record["files"] == [f"{NAME}.csv"]
+    assert (record["run"]["seed"], record["run"]["parameters"]["motor.seed"]) == (5, 5)
+    assert record["run"]["parameters"].items() >= {"plant.J_1": 0.07, "controller.k_d": 2.5}.items()
+    plant = both_built / "native" / "TwoMassDriveline.fmu"
+    told = {"file": str(plant), "digest": f"sha256:{hashlib.sha256(plant.read_bytes()).hexdigest()}"}
+    assert record["fmus"]["TwoMassDriveline"]["plant"] == told
+    assert list(record["inputs"]) == [str(made / "gains.toml")]
+
+
+def test_every_real_column_has_its_unit(made: Path, both_built: Path) -> None:
+    units = json.loads((made / f"{NAME}.json").read_text(encoding="utf-8"))["units"]
+    columns = read_csv(made / f"{NAME}.csv").dtype.names
+    assert units.keys() <= set(columns or ())
+    assert (units["time"], units["plant.T_gear"], units["controller.T_driver"]) == ("s", "N.m", "N.m")
+    reals = [v.name for v in Interface(both_built / "TwoMassDriveline.fmu").of_causality("output") if v.type == "Real"]
+    assert all(f"plant.{name}" in units for name in reals)
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["--seed", "6"], "seed: 5 there, 6 here"),
+        (["--set", "plant.J_1=0.08"], "parameters plant.J_1: 0.07 there, 0.08 here"),
+        (["--set", "plant.J_2=0.08"], "parameters plant.J_2: not set there, 0.08 here"),
+        (["--step", "0.001"], "step_size: 0.002 there, 0.001 here"),
+        (["--build", "python"], "fmus"),
+    ],
+)
+def test_another_run_does_not_replace_it(
+    made: Path, both_built: Path, capsys: pytest.CaptureFixture[str], options: list[str], named: str
+) -> None:
+    before = {path: path.read_bytes() for path in made.iterdir()}
+    given = ["--parameters", str(made / "gains.toml"), "--set", "plant.J_1=0.07", "--seed", "5"]
+    assert main([*RUN, *given, *options, "--fmus", str(both_built), "--output", str(made)]) == 2
+    said = capsys.readouterr().err
+    assert f"{made / NAME}.csv is of another run (" in said
+    assert named in said
+    assert {path: path.read_bytes() for path in made.iterdir()} == before
+
+
+def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
+    assert [main(given), main(given)] == [0, 0]
+    assert main([*given, "--seed", "2"]) == 2
+    assert main([*given, "--seed", "2", "--replace"]) == 0
+    (tmp_path / f"{NAME}.json").unlink()
+    assert main([*given, "--seed", "2"]) == 2
+    assert "does not tell of which run it is" in capsys.readouterr().err
+
+
+def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:
+    record, table = tmp_path / "compare.json", tmp_path / "table.md"
+    require_same_run(record, {"seed": 1}, [table])
+    table.touch()
+    with pytest.raises(DrivelineError, match="does not tell"):
+        require_same_run(record, {"seed": 1}, [table])
+    record.write_text('{"run": {"seed": 1}}', encoding="utf-8")
+    require_same_run(record, {"seed": 1}, [table])
+    with pytest.raises(DrivelineError, match=r"table\.md is of another run \(seed: 1 there, 2 here\)"):
+        require_same_run(record, {"seed": 2}, [table])
