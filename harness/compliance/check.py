@@ -13,13 +13,7 @@ from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
 from .description_rules import DESCRIPTION_RULES
 from .rule import Rule, Severity, Verdict
 
-
-def _unreadable(path: Path, limits: Limits) -> Iterable[str]:
-    Interface(path, limits)
-    return ()
-
-
-READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU", _unreadable)
+READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU")
 
 RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BEHAVIOUR_RULES)
 
@@ -43,29 +37,24 @@ def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Coll
     def kept(rules: Iterable[Rule]) -> Iterator[Rule]:
         return (rule for rule in rules if rule.name not in ignored)
 
-    if not _is_archive(path):
-        yield READABLE.judge(path, limits)
+    try:
+        archive.entries(path)
+    except DrivelineError as error:
+        yield READABLE.verdict([str(error)])
         return
     refused = [rule.judge(path, limits) for rule in kept(REFUSING_RULES)]
     yield from refused
     if any(verdict.problems for verdict in refused):
         return
     yield from (rule.judge(path) for rule in kept(ARCHIVE_RULES))
-    readable = READABLE.judge(path, limits)
-    yield readable
-    if readable.problems:
+    try:
+        interface = Interface(path, limits)
+    except DrivelineError as error:
+        yield READABLE.verdict([str(error)])
         return
-    interface = Interface(path, limits)
+    yield READABLE.verdict([])
     yield from (rule.judge(interface) for rule in kept(DESCRIPTION_RULES))
     yield from _behaviour(interface, list(kept(QUICK_RULES if quick else BEHAVIOUR_RULES)), limits)
-
-
-def _is_archive(path: Path) -> bool:
-    try:
-        archive.entries(path)
-    except DrivelineError:
-        return False
-    return True
 
 
 def _behaviour(interface: Interface, rules: Iterable[Rule], limits: Limits) -> Iterator[Verdict]:
@@ -73,11 +62,14 @@ def _behaviour(interface: Interface, rules: Iterable[Rule], limits: Limits) -> I
     apart = None
     try:
         for rule in rules:
-            apart = apart or Apart([interface.path.name] * 2, limits.call)
             try:
-                yield apart.ask(rule.judge, interface)
+                if apart is None:
+                    apart = Apart([interface.path.name] * 2, limits.call)
+                    apart.ask(_receive, interface)
+                yield apart.ask(_judge, rule)
             except SimulationError as error:
-                apart.close()
+                if apart:
+                    apart.close()
                 apart = None
                 yield rule.verdict([str(error)])
                 if rule.name == BEHAVIOUR_RULES[0].name:
@@ -85,3 +77,17 @@ def _behaviour(interface: Interface, rules: Iterable[Rule], limits: Limits) -> I
     finally:
         if apart:
             apart.close()
+
+
+# what follows runs in the other process
+
+_interface: Interface
+
+
+def _receive(interface: Interface) -> None:
+    global _interface
+    _interface = interface
+
+
+def _judge(rule: Rule) -> Verdict:
+    return rule.judge(_interface)

@@ -38,13 +38,13 @@ class Rule:
     Attributes:
         name: by which it can be ignored.
         title: what an FMU does that keeps it.
-        problems: lists what breaks it.
+        problems: lists what breaks it; nothing for a rule that is judged elsewhere.
     """
 
     name: str
     severity: Severity
     title: str
-    problems: Callable[..., Iterable[str]]
+    problems: Callable[..., Iterable[str]] = lambda *_: ()
 
     def judge(self, *subject: Any) -> Verdict:
         """What breaks it; one thing may be that the FMU cannot be read or refuses a call."""

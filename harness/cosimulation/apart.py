@@ -149,6 +149,6 @@ class Apart:
         """Which FMU did that in which call."""
         instance, function, time = self._at()
         if not function:
-            return f"{', '.join(self._names)} {what} a process that was only starting"
+            return f"{', '.join(dict.fromkeys(self._names))} {what} no call of FMI"
         when = f" at {time:g} s" if time >= 0.0 else ""
         return f"{self._names[instance]} {what} {FUNCTIONS[function - 1]}{when}"

@@ -28,7 +28,7 @@ from ..errors import SimulationError, WiringError
 from ..plain import plain
 from .archive import unpack
 from .interface import Interface, type_of
-from .whereabouts import AT_START, note
+from .whereabouts import AT_START, note, rest
 
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
 
@@ -212,6 +212,7 @@ def _instantiate(name: str, interface: Interface, folder: str, key: int, number:
     path = interface.path
     if not folder.isascii():
         raise SimulationError(f"{path.name} cannot be unpacked to {folder}: FMUs need a plain ASCII folder")
+    rest()  # unpacking may take longer than a call may
     unpack(path, folder)
     platforms = fmpy.supported_platforms(folder)
     if fmpy.platform not in platforms:

@@ -36,7 +36,7 @@ class Whereabouts(Structure):
 
     Attributes:
         instance: its number.
-        function: the number of the function, 0 before the first call.
+        function: the number of the function; 0: of none.
         time: of the instant at work, in s.
     """
 
@@ -55,6 +55,11 @@ def share(memory: mmap) -> None:
     """From now on the calls are noted in memory that another process sees."""
     global _current
     _current = Whereabouts.from_buffer(memory)
+
+
+def rest() -> None:
+    """Notes that no call is being made."""
+    _current.function = 0
 
 
 def note(instance: int, function: str, time: float = AT_START) -> None:
