@@ -28,6 +28,10 @@ Signals = Callable[[int], tuple[float, float, float]]
 """Number of the interval -> T_driver (N.m), T_brake (N.m) and slope (rad), held over it."""
 
 
+Received = Callable[[float, Any], Any]
+"""Time in s and what was sent to the controller -> what it receives."""
+
+
 @cache
 def motor_and_plant(plant: ContinuousBlock) -> ContinuousBlock:
     """Motor and plant as one continuous block; its input is that of the plant with T_ref for T_mot."""
@@ -65,6 +69,7 @@ def run(
     duration: float,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     enable: bool = True,
+    received: Received = lambda t, sent: sent,
 ) -> np.ndarray:
     """Runs the loop from the start of its blocks.
 
@@ -74,6 +79,7 @@ def run(
         duration: in s.
         parameters: values by instance (controller, motor, plant, can) and name.
         enable: whether the damping is on.
+        received: what becomes of the signals on their way to the controller.
 
     Returns:
         Structured array of duration/INTERVAL + 1 rows: time, controller.T_driver and the outputs of all
@@ -85,7 +91,8 @@ def run(
     driven = runner(motor_and_plant(plant), u, (p["motor"], p["plant"]))
     motor, seen = driven.output(u)
     can = runner(CAN, wheels(seen), p["can"])
-    controller = runner(CONTROLLER, sensed(u.T_mot, motor, can.output(None), enable), p["controller"])
+    sent = sensed(u.T_mot, motor, can.output(None), enable)
+    controller = runner(CONTROLLER, received(0.0, sent), p["controller"])
 
     rows = []
     for k in range(round(duration / INTERVAL) + 1):
@@ -94,7 +101,7 @@ def run(
         u = plant.Input(command.T_ref, T_brake, slope)
         motor, seen = driven.output(u)
         rows.append((k * INTERVAL, T_driver, *command, *motor, *seen, *bus))
-        controller.advance(sensed(T_driver, motor, bus, enable), INTERVAL)
+        controller.advance(received(k * INTERVAL, sensed(T_driver, motor, bus, enable)), INTERVAL)
         can.advance(wheels(seen), INTERVAL)
         driven.advance(u, INTERVAL)
     outputs = (f"{name}.{field}" for name, block in blocks.items() for field in block.Output._fields)

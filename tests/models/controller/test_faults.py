@@ -1,0 +1,67 @@
+"""Wrong motor speeds in the loop, on both plants: found, kept out, and forgotten when they are over."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from harness.analysis import monolithic
+from harness.metrics.spectrum import band_rms
+from models import two_mass_driveline, validation_vehicle
+from models.block.types import ContinuousBlock
+from models.controller.supervision import FALLBACK
+
+V_0 = 15.0
+ONSET, END, DURATION = 0.3, 0.9, 1.5
+FOUND, BACK = 0.05, 0.5
+"""Times in s within which a fault is found, and forgotten after its end."""
+
+FAULTS: dict[str, Callable[[float], float]] = {
+    "stuck at 0": lambda omega_1: 0.0,
+    "200 rad/s more": lambda omega_1: omega_1 + 200.0,
+    "100 rad/s less": lambda omega_1: omega_1 - 100.0,
+    "halved": lambda omega_1: 0.5 * omega_1,
+    "wrong sign": lambda omega_1: -omega_1,
+    "no number": lambda omega_1: math.nan,
+}
+
+both_plants = pytest.mark.parametrize(
+    "plant", [two_mass_driveline.BLOCK, validation_vehicle.BLOCK], ids=lambda block: block.name
+)
+
+
+@cache
+def driven(plant: ContinuousBlock, T_driver: float, enable: bool = True, fault: str | None = None) -> np.ndarray:
+    def received(t: float, sent: Any) -> Any:
+        faulty = fault is not None and ONSET <= t < END
+        return sent._replace(omega_1_meas=FAULTS[fault or ""](sent.omega_1_meas)) if faulty else sent
+
+    parameters = {"plant": {"v_0": V_0, "T_0": T_driver}}
+    return monolithic.run(plant, lambda k: (T_driver, 0.0, 0.0), DURATION, parameters, enable, received)
+
+
+@both_plants
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_wrong_speed_of_a_coasting_car_leads_to_fallback_for_as_long_as_it_lasts(
+    plant: ContinuousBlock, fault: str
+) -> None:
+    """And half a second later all is as if it had never been."""
+    y, healthy = driven(plant, 0.0, fault=fault), driven(plant, 0.0)
+    t, fallback = y["time"], y["controller.status"] == FALLBACK
+    assert all(fallback[(t >= ONSET + FOUND) & (t < END)])
+    assert not any(fallback[(t < ONSET) | (t >= END + BACK)])
+    kick = abs(y["controller.T_damp"] - healthy["controller.T_damp"])
+    assert kick[t >= END].max() < 2.0
+
+
+@both_plants
+@pytest.mark.parametrize("fault", ["wrong sign", "halved"])
+def test_a_wrong_speed_under_torque_does_not_shake_the_gear(plant: ContinuousBlock, fault: str) -> None:
+    """By more than 1.2 times what it does without control, or than the noise of the sensors makes it with control."""
+    y, alone, healthy = (driven(plant, 40.0, fault=fault), driven(plant, 40.0, enable=False), driven(plant, 40.0))
+    shaken, *others = (band_rms(run["plant.T_gear"], monolithic.INTERVAL) for run in (y, alone, healthy))
+    assert shaken < 1.2 * max(others) + 0.1
+    assert max(others) < 0.2
