@@ -46,7 +46,7 @@ class Road(NamedTuple):
 ROADS = {
     "design model": Road(PLANTS[0], 1.0, 180.0, 2400.0, 0.1),
     "vehicle": Road(PLANTS[1], 1.0, 180.0, 2400.0, 0.1),
-    "vehicle on ice": Road(PLANTS[1], 0.1, 25.0, 200.0, 0.1),
+    "vehicle on ice": Road(PLANTS[1], 0.1, 15.0, 200.0, 0.1),
 }
 HARSH_TORQUE, HARSH_BRAKE = 120.0, 4000.0
 """N.m that spin the wheels on ice, and lock them on any road; half a second of that now and then."""
@@ -71,11 +71,15 @@ def drive(road: Road, seed: int) -> tuple[Manoeuvre, dict[str, float]]:
     pedal, brake, t = [(0.0, T), (0.3, T)], [(0.0, 0.0), (0.3, 0.0)], 0.3
     while t < MINUTE:
         T, T_brake, lasts = action(road, v, random)
-        rises = float(random.uniform(0.002, 0.3))
+        rises = float(random.uniform(0.1 if T_brake else 0.002, 0.3))  # brakes take a tenth of a second
         pedal += [(t + rises, T), (t + rises + lasts, T)]
         brake += [(t + rises, T_brake), (t + rises + lasts, T_brake)]
         v = max(0.0, v + (rises + lasts) * acceleration(road, v, T, T_brake))
         t += rises + lasts
+        if T == HARSH_TORQUE:  # wheels that spin are let go of
+            pedal += [(t + 0.05, 0.0), (t + 1.5, 0.0)]
+            brake += [(t + 1.5, 0.0)]
+            t += 1.5
     name = f"healthy {seed}"
     slope = lines((0.0, 0.0), (1.0, float(random.uniform(-0.04, 0.04))))
     manoeuvre = Manoeuvre(name, "healthy driving", MINUTE, v_0, lines(*pedal), lines(*brake), slope)

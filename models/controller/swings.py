@@ -20,7 +20,7 @@ EXCUSE = 0.2
 T_FORGET = 0.5
 """Time in s after which a half swing is forgotten."""
 
-MOST = 1.8
+MOST = 3.2
 """Half swings that the damping does not make in a drive train that it damps."""
 
 

@@ -15,7 +15,10 @@ from workers import survivors
 
 LEAST_SCORE = 0.95
 
-CONTROLLER = "damping_law", "fading", "rest", "signal_monitor", "supervision", "torque_estimator"
+CONTROLLER = (
+    *("damping_law", "fading", "rest", "signal_monitor", "supervision", "swings", "torque_estimator", "trust"),
+    "wheel_monitor",
+)
 WHOLE_CONTROLLER = "tests/models/controller", "tests/models/test_damping_controller.py"
 CALLS = (
     *(f"tests/fmus/native/test_{name}.py" for name in ("calls", "same_words", "as_python", "rates")),
