@@ -1,9 +1,9 @@
 """The C source of a block: block.h and block.c, and variables.h with what a host sees of it."""
 
-import json
 import re
 from typing import Any
 
+from models.block.explicit import small_sizes
 from models.block.types import SampledBlock
 
 from ..description.variables import Variable, interface
@@ -76,7 +76,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define INDICATORS {sum(indicators)}",
-        f"#define STATE_NAMES {{{', '.join(map(json.dumps, fmu.block.State._fields))}}}",
+        f"#define SMALL_SIZES {{{', '.join(map(repr, small_sizes(fmu.block)))}}} /* of the states: see explicit.py */",
     ]
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from models.block import rodas
 from models.block.dop853 import B_3, ERROR_5, A, B
-from models.block.explicit import GREATEST, SMALL, TOLERANCE
+from models.block.explicit import GREATEST, TOLERANCE
 
 DOP853 = """/* The Runge-Kutta method of order 8 by Dormand and Prince, written by build_fmus.py from dop853.py. */
 
@@ -20,7 +20,7 @@ static void step(const Problem *problem, double t, const Vector x, const Vector 
     double e5 = 0.0, e3 = 0.0;
     for (int n = 0; n < STATES; n++) {{
         const double before = fabs(x[n]), after = fabs(end[n]);
-        const double w = {tolerance!r} * ((before > after ? before : after) + {small!r});
+        const double w = {tolerance!r} * ((before > after ? before : after) + small[n]);
         double e = ({error_5}) / w;
         e5 += e * e;
         e = (sum[n] - ({end_3})) / w;
@@ -55,7 +55,6 @@ def step_header() -> str:
         error_5=_sum(ERROR_5),
         end_3=_sum(B_3),
         tolerance=TOLERANCE,
-        small=SMALL,
         greatest=GREATEST,
     )
 

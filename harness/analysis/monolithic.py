@@ -36,7 +36,10 @@ Received = Callable[[float, Any], Any]
 def motor_and_plant(plant: ContinuousBlock) -> ContinuousBlock:
     """Motor and plant as one continuous block; its input is that of the plant with T_ref for T_mot."""
     split = len(MOTOR.State._fields)
-    State = namedtuple("State", [f"motor_{n}" for n in MOTOR.State._fields] + list(plant.State._fields))
+    motor_declared = {f"motor_{name}": declared for name, declared in MOTOR.State.__annotations__.items()}
+    declared = motor_declared | plant.State.__annotations__
+    State: Any = namedtuple("State", declared)
+    State.__annotations__ = declared
 
     def parts(x: Any, u: Any) -> tuple[Any, Any, Any, Any]:
         x_motor, x_plant = MOTOR.State(*x[:split]), plant.State(*x[split:])

@@ -1,28 +1,37 @@
 """Steps of an explicit Runge-Kutta method, and how far off they are.
 
 The error of a step is in units of what is tolerated: the root mean square over the states of the estimate
-over TOLERANCE (|x| + SMALL). That of DOP853 is made of two, of orders 5 and 3 (Hairer, Norsett, Wanner,
-"Solving Ordinary Differential Equations I", 2nd ed., section II.10).
+over TOLERANCE (|x| + small), where `small` is SMALL or SMALL_TWIST. The estimate of DOP853 is made of two, of
+orders 5 and 3 (Hairer, Norsett, Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.10).
 """
 
 import math
 from collections.abc import Callable
 from typing import Any
 
+from .declaration import Real, variables
 from .dop853 import B_3, ERROR_5, A, B
 from .types import ContinuousBlock
 
 TOLERANCE = 1e-5
 """Error of a step over the size of a state that is tolerated."""
 
-SMALL = 1e-3
-"""In the unit of a state (rad, rad/s, m, m/s): what is added to its size."""
+SMALL, SMALL_TWIST = 1e-2, 1e-4
+"""What is added to the size of a state: in its unit (rad/s, m/s, ...), and in rad or m, as springs are stiff."""
 
 GREATEST = 1e300
 """Of the sums of squares from which an error is made; beyond it the error is without bound."""
 
 Weights = dict[int, float]
 """Of the stages, by their numbers."""
+
+
+def small_sizes(block: ContinuousBlock) -> tuple[float, ...]:
+    """What is added to the size of each state."""
+    twists = {
+        q.name for q in variables(block.State) if isinstance(q.declaration, Real) and q.declaration.unit in ("rad", "m")
+    }
+    return tuple(SMALL_TWIST if name in twists else SMALL for name in block.State._fields)
 
 
 def tangent(block: ContinuousBlock) -> Callable[[Any, Any, Any, Any, float], Any]:
@@ -51,7 +60,7 @@ def _stepper(
         at = _state(f"x{n} + h * ({_sum(weights, n)})" for n in range(size))
         lines.append(f"    {_names(f'k{stage}_', size)} = f({at}, u, p)")
     if errors:
-        lines += _judged(size, end, *errors)
+        lines += _judged(small_sizes(block), end, *errors)
     else:
         lines.append("    return " + _state(f"x{n} + h * ({_sum(end, n)})" for n in range(size)))
     scope: dict[str, Any] = {"f": block.derivative, "new": tuple.__new__, "sqrt": math.sqrt, "State": block.State}
@@ -59,15 +68,15 @@ def _stepper(
     return scope["step"]
 
 
-def _judged(size: int, end: Weights, error_5: Weights, end_3: Weights) -> list[str]:
+def _judged(sizes: tuple[float, ...], end: Weights, error_5: Weights, end_3: Weights) -> list[str]:
     """Source of the end of a step and its error."""
-    lines = ["    e5 = e3 = 0.0"]
-    for n in range(size):
+    size, lines = len(sizes), ["    e5 = e3 = 0.0"]
+    for n, small in enumerate(sizes):
         lines += [
             f"    s = {_sum(end, n)}",
             f"    y{n} = x{n} + h * s",
             f"    a, b = abs(x{n}), abs(y{n})",
-            f"    w = {TOLERANCE!r} * ((a if a > b else b) + {SMALL!r})",
+            f"    w = {TOLERANCE!r} * ((a if a > b else b) + {small!r})",
             f"    e = ({_sum(error_5, n)}) / w",
             "    e5 += e * e",
             f"    e = (s - ({_sum(end_3, n)})) / w",

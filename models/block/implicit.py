@@ -7,7 +7,7 @@ Kinks are left to the error of the steps.
 import math
 from typing import Any
 
-from .explicit import SMALL, TOLERANCE
+from .explicit import TOLERANCE, small_sizes
 from .rodas import GAMMA, A, G
 from .types import ContinuousBlock
 
@@ -36,7 +36,7 @@ class Implicit:
 
     def __init__(self, block: ContinuousBlock) -> None:
         self._derivative, self._State = block.derivative, block.State
-        self._size = range(len(block.State._fields))
+        self._size, self._small = range(len(block.State._fields)), small_sizes(block)
 
     def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
         """The state `duration` s after x.
@@ -65,7 +65,7 @@ class Implicit:
         """Row n holds what moves state n."""
         moved, columns = list(x), []
         for j in self._size:
-            moved[j] = x[j] + DIFFERENCE * (abs(x[j]) + SMALL)
+            moved[j] = x[j] + DIFFERENCE * (abs(x[j]) + self._small[j])
             by = moved[j] - x[j]
             there = self._derivative(self._State._make(moved), u, p)
             columns.append([(there[n] - dx[n]) / by for n in self._size])
@@ -88,13 +88,13 @@ class Implicit:
         end = self._State._make(at[n] + last[n] for n in self._size)
         total = 0.0
         for n in self._size:
-            e = last[n] / (TOLERANCE * (max(abs(x[n]), abs(end[n])) + SMALL))
+            e = last[n] / (TOLERANCE * (max(abs(x[n]), abs(end[n])) + self._small[n]))
             total += e * e
         return end, math.sqrt(total / len(self._size))
 
     def _fastest(self, x: Any, dx: Any) -> str:
         """The name of the state that changes fastest for its size."""
-        changes = [abs(dx[n]) / (abs(x[n]) + SMALL) for n in self._size]
+        changes = [abs(dx[n]) / (abs(x[n]) + self._small[n]) for n in self._size]
         return self._State._fields[max(self._size, key=lambda n: changes[n])]
 
 

@@ -10,7 +10,7 @@ would be needed, the stretch is left to an implicit method. Nothing is kept from
 import math
 from typing import Any, NamedTuple
 
-from .explicit import GREATEST, SMALL, TOLERANCE, step, tangent, trial
+from .explicit import GREATEST, TOLERANCE, small_sizes, step, tangent, trial
 from .implicit import Implicit
 from .types import ContinuousBlock
 
@@ -35,6 +35,9 @@ MOST_TRIALS = 400
 COARSE_ERROR = 1e4
 """A step with more than this error is no step on which a crossing could be looked for."""
 
+DIVIDED_ERROR = 0.01
+"""Error that is allowed to the parts of a stretch that must be divided; with order 8 they are hardly shorter for it."""
+
 STIFF = 50.0
 """Fastest rate times length of a stretch, above which it is left to the implicit method."""
 
@@ -56,7 +59,7 @@ class Integrator:
         self.event_indicators = block.event_indicators
         self.step_size = block.step_size
         self.step, self.trial, self.tangent = step(block), trial(block), tangent(block)
-        self.implicit = Implicit(block)
+        self.implicit, self.small = Implicit(block), small_sizes(block)
 
     def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
         """The state `duration` s later, with the inputs u held.
@@ -80,7 +83,7 @@ class Integrator:
         `sides` says on which side of each zero the state is, and is kept up to date. It is
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
-        start, longest, located = Start(x, self.derivative(x, u, p), u, p), left, 0
+        start, longest, located, allowed = Start(x, self.derivative(x, u, p), u, p), left, 0, 1.0
         for _ in range(MOST_TRIALS):
             length, crossed = min(left, longest), None
             x_end, error = self.trial(*start, length)
@@ -89,7 +92,7 @@ class Integrator:
                 if crossings:
                     length, crossed = min(crossings)
                     x_end, error = self.trial(*start, length)
-            if error <= 1.0:
+            if error <= allowed:
                 left -= length
                 if crossed is not None:
                     sides[crossed] = not sides[crossed]
@@ -101,7 +104,8 @@ class Integrator:
             elif self._is_stiff(start, x_end, left):
                 break
             else:
-                longest = length * shortened(error)
+                allowed = DIVIDED_ERROR
+                longest = length * shortened(error / allowed)
         x = self.implicit.advance(start.x, u, p, left)
         sides[:] = self._sides(x, u, p)
         return x
@@ -109,7 +113,7 @@ class Integrator:
     def _is_stiff(self, start: Start, x_end: Any, left: float) -> bool:
         """Whether the state changes too fast, in the direction to the end of a step that failed, for explicit steps."""
         x, dx = start.x, start.dx
-        weights = [TOLERANCE * (abs(value) + SMALL) for value in x]
+        weights = [TOLERANCE * (abs(value) + small) for value, small in zip(x, self.small, strict=True)]
         away = 0.0
         for value, end, weight in zip(x, x_end, weights, strict=True):
             e = (end - value) / weight

@@ -59,7 +59,7 @@ class ContinuousBlock(_Block):
     Attributes:
         derivative: (x, u, p) -> dx/dt as a State.
         event_indicators: (x, u, p) -> tuple of floats whose zeros are located.
-        step_size: longest step of the integration in s.
+        step_size: longest step of the integration in s; where the block is stiff it takes shorter ones.
     """
 
     derivative: Callable[[Any, Any, Any], Any]

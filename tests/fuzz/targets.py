@@ -1,10 +1,11 @@
 """All fuzz targets by name."""
 
-from . import archives, calls, options, parameter_files, recordings
+from . import archives, calls, options, parameter_files, plants, recordings
 
 TARGETS = {
     "calls": calls.TARGET,
     "archives": archives.TARGET,
+    "plants": plants.TARGET,
     "recordings": recordings.TARGET,
     "parameter_files": parameter_files.TARGET,
     "options": options.TARGET,

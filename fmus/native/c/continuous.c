@@ -8,13 +8,12 @@
 
 const char *advance(Memory *memory, double elapsed, double duration)
 {
-    static const char *const names[STATES] = STATE_NAMES;
     Values *values = &memory->values;
     const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p};
     (void)elapsed;
     const int failed = integrate(&problem, duration, &memory->x);
     if (failed)
-        return names[failed - 1];
+        return state_names[failed - 1] + 1; /* without the dot */
     if (memory->moving) {
         Input room;
         values->u = *inputs_at(&problem, duration, &room);

@@ -19,7 +19,7 @@ static void jacobian(const Problem *problem, const Start *from, Vector J[STATES]
     memcpy(moved, from->x, sizeof moved);
     for (int j = 0; j < STATES; j++) {
         const double x = from->x[j];
-        moved[j] = x + DIFFERENCE * (fabs(x) + SMALL);
+        moved[j] = x + DIFFERENCE * (fabs(x) + small[j]);
         const double by = moved[j] - x;
         rate(problem, from->t, moved, there);
         for (int n = 0; n < STATES; n++)
@@ -128,7 +128,7 @@ static double try_step(const Problem *problem, const Start *from, Vector J[STATE
     for (int n = 0; n < STATES; n++) {
         const double last = found[STAGES - 1][n], x = fabs(from->x[n]);
         end[n] = at[n] + last;
-        const double e = last / (TOLERANCE * ((fabs(end[n]) > x ? fabs(end[n]) : x) + SMALL));
+        const double e = last / (TOLERANCE * ((fabs(end[n]) > x ? fabs(end[n]) : x) + small[n]));
         total += e * e;
     }
     return sqrt(total / (double)STATES);
@@ -149,7 +149,7 @@ static int fastest(const Start *from)
     double most = 0.0;
     int found = 0;
     for (int n = 0; n < STATES; n++) {
-        const double changes = fabs(from->dx[n]) / (fabs(from->x[n]) + SMALL);
+        const double changes = fabs(from->dx[n]) / (fabs(from->x[n]) + small[n]);
         if (n == 0 || changes > most) {
             most = changes;
             found = n;

@@ -196,7 +196,7 @@ static int is_stiff(const Problem *problem, const Start *from, const Vector end,
     Vector near, there;
     double away = 0.0, change = 0.0;
     for (int n = 0; n < STATES; n++) {
-        const double e = (end[n] - from->x[n]) / (TOLERANCE * (fabs(from->x[n]) + SMALL));
+        const double e = (end[n] - from->x[n]) / (TOLERANCE * (fabs(from->x[n]) + small[n]));
         away += e * e;
     }
     if (!(away > 0.0 && away <= GREATEST))
@@ -206,7 +206,7 @@ static int is_stiff(const Problem *problem, const Start *from, const Vector end,
         near[n] = from->x[n] + share * (end[n] - from->x[n]);
     rate(problem, from->t, near, there);
     for (int n = 0; n < STATES; n++) {
-        const double e = (there[n] - from->dx[n]) / (TOLERANCE * (fabs(from->x[n]) + SMALL));
+        const double e = (there[n] - from->dx[n]) / (TOLERANCE * (fabs(from->x[n]) + small[n]));
         change += e * e;
     }
     return !(left * sqrt(change) <= STIFF);
@@ -226,7 +226,7 @@ looked up: at a crossing the value is zero but for rounding. */
 static int advance_through(const Problem *problem, double t, double left, Vector x, Sides sides)
 {
     Start from;
-    double longest = left;
+    double longest = left, allowed = 1.0;
     int located = 0;
     begin_at(problem, t, x, &from);
     for (int trials = 0; trials < MOST_TRIALS; trials++) {
@@ -242,7 +242,7 @@ static int advance_through(const Problem *problem, double t, double left, Vector
                 step(problem, from.t, from.x, from.dx, length, end, &error);
             }
         }
-        if (error <= 1.0) {
+        if (error <= allowed) {
             left -= length;
             if (crossed != NO_CROSSING) {
                 sides[crossed] = !sides[crossed];
@@ -258,7 +258,8 @@ static int advance_through(const Problem *problem, double t, double left, Vector
         } else if (is_stiff(problem, &from, end, left)) {
             break;
         } else {
-            longest = length * shortened(error);
+            allowed = DIVIDED_ERROR;
+            longest = length * shortened(error / allowed);
         }
     }
     const int failed = integrate_stiff(problem, &from, left);

@@ -8,6 +8,8 @@ enum { INPUTS = sizeof(Input) / sizeof(real), STATES = sizeof(State) / sizeof(re
 
 typedef real Vector[STATES];
 
+static const double small[STATES] = SMALL_SIZES; /* what is added to the size of a state */
+
 /* What is integrated: the block with its parameters, and inputs that move at the rates du (NULL if held). */
 typedef struct {
     const Input *u;

@@ -22,6 +22,7 @@ from fmus.native.packaging import C_FILES
 from fmus.native.shared_header import shared_header
 from fmus.native.tableau import rosenbrock_header, step_header
 from models import two_mass_driveline as driveline
+from models.block.explicit import small_sizes
 from models.block.implicit import NotIntegrable
 from models.block.integrator import Integrator
 from models.block.types import ContinuousBlock
@@ -33,6 +34,7 @@ typedef double real;
 typedef struct {{ real x[{states}]; }} State;
 typedef struct {{ real none; }} Input, Parameters;
 #define INDICATORS {indicators}
+#define SMALL_SIZES {{ {sizes} }}
 extern double LONGEST_STEP;
 extern void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
 extern void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);
@@ -56,9 +58,11 @@ Numbers = ctypes.POINTER(ctypes.c_double)
 Function = ctypes.CFUNCTYPE(None, Numbers, ctypes.c_void_p, ctypes.c_void_p, Numbers)
 
 
-def compiled(folder: Path, states: int, indicators: int) -> ctypes.CDLL:
+def compiled(folder: Path, states: int, indicators: int, sizes: tuple[float, ...]) -> ctypes.CDLL:
     """integrator.c for blocks of that size."""
-    folder.joinpath("block.h").write_text(BLOCK.format(states=states, indicators=indicators))
+    folder.joinpath("block.h").write_text(
+        BLOCK.format(states=states, indicators=indicators, sizes=", ".join(map(repr, sizes)))
+    )
     folder.joinpath("run.c").write_text(RUN)
     folder.joinpath("dop853.h").write_text(step_header())
     folder.joinpath("rodas.h").write_text(rosenbrock_header())
@@ -71,7 +75,7 @@ def compiled(folder: Path, states: int, indicators: int) -> ctypes.CDLL:
 class CompiledIntegrator:
     """`advance` of the integrator, as C does it."""
 
-    def __init__(self, library: Callable[[int, int], ctypes.CDLL], block: ContinuousBlock) -> None:
+    def __init__(self, library: Callable[[int, int, tuple[float, ...]], ctypes.CDLL], block: ContinuousBlock) -> None:
         self._library, self._block = library, block
 
     def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
@@ -84,7 +88,7 @@ class CompiledIntegrator:
 
             return Function(call)
 
-        library = self._library(size, len(self._block.event_indicators(x, u, p)))
+        library = self._library(size, len(self._block.event_indicators(x, u, p)), small_sizes(self._block))
         functions = {name: called(getattr(self._block, name)) for name in ("derivative", "event_indicators")}
         for name, function in functions.items():
             ctypes.c_void_p.in_dll(library, name).value = ctypes.cast(function, ctypes.c_void_p).value

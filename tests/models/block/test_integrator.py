@@ -7,7 +7,7 @@ import math
 import random
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models import two_mass_driveline as driveline
+from models.block.declaration import Real
 from models.block.implicit import NotIntegrable
 from models.block.integrator import Integrator
 from models.block.operators import maximum, where
@@ -40,9 +41,9 @@ def integrator() -> MakeIntegrator:
 class Body(NamedTuple):
     """Height, speed, and what has been collected on the other side of the zero."""
 
-    x: float
-    v: float
-    beyond: float
+    x: Annotated[float, Real("m", "height")]
+    v: Annotated[float, Real("m/s", "speed")]
+    beyond: Annotated[float, Real("m.s", "integral of the height beyond the zero")]
 
 
 class Nothing(NamedTuple):

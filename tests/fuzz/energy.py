@@ -1,0 +1,87 @@
+"""Mechanical energy of the plants, and the power that changes it.
+
+The energy is that of all inertias and of the springs of the drive train and the body. What changes it is the work of
+the motor, of the brakes, of the tyres (between wheels and hubs, with their rolling resistance), of the road and the
+air, and of all friction and damping; so that energy less work is constant, whatever the steps. The models add up
+torques and forces; here they are multiplied with the speeds at which they act.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from models import brake, validation_vehicle, vehicle
+from models import two_mass_driveline as driveline
+from models.backlash import dead_zone
+from models.block.operators import tanh
+
+
+class Energy(NamedTuple):
+    """Of a plant: (x, p) -> energy in J, (x, u, p) -> powers in W."""
+
+    stored: Callable[[Any, Any], Any]
+    powers: Callable[[Any, Any, Any], list[Any]]
+
+
+def stored_in_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
+    y = dead_zone(x.phi, p.phi_B)
+    rotation = p.J_1 * x.omega_1 * x.omega_1 + p.J_2 * x.omega_2 * x.omega_2
+    return 0.5 * (rotation + p.C * y * y + p.m * x.v * x.v)
+
+
+def powers_of_driveline(x: driveline.State, u: Any, p: driveline.Parameters) -> list[Any]:
+    F = driveline.tyre_force(x, p)
+    dz = brake.bristle_rate(x.omega_2 / p.i, x.z, p)
+    return [
+        u.T_mot * x.omega_1,
+        driveline.load_torque(x, u, F, dz, p) * x.omega_2,
+        (F - vehicle.resistance(x.v, u.slope, p.m * p.g, p)) * x.v,
+    ]
+
+
+def stored_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
+    y = dead_zone(x.gamma, p.phi_B / p.i)
+    rotor, mounts = x.omega_1 + x.omega_p, x.theta_p + x.theta_b
+    terms = [
+        p.J_1 * rotor * rotor,
+        p.J_p * x.omega_p * x.omega_p,
+        p.J_g * x.omega_g * x.omega_g,
+        p.J_d * x.omega_d * x.omega_d,
+        0.5 * p.J_w * (x.omega_L * x.omega_L + x.omega_R * x.omega_R),
+        p.m_h * x.v_h * x.v_h,
+        (p.m - p.m_h) * x.v * x.v,
+        p.J_y * x.omega_b * x.omega_b,
+        p.k_g * y * y,
+        p.k_p * mounts * mounts,
+        0.5 * p.k_s * ((1.0 - p.asym) * x.x_L * x.x_L + (1.0 + p.asym) * x.x_R * x.x_R),
+        p.k_x * x.s_h * x.s_h,
+        p.k_th * x.theta_b * x.theta_b,
+    ]
+    return 0.5 * sum(terms)
+
+
+def powers_of_vehicle(x: validation_vehicle.State, u: Any, p: validation_vehicle.Parameters) -> list[Any]:
+    k = validation_vehicle.wheels(x, u, p)
+    y = dead_zone(x.gamma, p.phi_B / p.i)
+    dgamma = x.omega_1 / p.i + x.omega_p - x.omega_g
+    dx_L, dx_R = x.omega_g + x.omega_d - x.omega_L, x.omega_g - x.omega_d - x.omega_R
+    mounts, bushing = x.omega_p + x.omega_b, x.v_h - x.v
+    F_h = validation_vehicle.bushing_force(x, p)
+    return [
+        validation_vehicle.air_gap_torque(x, u, p) * x.omega_1,
+        (p.k_g * y - validation_vehicle.gear_torque(x, p)) * dgamma,
+        -(p.c_fg * tanh(x.omega_g / p.omega_fg) + p.v_fg * x.omega_g) * x.omega_g,
+        -0.5 * p.d_s * (dx_L * dx_L + dx_R * dx_R) - p.d_d * x.omega_d * x.omega_d,
+        -p.d_p * mounts * mounts - p.d_x * bushing * bushing - p.d_th * x.omega_b * x.omega_b,
+        -(p.r * k.F_L + k.T_rL + k.T_brL) * x.omega_L,
+        -(p.r * k.F_R + k.T_rR + k.T_brR) * x.omega_R,
+        (k.F_L + k.F_R) * x.v_h,
+        -vehicle.resistance(x.v, u.slope, p.m * p.g - p.F_z0, p) * x.v,
+        (F_h * (p.h - p.r) - k.T_brL - k.T_brR) * x.omega_b,
+    ]
+
+
+ENERGIES: Mapping[str, Energy] = {
+    driveline.BLOCK.name: Energy(stored_in_driveline, powers_of_driveline),
+    validation_vehicle.BLOCK.name: Energy(stored_in_vehicle, powers_of_vehicle),
+}
+"""By the names of the plants."""
