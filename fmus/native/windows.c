@@ -1,5 +1,5 @@
 /* What Zig's runtime for Windows would bring, and much more with it: the entry of the library, which has nothing to
-do, and printing into a buffer, which Windows has under another name. */
+do, printing into a buffer, which Windows has under another name, and touching the pages of a large stack frame. */
 #include <stdarg.h>
 #include <stddef.h>
 
@@ -33,3 +33,22 @@ int snprintf(char *text, size_t size, const char *format, ...)
     va_end(arguments);
     return length;
 }
+
+/* Called before a frame of rax bytes, more than a page, is taken: Windows gives out a stack page by page, from above.
+It leaves all registers as they are. */
+__asm__(".globl ___chkstk_ms\n"
+        "___chkstk_ms:\n"
+        "    push %rax\n"
+        "    push %rcx\n"
+        "    lea 24(%rsp), %rcx\n" /* the stack of the caller */
+        "1:  cmp $4096, %rax\n"
+        "    jb 2f\n"
+        "    sub $4096, %rcx\n"
+        "    orb $0, (%rcx)\n"
+        "    sub $4096, %rax\n"
+        "    jmp 1b\n"
+        "2:  sub %rax, %rcx\n"
+        "    orb $0, (%rcx)\n"
+        "    pop %rcx\n"
+        "    pop %rax\n"
+        "    ret\n");
