@@ -20,6 +20,10 @@ HOST = Path(__file__).parents[1] / "host.py"
 OK, CO_SIMULATION, MODEL_EXCHANGE = 0, 1, 0
 
 
+def instance_of(host):
+    return ctypes.c_void_p(host.fmu.component)
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the signal is that of Linux")
 @pytest.mark.parametrize("call", ["fmi2FreeFMUstate(component, None)", "fmi2DoStep(None, zero, zero, 0)"])
 def test_a_null_pointer_ends_the_host(built, tmp_path, call):
@@ -58,6 +62,6 @@ def test_a_state_is_cut_to_the_buffer_and_refused_when_it_is_read(built, tmp_pat
         binary = ctypes.CDLL(host.fmu.dll._name)
         room = ctypes.create_string_buffer(len(whole))
         less = len(whole) - 10
-        status = binary.fmi2SerializeFMUstate(ctypes.c_void_p(host.fmu.component), state, room, ctypes.c_size_t(less))
+        status = binary.fmi2SerializeFMUstate(instance_of(host), state, room, ctypes.c_size_t(less))
         assert (status, room.raw[:less]) == (OK, whole[:less])
         assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, room.raw[:less])
