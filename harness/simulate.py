@@ -1,7 +1,10 @@
 """One manoeuvre with one loop: the function that everything else runs the loop with."""
 
+import logging
 from collections.abc import Mapping
+from numbers import Real
 from pathlib import Path
+from sys import float_info
 from typing import Any
 
 import numpy as np
@@ -10,7 +13,10 @@ from .cosimulation.limits import USUAL, Limits
 from .cosimulation.row import Source
 from .cosimulation.runs import run
 from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, loop
+from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
+
+LOG = logging.getLogger(__name__)
 
 
 def simulate(
@@ -51,15 +57,37 @@ def simulate(
         WiringError: a block or a parameter does not fit.
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
+    given = _checked(start(manoeuvre, seed) | dict(parameters or {}), control)
+    if given["plant.T_0"] != manoeuvre.T_0:
+        LOG.warning(
+            "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
+            "and swings from the first instant on",
+            given["plant.T_0"],
+            manoeuvre.T_0,
+        )
     return run(
         loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping, limits=limits),
         duration=manoeuvre.duration,
         step_size=step_size,
         inputs=signals(manoeuvre, control),
-        parameters=start(manoeuvre, seed) | dict(parameters or {}),
+        parameters=given,
         scheme=scheme,
         label=manoeuvre.name,
     )
+
+
+def _checked(parameters: dict[str, Any], control: Any) -> dict[str, Any]:
+    """The parameters, which are finite numbers.
+
+    Raises:
+        WiringError: one is none, or control is neither on nor off.
+    """
+    if control not in (True, False):
+        raise WiringError(f"control = {control!r}: it must be True or False")
+    for name, value in parameters.items():
+        if not (isinstance(value, Real | np.bool_) and abs(value) <= float_info.max):  # type: ignore[operator]
+            raise WiringError(f"{name} = {value!r:.40}: a parameter is a finite number")
+    return parameters
 
 
 def signals(manoeuvre: Manoeuvre, control: bool = True) -> dict[str, Source]:

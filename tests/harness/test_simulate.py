@@ -1,0 +1,43 @@
+"""What a run is given from Python: odd values and starts that disagree get a sentence of ours."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from harness.cosimulation import row
+from harness.errors import WiringError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import simulate
+
+SHORT = replace(MANOEUVRES["tipin15"], duration=0.01)
+
+
+@pytest.mark.parametrize("value", [None, "1.0", 1j, math.nan, math.inf, [1.0], 10**400])
+def test_a_parameter_is_a_finite_number(value: Any) -> None:
+    with pytest.raises(WiringError, match=r"plant\.J_1 = .*: a parameter is a finite number"):
+        simulate(SHORT, parameters={"plant.J_1": value})
+
+
+@pytest.mark.parametrize("value", [None, 0.5, "on", 1j])
+def test_damping_is_on_or_off(value: Any) -> None:
+    with pytest.raises(WiringError, match="it must be True or False"):
+        simulate(SHORT, control=value)
+
+
+def test_a_start_that_disagrees_with_the_demand_is_named(built: Path, caplog: pytest.LogCaptureFixture) -> None:
+    simulate(SHORT, folder=built, parameters={"plant.T_0": -12.0})
+    assert caplog.text == ""
+    simulate(SHORT, folder=built, parameters={"plant.T_0": 100.0})
+    assert "plant.T_0 = 100 N.m: the drive train starts with another torque than the -12 N.m" in caplog.text
+
+
+def test_a_run_for_which_there_is_no_memory_is_refused_before_it_is_allocated(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(row, "memory", lambda: 1001.0 * row.BYTES_OF_A_ROW)
+    assert len(row.instants(1.0, 1e-3)) == 1001
+    with pytest.raises(MemoryError, match=r"a step of 0\.001 s in a run of 1\.01 s needs about"):
+        row.instants(1.01, 1e-3)
