@@ -66,6 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
+    from ..cosimulation.schedule import described, transfers
     from ..cosimulation.wiring import fit
     from ..provenance import require_same_run, write_record
     from ..reports.csv_file import write_csv
@@ -95,6 +96,9 @@ def run(args: argparse.Namespace) -> int:
     out.say(
         f"{manoeuvre.name} on {plant}, {build} FMUs, damping {args.control}: {manoeuvre.duration:g} s in {took:.2f} s"
     )
+    fitted = fit(system)
+    if Scheme(args.scheme) is Scheme.PROPAGATED:
+        out.say(described(transfers(fitted.system, fitted.interfaces)))
     write_csv(results, signals)
     out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
     files = [signals]
@@ -105,7 +109,7 @@ def run(args: argparse.Namespace) -> int:
         for figure in plot_run(results, title, args.output / name):
             files.append(figure)
             out.say(f"figure:  {figure}")
-    fits = {plant: fit(system)}
+    fits = {plant: fitted}
     write_record(record, same, fits, files, [args.vehicle, args.parameters])
     out.say(f"made by: {record} (version, FMUs, parameters, units)")
     return 0

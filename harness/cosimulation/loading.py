@@ -17,6 +17,7 @@ from .compiled import LIBRARY, CompiledSteps
 from .instance import label
 from .master import Loop, opened
 from .row import Source, instants, sampled
+from .schedule import described, transfers
 from .steps import MakeSteps, interpreted
 from .system import Scheme, System
 from .wiring import Fit, fit
@@ -79,6 +80,7 @@ def loaded(
     fitted = fit(system, inputs, parameters)
     for name in fitted.absent:
         LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
+    LOG.info("under the propagated scheme, %s", described(transfers(fitted.system, fitted.interfaces)))
     load = _here if system.instances.keys() <= system.own else _apart
     with load(fitted, folder, make_steps) as loop:
         yield loop

@@ -114,6 +114,12 @@ def transfers(system: System, interfaces: Mapping[str, Interface]) -> dict[str, 
     return found
 
 
+def described(found: Mapping[str, Transfer]) -> str:
+    """What to say of these transfers."""
+    how = [f"{name} is {transfer.value}" for name, transfer in found.items()]
+    return f"over a step {', '.join(how)}" if how else "over a step every input is held"
+
+
 def _claims(interface: Interface):
     claims = interface.description.coSimulation
     assert claims is not None

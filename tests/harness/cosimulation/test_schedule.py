@@ -1,5 +1,6 @@
 """What the schemes do in a step: from the declarations of the FMUs alone, nothing runs."""
 
+import logging
 import re
 from typing import Any
 
@@ -7,6 +8,7 @@ import pytest
 
 from harness.cosimulation.feedthrough import Feedthrough, declared
 from harness.cosimulation.interface import Interface
+from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import run
 from harness.cosimulation.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
 from harness.cosimulation.system import Connection, Scheme, System, loop
@@ -55,6 +57,17 @@ def test_native_fmus_interpolate_the_torque_and_extrapolate_the_speed(native):
 
 def test_fmus_that_run_python_hold_both(built):
     assert how(loop(folder=built, build="python")) == dict.fromkeys(("plant.T_mot", "motor.omega_1"), Transfer.HELD)
+
+
+def test_a_loop_says_once_what_moves_and_what_is_held(built, caplog):
+    caplog.set_level(logging.INFO, "harness")
+    with loaded(loop(folder=built, build="python")) as running:
+        for _ in range(2):
+            running.run(0.01)
+    (record,) = [r for r in caplog.records if r.levelno == logging.INFO]
+    assert record.getMessage() == (
+        "under the propagated scheme, over a step plant.T_mot is held, motor.omega_1 is held"
+    )
 
 
 def test_what_a_sampled_fmu_puts_out_or_takes_in_does_not_move(native):
