@@ -61,6 +61,9 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
+	$(BIN)/driveline faults --cases 10000 --quiet || test $$? = 1
+	cp results/faults/faults.md docs/
+	cp results/faults/figures/faults.png results/faults/figures/fault_pairs.png docs/figures/
 	$(BIN)/driveline compare --replace
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
 		cat results/compare/table.md; } > docs/results.md

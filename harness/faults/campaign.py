@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -45,11 +46,8 @@ class Outcome:
             fault = self.case.faults[k] if k < len(self.case.faults) else None
             for name in ("name", "begin", "end", "size", "share"):
                 given[f"fault_{k + 1}" if name == "name" else f"{name}_{k + 1}"] = getattr(fault, name, None)
-        return (
-            given
-            | {judge.name.replace(" ", "_"): self.measured[judge.name] for judge in JUDGES}
-            | {"clean": not self.failed}
-        )
+        measured = {name.replace(" ", "_"): value if isfinite(value) else None for name, value in self.measured.items()}
+        return given | measured | {"clean": not self.failed}
 
 
 def count(outcomes: Iterable[Outcome], kind: str, judge: str | None = None) -> tuple[int, int]:

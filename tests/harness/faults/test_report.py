@@ -1,0 +1,48 @@
+"""What a campaign leaves behind, and a case that is run again."""
+
+import csv
+
+import pytest
+
+from harness.cli import main
+from harness.faults.campaign import campaign
+from harness.faults.catalogue import KINDS
+from harness.faults.report import write, write_case
+
+
+@pytest.fixture(scope="module")
+def outcomes(injector, settings):
+    return campaign(range(1, 7), 1, injector, settings, workers=1)
+
+
+def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path):
+    files = write(outcomes, "", tmp_path)
+    with (tmp_path / "faults.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["number"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
+    assert [row["clean"] for row in rows] == [str(int(not outcome.failed)) for outcome in outcomes]
+    assert [bool(row["fault_2"]) for row in rows] == [False, False, True, True, False, False]
+    assert all(file.is_file() for file in files)
+
+
+def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_path):
+    write(outcomes, " --cases 6", tmp_path)
+    page = (tmp_path / "faults.md").read_text(encoding="utf-8")
+    assert all(f"| {kind} |" in page for kind in KINDS)
+    for name in ("faults", "fault_pairs"):
+        assert f"figures/{name}.png" in page
+        assert (tmp_path / "figures" / f"{name}.png").is_file()
+
+
+def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path):
+    again, files = write_case(2, 1, injector, settings, tmp_path)
+    assert again == outcomes[1]
+    assert [file.name for file in files] == ["case_2.csv", "case_2.png", "case_2.pdf"]
+
+
+@pytest.mark.parametrize("number", ["0", "-1", "1.5", "ten", "99999999", "١"])
+def test_a_number_of_cases_that_is_none_is_refused(number, capsys):
+    with pytest.raises(SystemExit) as refused:
+        main(["faults", "--cases", number])
+    assert refused.value.code == 2
+    assert "is not a whole number from 1 to 1000000" in capsys.readouterr().err
