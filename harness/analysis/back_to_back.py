@@ -95,7 +95,7 @@ def by_functions(block: Block, given: Given) -> dict[str, np.ndarray]:
 
 
 def by_fmu(path: Path, given: Given) -> np.ndarray:
-    """Outputs of an FMU at all instants k * STEP_SIZE, by name."""
+    """Outputs of an FMU at all instants k * STEP_SIZE, with the inputs of the step that ends there, by name."""
     steps = len(next(iter(given.inputs.values()))) - 1
     inputs: dict[str, Source] = {f"block.{name}": samples for name, samples in given.inputs.items()}
     parameters = {f"block.{name}": value for name, value in given.parameters.items()}
@@ -105,6 +105,7 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
         STEP_SIZE,
         inputs,
         parameters,
+        scheme=Scheme.JACOBI,
         label=path.stem,
     )
     columns = {name: name.removeprefix("block.") for name in results.dtype.names or () if name not in inputs}
