@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from harness.cosimulation.system import Scheme
 from harness.errors import DrivelineError, SimulationError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.many import run_many
@@ -50,8 +51,9 @@ def in_folder(fmus):
 
     def tip_in(case):
         plant, build, k_d = case
-        results = simulate(TIPIN, plant, parameters={"controller.k_d": k_d}, folder=fmus, build=build)
-        return results[-1].tolist()
+        settings = {"controller.k_d": k_d}
+        # under Jacobi both builds do the same, to the last bit
+        return simulate(TIPIN, plant, parameters=settings, scheme=Scheme.JACOBI, folder=fmus, build=build)[-1].tolist()
 
     return tip_in
 
@@ -60,7 +62,6 @@ def test_answers_do_not_depend_on_the_workers_nor_on_the_order(both_built, unpac
     tip_in = in_folder(both_built)
     here = run_many(tip_in, CASES, workers=1)
     assert here == [tip_in(case) for case in CASES]
-    # both builds round alike
     assert len(set(map(tuple, here))) == len(CASES) / 2
     assert run_many(tip_in, CASES, workers=2) == here
     assert run_many(tip_in, CASES[::-1], workers=3) == here[::-1]
