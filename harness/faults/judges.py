@@ -176,12 +176,11 @@ def ratio_of_rms(seen: Evidence) -> float:
 
 
 def ratio_of_swing(seen: Evidence) -> float:
-    """Largest amplitude of the gear torque from the fault on, over that without control."""
+    """Largest amplitude of the gear torque from the fault on, over that without control, or over that without the
+    fault where this is larger."""
     later = seen.t >= seen.begin
-    with_fault, undamped = (
-        amplitude(run["plant.T_gear"][later], T_S).max() for run in (seen.runs.faulty, seen.runs.undamped)
-    )
-    return float(with_fault) / max(float(undamped), LEAST_SWING)
+    with_fault, without, undamped = (amplitude(run["plant.T_gear"][later], T_S).max() for run in seen.runs)
+    return float(with_fault) / max(float(undamped), float(without), LEAST_SWING)
 
 
 def _difference(seen: Evidence, column: str) -> np.ndarray:
@@ -216,5 +215,5 @@ JUDGES = (
     Judge("kick", "N.m", 2.0, "torque added after that which the swing does not call for", kick),
     Judge("settled", "N.m", 5.0, "swing that is left at the end", swing_left),
     Judge("rms", "1", 1.2, "gear torque 5-50 Hz over that without control", ratio_of_rms),
-    Judge("swing", "1", 1.2, "largest swing over that without control", ratio_of_swing),
+    Judge("swing", "1", 1.2, "largest swing over that without control, or without the fault", ratio_of_swing),
 )

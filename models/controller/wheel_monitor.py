@@ -1,12 +1,13 @@
 """What the messages with the wheel speed are good for: to correct the estimate, and as a witness.
 
-A message corrects the estimate when it is new, valid, finite, in range and near it; the wheel speed is in
-use while such messages keep coming. Any message that says a speed is a witness against a motor speed that
-is far from it, unless it is the messages that have leapt: then they are doubted, until one corrects the
-estimate again.
+A message corrects the estimate when it is new, valid, in range, not doubted and near it; the wheel speed is
+in use while such messages keep coming. Any message that says a speed is a witness against a motor
+speed that is far from it, unless it is the messages that have leapt from one to the next while the motor
+speed has not: then they are doubted, until one is near the motor speed again.
 
 The teeth of a wheel do not tell its direction. It is taken from the motor when the wheel speed becomes
-known, and kept for as long as it is: a car that turns round passes the speeds at which it is not known.
+known, and kept for as long as it is and is not doubted: a car that turns round passes the speeds at which it
+is not known.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -20,6 +21,9 @@ LATE = 0.025
 
 SHARE = 0.06
 """Of the wheel speed, by which the motor speed may differ from it more: the error of the wheel radius."""
+
+LEAP = 20.0
+"""Change in rad/s from one message to the next that the motor speed has to follow."""
 
 PUSH = 0.25
 """Motor torque over T_max with which no car rolls backwards."""
@@ -38,6 +42,7 @@ class WheelState(NamedTuple):
     doubted: Annotated[bool, Boolean("the messages have leapt away from the estimate")]
     witness: Annotated[bool, Boolean("the messages say what the motor speed must be")]
     late: Annotated[float, Real("rad/s", "motor speed, as late as the messages")]
+    late_then: Annotated[float, Real("rad/s", "that speed at the message received last")]
     apart: Annotated[float, Real("s", "time for which messages contradict the motor speed")]
 
 
@@ -55,12 +60,15 @@ def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
         doubted=False,
         witness=known,
         late=omega_1,
+        late_then=omega_1,
         apart=0.0,
     )
 
 
 def has_wheel_speed(u: Any, p: Any) -> Any:
-    return logical_and(u.valid, plausible(u.omega_2_can, p.omega_max))
+    """Whether a message says a speed; that of standing wheels is none, for they tell no direction."""
+    turning = abs(u.omega_2_can) > p.omega_still
+    return logical_and(logical_and(u.valid, turning), plausible(u.omega_2_can, p.omega_max))
 
 
 def message(u: Any) -> Any:
@@ -82,16 +90,18 @@ def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_
         omega_2_hat: estimate before the message, rad/s.
     """
     known = has_wheel_speed(u, p)
-    direction = where(x.known, x.direction, direction_of(omega_1, T_mot, p))
-    omega_2 = direction * message(u)
+    believed = logical_and(x.known, logical_not(x.doubted))
+    direction = where(believed, x.direction, direction_of(omega_1, T_mot, p))
     new = logical_and(u.counter != x.counter, known)
-    usable = logical_and(new, abs(omega_2 - omega_2_hat) <= p.e_max)
-    leapt = logical_and(new, abs(omega_2 - x.omega_2) > p.e_max)
-    silence = where(new, 0.0, minimum(x.silence + T_s, p.t_stale))
-    doubted = logical_and(logical_or(x.doubted, leapt), logical_not(usable))
+    omega_2 = where(new, direction * message(u), x.omega_2)
     late = x.late + minimum(T_s / LATE, 1.0) * (omega_1 - x.late)
+    apart, allowed = abs(omega_2 - late), SHARE * abs(omega_2)
+    doubted = logical_and(logical_or(x.doubted, has_leapt(x, omega_2, late, p)), apart > LEAP + allowed)
+    near = logical_and(abs(omega_2 - omega_2_hat) <= p.e_max, logical_not(doubted))
+    usable = logical_and(new, near)
+    silence = where(new, 0.0, minimum(x.silence + T_s, p.t_stale))
     witness = logical_and(logical_and(known, silence < p.t_stale), logical_not(doubted))
-    far = abs(omega_2 - late) > p.e_wheel + SHARE * abs(omega_2)
+    far = apart > p.e_wheel + allowed
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=omega_2,
@@ -103,8 +113,16 @@ def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_
         doubted=doubted,
         witness=witness,
         late=late,
+        late_then=where(new, late, x.late_then),
         apart=where(logical_and(witness, far), minimum(x.apart + T_s, p.t_apart + T_s), 0.0),
     )
+
+
+def has_leapt(x: WheelState, omega_2: Any, late: Any, p: Any) -> Any:
+    """Whether the messages have, to omega_2 (rad/s), and the motor speed has not."""
+    change, moved = omega_2 - x.omega_2, late - x.late_then
+    leapt = logical_and(abs(change) > LEAP, abs(change - moved) > LEAP)
+    return logical_and(leapt, x.silence < p.t_stale)
 
 
 def hears_wheels(x: WheelState, u: Any, p: Any) -> Any:

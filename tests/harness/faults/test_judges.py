@@ -140,3 +140,12 @@ def test_the_drive_train_swings_little_more_than_without_control(judge, undamped
     run["plant.T_gear"] = ratio * max(undamped, least) * wave
     off["plant.T_gear"] = undamped * wave
     assert clean(judge, run, undamped=off) == verdict
+
+
+@pytest.mark.parametrize(("ratio", "verdict"), [(1.19, True), (1.21, False)])
+def test_a_swing_that_is_there_without_the_fault_is_not_its_doing(ratio, verdict):
+    """Damping may swing later than the free drive train, and then more from the fault on."""
+    run, well = quiet(), quiet()
+    wave = np.sin(2.0 * np.pi * 10.0 * (T - 0.9))
+    run["plant.T_gear"], well["plant.T_gear"] = ratio * 20.0 * wave, 20.0 * wave
+    assert clean("swing", run, healthy=well) == verdict

@@ -200,6 +200,7 @@ def test_a_message_is_taken_once() -> None:
 
 def test_a_message_far_from_the_estimate_is_not_taken() -> None:
     x, p = started()
+    x = x._replace(wheels=x.wheels._replace(omega_2=190.0))
     assert OTHER.update(x, ROLLING._replace(omega_2_can=191.0, counter=1), p).estimator.omega_2 == 150.0
     assert OTHER.update(x, ROLLING._replace(omega_2_can=190.0, counter=1), p).estimator.omega_2 == 190.0
 

@@ -7,9 +7,9 @@ import pytest
 
 from models.controller import wheel_monitor as wheels
 from models.controller.supervision import Input, Parameters
-from models.controller.wheel_monitor import LATE, SHARE, WheelState
+from models.controller.wheel_monitor import LATE, LEAP, SHARE, WheelState
 
-P = Parameters(omega_max=500.0, e_max=40.0, e_wheel=16.0, t_stale=1.0, t_apart=1.0)
+P = Parameters(omega_max=500.0, omega_still=3.0, e_max=40.0, e_wheel=16.0, t_stale=1.0, t_apart=1.0)
 T_S = 0.25
 U = Input(omega_1_meas=150.0, omega_2_can=150.0, valid=True, counter=7)
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
@@ -36,7 +36,7 @@ def test_what_is_no_number_says_no_speed() -> None:
         assert wheels.message(U._replace(omega_2_can=signal)) == 0.0
         assert not wheels.has_wheel_speed(U._replace(omega_2_can=signal), P)
         x = heard(new(signal), omega_2_hat=0.0)
-        assert (x.omega_2, x.usable, x.witness, x.silence) == (0.0, False, False, T_S)
+        assert (x.omega_2, x.usable, x.witness, x.silence) == (150.0, False, False, T_S)
 
 
 @each_side
@@ -47,11 +47,21 @@ def test_a_wheel_speed_is_plausible_up_to_omega_max(side: float) -> None:
 
 
 @each_side
+def test_standing_wheels_say_no_speed(side: float) -> None:
+    """They tell no direction, and a bus with a lowest speed does not call them valid."""
+    assert not wheels.has_wheel_speed(U._replace(omega_2_can=side * 3.0), P)
+    assert wheels.has_wheel_speed(U._replace(omega_2_can=side * above(3.0)), P)
+
+
+@each_side
 def test_a_message_is_usable_up_to_e_max_from_the_estimate(side: float) -> None:
-    assert heard(new(0.0), omega_2_hat=side * 40.0).usable
-    assert not heard(new(0.0), omega_2_hat=side * above(40.0)).usable
-    assert heard(new(190.0)).usable
-    assert not heard(new(191.0)).usable
+    assert heard(new(), omega_2_hat=150.0 + side * 40.0).usable
+    assert not heard(new(), omega_2_hat=150.0 + side * 40.01).usable
+
+
+def test_a_doubted_message_is_not_usable_however_near_the_estimate() -> None:
+    x = heard(new(200.0), omega_2_hat=200.0)
+    assert (x.doubted, x.usable) == (True, False)
 
 
 def test_a_message_is_usable_once_and_while_it_is_valid() -> None:
@@ -84,26 +94,43 @@ def test_messages_are_a_witness_while_they_keep_coming() -> None:
 
 
 @each_side
-def test_messages_that_leap_by_e_max_away_from_the_estimate_are_doubted(side: float) -> None:
-    """Until one is usable again."""
-    x = heard(new(150.0 + side * 40.0), omega_2_hat=0.0)
-    assert (x.doubted, x.witness) == (False, True)
-    x = heard(new(150.0 + side * 40.5))
-    assert (x.doubted, x.witness) == (True, False)
-    stays = heard(new(150.0 + side * 40.5, counter=9), x)
+def test_messages_that_leap_while_the_motor_speed_does_not_are_doubted(side: float) -> None:
+    """Until one is near the motor speed again."""
+    nearest = LEAP + SHARE * 150.0
+    x = heard(new(150.0 + side * 19.9), omega_1=150.0 - side * 40.0)
+    assert (x.doubted, x.witness, x.apart) == (False, True, T_S)
+    x = heard(new(150.0 + side * 20.1), omega_1=150.0 - side * 40.0)
+    assert (x.doubted, x.witness, x.apart) == (True, False, 0.0)
+    stays = heard(new(counter=9), x, omega_1=150.0 + side * (nearest + 0.1))
     assert (stays.doubted, stays.witness) == (True, False)
-    back = heard(new(counter=10), stays)
+    back = heard(new(counter=10), stays, omega_1=150.0 + side * (nearest - 0.1))
     assert (back.doubted, back.witness) == (False, True)
 
 
-def test_messages_that_leap_to_the_estimate_are_believed() -> None:
-    x = heard(new(200.0), omega_2_hat=200.0)
-    assert (x.doubted, x.witness) == (False, True)
+@each_side
+def test_messages_that_follow_the_motor_speed_are_believed(side: float) -> None:
+    """Up to LEAP from where it went, for a contradiction needs more."""
+    start = wheels.start(new(300.0, counter=7), 150.0, 0.0, P)
+    for moved, doubted in ((20.1, False), (19.9, True)):
+        x = heard(new(300.0 + side * 40.0), start, omega_1=150.0 + side * moved)
+        assert (x.doubted, x.witness) == (doubted, not doubted)
+        assert x.late_then == 150.0 + side * moved, "from the next message on it counts from here"
 
 
 def test_messages_that_drift_away_are_believed() -> None:
-    x = heard(new(190.0), omega_2_hat=100.0)
+    x = heard(new(168.0), omega_2_hat=100.0, omega_1=110.0)
     assert (x.usable, x.doubted, x.witness) == (False, False, True)
+
+
+def test_the_first_message_after_silence_has_not_leapt() -> None:
+    assert heard(new(250.0)).doubted
+    silent = wheels.start(U._replace(valid=False), 150.0, 0.0, P)
+    assert not heard(new(250.0), silent).doubted
+
+
+def test_a_speed_without_a_message_is_not_heard() -> None:
+    assert heard(U._replace(omega_2_can=250.0)).omega_2 == 150.0
+    assert heard(new(250.0), heard(U._replace(omega_2_can=250.0))).doubted, "it has leapt all the same"
 
 
 def test_no_message_no_leap() -> None:
@@ -120,9 +147,10 @@ def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
 @each_side
 def test_a_motor_speed_is_contradicted_from_e_wheel_and_a_share_of_the_wheel_speed_on(side: float) -> None:
     u = new(200.0, counter=7)
+    forwards = wheels.start(u, 200.0, 0.0, P)
     limit = P.e_wheel + SHARE * 200.0
     for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
-        assert heard(u, omega_1=200.0 + side * distance).apart == apart
+        assert heard(u, forwards, omega_1=200.0 + side * distance).apart == apart
     backwards = wheels.start(new(200.0, counter=7), -200.0, 0.0, P)
     for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
         assert heard(u, backwards, omega_1=-200.0 + side * distance).apart == apart
@@ -136,9 +164,17 @@ def test_the_direction_is_that_of_the_motor_when_the_speed_becomes_known(sent: f
     assert (x.direction, x.omega_2, x.usable) == (-1.0, -60.0, True)
     assert heard(new(sent), x, omega_1=60.0).omega_2 == -60.0
     unknown = heard(new(sent, valid=False), x, omega_1=60.0)
-    assert heard(new(sent), unknown, omega_1=60.0).omega_2 == 60.0
+    assert heard(new(sent, counter=9), unknown, omega_1=60.0).omega_2 == 60.0
     for omega_1, direction in ((0.0, 1.0), (-5e-324, -1.0)):
         assert wheels.direction_of(omega_1, 0.0, P) == direction
+
+
+def test_messages_in_doubt_take_their_direction_from_the_motor_again() -> None:
+    x = heard(new(60.0), wheels.start(new(60.0, counter=7), -60.0, 0.0, P), omega_1=-60.0)
+    x = heard(new(100.0, counter=9), x, omega_1=-60.0)
+    assert (x.omega_2, x.doubted) == (-100.0, True)
+    x = heard(new(100.0, counter=10), x, omega_1=100.0, omega_2_hat=100.0)
+    assert (x.omega_2, x.usable, x.witness) == (100.0, True, True)
 
 
 def test_no_car_rolls_backwards_against_a_quarter_of_the_torque() -> None:
@@ -169,7 +205,7 @@ def test_at_the_start_all_that_is_plausible_is_believed() -> None:
     x = wheels.start(U, 140.0, 0.0, P)
     assert x == WheelState(
         counter=7.0, omega_2=150.0, known=True, direction=1.0, usable=False, unused=0.0, silence=0.0,
-        doubted=False, witness=True, late=140.0, apart=0.0,
+        doubted=False, witness=True, late=140.0, late_then=140.0, apart=0.0,
     )  # fmt: skip
     assert type(x.counter) is type(heard(U).counter) is float, "as it is declared"
     deaf = wheels.start(U._replace(valid=False), 140.0, 0.0, P)
