@@ -61,7 +61,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
-	$(BIN)/driveline faults --cases 10000 --quiet || test $$? = 1
+	$(BIN)/driveline faults --cases 10000 --replace --quiet || test $$? = 1
 	cp results/faults/faults.md docs/
 	cp results/faults/figures/faults.png results/faults/figures/fault_pairs.png docs/figures/
 	$(BIN)/driveline compare --replace

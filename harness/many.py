@@ -12,6 +12,7 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 
 import atexit
 import gc
+import logging
 import os
 import sys
 from collections.abc import Callable, Generator, Iterable, Sequence
@@ -26,6 +27,7 @@ from .cosimulation.runs import kept_loaded
 from .errors import DrivelineError, SimulationError
 from .progress import progress
 from .stopping import uninterrupted_children
+from .told import Collected, warn_once
 
 Case = TypeVar("Case")
 Answer = TypeVar("Answer")
@@ -90,11 +92,13 @@ def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count
                 futures = [pool.submit(_answer, case) for case in cases]
             for case, future in zip(cases, futures, strict=True):
                 try:
-                    answer = future.result()
+                    answer, warnings = future.result()
                 except BrokenProcessPool as error:
                     raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
                 except (Exception, SystemExit) as error:
                     _raise(error, case)
+                for text in warnings:
+                    warn_once(text)
                 yield answer
             unfinished = False
         finally:
@@ -102,12 +106,16 @@ def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count
 
 
 _function: Callable[[Any], Any]
+_collected = Collected()
 
 
 def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
-    """In a worker: systems stay loaded as long as it lives, and only the process that waits shows progress."""
+    """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
     global _function
     _function = function
+    log = logging.getLogger(__package__)
+    log.addHandler(_collected)
+    log.propagate = False
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
     kept = ExitStack()
     kept.enter_context(kept_loaded(folder))
@@ -115,12 +123,14 @@ def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
     gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
 
 
-def _answer(case: Any) -> Any:
-    """In a worker: what cannot be sent to the process that waits is told in words."""
+def _answer(case: Any) -> tuple[Any, list[str]]:
+    """In a worker: the answer and what was warned of; what cannot be sent to the process that waits is told in
+    words."""
     from cloudpickle import dumps
 
+    _collected.texts.clear()
     try:
-        return _function(case)
+        return _function(case), list(_collected.texts)
     except SystemExit:
         raise
     except BaseException as error:

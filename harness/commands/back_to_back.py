@@ -6,7 +6,8 @@ from itertools import product
 
 from ..cosimulation.system import BUILDS, PLANTS
 from ..manoeuvres.catalogue import MANOEUVRES
-from .options import add_fmus, add_output, add_printing, built
+from .built import built
+from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
 DESCRIPTION = """\

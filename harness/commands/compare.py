@@ -8,7 +8,8 @@ from ..cosimulation.system import PLANTS, loop
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, distinguishing, settings
+from .built import built
+from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, settings
 from .printing import Printer
 
 LEGEND = legend(Metrics)

@@ -4,7 +4,8 @@ import argparse
 from itertools import product
 
 from ..cosimulation.system import PLANTS, Scheme, loop
-from .options import add_fmus, add_output, add_printing, built
+from .built import built
+from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
 DESCRIPTION = """\

@@ -1,10 +1,16 @@
 """`driveline faults`: the controller under faults of its signals and on ice, case after case."""
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
-from ..cosimulation.system import BUILD, PLANTS
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, settings
+from ..cosimulation.system import BUILD, NATIVE, PLANTS
+from ..errors import DrivelineError
+from .built import built
+from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, settings
 from .printing import Printer
 
 DESCRIPTION = """\
@@ -16,8 +22,8 @@ What fails, when, how much and for how long follows from the seed and the number
 faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. One matrix
 of kinds of faults and judges is printed, for single faults and pairs together; cells count the runs that are not clean.
 
-The output folder gets faults.csv (all cases with what was measured), the page faults.md and, in its folder figures,
-the matrices as figures. --case runs one case again, and writes its signals and draws them.
+The output folder gets faults.csv (all cases with what was measured), the page faults.md, faults.json (what made them)
+and, in its folder figures, the matrices as figures. --case runs one case again, and writes its signals and draws them.
 """
 
 EXAMPLES = """\
@@ -40,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--case", type=_number, metavar="NUMBER", help="only the case of this number, with a figure")
     add_plant(parser, several=True)
     add_loop(parser)
-    add_output(parser, "results/faults", "the cases, the page and the figures")
+    add_output(parser, "results/faults", "the cases, the page and the figures", of_a_run=True)
     add_printing(parser, table=True)
 
 
@@ -54,22 +60,34 @@ def _number(text: str) -> int:
 def run(args: argparse.Namespace) -> int:
     plants = list(dict.fromkeys(args.plant or PLANTS))
     given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
-    injector = _injector()
     # here and not above: mistakes and help are answered without them
+    from ..cosimulation.wiring import fit
+    from ..faults.bench import looped, with_faults
     from ..faults.campaign import campaign
     from ..faults.report import announce, write, write_case
+    from ..provenance import require_same_run, write_record
 
     out = Printer(args)
-    if args.case is not None:
-        outcome, files = write_case(args.case, args.seed, injector, given, args.output)
-        outcomes = [outcome]
-        out.say(f"case {outcome.case}")
-    else:
-        outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
-        files = write(outcomes, _arguments(args), args.output)
+    systems = {plant: looped(plant, given[plant]) for plant in plants}
+    same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
+    same |= {"cases": args.cases} if args.case is None else {"case": args.case}
+    name, first = ("faults", "faults.csv") if args.case is None else (f"case_{args.case}", f"case_{args.case}.csv")
+    record = args.output / f"{name}.json"
+    if not args.replace:
+        require_same_run(record, same, [args.output / first])
+    with _injector(args.fmus) as injector:
+        if args.case is not None:
+            outcome, files = write_case(args.case, args.seed, injector, given, args.output)
+            outcomes = [outcome]
+            out.say(f"case {outcome.case}")
+        else:
+            outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
+            files = write(outcomes, _arguments(args), args.output)
+        fits = {Path(plant).stem: fit(with_faults(system, injector)) for plant, system in systems.items()}
+        write_record(record, same, fits, files, [args.vehicle, args.parameters])
     if not out.silent:
         announce(outcomes)
-    for file in files:
+    for file in (*files, record):
         out.say(f"written: {file}")
     out.document({"cases": [outcome.record for outcome in outcomes], "files": files})
     return int(any(outcome.failed for outcome in outcomes))
@@ -81,8 +99,9 @@ def _arguments(args: argparse.Namespace) -> str:
     return f" --cases {args.cases} --seed {args.seed}{plants}"
 
 
-def _injector() -> Path:
-    """The FMU of SignalFaults, built where it is missing or stale.
+@contextmanager
+def _injector(folder: Path) -> Iterator[Path]:
+    """The FMU of SignalFaults among those of the folder, or else one that is built for as long as this lasts.
 
     Raises:
         DrivelineError: it cannot be built here.
@@ -92,10 +111,9 @@ def _injector() -> Path:
     from fmus.origin import is_stale
     from fmus.signal_faults import FMU
 
-    from ..errors import DrivelineError
-
-    path = BUILD / "native" / f"{FMU.name}.fmu"
-    try:
-        return builders("native")[0](FMU, BUILD) if is_stale(path) else path
-    except BuildError as reason:
-        raise DrivelineError(str(reason)) from reason
+    path = folder / NATIVE / f"{FMU.name}.fmu"
+    with TemporaryDirectory(prefix="driveline-") as temporary:
+        try:
+            yield builders(NATIVE)[0](FMU, folder if folder == BUILD else Path(temporary)) if is_stale(path) else path
+        except BuildError as reason:
+            raise DrivelineError(str(reason)) from reason

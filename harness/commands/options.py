@@ -3,18 +3,13 @@
 import argparse
 import logging
 from collections.abc import Mapping, Sequence
-from functools import cache
 from math import isfinite
-from pathlib import Path
-from shlex import quote
 from typing import Any
 
-from fmus.errors import BuildError
 from fmus.options import add_parameter_files, folder, output_folder
-from fmus.origin import is_stale, origin_of
 
 from ..cosimulation.limits import USUAL, Limits
-from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, NATIVE, PLACES, PLANTS, System, chosen_build, loop
+from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS, System, loop
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
 
@@ -302,52 +297,3 @@ def _other_unit(interface: Any, name: str, meant: str, mapping: Mapping[str, str
     if name in mapping:
         return None
     return f"{name} is in {unit}; the file gives it in {meant} (--map {name}={theirs} converts it)"
-
-
-def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:
-    """The build that runs with that plant and the other blocks, which is the one asked for if there is one.
-
-    The project's own FMUs in BUILD are built where they are missing or stale; others are said to be stale.
-
-    Raises:
-        WiringError: there is no such block.
-        DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
-    """
-    if folder == BUILD:
-        build = _refreshed(plant, build, **others)
-    build = build or chosen_build(plant, folder, **others)
-    files = loop(plant, folder, build, **others).instances.values()
-    missing = [path for path in files if not path.is_file()]
-    if missing and missing[0].is_relative_to(folder):
-        where = "" if folder == BUILD else f" --output {quote(str(folder))}"
-        only = f" --build {NATIVE}" if build == NATIVE else ""
-        raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{only}{where}` makes it")
-    stale = [path for path in files if (path.is_relative_to(folder) or origin_of(path)) and is_stale(path)]
-    if stale:
-        _say_once(f"stale, not made from the sources that are installed: {', '.join(map(str, stale))}")
-    return build
-
-
-def _refreshed(plant: str, build: str | None, **others: Any) -> str | None:
-    """Builds what is missing or stale in BUILD for a loop; the build that runs, None for that of `chosen_build`."""
-    from fmus.builds import NotPossible, refreshed
-
-    files = loop(plant, BUILD, build or NATIVE, **others).instances.values()
-    names = [path.stem for path in files if path.is_relative_to(BUILD)]
-    try:
-        made = refreshed(names, BUILD, build or NATIVE)
-    except NotPossible as reason:
-        if build is not None:
-            raise DrivelineError(str(reason)) from reason
-        _say_once(f"no native FMUs: {reason}")
-        return _refreshed(plant, BUILDS[0], **others)
-    except BuildError as reason:
-        raise DrivelineError(str(reason)) from reason
-    if made:
-        _say_once(f"built, as missing or stale: {', '.join(map(str, made))}")
-    return build
-
-
-@cache
-def _say_once(text: str) -> None:
-    LOG.warning(text)

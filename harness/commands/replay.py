@@ -9,7 +9,8 @@ from ..errors import DrivelineError
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, distinguishing, seconds, settings
+from .built import built
+from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, seconds, settings
 from .printing import Printer
 
 LEGEND = legend(RideMetrics)

@@ -6,7 +6,8 @@ from time import perf_counter
 
 from ..cosimulation.system import Scheme, loop
 from ..manoeuvres.catalogue import MANOEUVRES
-from .options import add_loop, add_output, add_plant, add_printing, blocks, built, distinguishing, seconds, settings
+from .built import built
+from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, seconds, settings
 from .printing import Printer
 
 DESCRIPTION = """\

@@ -4,7 +4,6 @@ The shared library is made when the project is installed, where there is a C com
 its source has changed since, the loop runs in Python, with the same results.
 """
 
-import logging
 from collections.abc import Sequence
 from ctypes import CDLL, Structure, addressof, byref, c_char, c_double, c_int32, c_size_t, c_uint32, c_void_p, cast
 from importlib.util import find_spec
@@ -18,7 +17,6 @@ from .lines import Line
 from .steps import Refusal
 from .whereabouts import NUMBERS, current
 
-LOG = logging.getLogger(__name__)
 SOURCE = Path(__file__).with_name("steps.c")
 
 
@@ -27,14 +25,19 @@ def _library() -> CDLL | None:
     if not (spec and spec.origin):
         return None
     if SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
-        LOG.warning(
-            "%s is older than %s; the steps run in Python until the next `make setup`", spec.origin, SOURCE.name
-        )
         return None
     return CDLL(spec.origin)
 
 
 LIBRARY = _library()
+
+
+def why_not() -> str | None:
+    """Why a library that was made does not run; None if it does or there is none."""
+    spec = find_spec(f"{__package__}._steps")
+    if LIBRARY or not (spec and spec.origin):
+        return None
+    return f"{spec.origin} is older than {SOURCE.name}; the steps run in Python until the next `make setup`"
 
 
 class CompiledLine(Structure):

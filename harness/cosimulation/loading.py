@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..progress import progress
+from ..stale import warn_of_stale
+from ..told import warn_once
 from .apart import Apart
-from .compiled import LIBRARY, CompiledSteps
+from .compiled import LIBRARY, CompiledSteps, why_not
 from .instance import label
 from .master import Loop, opened
 from .row import Source, instants, sampled
@@ -78,6 +80,9 @@ def loaded(
         SimulationError: an FMU cannot be loaded.
     """
     fitted = fit(system, inputs, parameters)
+    warn_of_stale(system)
+    if reason := why_not():
+        warn_once(reason)
     for name in fitted.absent:
         LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
     LOG.info("under the propagated scheme, %s", described(transfers(fitted.system, fitted.interfaces)))

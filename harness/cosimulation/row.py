@@ -16,6 +16,7 @@ from fmpy.model_description import ModelVariable
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import WiringError
+from ..plain import plain
 from .interface import Interface, type_of
 
 Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
@@ -72,6 +73,23 @@ def sampled(name: str, source: Source, time: NDArray[np.float64]) -> NDArray[np.
     return samples
 
 
+def require_fit(name: str, kind: str, samples: NDArray[np.generic]) -> None:
+    """Refuses samples of an input that a variable of that FMI type cannot take.
+
+    Raises:
+        WiringError: one is no number, no whole number, or neither true nor false.
+    """
+    if samples.dtype.kind not in "biuf":
+        raise WiringError(f"{name} = {plain(samples.flat[0], 40)}: an input is a number")
+    if kind == "Real":
+        return
+    values = samples.astype(np.float64)
+    fits = np.isin(values, (0, 1)) if kind == "Boolean" else (abs(values) < 2.0**31) & (values == np.floor(values))
+    if not fits.all():
+        allowed = "true (1) or false (0)" if kind == "Boolean" else "a whole number of less than 2^31"
+        raise WiringError(f"{name} = {values[~fits].flat[0]:g}: it must be {allowed}")
+
+
 class Kind(NamedTuple):
     """How values of an FMI type travel.
 
@@ -113,6 +131,7 @@ class Layout:
         offsets = [int(field[1]) for field in (self.dtype.fields or {}).values()]
         self._offsets = dict(zip(names, offsets, strict=True))
         self.known = offsets[first_output] if names[first_output:] else self.dtype.itemsize
+        self._types = types
         self._truths = [name for name, kind in types.items() if kind == "Boolean"]
         for place in map(names.index, self._truths):
             formats[place], offsets[place] = "?", offsets[place] + TRUTH_BYTE
@@ -125,7 +144,13 @@ class Layout:
         return self._offsets[name]
 
     def table(self, time: NDArray[np.float64], inputs: Mapping[str, NDArray[np.generic]]) -> np.ndarray:
-        """A row for each instant, with what is known in advance; zeros for the rest."""
+        """A row for each instant, with what is known in advance; zeros for the rest.
+
+        Raises:
+            WiringError: an input does not take its samples.
+        """
+        for name, samples in inputs.items():
+            require_fit(name, self._types[name], samples)
         table = np.zeros(len(time), self.dtype)
         for name, samples in {"time": time, **inputs}.items():
             table[name] = samples

@@ -126,10 +126,12 @@ class Bench:
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
-        given = self._settings[plant]
-        blocks = {place: given[place] for place in ("controller", "motor", "can")}
-        system = loop(plant, given["folder"], given["build"], mapping=given["mapping"], **blocks)
-        return with_faults(system, self._injector)
+        return with_faults(looped(plant, self._settings[plant]), self._injector)
+
+
+def looped(plant: str, given: Settings) -> System:
+    """The loop with a plant, without SignalFaults."""
+    return loop(plant, **{name: value for name, value in given.items() if name not in ("parameters", "seed")})
 
 
 def with_faults(system: System, injector: Path) -> System:

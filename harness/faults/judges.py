@@ -11,14 +11,12 @@ from math import inf
 
 import numpy as np
 
+from ..metrics.evaluate import T_S
 from ..metrics.oscillation import amplitude
 from ..metrics.spectrum import band_rms
 from .bench import Limits, Runs
 from .cases import DURATION, Fault
 from .catalogue import MOTOR_SPEED, MOTOR_TORQUE
-
-T_S = 0.002
-"""Interval of the samples in s."""
 
 WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, FALLBACK = 2, 3, 4
 """Status of the controller."""

@@ -1,24 +1,31 @@
-"""Commands never run a stale build silently."""
+"""Neither commands nor functions run a stale build silently."""
 
+from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
 
 import pytest
 
 from fmus import origin
+from harness import stale as judging
 from harness.cli import main
-from harness.commands import options
+from harness.commands import built
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.many import run_many
+from harness.simulate import simulate
+from harness.told import warn_once
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 
 
 @pytest.fixture
 def stale(both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Folder of FMUs of both builds whose sources have changed since."""
+    """Folder of FMUs of both builds whose sources have changed since; what runs them takes little time."""
+    monkeypatch.setitem(MANOEUVRES, "prbs15", replace(MANOEUVRES["prbs15"], duration=0.1))
     folder = tmp_path / "stale"
     copytree(both_built, folder)
     monkeypatch.setattr(origin, "sources_digest", lambda: "others")
-    options._say_once.cache_clear()
+    warn_once.cache_clear()
     return folder
 
 
@@ -37,7 +44,7 @@ def test_a_stale_file_is_named(
 ) -> None:
     monkeypatch.undo()
     plant = tmp_path / "stale" / "TwoMassDriveline.fmu"
-    monkeypatch.setattr(options, "is_stale", lambda path: path == plant)
+    monkeypatch.setattr(judging, "is_stale", lambda path: path == plant)
     assert main([*RUN, "--fmus", str(both_built), "--plant", str(plant), "--output", str(tmp_path / "results")]) == 0
     assert f"stale, not made from the sources that are installed: {plant}" in caplog.text
 
@@ -45,7 +52,7 @@ def test_a_stale_file_is_named(
 def test_those_of_the_project_are_built_again_and_it_is_said_once(
     stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(options, "BUILD", stale)
+    monkeypatch.setattr(built, "BUILD", stale)
     given = [*RUN, "--build", "python", "--fmus", str(stale), "--output", str(tmp_path / "results")]
     for _ in range(2):
         assert main(given) == 0
@@ -58,8 +65,21 @@ def test_those_of_the_project_are_built_again_and_it_is_said_once(
 def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
     stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(options, "BUILD", stale)
+    monkeypatch.setattr(built, "BUILD", stale)
     monkeypatch.setenv("CC", "no-such-compiler")
     assert main([*RUN, "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 0
     assert "no native FMUs: there is no C compiler 'no-such-compiler'" in caplog.text
     assert main([*RUN, "--build", "native", "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 2
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_runs_from_python_name_them_once(stale: Path, caplog: pytest.LogCaptureFixture, workers: int) -> None:
+    def end(k_d: float) -> float:
+        from fmus import origin  # in a worker everything is imported anew
+
+        origin.sources_digest = lambda: "others"
+        short = replace(MANOEUVRES["tipin15"], duration=0.01)
+        return simulate(short, folder=stale, parameters={"controller.k_d": k_d})["time"][-1]
+
+    run_many(end, [1.0, 2.0, 3.0], workers)
+    assert [record.message.count("native/") for record in caplog.records] == [4]

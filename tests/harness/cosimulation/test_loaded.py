@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.cosimulation import loading
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
@@ -113,3 +114,31 @@ def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
             running.run(0.01)
         assert len(list(tmp_path.iterdir())) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("a.b", 0.5, r"a\.b = 0\.5: it must be true \(1\) or false \(0\)"),
+        ("a.b", np.nan, r"a\.b = nan: it must be true"),
+        ("a.b", "yes", r"a\.b = yes: an input is a number"),
+        ("a.n", 0.5, r"a\.n = 0\.5: it must be a whole number of less than 2\^31"),
+        ("a.n", 2**31, r"a\.n = 2\.14748e\+09: it must be a whole number"),
+        ("a.n", np.inf, r"a\.n = inf: it must be a whole number"),
+        ("a.u", "1.0", r"a\.u = 1\.0: an input is a number"),
+        ("a.u", [None] * 11, r"a\.u = None: an input is a number"),
+    ],
+)
+def test_an_input_gets_what_suits_its_type(relay, name, value, said):
+    with loaded(System({"a": relay})) as running:
+        with pytest.raises(WiringError, match=said):
+            running.run(0.01, inputs={name: value})
+        assert len(running.run(0.01, inputs={"a.b": 1.0, "a.n": 2**31 - 1, "a.u": True})) == 11
+
+
+def test_that_the_steps_run_in_python_is_said_once(relay, monkeypatch, caplog):
+    monkeypatch.setattr(loading, "why_not", lambda: "the steps are old")
+    for _ in range(2):
+        with loaded(System({"a": relay})):
+            pass
+    assert caplog.messages.count("the steps are old") == 1

@@ -1,6 +1,7 @@
 """What a campaign leaves behind, and a case that is run again."""
 
 import csv
+import json
 
 import pytest
 
@@ -38,6 +39,20 @@ def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings
     again, files = write_case(2, 1, injector, settings, tmp_path)
     assert again == outcomes[1]
     assert [file.name for file in files] == ["case_2.csv", "case_2.png", "case_2.pdf"]
+
+
+def test_results_tell_what_made_them_and_nothing_else_is_written(native, tmp_path, capsys):
+    fmus, output = native.parent, tmp_path / "results"
+    before = set(fmus.rglob("*.fmu"))
+    plant = ["--plant", "TwoMassDriveline", "--fmus", str(fmus)]
+    given = ["faults", "--case", "2", *plant, "--output", str(output), "--quiet"]
+    assert main(given) in (0, 1)
+    assert set(fmus.rglob("*.fmu")) == before
+    record = json.loads((output / "case_2.json").read_text(encoding="utf-8"))
+    assert (record["run"]["case"], record["run"]["TwoMassDriveline"]["seed"]) == (2, 1)
+    assert record["fmus"]["TwoMassDriveline"]["faults"]["digest"].startswith("sha256:")
+    assert main([*given, "--seed", "2"]) == 2
+    assert "seed: 1 there, 2 here); choose another --output, or --replace it" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("number", ["0", "-1", "1.5", "ten", "99999999", "١"])

@@ -17,6 +17,7 @@ from harness.metrics.evaluate import T_S, evaluate, impact_speed
 from harness.metrics.oscillation import amplitude
 from harness.metrics.record import Metrics
 from harness.metrics.spectrum import band_rms
+from models.controller import supervision
 
 COLUMNS = (
     "time",
@@ -38,6 +39,11 @@ def run(duration=6.0, interval=1e-3, **signals):
         column = next(column for column in COLUMNS if column.endswith("." + name))
         results[column] = signal(t) if callable(signal) else signal
     return results
+
+
+def test_the_samples_are_those_of_the_controller():
+    """No FMU tells its sample time, so the metrics declare it."""
+    assert supervision.T_S == T_S
 
 
 STEP_METRICS = ("settling_time", "response_delay", "overshoot", "damping_ratio", "withheld_time")

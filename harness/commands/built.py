@@ -1,0 +1,54 @@
+"""The FMUs that a command runs: those of the project are built where they are missing or stale."""
+
+from pathlib import Path
+from shlex import quote
+from typing import Any
+
+from fmus.errors import BuildError
+
+from ..cosimulation.system import BUILD, BUILDS, NATIVE, chosen_build, loop
+from ..errors import DrivelineError
+from ..stale import warn_of_stale
+from ..told import warn_once
+
+
+def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:
+    """The build that runs with that plant and the other blocks, which is the one asked for if there is one.
+
+    The project's own FMUs in BUILD are built where they are missing or stale; others are said to be stale.
+
+    Raises:
+        WiringError: there is no such block.
+        DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
+    """
+    if folder == BUILD:
+        build = _refreshed(plant, build, **others)
+    build = build or chosen_build(plant, folder, **others)
+    system = loop(plant, folder, build, **others)
+    missing = [path for path in system.instances.values() if not path.is_file()]
+    if missing and missing[0].is_relative_to(folder):
+        where = "" if folder == BUILD else f" --output {quote(str(folder))}"
+        only = f" --build {NATIVE}" if build == NATIVE else ""
+        raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{only}{where}` makes it")
+    warn_of_stale(system)
+    return build
+
+
+def _refreshed(plant: str, build: str | None, **others: Any) -> str | None:
+    """Builds what is missing or stale in BUILD for a loop; the build that runs, None for that of `chosen_build`."""
+    from fmus.builds import NotPossible, refreshed
+
+    files = loop(plant, BUILD, build or NATIVE, **others).instances.values()
+    names = [path.stem for path in files if path.is_relative_to(BUILD)]
+    try:
+        made = refreshed(names, BUILD, build or NATIVE)
+    except NotPossible as reason:
+        if build is not None:
+            raise DrivelineError(str(reason)) from reason
+        warn_once(f"no native FMUs: {reason}")
+        return _refreshed(plant, BUILDS[0], **others)
+    except BuildError as reason:
+        raise DrivelineError(str(reason)) from reason
+    if made:
+        warn_once(f"built, as missing or stale: {', '.join(map(str, made))}")
+    return build
