@@ -42,10 +42,20 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 @pytest.mark.parametrize("name", MANOEUVRES)
 def test_single_precision_demands_the_same_torque(name: str, programs: dict[str, Path], both_built: Path) -> None:
     inputs = recorded(MANOEUVRES[name], both_built / NATIVE)
-    single, double = (outputs(programs[precision], inputs)["T_ref"] for precision in ("float", "double"))
-    scale = np.max(np.abs(double)) if name in LONG_IN_THE_GAP else np.abs(double)
-    assert np.all(np.abs(single - double) <= 1e-3 + 1e-4 * scale)
-    assert np.ptp(double) > 10.0
+    single, double = (outputs(programs[precision], inputs) for precision in ("float", "double"))
+    T_ref, largest = double["T_ref"], np.max(np.abs(double["T_ref"]))
+    error = np.abs(single["T_ref"] - T_ref)
+    close = error <= 1e-3 + 1e-4 * np.abs(T_ref)
+    if name in LONG_IN_THE_GAP:
+        phi_B = CONTROLLER.Parameters().phi_B
+        first, second = (np.abs(each["phi_hat"]) < phi_B for each in (single, double))
+        until = np.argmax(first != second)  # a flank is grazed, and reached in one of them alone
+        assert np.all(error[:until] <= 1e-3 + 1e-4 * largest)
+        assert np.all(error <= 5e-3 * largest)
+        assert np.all(close[-500:])
+    else:
+        assert np.all(close)
+    assert np.ptp(T_ref) > 10.0
 
 
 FAULTS = {
