@@ -17,7 +17,7 @@ MEASURES = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "jerk_r
 
 NO_BETTER = {("small", "gear_torque_rms"): 1.04, ("small", "jerk_rms"): 1.04}
 """On this car the default gains have the same k_d, which the dead time limits, and cost less torque: its own settle
-sooner and overshoot half as much, for up to 4 % more of these. With T_mot 0.5 ms early, under Gauss-Seidel, they won."""
+sooner and overshoot half as much, for up to 4 % more of these. Under Gauss-Seidel, T_mot 0.5 ms early, they won."""
 
 TRIALS = [
     Trial(path, PLANTS[0], manoeuvre, gains)
