@@ -15,6 +15,7 @@ from typing import NoReturn
 
 from .errors import DrivelineError
 from .names import nearest
+from .plain import plain
 from .progress import hidden
 from .stopping import forget_stdout, stoppable
 
@@ -71,13 +72,13 @@ class Parser(argparse.ArgumentParser):
         known, unknown = super().parse_known_args(args, namespace)
         options = [word.partition("=")[0] for word in unknown if word.startswith("--")]
         if options:
-            self.error(f"unknown option {options[0]}; {nearest(options[0], self._option_string_actions)}")
+            self.error(f"unknown option {plain(options[0], 60)}; {nearest(options[0], self._option_string_actions)}")
         return known, unknown
 
     def _check_value(self, action: argparse.Action, value: str) -> None:
         if action.choices is not None and value not in action.choices:
             name = "/".join(action.option_strings) or str(action.metavar).lower()
-            self.error(f"{name}: {value or 'an empty name'} is unknown; {nearest(value, action.choices)}")
+            self.error(f"{name}: {plain(value, 60) or 'an empty name'} is unknown; {nearest(value, action.choices)}")
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}\n(`{self.prog} --help` explains)\n")

@@ -8,3 +8,8 @@ def plain(text: object, longest: int = LONGEST) -> str:
     """The text in one line, without what a terminal would obey."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in str(text)).split())
     return line if len(line) <= longest else f"{line[:longest]} ... ({len(line)} characters)"
+
+
+def quoted(text: object) -> str:
+    """A value that somebody gave, as a message repeats it."""
+    return repr(plain(text, 60))

@@ -4,6 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
+from ..plain import quoted
 from .options import add_limits, add_printing, limits
 
 DESCRIPTION = """\
@@ -48,7 +49,7 @@ def rule(text: str) -> str:
 
     names = [rule.name for rule in RULES]
     if text not in names:
-        raise argparse.ArgumentTypeError(f"there is no rule {text!r}; {nearest(text, names)}")
+        raise argparse.ArgumentTypeError(f"there is no rule {quoted(text)}; {nearest(text, names)}")
     return text
 
 

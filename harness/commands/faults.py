@@ -9,6 +9,7 @@ from typing import Any
 
 from ..cosimulation.system import BUILD, NATIVE, PLANTS
 from ..errors import DrivelineError
+from ..plain import quoted
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, settings
 from .printing import Printer
@@ -53,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _number(text: str) -> int:
     number = int(text) if text.isascii() and text.isdecimal() and len(text) <= len(str(MOST_CASES)) else 0
     if not 1 <= number <= MOST_CASES:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 to {MOST_CASES}")
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a whole number from 1 to {MOST_CASES}")
     return number
 
 

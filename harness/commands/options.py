@@ -12,6 +12,7 @@ from ..cosimulation.limits import USUAL, Limits
 from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS, System, loop
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
+from ..plain import quoted
 
 LOG = logging.getLogger(__name__)
 
@@ -159,9 +160,9 @@ def assignment(text: str) -> tuple[str, float]:
     except ValueError:
         number = None
     if not (instance and dot and parameter and equals) or number is None:
-        raise argparse.ArgumentTypeError(f"{text!r} is not of the form plant.J_1=0.06")
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not of the form plant.J_1=0.06")
     if not isfinite(number):
-        raise argparse.ArgumentTypeError(f"{text!r}: a parameter is a finite number")
+        raise argparse.ArgumentTypeError(f"{quoted(text)}: a parameter is a finite number")
     return name, number
 
 
@@ -172,7 +173,7 @@ def seed(text: str) -> int:
     except ValueError:
         number = -1
     if not 0 <= number <= LARGEST_SEED:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to {LARGEST_SEED}")
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a whole number from 0 to {LARGEST_SEED}")
     return number
 
 
@@ -183,7 +184,7 @@ def seconds(text: str) -> float:
     except ValueError:
         number = 0.0
     if not (isfinite(number) and number > 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a time above 0 s")
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a time above 0 s")
     return number
 
 
@@ -194,7 +195,7 @@ def megabytes(text: str) -> int:
     except ValueError:
         number = 0.0
     if not (isfinite(number) and number > 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size above 0 MB")
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a size above 0 MB")
     return round(number * 1e6)
 
 

@@ -1,8 +1,10 @@
-"""Rules for the archive of an FMU, which are given its path; those for what is never unpacked the limits as well."""
+"""Rules for the archive of an FMU."""
 
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+from zipfile import ZipInfo
 
 from ..cosimulation import archive
 from ..cosimulation.limits import Limits
@@ -13,60 +15,68 @@ PAGES = {"documentation/index.html": "the page that tools show", "model.png": "t
 EXTENSIONS = {".so", ".dll", ".dylib"}
 
 
+class Archive(NamedTuple):
+    """The archive of an FMU, what is in it, and what it may unpack to."""
+
+    path: Path
+    entries: list[ZipInfo]
+    limits: Limits
+
+    @property
+    def names(self) -> list[str]:
+        return [entry.orig_filename for entry in self.entries]
+
+
 def _refusing(name: str, title: str) -> Rule:
     """What `harness.cosimulation.archive` refuses under that name."""
 
-    def problems(path: Path, limits: Limits) -> Iterator[str]:
-        found = archive.problems(archive.entries(path), limits)
+    def problems(fmu: Archive) -> Iterator[str]:
+        found = archive.problems(fmu.entries, fmu.limits)
         return (problem.text for problem in found if problem.rule == name)
 
     return Rule(name, Severity.ERROR, title, problems)
 
 
-def damaged(path: Path) -> Iterator[str]:
+def damaged(fmu: Archive) -> Iterator[str]:
     """Entries that do not unpack to what they were."""
-    if damage := archive.damage(path):
+    if damage := archive.damage(fmu.path):
         yield damage
 
 
-def duplicates(path: Path) -> Iterator[str]:
+def duplicates(fmu: Archive) -> Iterator[str]:
     """Entries of the same name."""
-    for name, count in sorted(Counter(_names(path)).items()):
+    for name, count in sorted(Counter(fmu.names).items()):
         if count > 1:
             yield f"{name} is there more than once"
 
 
-def not_ascii(path: Path) -> Iterator[str]:
+def not_ascii(fmu: Archive) -> Iterator[str]:
     """Names that some hosts do not unpack as they are."""
-    for name in _names(path):
+    for name in fmu.names:
         if not (name.isascii() and name.isprintable()):
             yield f"{name} is not plain ASCII"
 
 
-def leftovers(path: Path) -> Iterator[str]:
+def leftovers(fmu: Archive) -> Iterator[str]:
     """Files that no host should find."""
-    for name in _names(path):
+    for name in fmu.names:
         if name.endswith(".pyc") or "__pycache__" in name.split("/"):
             yield f"{name} is a leftover of the Python that built it"
 
 
-def no_binary(path: Path) -> Iterator[str]:
+def no_binary(fmu: Archive) -> Iterator[str]:
     """Whether there are sources alone."""
-    binaries = {PurePosixPath(name).suffix for name in _names(path) if name.startswith("binaries/")}
+    binaries = {PurePosixPath(name).suffix for name in fmu.names if name.startswith("binaries/")}
     if not EXTENSIONS & binaries:
         yield "there is no binary for any platform"
 
 
-def no_pages(path: Path) -> Iterator[str]:
+def no_pages(fmu: Archive) -> Iterator[str]:
     """What people look at first."""
-    names = _names(path)
+    names = fmu.names
     for name, why in PAGES.items():
         if name not in names:
             yield f"{name} is missing ({why})"
-
-
-def _names(path: Path) -> list[str]:
-    return [entry.orig_filename for entry in archive.entries(path)]
 
 
 REFUSING_RULES = (

@@ -1,4 +1,4 @@
-"""Rules for what an FMU does. Each function is given its interface, runs it and yields what it does wrong."""
+"""Rules for what an FMU does. Each function is given it unpacked, runs it and yields what it does wrong."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -7,8 +7,8 @@ from typing import Any
 
 from fmpy.model_description import ModelVariable
 
-from ..cosimulation.instance import Instance, instantiated
-from ..cosimulation.interface import Interface, type_of
+from ..cosimulation.instance import Instance, Unpacked, instantiated
+from ..cosimulation.interface import type_of
 from .rule import Rule, Severity
 
 Outputs = list[tuple[str, Any]]
@@ -79,17 +79,17 @@ class Host:
 
 
 @contextmanager
-def hosted(interface: Interface, name: str = "checked") -> Iterator[Host]:
-    with instantiated(name, interface) as instance:
+def hosted(fmu: Unpacked, name: str = "checked") -> Iterator[Host]:
+    with instantiated(name, fmu) as instance:
         yield Host(instance)
         instance.call("terminate")
 
 
-def default_experiment(interface: Interface, most_steps: int = MOST_STEPS) -> Iterator[str]:
+def default_experiment(fmu: Unpacked, most_steps: int = MOST_STEPS) -> Iterator[str]:
     """Runs the default experiment; every variable can be read before and after."""
-    with hosted(interface) as host:
+    with hosted(fmu) as host:
         host.start()
-        everything = list(interface.variables.values())
+        everything = list(fmu.interface.variables.values())
         host.read(everything)
         first = last = host.outputs()
         for _ in range(min(round(host.stop / host.step_size), most_steps)):
@@ -99,25 +99,25 @@ def default_experiment(interface: Interface, most_steps: int = MOST_STEPS) -> It
     yield from _not_finite(last, "at the end")
 
 
-def beginning(interface: Interface) -> Iterator[str]:
+def beginning(fmu: Unpacked) -> Iterator[str]:
     """The first steps of the default experiment."""
-    return default_experiment(interface, STEPS)
+    return default_experiment(fmu, STEPS)
 
 
-def any_step_size(interface: Interface) -> Iterator[str]:
+def any_step_size(fmu: Unpacked) -> Iterator[str]:
     """Small, large and odd steps, if the FMU says that it can handle them."""
-    if not _claims(interface, "canHandleVariableCommunicationStepSize"):
+    if not _claims(fmu, "canHandleVariableCommunicationStepSize"):
         return
-    with hosted(interface) as host:
+    with hosted(fmu) as host:
         host.start()
         for factor in STEP_FACTORS:
             size = factor * host.step_size
             yield from _not_finite(host.advance(size), f"after a step of {size:g} s")
 
 
-def repeats_after_reset(interface: Interface) -> Iterator[str]:
+def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
     """The same run before and after fmi2Reset."""
-    with hosted(interface) as host:
+    with hosted(fmu) as host:
         host.start()
         first = host.run(STEPS)
         host.instance.call("reset")
@@ -125,14 +125,14 @@ def repeats_after_reset(interface: Interface) -> Iterator[str]:
         yield from _differences(first, host.run(STEPS), "after reset")
 
 
-def instances_are_separate(interface: Interface) -> Iterator[str]:
+def instances_are_separate(fmu: Unpacked) -> Iterator[str]:
     """One instance alone, and the same beside another one that runs ahead of it."""
-    if _claims(interface, "canBeInstantiatedOnlyOncePerProcess"):
+    if _claims(fmu, "canBeInstantiatedOnlyOncePerProcess"):
         return
-    with hosted(interface) as host:
+    with hosted(fmu) as host:
         host.start()
         alone = host.run(STEPS)
-    with hosted(interface, "checked") as host, hosted(interface, "other") as other:
+    with hosted(fmu, "checked") as host, hosted(fmu, "other") as other:
         other.start()
         other.run(STEPS // 2)
         host.start()
@@ -143,11 +143,11 @@ def instances_are_separate(interface: Interface) -> Iterator[str]:
         yield from _differences(alone, beside, "beside another instance")
 
 
-def states_are_restored(interface: Interface) -> Iterator[str]:
+def states_are_restored(fmu: Unpacked) -> Iterator[str]:
     """The run after a restored state is the one before, bit by bit, if the FMU claims so."""
-    if not _claims(interface, "canGetAndSetFMUstate"):
+    if not _claims(fmu, "canGetAndSetFMUstate"):
         return
-    with hosted(interface) as host:
+    with hosted(fmu) as host:
         host.start()
         host.run(STEPS)
         position = host.step, host.time
@@ -156,7 +156,7 @@ def states_are_restored(interface: Interface) -> Iterator[str]:
         host.instance.call("setFMUstate", state)
         host.step, host.time = position
         yield from _differences(first, host.run(STEPS), "after the state was restored")
-        if _claims(interface, "canSerializeFMUstate"):
+        if _claims(fmu, "canSerializeFMUstate"):
             saved = host.instance.call("serializeFMUstate", state)
             revived = host.instance.call("deSerializeFMUstate", saved)
             host.instance.call("setFMUstate", revived)
@@ -166,8 +166,8 @@ def states_are_restored(interface: Interface) -> Iterator[str]:
         host.instance.call("freeFMUstate", state)
 
 
-def _claims(interface: Interface, capability: str) -> bool:
-    return bool(getattr(interface.description.coSimulation, capability))
+def _claims(fmu: Unpacked, capability: str) -> bool:
+    return bool(getattr(fmu.interface.description.coSimulation, capability))
 
 
 def _not_finite(outputs: Outputs, when: str) -> Iterator[str]:

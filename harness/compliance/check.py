@@ -1,14 +1,16 @@
 """Whether an FMU keeps the FMI 2.0 standard for Co-Simulation, and our rules beyond it."""
 
 from collections.abc import Collection, Iterable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 from ..cosimulation import archive
 from ..cosimulation.apart import Apart
+from ..cosimulation.instance import Unpacked, unpacked
 from ..cosimulation.interface import Interface
 from ..cosimulation.limits import USUAL, Limits
 from ..errors import DrivelineError, SimulationError
-from .archive_rules import ARCHIVE_RULES, REFUSING_RULES
+from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
 from .description_rules import DESCRIPTION_RULES
 from .rule import Rule, Severity, Verdict
@@ -38,15 +40,15 @@ def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Coll
         return (rule for rule in rules if rule.name not in ignored)
 
     try:
-        archive.entries(path)
+        contents = Archive(path, archive.entries(path), limits)
     except DrivelineError as error:
         yield READABLE.verdict([str(error)])
         return
-    refused = [rule.judge(path, limits) for rule in kept(REFUSING_RULES)]
+    refused = [rule.judge(contents) for rule in kept(REFUSING_RULES)]
     yield from refused
     if any(verdict.problems for verdict in refused):
         return
-    yield from (rule.judge(path) for rule in kept(ARCHIVE_RULES))
+    yield from (rule.judge(contents) for rule in kept(ARCHIVE_RULES))
     try:
         interface = Interface(path, limits)
     except DrivelineError as error:
@@ -81,13 +83,15 @@ def _behaviour(interface: Interface, rules: Iterable[Rule], limits: Limits) -> I
 
 # what follows runs in the other process
 
-_interface: Interface
+_fmu: Unpacked
+_files = ExitStack()
 
 
 def _receive(interface: Interface) -> None:
-    global _interface
-    _interface = interface
+    """Unpacks it, once for all that is tried; the files vanish with those of the process."""
+    global _fmu
+    _fmu = _files.enter_context(unpacked(interface))
 
 
 def _judge(rule: Rule) -> Verdict:
-    return rule.judge(_interface)
+    return rule.judge(_fmu)

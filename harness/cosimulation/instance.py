@@ -8,7 +8,7 @@ from itertools import count
 from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import fmpy
 from fmpy.fmi1 import FMICallException
@@ -182,47 +182,67 @@ def _typed(instance: str, name: str, kind: str, value: float) -> float:
     return int(value) if whole[kind] else float(value)
 
 
+class Unpacked(NamedTuple):
+    """An FMU and the folder that has its files."""
+
+    interface: Interface
+    folder: str
+
+
 @contextmanager
-def instantiated(name: str, interface: Interface, folder: Path | None = None, number: int = 0) -> Iterator[Instance]:
-    """The FMU as an instance of that name, freed at the end; its unpacked files vanish.
+def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpacked]:
+    """The FMU with its files, which vanish at the end.
+
+    Args:
+        folder: in which it is unpacked; None: that for temporary files.
+
+    Raises:
+        SimulationError: it cannot be unpacked, or has no binary for this platform.
+    """
+    path = interface.path
+    with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as files:
+        if not files.isascii():
+            raise SimulationError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
+        rest()  # unpacking may take longer than a call may
+        unpack(path, files)
+        platforms = fmpy.supported_platforms(files)
+        if fmpy.platform not in platforms:
+            has = ", ".join(platforms) or "none"
+            raise SimulationError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
+        yield Unpacked(interface, files)
+
+
+@contextmanager
+def instantiated(name: str, fmu: Unpacked, number: int = 0) -> Iterator[Instance]:
+    """The FMU as an instance of that name, freed at the end.
 
     Args:
         number: in its loop.
-        folder: in which it is unpacked; None: that for temporary files.
 
     Raises:
         SimulationError: it cannot be loaded or instantiated.
     """
     key = next(_keys)
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
-    with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as unpacked:
+    try:
+        instance = _instantiate(name, fmu, key, number)
         try:
-            instance = _instantiate(name, interface, unpacked, key, number)
-            try:
-                yield instance
-            finally:
-                # FMI forbids every further call after fmi2Fatal, fmi2FreeInstance too
-                if instance.status < fmi2Fatal:
-                    instance.slave.freeInstance()
+            yield instance
         finally:
-            del _logs[key]
+            # FMI forbids every further call after fmi2Fatal, fmi2FreeInstance too
+            if instance.status < fmi2Fatal:
+                instance.slave.freeInstance()
+    finally:
+        del _logs[key]
 
 
-def _instantiate(name: str, interface: Interface, folder: str, key: int, number: int) -> Instance:
-    path = interface.path
-    if not folder.isascii():
-        raise SimulationError(f"{path.name} cannot be unpacked to {folder}: FMUs need a plain ASCII folder")
-    rest()  # unpacking may take longer than a call may
-    unpack(path, folder)
-    platforms = fmpy.supported_platforms(folder)
-    if fmpy.platform not in platforms:
-        has = ", ".join(platforms) or "none"
-        raise SimulationError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
+def _instantiate(name: str, fmu: Unpacked, key: int, number: int) -> Instance:
+    interface = fmu.interface
     try:
         slave = FMU2Watched(
             number,
             guid=interface.description.guid,
-            unzipDirectory=folder,
+            unzipDirectory=fmu.folder,
             modelIdentifier=interface.identifier,
             instanceName=name,
         )

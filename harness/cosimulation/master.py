@@ -16,7 +16,7 @@ from fmpy.fmi2 import fmi2OK, fmi2Warning
 from ..errors import SimulationError, WiringError
 from ..progress import chunks, progress
 from .calls import Call
-from .instance import Instance, instantiated
+from .instance import Instance, instantiated, unpacked
 from .row import Source, instants, sampled
 from .steps import NOT_FINITE, MakeSteps, made
 from .system import Scheme
@@ -33,7 +33,7 @@ def opened(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator[
     """
     with ExitStack() as stack:
         instances = [
-            stack.enter_context(instantiated(name, interface, folder, number))
+            stack.enter_context(instantiated(name, stack.enter_context(unpacked(interface, folder)), number))
             for number, (name, interface) in enumerate(fitted.interfaces.items())
         ]
         yield Loop(fitted, instances, make_steps)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,8 @@ from .files import complete
 
 if TYPE_CHECKING:
     import numpy as np
+
+ROWS_AT_ONCE = 1000
 
 
 def write_rows(headings: Sequence[str], rows: Iterable[Sequence[object]], path: Path) -> None:
@@ -26,6 +28,14 @@ def write_csv(results: np.ndarray, path: Path) -> None:
 
     One column a field; numbers are written so that reading gives the same ones, truth values as 0 and 1.
     """
-    names = results.dtype.names or ()
-    columns = [(results[name].astype(int) if results[name].dtype == bool else results[name]).tolist() for name in names]
-    write_rows(names, zip(*columns, strict=True), path)
+    write_rows(results.dtype.names or (), _rows(results), path)
+
+
+def _rows(results: np.ndarray) -> Iterator[tuple[object, ...]]:
+    """The rows with numbers of Python's, which take much more memory and so are made piece by piece."""
+    for start in range(0, len(results), ROWS_AT_ONCE):
+        piece = results[start : start + ROWS_AT_ONCE]
+        columns = (piece[name] for name in results.dtype.names or ())
+        yield from zip(
+            *((column.astype(int) if column.dtype == bool else column).tolist() for column in columns), strict=True
+        )

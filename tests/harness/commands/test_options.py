@@ -10,7 +10,7 @@ import pytest
 
 from fmus.options import file as a_file
 from fmus.options import folder, output_folder
-from harness.commands.options import LARGEST_SEED, assignment, seconds, seed
+from harness.commands.options import LARGEST_SEED, assignment, megabytes, seconds, seed
 from harness.cosimulation.system import BUILD
 from tests import ROOT
 
@@ -53,6 +53,15 @@ def test_a_time_is_above_zero_and_finite():
     for text in ("0", "-0.001", "nan", "inf", "", "1 s"):
         with pytest.raises(ArgumentTypeError, match="not a time above 0 s"):
             seconds(text)
+
+
+@pytest.mark.parametrize("take", [assignment, seed, seconds, megabytes])
+def test_what_is_long_or_strange_is_not_repeated_as_it_is(take):
+    for text in ("9" * 5000, "\x1b[31m9"):
+        with pytest.raises(ArgumentTypeError) as refusal:
+            take(text)
+        assert len(str(refusal.value)) < 200
+        assert str(refusal.value).isprintable()
 
 
 def test_a_folder_is_no_file(tmp_path):
