@@ -5,8 +5,11 @@ from datetime import UTC, datetime
 
 from .errors import BuildError
 
-VERSION, DATE = "0.1.0", "2026-11-21"
-"""Of the sources; the date goes with the version, so that the same sources give the same bytes on any day."""
+VERSION = "0.1.0"
+"""Of the sources. The installer reads this line without running it, so it stands alone."""
+
+DATE = "2026-11-21"
+"""Goes with the version, so that the same sources give the same bytes on any day."""
 
 AUTHOR = "the driveline-damping authors"
 ABOUT = {
