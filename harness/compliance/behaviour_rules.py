@@ -92,7 +92,7 @@ def default_experiment(fmu: Unpacked, most_steps: int = MOST_STEPS) -> Iterator[
         everything = list(fmu.interface.variables.values())
         host.read(everything)
         first = last = host.outputs()
-        for _ in range(min(round(host.stop / host.step_size), most_steps)):
+        for _ in range(round(min(host.stop / host.step_size, most_steps))):
             last = host.advance(host.step_size)
         host.read(everything)
     yield from _not_finite(first, "at the start")

@@ -10,6 +10,7 @@ from ..cosimulation.instance import Unpacked, unpacked
 from ..cosimulation.interface import Interface
 from ..cosimulation.limits import USUAL, Limits
 from ..errors import DrivelineError, SimulationError
+from ..plain import plain
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
 from .description_rules import DESCRIPTION_RULES
@@ -94,4 +95,7 @@ def _receive(interface: Interface) -> None:
 
 
 def _judge(rule: Rule) -> Verdict:
-    return rule.judge(_fmu)
+    try:
+        return rule.judge(_fmu)
+    except Exception as error:  # nobody foresees what an FMU makes of a rule
+        return rule.verdict([f"cannot be tried: {type(error).__name__}: {plain(error)}"])

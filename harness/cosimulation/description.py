@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterator, Mapping
 from io import BytesIO
-from math import isnan
+from math import isfinite, isnan
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
@@ -58,7 +58,7 @@ def _problems(root: Element, cosimulation: Element) -> Iterator[str]:
     elif not IDENTIFIER.fullmatch(identifier):
         yield f"modelIdentifier is {plain(identifier)!r}; it must be a name as in C"
     for experiment in root.findall("DefaultExperiment"):
-        yield from _not_numbers(experiment, "DefaultExperiment", dict.fromkeys(EXPERIMENT, _real))
+        yield from _not_numbers(experiment, "DefaultExperiment", EXPERIMENT)
     variables = root.findall("ModelVariables/ScalarVariable")
     for position, variable in enumerate(variables, start=1):
         yield from _of_variable(variable, position)
@@ -85,7 +85,7 @@ def _of_variable(variable: Element, position: int) -> Iterator[str]:
 def _of_unknown(unknown: Element, count: int) -> Iterator[str]:
     for attribute in ("index", "dependencies"):
         for text in unknown.get(attribute, "").split():
-            if not (text.isdecimal() and 1 <= int(text) <= count):
+            if not _whole(text, 1, count):
                 yield f"{attribute} of an Unknown in ModelStructure is {plain(text)!r}; there are {count} variables"
     if unknown.get("index") is None:
         yield "an Unknown in ModelStructure has no index"
@@ -105,6 +105,14 @@ def _real(text: str) -> bool:
         return False
 
 
+def _finite(text: str) -> bool:
+    return _real(text) and isfinite(float(text))
+
+
+def _above_zero(text: str) -> bool:
+    return _finite(text) and float(text) > 0.0
+
+
 def _whole(text: str, lowest: int = -(2**31), highest: int = 2**31 - 1) -> bool:
     digits = text.strip().lstrip("+-")
     return digits.isdecimal() and len(digits) < 20 and lowest <= int(text) <= highest
@@ -118,10 +126,16 @@ def _truth(text: str) -> bool:
     return text.strip() in ("true", "false", "0", "1")
 
 
-EXPERIMENT = ("startTime", "stopTime", "tolerance", "stepSize")
+EXPERIMENT: Mapping[str, Callable[[str], bool]] = {
+    "startTime": _finite,
+    "stopTime": _finite,
+    "tolerance": _finite,
+    "stepSize": _above_zero,
+}
+"""The attributes of DefaultExperiment, all numbers."""
 
 NUMBERS: Mapping[str, Mapping[str, Callable[[str], bool]]] = {
-    "Real": dict.fromkeys(("start", "min", "max", "nominal"), _real),
+    "Real": dict.fromkeys(("start", "min", "max"), _real) | {"nominal": _finite},
     "Integer": dict.fromkeys(("start", "min", "max"), _whole),
     "Enumeration": dict.fromkeys(("start", "min", "max"), _whole),
     "Boolean": {"start": _truth},

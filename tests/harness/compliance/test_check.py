@@ -1,5 +1,6 @@
 """The compliance checks: nothing to find in our FMUs, every planted fault found."""
 
+import os
 import re
 import tempfile
 from zipfile import ZipFile
@@ -8,6 +9,7 @@ import pytest
 
 from harness.compliance.behaviour_rules import BEHAVIOUR_RULES
 from harness.compliance.check import RULES, check
+from harness.compliance.rule import Rule, Severity
 from harness.cosimulation.limits import Limits
 from harness.cosimulation.system import PLANTS
 from harness.errors import DrivelineError
@@ -115,6 +117,21 @@ def test_a_binary_that_is_not_there_is_found(tmp_path):
         lambda xml: xml.replace('modelIdentifier="Relay"', 'modelIdentifier="Other"'),
     )
     assert "cannot be instantiated" in "\n".join(findings(faulty))
+
+
+@pytest.mark.parametrize("stop", ["1e300", "-1"])
+def test_any_default_experiment_is_tried(tmp_path, stop):
+    def change(xml):
+        return xml.replace('stopTime="0.2" stepSize="0.001"', f'stopTime="{stop}" stepSize="1e-20"')
+
+    assert "runs" not in broken(tampered(build_stranger(tmp_path), tmp_path / "odd.fmu", change), quick=True)
+
+
+def test_whatever_goes_wrong_in_a_rule_is_a_finding(tmp_path, monkeypatch):
+    rule = Rule("odd", Severity.ERROR, "an error that nobody foresees", os.listdir)
+    monkeypatch.setattr("harness.compliance.check.QUICK_RULES", (rule,))
+    severity, text = broken(build_stranger(tmp_path), quick=True)["odd"]
+    assert (severity, text.partition(",")[0]) == ("error", "cannot be tried: TypeError: listdir: path should be string")
 
 
 def test_what_cannot_be_read_gets_one_finding(tmp_path):
