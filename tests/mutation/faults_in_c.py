@@ -11,7 +11,9 @@ NO_CODE = re.compile(
     r"""/\*.*?\*/  # comments
     | "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])'  # texts
     | ^\#[^\n]*  # lines for the preprocessor
-    | \(void\)\w+;""",
+    | \(void\)\w+;
+    | \[\d+\](?=;) | ^enum\ \{[^}]*\};  # sizes of buffers
+    | va_end\(\w+\);""",
     re.DOTALL | re.MULTILINE | re.VERBOSE,
 )
 OPERATORS = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",), "!=": ("==",)}

@@ -3,7 +3,7 @@
 import json
 import tomllib
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from hashlib import sha256
 
 from mutants import ROOT, Mutant
@@ -18,7 +18,8 @@ HEAD = """\
 Made by `make mutation` (tests/mutation), do not edit. Small faults were put into the code one at a time: numbers
 changed by a fifth, `<` made `<=` or `>=`, `+` made `-`, `min` made `max`, `and` made `or`, both sides of a choice
 swapped, limits and statements left out, a field of the next state left as it was. A fault is found when a test fails,
-the compiler refuses it, or the tests never end. `python tests/mutation fmus/native/c/run.c` runs one file anew.
+the compiler refuses it, or the tests never end. `python tests/mutation fmus/native/c/run.c` runs one file anew,
+`--every 5` tries one of five faults.
 """
 
 
@@ -37,20 +38,31 @@ def digest(file: str) -> str:
     return sha256((ROOT / file).read_bytes()).hexdigest()[:16]
 
 
-def record(files: Iterable[str], mutants: Iterable[Mutant], found: Iterable[Mutant]) -> None:
-    """Adds what a run of some files has shown to the score, and writes the page."""
+def record(faults: Mapping[str, int], mutants: Iterable[Mutant], found: Iterable[Mutant]) -> None:
+    """Adds what a run of some files has shown to the score, and writes the page.
+
+    Args:
+        faults: how many each file could have.
+        mutants: those that were tried.
+        found: those of them that no test found.
+    """
     score = json.loads(SCORE.read_text(encoding="utf-8")) if SCORE.exists() else {}
     made, alive = (Counter(mutant.file for mutant in some) for some in (mutants, found))
-    score |= {file: {"digest": digest(file), "faults": made[file], "not_found": alive[file]} for file in files}
+    score |= {
+        file: {"digest": digest(file), "faults": number, "tried": made[file], "not_found": alive[file]}
+        for file, number in faults.items()
+    }
     SCORE.write_text(json.dumps(score, indent=2, sort_keys=True) + "\n", encoding="utf-8")
     PATH.write_text(page(score), encoding="utf-8")
 
 
 def page(score: dict[str, dict[str, str | int]]) -> str:
-    rows = [(f"`{file}`", int(each["faults"]), int(each["not_found"])) for file, each in score.items()]
-    rows += [("all", sum(n for _, n, _ in rows), sum(k for _, _, k in rows))]
-    lines = [HEAD, "| file | faults | not found | found |", "| --- | ---: | ---: | ---: |"]
-    lines += [f"| {file} | {n} | {k} | {1.0 - k / n:.1%} |" for file, n, k in rows]
+    rows = [
+        (f"`{file}`", *(int(each[key]) for key in ("faults", "tried", "not_found"))) for file, each in score.items()
+    ]
+    rows += [("all", *(sum(row[k] for row in rows) for k in (1, 2, 3)))]
+    lines = [HEAD, "| file | faults | tried | not found | found |", "| --- | ---: | ---: | ---: | ---: |"]
+    lines += [f"| {file} | {n} | {tried} | {k} | {1.0 - k / tried:.1%} |" for file, n, tried, k in rows]
     if changed := [f"`{file}`" for file, each in score.items() if each["digest"] != digest(file)]:
         lines += ["", f"Changed since they were run: {', '.join(changed)}."]
     lines += ["", "## Why some are not found"]
