@@ -2,15 +2,18 @@
 
 import math
 import os
+import pickle
 import resource
 import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from hashlib import md5
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 # slow to import and needed by every run of the tests, which inherits them
 import casadi  # noqa: F401
@@ -53,6 +56,7 @@ def prepare(folder: str) -> None:
     shutil.copytree(ROOT, copy, ignore=ours)
     objects, compiler = copy / "objects", copy / "cc"
     objects.mkdir()
+    (copy / "kept").mkdir()
     compiler.write_text(COMPILER.replace("OBJECTS", str(objects)))
     compiler.chmod(stat.S_IRWXU)
     os.environ["CC"] = str(compiler)
@@ -70,6 +74,34 @@ class TimeLimit:
         resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
 
 
+class Remembered:
+    """What no fault in the C core changes is computed once by a worker: traced sources, pages, what is in the FMUs
+    that run Python."""
+
+    def pytest_configure(self) -> None:
+        from fmus.native import packaging as native
+        from fmus.python import packaging as python
+
+        native.block_sources = remembered(native.block_sources)
+        native.documentation = remembered(native.documentation)
+        python.documentation = remembered(python.documentation)
+        python._resources_and_binaries = remembered(python._resources_and_binaries)
+
+
+def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function of an FMU and other arguments, its results kept in files."""
+
+    def result(fmu: Any, *others: Any) -> Any:
+        starts = [record._field_defaults for record in (fmu.block.Parameters, fmu.block.Input)]
+        asked = repr((function.__module__, function.__name__, fmu.name, fmu.stop_time, starts, others))
+        kept = Path("kept", md5(asked.encode(), usedforsecurity=False).hexdigest())
+        if not kept.exists():
+            kept.write_bytes(pickle.dumps(function(fmu, *others)))
+        return pickle.loads(kept.read_bytes())
+
+    return result
+
+
 def passes(tests: Tests) -> bool:
     """Whether the tests pass here; in a process of its own, which has imported nothing of the tree."""
     child = os.fork()
@@ -79,7 +111,9 @@ def passes(tests: Tests) -> bool:
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, 1)
             os.dup2(nowhere, 2)
-            result = pytest.main([*OPTIONS, *tests], plugins=[TimeLimit()])
+            in_c = any("fmus/native" in test for test in tests)
+            plugins = [TimeLimit(), Remembered()] if in_c else [TimeLimit()]
+            result = pytest.main([*OPTIONS, *tests], plugins=plugins)
         finally:
             os._exit(result)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
