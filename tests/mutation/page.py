@@ -57,12 +57,10 @@ def record(faults: Mapping[str, int], mutants: Iterable[Mutant], found: Iterable
 
 
 def page(score: dict[str, dict[str, str | int]]) -> str:
-    rows = [
-        (f"`{file}`", *(int(each[key]) for key in ("faults", "tried", "not_found"))) for file, each in score.items()
-    ]
-    rows += [("all", *(sum(row[k] for row in rows) for k in (1, 2, 3)))]
+    rows = {f"`{file}`": [int(each[key]) for key in ("faults", "tried", "not_found")] for file, each in score.items()}
+    rows["all"] = [sum(column) for column in zip(*rows.values(), strict=True)]
     lines = [HEAD, "| file | faults | tried | not found | found |", "| --- | ---: | ---: | ---: | ---: |"]
-    lines += [f"| {file} | {n} | {tried} | {k} | {1.0 - k / tried:.1%} |" for file, n, tried, k in rows]
+    lines += [f"| {file} | {n} | {tried} | {k} | {1.0 - k / tried:.1%} |" for file, (n, tried, k) in rows.items()]
     if changed := [f"`{file}`" for file, each in score.items() if each["digest"] != digest(file)]:
         lines += ["", f"Changed since they were run: {', '.join(changed)}."]
     lines += ["", "## Why some are not found"]
