@@ -17,7 +17,6 @@ from .many import run_many
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
 from .reports.csv_file import write_csv
-from .reports.figures import plot_drive, plot_step
 from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
 
@@ -108,6 +107,8 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
 
 def write_figures(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
     """Draws the test drive and the close-ups of the steps that were run; returns the files."""
+    from .reports.figures import plot_drive, plot_step  # not for the workers, which draw nothing
+
     files = []
     for off, on in zip(outcomes[::2], outcomes[1::2], strict=True):
         name = off.case.manoeuvre

@@ -17,7 +17,6 @@ from .metrics.declaration import given, measured
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
 from .reports.csv_file import write_csv
-from .reports.figures import plot_replay
 from .reports.table import values, write_metrics
 from .simulate import simulate
 
@@ -89,6 +88,8 @@ def records(rides: Sequence[Ride], recording: Recording, plant: str) -> list[dic
 
 def write(rides: Sequence[Ride], recording: Recording, plant: str, folder: Path) -> list[Path]:
     """Writes metrics, signals (every 10 ms) and the figure of a replay; returns the files."""
+    from .reports.figures import plot_replay  # not for the workers, which draw nothing
+
     files = [folder / f"{recording.name}_metrics.csv"]
     write_metrics(records(rides, recording, plant), files[0])
     for result in rides:

@@ -4,7 +4,6 @@ from math import log, pi, sqrt
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.signal import butter, sosfiltfilt
 
 from .declaration import Absent
 
@@ -32,6 +31,8 @@ def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> fl
     zeta = s/sqrt(pi^2 + s^2). With fewer than three it follows from the overshoot alone, the
     decrement of one half period.
     """
+    from scipy.signal import butter, sosfiltfilt  # takes longer to load than many a run does
+
     low_pass = butter(2, 12.0, fs=1.0 / T_s, output="sos")
     extremes = _alternating_extremes(np.asarray(sosfiltfilt(low_pass, y))[first:], round(0.03 / T_s))[:30]
     if len(extremes) >= 3:

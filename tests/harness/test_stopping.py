@@ -12,7 +12,7 @@ import pytest
 from harness.cli import main
 from tests import ROOT
 
-COMPARE = [sys.executable, "-m", "harness", "compare", "--manoeuvre", "drive"]
+COMPARE = [sys.executable, "-m", "harness", "compare", "--manoeuvre", "drive", "--plant", "TwoMassDriveline"]
 
 
 @pytest.mark.parametrize(
@@ -20,13 +20,13 @@ COMPARE = [sys.executable, "-m", "harness", "compare", "--manoeuvre", "drive"]
     [(signal.SIGTERM, False, 143), (signal.SIGHUP, True, 129), (signal.SIGINT, True, 130)],
 )
 def test_a_signal_ends_the_workers_and_leaves_nothing(
-    built: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, code: int
+    native: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, code: int
 ) -> None:
     """A terminal that closes or Ctrl-C reaches every process of the group, a `kill` only the first."""
     temporary, results = tmp_path / "temporary", tmp_path / "results"
     temporary.mkdir()
     process = subprocess.Popen(
-        [*COMPARE, "--fmus", str(built), "--build", "python", "--output", str(results)],
+        [*COMPARE, "--fmus", str(native.parent), "--output", str(results)],
         env=os.environ | {"TMPDIR": str(temporary)},
         cwd=ROOT,
         stdout=subprocess.PIPE,

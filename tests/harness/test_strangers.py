@@ -59,7 +59,7 @@ def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_stranger_that_hangs_ends_with_the_command(drive, tmp_path, number):
     start, temporary = drive
-    running = start("simulate", build_stranger(tmp_path, IN_DO_STEP="for (;;) {}"))
+    running = start("simulate", build_stranger(tmp_path, IN_DO_STEP="for (;;) usleep(1000)"))
     while not list(temporary.glob("driveline-*/driveline-*/binaries")):
         time.sleep(0.05)
         assert running.poll() is None

@@ -7,7 +7,6 @@ import time
 import numpy as np
 import pytest
 
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.limits import Limits
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import kept_loaded, run
@@ -39,7 +38,7 @@ FAULTS = {
         r"did not return from fmi2DoStep at 0\.1 s within 0\.5 s",
     ),
     "hangs when instantiated": (
-        {"IN_INSTANTIATE": "for (;;) {}"},
+        {"IN_INSTANTIATE": "for (;;) usleep(1000)"},
         r"did not return from fmi2Instantiate within 0\.5 s",
     ),
     "has the status -1": ({"IN_DO_STEP": f"{LATER} return -1"}, r"answered fmi2DoStep at 0\.1 s with the status -1"),
@@ -71,17 +70,12 @@ def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault):
     assert list(unpacked.iterdir()) == []
 
 
-@pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
 @pytest.mark.parametrize("fault", ["exits in a step", "puts out NaN", "has the status -1", "aborts"])
 def test_the_steps_in_python_name_the_same(tmp_path, fault):
-    does, _ = FAULTS[fault]
+    does, message = FAULTS[fault]
     system = System({"car": build_stranger(tmp_path, **does)})
-    messages = []
-    for make in (CompiledSteps, interpreted):
-        with pytest.raises(SimulationError) as error, loaded(system, make_steps=make) as loop:
-            loop.run(0.3)
-        messages.append(str(error.value))
-    assert messages[0] == messages[1]
+    with pytest.raises(SimulationError, match=message), loaded(system, make_steps=interpreted) as loop:
+        loop.run(0.3)
 
 
 RUN = """
