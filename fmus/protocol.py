@@ -7,10 +7,9 @@ only one build can refuse is said where it is refused.
 
 from enum import IntFlag
 
-ANY_NUMBER, FROM_START_ON, UP_TO_STOP, NEAR_ITS_TIME = (
+ANY_NUMBER, FROM_START_ON, NEAR_ITS_TIME = (
     "any finite number",
     "the start time and later",
-    "the start time to the stop time",
     "the number of ticks up to its time",
 )
 

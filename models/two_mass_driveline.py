@@ -136,10 +136,7 @@ def output(x: State, u: Input, p: Parameters) -> Output:
 
 
 def event_indicators(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
-    """Both flanks of the gap; wheels at rest (the bristles turn round); the kinks of the tyre's rate.
-
-    Those of the brake, the limits of its torque and of the rate of its bristles, are left to the error control.
-    """
+    """Both flanks of the gap; wheels at rest (the bristles turn round); the kinks of the tyre's rate."""
     return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2, p.r * x.omega_2 / p.i - x.v, x.v)
 
 

@@ -273,12 +273,10 @@ def output(x: State, u: Input, p: Parameters) -> Output:
 
 
 def event_indicators(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
-    """The kinks that are located.
+    """Where the equations have kinks.
 
     The flanks of the gap, the penetrations at which the impact damping is full, wheels at rest (the
-    brake bristles turn round), wheels without slip (the rate of the tyre changes). The rarer
-    ones are left to the error control: the limits of the brake, the least load on the axle, teeth whose
-    damping would pull.
+    brake bristles turn round), wheels without slip (the rate of the tyre changes).
     """
     flank = p.phi_B / p.i
     return (

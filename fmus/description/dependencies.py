@@ -40,9 +40,13 @@ def _without_sources(value: Any) -> Any:
     return make(items)
 
 
+MOST_SWITCHES = 8
+"""Boolean parameters whose values are tried together; with more, the others count as unknown."""
+
+
 def _cases(block: Block) -> Iterator[dict[str, bool]]:
     """The values that the Boolean parameters can have; what one chooses and bars at the same time is no dependency."""
-    names = [v.name for v in variables(block.Parameters) if isinstance(v.declaration, Boolean)]
+    names = [v.name for v in variables(block.Parameters) if isinstance(v.declaration, Boolean)][:MOST_SWITCHES]
     for values in product((False, True), repeat=len(names)):
         yield dict(zip(names, values, strict=True))
 

@@ -16,6 +16,10 @@ DERIVED_UNITS = {
 }
 
 
+NOMINAL = {"N.m": 100.0, "rad/s": 100.0, "rad": 0.1, "m/s": 10.0, "m/s2": 1.0}
+"""How large quantities of a drive train are, motor side; for those that are not declared with a value of their own."""
+
+
 def base_exponents(unit: str) -> dict[str, int]:
     """Exponents of the SI base units, in the order of the schema: "N.m/rad" gives kg 1, m 2, s -2, rad -1.
 

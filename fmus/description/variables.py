@@ -5,8 +5,7 @@ from typing import Any, NamedTuple
 from models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
 from models.block.operators import LARGEST
 
-NOMINAL = {"N.m": 100.0, "rad/s": 100.0, "rad": 0.1, "m/s": 10.0, "m/s2": 1.0}
-"""How large quantities of a drive train are, motor side; for those that are not declared with a value of their own."""
+from .units import NOMINAL
 
 
 class Variable(NamedTuple):

@@ -8,17 +8,7 @@ from models.block.runner import runner
 from models.block.types import Block, SampledBlock
 
 from ..description.variables import Variable, interface
-from ..protocol import (
-    ANY_NUMBER,
-    BAD_STATE,
-    DAMAGED_STATE,
-    FROM_START_ON,
-    MOST_TICKS,
-    NEAR_ITS_TIME,
-    TIME_TOLERANCE,
-    UP_TO_STOP,
-    Mode,
-)
+from ..protocol import ANY_NUMBER, BAD_STATE, DAMAGED_STATE, FROM_START_ON, MOST_TICKS, NEAR_ITS_TIME, Mode
 from .refusal import Refused
 
 TYPES = {"Real": (float, int), "Integer": (int,), "Boolean": (bool,)}
@@ -72,8 +62,6 @@ def _check_times(content: Content) -> None:
             raise Refused(BAD_STATE, name=name, value=value, allowed=ANY_NUMBER)
     if not content.stop_time >= content.start_time:
         raise Refused(BAD_STATE, name="stop_time", value=content.stop_time, allowed=FROM_START_ON)
-    if not content.start_time - TIME_TOLERANCE <= content.time <= content.stop_time + TIME_TOLERANCE:
-        raise Refused(BAD_STATE, name="time", value=content.time, allowed=UP_TO_STOP)
 
 
 def _check_value(block: Block, variable: Variable, value: Any) -> None:

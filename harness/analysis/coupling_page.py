@@ -22,8 +22,8 @@ Over a step from t to t + h,
 - **propagated** (the default) gives every FMU the values of t. A continuous signal then goes on, if the FMUs can. If
   the FMU that puts it out has been stepped before, it interpolates ({interpolated}), along the straight line nearest
   to the cubic through its values and derivatives at t and t + h, or along the chord where derivatives are not told.
-  Else it extrapolates along its derivative ({extrapolated}). If the FMUs do not claim to (Python builds,
-  and many from elsewhere), it is held.
+  Else it extrapolates along its derivative ({extrapolated}). If the FMUs cannot (Python builds, FMUs from
+  elsewhere), it is held.
   At t + h outputs go on to inputs along the declared dependencies until every output is that of t + h with the inputs
   of t + h: `motor.omega_1_meas` follows from `plant.omega_1`, so the motor is asked again after the plant. Declared
   dependencies that form an algebraic loop are refused before the run;

@@ -25,8 +25,8 @@ def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> 
         build = _refreshed(plant, build, **others)
     build = build or chosen_build(plant, folder, **others)
     system = loop(plant, folder, build, **others)
-    missing = [path for path in system.instances.values() if not path.is_file()]
-    if missing and missing[0].is_relative_to(folder):
+    missing = [path for name, path in system.instances.items() if name in system.own and not path.is_file()]
+    if missing:
         where = "" if folder == BUILD else f" --output {quote(str(folder))}"
         only = f" --build {NATIVE}" if build == NATIVE else ""
         raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{only}{where}` makes it")
@@ -38,8 +38,8 @@ def _refreshed(plant: str, build: str | None, **others: Any) -> str | None:
     """Builds what is missing or stale in BUILD for a loop; the build that runs, None for that of `chosen_build`."""
     from fmus.builds import NotPossible, refreshed
 
-    files = loop(plant, BUILD, build or NATIVE, **others).instances.values()
-    names = [path.stem for path in files if path.is_relative_to(BUILD)]
+    system = loop(plant, BUILD, build or NATIVE, **others)
+    names = [path.stem for name, path in system.instances.items() if name in system.own]
     try:
         made = refreshed(names, BUILD, build or NATIVE)
     except NotPossible as reason:

@@ -4,10 +4,11 @@ import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shlex import quote
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..cosimulation.system import BUILD, NATIVE, PLANTS
+from ..cosimulation.system import BUILD, NATIVE, PLACES, PLANTS
 from ..errors import DrivelineError
 from ..plain import quoted
 from .built import built
@@ -95,9 +96,17 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _arguments(args: argparse.Namespace) -> str:
-    """What the page says of the command line that made it."""
-    plants = "".join(f" --plant {Path(plant).stem}" for plant in args.plant or ())
-    return f" --cases {args.cases} --seed {args.seed}{plants}"
+    """The options that make a case what it is, as they are given."""
+    given = [
+        ("seed", args.seed),
+        *(("plant", plant) for plant in args.plant or ()),
+        *((place, block) for place, block in blocks(args).items() if block != PLACES[place][0]),
+        *(("set", f"{name}={value!r}") for name, value in args.assignments),
+        *(("map", text) for text in args.map),
+        *((name, getattr(args, name)) for name in ("vehicle", "parameters", "build")),
+        ("fmus", None if args.fmus == BUILD else args.fmus),
+    ]
+    return "".join(f" --{name} {quote(str(value))}" for name, value in given if value is not None)
 
 
 @contextmanager

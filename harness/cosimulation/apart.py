@@ -59,6 +59,7 @@ class Apart:
             env=os.environ | dict.fromkeys(("TMPDIR", "TEMP", "TMP"), self._files.name),
             start_new_session=True,
         )
+        self._was_killed = False
         self._answers: Queue[tuple[Any, Exception | None] | None] = Queue()
         Thread(target=self._listen, daemon=True).start()
 
@@ -126,8 +127,10 @@ class Apart:
 
     def _kill(self, patience: float = 0.0) -> None:
         """Ends it, unless it ends by itself in so many seconds, and all that it has started."""
-        with suppress(subprocess.TimeoutExpired):
+        try:
             self._process.wait(patience)
+        except subprocess.TimeoutExpired:
+            self._was_killed = True
         if sys.platform == "win32":
             self._process.kill()
         else:
@@ -136,19 +139,29 @@ class Apart:
         self._process.wait()
 
     def _ended(self) -> str:
+        if self._was_killed:
+            return self._call("gave no more answers and was ended, in")
         code = self._process.returncode
         if code >= 0:
             return self._call(f"ended the process that it ran in, with exit code {code}, in")
-        return self._call(f"crashed ({signal.Signals(-code).name}) in")
+        return self._call(f"crashed ({_name(-code)}) in")
 
-    def _at(self) -> tuple[int, int, float]:
+    def _at(self) -> tuple[int, int, float, int]:
         at = Whereabouts.from_buffer_copy(self._memory)
-        return at.instance, at.function, at.time
+        return at.instance, at.function, at.time, at.calls
 
     def _call(self, what: str) -> str:
         """Which FMU did that in which call."""
-        instance, function, time = self._at()
+        instance, function, time, _ = self._at()
         if not function:
             return f"{', '.join(dict.fromkeys(self._names))} {what} no call of FMI"
         when = f" at {time:g} s" if time >= 0.0 else ""
         return f"{self._names[instance]} {what} {FUNCTIONS[function - 1]}{when}"
+
+
+def _name(number: int) -> str:
+    """Of a signal; those of real time have none."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

@@ -22,6 +22,7 @@ struct whereabouts {
     int32_t instance;
     int32_t function;
     double time;
+    int64_t calls;
 };
 
 EXPORT struct whereabouts *whereabouts;
@@ -148,6 +149,7 @@ static int32_t made(const Call *call, const unsigned char *row)
     whereabouts->instance = call->instance;
     whereabouts->function = call->function;
     memcpy(&whereabouts->time, row, sizeof whereabouts->time);
+    whereabouts->calls++;
     if (call->do_step) {
         double time;
         memcpy(&time, row, sizeof time);

@@ -1,6 +1,6 @@
 """Which FMI call is being made, noted where another process can read it when this one has ended or hangs."""
 
-from ctypes import Structure, c_double, c_int32
+from ctypes import Structure, c_double, c_int32, c_int64
 from mmap import mmap
 
 FUNCTIONS = (
@@ -38,9 +38,10 @@ class Whereabouts(Structure):
         instance: its number.
         function: the number of the function; 0: of none.
         time: of the instant at work, in s.
+        calls: how many were begun, so that one is told from the next one to the same function.
     """
 
-    _fields_ = (("instance", c_int32), ("function", c_int32), ("time", c_double))
+    _fields_ = (("instance", c_int32), ("function", c_int32), ("time", c_double), ("calls", c_int64))
 
 
 _current = Whereabouts()
@@ -65,3 +66,4 @@ def rest() -> None:
 def note(instance: int, function: str, time: float = AT_START) -> None:
     """Notes a call that is about to be made."""
     _current.instance, _current.function, _current.time = instance, NUMBERS[function], time
+    _current.calls += 1

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.lib.recfunctions import repack_fields
 
 from ..cosimulation.runs import run
-from ..cosimulation.system import Connection, System, loop
+from ..cosimulation.system import Connection, Port, System, loop
 from ..cosimulation.wiring import Fit, fit
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines
@@ -28,6 +29,17 @@ PASSES = {
     "counter": "counter_sent",
 }
 """What the controller gets from SignalFaults, and what that gets in its place."""
+
+JUDGED = (
+    Port("controller.status", None),
+    Port("controller.T_damp", "N.m"),
+    Port("motor.omega_1_meas", "rad/s"),
+    Port("can.valid", None),
+)
+"""What judges and figures read beside what every loop puts out."""
+
+KEPT = ["controller.status", "controller.T_damp", "plant.T_gear"]
+"""What they read of the runs without faults, of which hundreds are kept."""
 
 SLIPPERY = {"mu": ICE, "c_slip": 1e4}
 """Parameters of a plant that make ice, the first that it has. Tyres without a limit of friction get slip instead."""
@@ -95,7 +107,7 @@ class Bench:
         if on_ice:
             return self._run(*key[:4], control=control)
         if key not in self._made:
-            self._made[key] = self._run(*key[:4], control=control)
+            self._made[key] = repack_fields(self._run(*key[:4], control=control)[KEPT])
         return self._made[key]
 
     def _run(
@@ -151,6 +163,7 @@ def with_faults(system: System, injector: Path) -> System:
         system,
         instances={**instances, INSTANCE: injector, "controller": controller, **others},
         connections=tuple(connections),
+        outputs=(*system.outputs, *JUDGED),
         own=system.own | {INSTANCE},
         any_value=frozenset({INSTANCE}),
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..many import run_many
-from .bench import Bench, Settings
+from .bench import Bench, Limits, Runs, Settings
 from .cases import Case, case
 from .judges import JUDGES, Evidence
 
@@ -69,10 +69,10 @@ def campaign(
     """
     bench = Bench(injector, settings)
     cases = [case(number, seed, tuple(settings)) for number in numbers]
-    return run_many(lambda each: judged(each, bench), cases, workers, "faults")
+    return run_many(lambda each: judged(each, bench.runs(each), bench.limits(each.plant)), cases, workers, "faults")
 
 
-def judged(each: Case, bench: Bench) -> Outcome:
-    """Runs a case."""
-    seen = Evidence(bench.runs(each), each.faults, bench.limits(each.plant))
+def judged(each: Case, runs: Runs, limits: Limits) -> Outcome:
+    """What the judges say of the runs of a case."""
+    seen = Evidence(runs, each.faults, limits)
     return Outcome(each, {judge.name: judge.measure(seen) for judge in JUDGES})

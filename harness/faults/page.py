@@ -11,8 +11,9 @@ from .judges import JUDGES, Judge
 PAGE = """\
 # The controller under faults
 
-Made by `driveline faults{arguments}`; do not edit. `driveline faults --case NUMBER` runs one of the cases again and
-draws it.
+Made by `driveline faults --cases {cases}{arguments}`; do not edit. This runs one of the cases again and draws it:
+
+    driveline faults --case NUMBER{arguments}
 
 {cases} runs of {duration:g} s: {clean} are clean, {failed} are not. {singles} have one fault, {pairs} a pair.
 The faults come between the sensors and the controller, from an FMU of its own (`models/signal_faults.py`); the same
@@ -53,7 +54,13 @@ Cells count the runs that are not clean.
 
 ## What is not clean
 
+Single faults:
+
 {classes}
+
+Pairs of faults:
+
+{pair_classes}
 """
 
 
@@ -61,7 +68,7 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
     """The page as Markdown.
 
     Args:
-        arguments: of the command.
+        arguments: of the command, beside how many cases.
     """
     singles = [outcome for outcome in outcomes if len(outcome.kinds) == 1]
     pairs = [outcome for outcome in outcomes if len(outcome.kinds) == 2]
@@ -83,7 +90,8 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
         judges=markdown_table(["judge", "what it measures", "unit", "limit"], map(_judge, JUDGES), labels=3),
         matrix=_matrix(singles),
         pair_matrix=_matrix(pairs),
-        classes=_classes(outcomes),
+        classes=_classes(singles),
+        pair_classes=_classes(pairs),
     )
 
 
@@ -106,12 +114,12 @@ def _matrix(outcomes: Sequence[Outcome]) -> str:
 
 
 def _classes(outcomes: Sequence[Outcome]) -> str:
-    """Single faults that are not clean: by kind, judge, situation and plant, with the worst case."""
+    """What is not clean: by kinds, judge, situation and plant, with the worst case."""
     found: dict[tuple[str, ...], list[Outcome]] = {}
     for outcome in outcomes:
-        if len(outcome.kinds) == 1:
-            for judge in outcome.failed:
-                found.setdefault((outcome.kinds[0], judge, outcome.case.situation, outcome.plant), []).append(outcome)
+        for judge in outcome.failed:
+            key = " + ".join(sorted(outcome.kinds)), judge, outcome.case.situation, outcome.plant
+            found.setdefault(key, []).append(outcome)
     if not found:
         return "Nothing."
     units = {judge.name: judge.unit for judge in JUDGES}

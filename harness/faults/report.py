@@ -49,7 +49,7 @@ def write(outcomes: Sequence[Outcome], arguments: str, folder: Path) -> list[Pat
     """Writes the cases as CSV, the page, and the matrices as figures; returns the files.
 
     Args:
-        arguments: of the command, for the page.
+        arguments: of the command beside how many cases, for the page.
     """
     cases, text, figures = folder / "faults.csv", folder / "faults.md", folder / "figures"
     write_metrics([outcome.record for outcome in outcomes], cases)
@@ -63,7 +63,8 @@ def write_case(
 ) -> tuple[Outcome, list[Path]]:
     """Runs one case again, writes its signals and draws them; arguments as of `harness.faults.campaign.campaign`."""
     bench, each = Bench(injector, settings), case(number, seed, tuple(settings))
-    outcome, runs = judged(each, bench), bench.runs(each)
+    runs = bench.runs(each)
+    outcome = judged(each, runs, bench.limits(each.plant))
     stem = folder / f"case_{number}"
     files = [stem.with_suffix(".csv")]
     write_csv(runs.faulty, files[0])

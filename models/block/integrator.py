@@ -3,9 +3,8 @@
 Between the zeros of its event indicators a block is smooth and the method has order 8. When an
 indicator changes sign within a step, the step is shortened so that it ends just behind the zero; an
 excursion that leaves and comes back within one step is found from the slopes at both ends. Where the
-error of a step is more than is tolerated, as at a kink without an indicator, the step is divided; where a
-block is so stiff that very many would be needed, the stretch is left to an implicit method. Nothing is
-kept from one stretch to the next.
+error of a step is more than is tolerated, the step is divided; where a block is so stiff that very many
+would be needed, the stretch is left to an implicit method. Nothing is kept from one stretch to the next.
 """
 
 import math

@@ -4,8 +4,7 @@ x is the state, u the input, p the parameters; all are named tuples of floats (b
 whole numbers int; a field of a state may itself be a record or a tuple of fixed length).
 
 Between the zeros of its event indicators z_k(x, u, p) the equations of a *continuous* block are
-smooth; at them they have kinks (no jumps). A kink without an indicator is left to the error control of the
-integration, which divides the step there. A *sampled* block computes
+smooth; at them they have kinks (no jumps). A *sampled* block computes
 
     x(k+1) = update(x(k), u(k), p)    at the instants k T_s, k = 0, 1, 2, ...
 

@@ -22,8 +22,6 @@ static Status check_times(const Instance *instance, const Memory *memory)
         return refuse_number(instance, "time", memory->time, ANY_NUMBER);
     if (!(memory->stop_time >= memory->start_time))
         return refuse_number(instance, "stop_time", memory->stop_time, FROM_START_ON);
-    if (memory->time < memory->start_time - TIME_TOLERANCE || memory->time > memory->stop_time + TIME_TOLERANCE)
-        return refuse_number(instance, "time", memory->time, UP_TO_STOP);
     return OK;
 }
 
@@ -32,7 +30,7 @@ static int is_whole(double value)
     return value >= INT_MIN && value <= INT_MAX && value == floor(value);
 }
 
-/* Inputs and parameters are as they can be set. */
+/* Inputs and parameters as they can be set, outputs that are numbers if they are known. */
 static Status check_values(const Instance *instance, Memory *memory)
 {
     for (unsigned k = 0; k < variable_count; k++) {
@@ -41,11 +39,16 @@ static Status check_values(const Instance *instance, Memory *memory)
         const int whole = is_whole(value);
         const int bounded = variable->causality == PARAMETER || (variable->causality == INPUT && !copes_with_bad_input);
         char text[NUMBER_LENGTH];
-        if (bounded && !(value >= variable->minimum && value <= variable->maximum))
+        if (variable->causality == OUTPUT && !memory->outputs_known)
+            continue;
+        if (bounded ? !(value >= variable->minimum && value <= variable->maximum)
+                    : variable->causality == OUTPUT && !(fabs(value) <= DBL_MAX))
             return refuse(
                 instance,
                 BAD_STATE(
-                    variable->name, write_value(text, whole ? variable->type : REAL, value), variable->allowed));
+                    variable->name,
+                    write_value(text, whole ? variable->type : REAL, value),
+                    bounded ? variable->allowed : ANY_NUMBER));
         if (variable->type != REAL && !whole)
             return refuse(instance, DAMAGED_STATE);
     }

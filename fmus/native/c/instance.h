@@ -26,7 +26,7 @@ typedef struct {
 
 /* All that a saved state holds; whole multiples of 8 bytes, so that it has no gaps. */
 typedef struct {
-    Values values;     /* the outputs in it are those of the present when outputs_known; not in the bytes of a state */
+    Values values;     /* the outputs in it are those of the present when outputs_known */
     Input du;          /* rates of change of the inputs during the next step */
     State x;           /* from the end of initialization mode on */
     State coming;      /* of a sampled block: what its last tick computed */

@@ -48,13 +48,6 @@ size_t serialized_size(void)
     return sizeof(Head) + sizeof(Memory);
 }
 
-/* Outputs are no part of a state as bytes: they follow from the rest, and nobody can make them other than that. */
-static void forget_outputs(Memory *memory)
-{
-    memset(&memory->values.y, 0, sizeof memory->values.y);
-    memory->outputs_known = 0;
-}
-
 Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size)
 {
     const size_t needed = serialized_size();
@@ -62,13 +55,10 @@ Status serialize_state(const Instance *instance, const void *state, void *bytes,
         return refuse(
             instance, "size = %lu is refused; a state takes %lu bytes", (unsigned long)size, (unsigned long)needed);
     Head head;
-    Memory memory;
-    memcpy(&memory, state, sizeof memory);
-    forget_outputs(&memory);
     memset(&head, 0, sizeof head);
     strncpy(head.guid, model_guid, sizeof head.guid - 1);
     memcpy(bytes, &head, sizeof head);
-    memcpy((char *)bytes + sizeof head, &memory, sizeof memory);
+    memcpy((char *)bytes + sizeof head, state, sizeof(Memory));
     head.checksum = checksum_of(bytes, needed);
     memcpy(bytes, &head.checksum, sizeof head.checksum);
     return OK;
@@ -89,6 +79,5 @@ Status deserialize_state(const Instance *instance, const void *bytes, size_t siz
     if (size != serialized_size())
         return refuse(instance, DAMAGED_STATE);
     memcpy(&memory, (const char *)bytes + sizeof head, sizeof memory);
-    forget_outputs(&memory);
     return check_content(instance, &memory) == OK ? keep(instance, &memory, state) : ERROR;
 }

@@ -62,6 +62,12 @@ def test_those_of_the_project_are_built_again_and_it_is_said_once(
     assert origin.is_stale(stale / "ValidationVehicle.fmu"), "this run does not need it"
 
 
+def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(built, "BUILD", both_built)
+    plant = both_built / "mine.fmu"
+    assert built.built(str(plant), both_built, "python") == "python"
+
+
 def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
     stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

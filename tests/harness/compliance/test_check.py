@@ -184,6 +184,14 @@ def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, un
     assert list(unpacked.iterdir()) == []
 
 
+def test_many_short_calls_are_not_one_that_hangs(tmp_path):
+    def change(xml):
+        return xml.replace('stopTime="0.2"', 'stopTime="0.02"')
+
+    path = tampered(build_stranger(tmp_path, IN_GET_REAL="usleep(30000)"), tmp_path / "slow.fmu", change)
+    assert "runs" not in broken(path, quick=True, limits=Limits(call=0.3))
+
+
 def test_quick_makes_the_first_steps_alone(tmp_path):
     later = build_stranger(tmp_path, IN_DO_STEP="if (time > 0.15) exit(0)", IN_RESET="exit(0)")
     assert not {"runs", "reset"} & broken(later, quick=True).keys()

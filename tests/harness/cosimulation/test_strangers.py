@@ -7,11 +7,16 @@ import time
 import numpy as np
 import pytest
 
+from harness.cosimulation import apart
+from harness.cosimulation.apart import Apart
+from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.limits import Limits
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import kept_loaded, run
 from harness.cosimulation.steps import interpreted
 from harness.cosimulation.system import System
+from harness.cosimulation.system import loop as looped
+from harness.cosimulation.whereabouts import current, note
 from harness.errors import SimulationError
 from tests import ROOT
 from tests.foreign.stranger import build_stranger
@@ -33,6 +38,10 @@ FAULTS = {
     "aborts": ({"IN_GET_REAL": "if (now > 0.0995) abort()"}, r"crashed \(SIGABRT\) in fmi2GetReal at 0\.1 s"),
     "crashes when instantiated": ({"IN_INSTANTIATE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2Instantiate"),
     "crashes when freed": ({"IN_FREE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2FreeInstance"),
+    "ends by a signal of real time": (
+        {"IN_DO_STEP": f"{LATER} raise(SIGRTMIN + 6)"},
+        r"crashed \(signal 4\d\) in fmi2DoStep at 0\.1 s",
+    ),
     "hangs in a step": (
         {"IN_DO_STEP": f"{LATER} for (;;) usleep(1000)"},
         r"did not return from fmi2DoStep at 0\.1 s within 0\.5 s",
@@ -76,6 +85,43 @@ def test_the_steps_in_python_name_the_same(tmp_path, fault):
     system = System({"car": build_stranger(tmp_path, **does)})
     with pytest.raises(SimulationError, match=message), loaded(system, make_steps=interpreted) as loop:
         loop.run(0.3)
+
+
+@pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
+def test_every_call_is_counted_in_both_languages(native):
+    counted = []
+    for make in (CompiledSteps, interpreted):
+        with loaded(looped(folder=native.parent, build="native"), make_steps=make) as loop:
+            before = current().calls
+            loop.run(0.1)
+            counted.append(current().calls - before)
+    assert counted[0] == counted[1] > 100 * 4
+
+
+def test_a_stranger_that_cuts_off_its_process_has_not_crashed(tmp_path, monkeypatch):
+    monkeypatch.setattr(apart, "PATIENCE", 0.3)
+    does = f"{LATER} {{ for (int k = 3; k < 20; k++) close(k); for (;;) usleep(1000); }}"
+    with pytest.raises(SimulationError, match=r"gave no more answers and was ended, in fmi2DoStep at 0\.1 s"):
+        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
+
+
+class Slow:
+    """What takes 0.5 s to be pickled."""
+
+    def __reduce__(self):
+        time.sleep(0.5)
+        return list, ()
+
+
+def slow_after_a_call():
+    note(0, "fmi2Terminate")
+    return Slow()
+
+
+def test_writing_a_large_answer_is_no_call_that_hangs():
+    process = Apart(["stranger.fmu"], 0.2)
+    assert process.ask(slow_after_a_call) == []
+    process.close()
 
 
 RUN = """

@@ -7,12 +7,18 @@ import pytest
 
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import loop
+from harness.cosimulation.wiring import fit
+from harness.errors import WiringError
+from harness.faults import catalogue, judges
 from harness.faults.bench import Bench, with_faults
 from harness.faults.campaign import campaign
 from harness.faults.cases import SITUATIONS, Case, Fault, case
 from harness.faults.catalogue import KINDS, LOCK, SPIN
 from harness.faults.page import page
 from harness.simulate import signals, start
+from models import signal_faults
+from models.controller import supervision
+from tests.foreign import tampered
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
@@ -30,6 +36,16 @@ def test_single_faults_go_through_all_kinds_and_situations_on_both_plants():
     assert len(cells) == everything / 2
 
 
+def test_faults_and_states_are_numbered_as_in_the_models():
+    """The harness knows no models, so it declares them."""
+    signals_ = "MOTOR_SPEED", "MOTOR_TORQUE", "WHEEL_SPEED"
+    faults = "LATE", "FROZEN", "LOST", "GAIN", "OFFSET", "NOISE", "SPIKES", "NO_NUMBER", "FLAPPING", "JUMPING"
+    for name in signals_ + faults:
+        assert getattr(catalogue, name) == getattr(signal_faults, name)
+    for name in ("WITH_WHEEL_SPEED", "WITHOUT_WHEEL_SPEED", "FALLBACK"):
+        assert getattr(judges, name) == getattr(supervision, name)
+
+
 def test_half_of_the_cases_are_pairs_of_different_kinds():
     pairs = [each for n in range(1, 201) if len((each := case(n, 1, PLANTS)).faults) == 2]
     assert len(pairs) == 100
@@ -45,6 +61,25 @@ def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant)
         for system in (plain, with_faults(plain, injector))
     )
     assert all(np.array_equal(direct[name], through[name]) for name in direct.dtype.names or ())
+
+
+@pytest.mark.parametrize("name", ["status", "T_damp"])
+def test_a_controller_without_what_the_judges_read_is_named(injector, settings, tmp_path, name):
+    def change(xml):
+        return xml.replace(f'name="{name}"', f'name="my_{name}"')
+
+    folder = settings["TwoMassDriveline"]["folder"]
+    mine = tampered(folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
+    with pytest.raises(WiringError, match=rf"controller\.{name}: mine\.fmu has no output {name}"):
+        fit(with_faults(loop(folder=folder, build="native", controller=mine), injector))
+
+
+def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):
+    fault = Fault("motor speed NaN", 1.0, 1.5, 1.0, 1.0)
+    runs = Bench(injector, settings).runs(Case(1, "TwoMassDriveline", "coasting", (fault,), 1))
+    for run_ in (runs.healthy, runs.undamped):
+        assert run_.nbytes < 24 * len(runs.faulty)
+        assert run_.base is None
 
 
 def test_a_campaign_does_not_depend_on_the_number_of_processes(injector, settings):

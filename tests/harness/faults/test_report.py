@@ -2,12 +2,19 @@
 
 import csv
 import json
+import shlex
+from argparse import ArgumentParser
+from dataclasses import replace
 
 import pytest
 
 from harness.cli import main
+from harness.commands import faults
+from harness.cosimulation.runs import run
+from harness.faults import bench
 from harness.faults.campaign import campaign
 from harness.faults.catalogue import KINDS
+from harness.faults.page import page
 from harness.faults.report import write, write_case
 
 
@@ -35,8 +42,30 @@ def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_pa
         assert (tmp_path / "figures" / f"{name}.png").is_file()
 
 
-def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path):
+def test_pairs_that_are_not_clean_are_named_too(outcomes):
+    bad = [replace(outcome, measured=dict.fromkeys(outcome.measured, 1e6)) for outcome in outcomes]
+    singles, pairs = page(bad, "").partition("## What is not clean")[2].split("Pairs of faults:")
+    for outcome in bad:
+        assert f"| {' + '.join(sorted(outcome.kinds))} |" in (pairs if len(outcome.kinds) == 2 else singles)
+    assert page([], "").count("Nothing.") == 2
+
+
+def test_the_page_tells_how_a_case_is_run_again(outcomes):
+    options = ["--plant", "my car.fmu", "--set", "controller.k_d=0.1", "--seed", "7", "--controller", "mine.fmu"]
+    parser = ArgumentParser()
+    faults.add_arguments(parser)
+    first = parser.parse_args(options)
+    text = page(outcomes, faults._arguments(first))
+    again = next(line for line in text.splitlines() if line.startswith("    driveline faults --case NUMBER"))
+    words = shlex.split(again)[2:]
+    assert vars(parser.parse_args(["--case", "3", *words[2:]])) == vars(first) | {"case": 3}
+
+
+def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path, monkeypatch):
+    runs = []
+    monkeypatch.setattr(bench, "run", lambda *given, **named: runs.append(1) or run(*given, **named))
     again, files = write_case(2, 1, injector, settings, tmp_path)
+    assert len(runs) == 3
     assert again == outcomes[1]
     assert [file.name for file in files] == ["case_2.csv", "case_2.png", "case_2.pdf"]
 
