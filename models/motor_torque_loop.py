@@ -12,14 +12,14 @@ from .block.declaration import Integer, Real
 from .block.noise import normals
 from .block.operators import clip, floor, maximum, where
 from .block.types import ContinuousBlock
-from .vehicle import CAR, MotorTorque
+from .vehicle import CAR, MotorLag, MotorTorque
 
 SQRT_2 = 2.0**0.5
 NOISE = 0.0
 
 
 class Parameters(NamedTuple):
-    tau: Annotated[float, Real("s", "time constant of the torque loop", 1e-3, 0.1)] = 0.003
+    tau: MotorLag = CAR.tau
     T_max: MotorTorque = CAR.T_max
     g_T: Annotated[float, Real("1", "gain of the torque estimate", 0.5, 2.0)] = 1.0
     o_T: Annotated[float, Real("N.m", "offset of the torque estimate", -50.0, 50.0)] = 0.0

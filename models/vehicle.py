@@ -12,6 +12,7 @@ WheelInertia = Annotated[float, Real("kg.m2", "inertia from the gear to the whee
 Stiffness = Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)]
 HalfGap = Annotated[float, Real("rad", "half the backlash, motor side", 0.0, 3.0)]
 MotorTorque = Annotated[float, Real("N.m", "largest torque of the motor, either sign", 1.0, 2000.0)]
+MotorLag = Annotated[float, Real("s", "time constant of the torque loop", 1e-3, 0.1)]
 GearRatio = Annotated[float, Real("1", "gear ratio, motor speed over wheel speed", 1.0, 30.0)]
 Mass = Annotated[float, Real("kg", "mass of the vehicle", 300.0, 10000.0)]
 WheelRadius = Annotated[float, Real("m", "radius of the driven wheels", 0.1, 1.0)]
@@ -32,6 +33,7 @@ class Vehicle(NamedTuple):
     C: Stiffness = 117.4
     phi_B: HalfGap = 0.157
     T_max: MotorTorque = 180.0
+    tau: MotorLag = 0.003
     i: GearRatio = 9.0
     m: Mass = 1450.0
     r: WheelRadius = 0.29

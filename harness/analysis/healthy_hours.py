@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.signal import lfilter
 
-from models.controller import swings, wheel_monitor
+from models.controller import swings, torque_loop, wheel_monitor
 from models.controller.signal_monitor import STILL
 from models.controller.supervision import FALLBACK, T_S
 from models.damping_controller import BLOCK
@@ -60,6 +60,7 @@ class Found(NamedTuple):
     jump: float
     contradiction: float
     half_swings: float
+    torque: float
     frozen: float
 
 
@@ -119,6 +120,7 @@ def found(road: Road, seed: int) -> Found:
         jump=float(abs(np.diff(omega_1)).max()) / P.e_jump,
         contradiction=longest(contradicted(rows)) * T_S / P.t_apart,
         half_swings=half_swings(rows) / swings.MOST,
+        torque=longest(disobeyed(rows)) * T_S / P.t_bad,
         frozen=longest((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > STILL)) * T_S / P.t_frozen,
     )
 
@@ -148,6 +150,16 @@ def half_swings(rows: np.ndarray) -> float:
     return most
 
 
+def disobeyed(rows: np.ndarray) -> np.ndarray:
+    """Whether the torque estimate is far from what the motor should have (torque_loop)."""
+    T_ref, T_mot_est = rows["controller.T_ref"].tolist(), rows["motor.T_mot_est"].tolist()
+    x, far = torque_loop.start(T_mot_est[0]), []
+    for demand, estimate in zip(T_ref, T_mot_est, strict=True):
+        far.append(not torque_loop.agrees(x, estimate, P))
+        x = torque_loop.update(x, demand, T_S, P)
+    return np.array(far)
+
+
 def worst(drives: Iterable[Found]) -> Found:
     """The sum of the samples, the largest of the residuals."""
     columns = list(zip(*drives, strict=True))
@@ -160,7 +172,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--workers", type=int, help="processes (default: one a core)")
     options = parser.parse_args(arguments)
     drives = max(1, round(options.hours * 3600.0 / MINUTE / len(ROADS)))
-    table = Table("road", "hours", "samples", "in fallback", "jump", "contradiction", "half swings", "frozen")
+    table = Table("road", "hours", "samples", "in fallback", "jump", "contradiction", "half swings", "torque", "frozen")
     for name, road in ROADS.items():
         of = worst(run_many(partial(found, road), range(1, drives + 1), options.workers, label=name))
         hours = of.samples * T_S / 3600.0

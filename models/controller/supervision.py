@@ -14,7 +14,7 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Boolean, Enumeration, Integer, Real, merged
 from ..block.operators import branch, clip, is_finite, logical_and, logical_not, logical_or, where
 from ..block.types import SampledBlock
-from ..vehicle import CAR
+from ..vehicle import CAR, MotorLag
 from . import rest, swings, trust
 from . import signal_monitor as monitor
 from . import wheel_monitor as wheels
@@ -35,6 +35,7 @@ class Parameters(NamedTuple):
     """Of the supervision, for every controller."""
 
     T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
+    tau: MotorLag = CAR.tau
     T_take_max: Annotated[
         float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0)
     ] = 100.0
@@ -45,7 +46,7 @@ class Parameters(NamedTuple):
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1
     t_proof: Annotated[float, Real("s", "good motor signals for so long end the fallback", 0.01, 1.0)] = 0.15
-    t_frozen: Annotated[float, Real("s", "a speed or torque unchanged for so long is frozen", 0.01, 10.0)] = 0.1
+    t_frozen: Annotated[float, Real("s", "a motor speed unchanged for so long is frozen", 0.01, 10.0)] = 0.1
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
     T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
@@ -179,7 +180,7 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
 
     def measured(x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState]:
         """The states of the estimator and of the monitors with the signals of this sample."""
-        T_mot = monitor.torque(u.T_mot_est, x.monitor.T_mot, p)
+        T_mot = monitor.torque(u.T_mot_est, x.monitor.loop, p)
         e = estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
         increment = estimator.motion(e, p).omega_1 - estimator.motion(x.estimator, p).omega_1
         signals = monitor.update(x.monitor, u, increment, x.T_ref, T_S, p)

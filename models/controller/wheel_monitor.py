@@ -78,7 +78,7 @@ def message(u: Any) -> Any:
 
 def direction_of(omega_1: Any, T_mot: Any, p: Any) -> Any:
     """Of a car whose motor turns with omega_1 (rad/s) under the torque T_mot (N.m)."""
-    return where(logical_and(omega_1 < 0.0, T_mot < PUSH * p.T_max), -1.0, 1.0)
+    return where(logical_and(omega_1 < -p.omega_still, T_mot < PUSH * p.T_max), -1.0, 1.0)
 
 
 def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_s: Any, p: Any) -> WheelState:

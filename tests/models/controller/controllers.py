@@ -50,6 +50,15 @@ def run(block: SampledBlock, inputs: Iterable[Input], **parameters: float) -> li
     return states
 
 
+def run_with_motor(block: SampledBlock, inputs: Iterable[Input], **parameters: float) -> list[State]:
+    """As `run`, but the motor has the torque that is demanded of it."""
+    inputs, p = list(inputs), block.Parameters(**parameters)
+    states = [block.start(inputs[0], p)]
+    for u in inputs:
+        states.append(block.update(states[-1], u._replace(T_mot_est=states[-1].monitor.loop.T_mot), p))
+    return states
+
+
 def driven(seconds: float, **changes: Any) -> list[Input]:
     """A vehicle that speeds up evenly, a message every 20 ms; the motor signals are never the same twice."""
     inputs, oldest = [], OURS.Parameters().T_age

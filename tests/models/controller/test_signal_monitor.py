@@ -6,8 +6,10 @@ from collections.abc import Iterable
 import pytest
 
 from models.controller import signal_monitor as monitor
+from models.controller import torque_loop
 from models.controller.signal_monitor import MonitorState
 from models.controller.supervision import Input, Parameters
+from models.controller.torque_loop import LoopState
 
 P = Parameters(T_max=100.0, omega_max=500.0, e_jump=40.0, t_bad=1.0, t_frozen=1.0)
 T_S = 0.25
@@ -44,10 +46,11 @@ def changing(samples: int, **signals: float) -> list[Input]:
 def test_a_signal_that_is_no_number_is_bridged_by_what_is_expected() -> None:
     for signal in NO_NUMBERS:
         assert monitor.speed(signal, 7.0, P) == 7.0
-        assert monitor.torque(signal, 7.0, P) == 7.0
+        assert monitor.torque(signal, LoopState(7.0, 0.0), P) == 7.0
         x = after([U._replace(omega_1_meas=signal)], increment=2.0)
         assert (x.bad, x.omega_1) == (T_S, 152.0)
-        assert after([U._replace(T_mot_est=signal)]).bad == T_S
+        x = after([U._replace(T_mot_est=signal)], last(150.0)._replace(loop=LoopState(48.0, 0.0)))
+        assert (x.bad, x.T_mot) == (T_S, 48.0)
 
 
 @each_side
@@ -68,10 +71,28 @@ def test_a_speed_that_is_expected_for_long_stays_plausible(side: float) -> None:
 @each_side
 def test_a_motor_torque_is_plausible_up_to_twice_T_max(side: float) -> None:
     most, more = side * 200.0, side * above(200.0)
-    assert monitor.torque(most, 7.0, P) == most
-    assert monitor.torque(more, 7.0, P) == 7.0
-    assert after([U._replace(T_mot_est=most)]).bad == 0.0
-    assert after([U._replace(T_mot_est=more)]).bad == T_S
+    loop = LoopState(side * 180.0, 0.0)
+    assert monitor.torque(most, loop, P) == most
+    assert monitor.torque(more, loop, P) == side * 180.0
+    x = last(150.0)._replace(loop=loop)
+    assert after([U._replace(T_mot_est=most)], x).bad == 0.0
+    assert after([U._replace(T_mot_est=more)], x).bad == T_S
+    assert monitor.start(U._replace(T_mot_est=most), P).T_mot == most
+    assert monitor.start(U._replace(T_mot_est=more), P).T_mot == 0.0
+
+
+@each_side
+def test_a_motor_torque_far_from_what_the_motor_should_have_is_replaced_by_that(side: float) -> None:
+    limit = torque_loop.FAR * 100.0 + torque_loop.SHARE * 40.0
+    x = last(150.0)._replace(loop=LoopState(-40.0, 0.0))
+    for distance, bad, T_mot in ((limit - 0.01, 0.0, -40.0 + side * (limit - 0.01)), (limit + 0.01, T_S, -40.0)):
+        y = after([U._replace(T_mot_est=-40.0 + side * distance)], x)
+        assert (y.bad, y.T_mot) == (bad, T_mot)
+
+
+def test_what_the_motor_should_have_follows_the_demand() -> None:
+    x = after([U], last(150.0), T_ref=80.0)
+    assert x.loop == torque_loop.update(LoopState(50.0, 0.0), 80.0, T_S, P)
 
 
 @each_side
@@ -104,7 +125,7 @@ def test_a_motor_speed_that_has_jumped_is_followed_after_t_bad() -> None:
 def test_what_was_received_last_is_finite_whatever_came() -> None:
     for signal in NO_NUMBERS:
         x = after([U._replace(omega_1_meas=signal, T_mot_est=signal)])
-        assert (x.omega_1_last, x.T_mot_last) == (0.0, 0.0)
+        assert x.omega_1_last == 0.0
         assert (x.omega_1, x.T_mot) == (150.0, 50.0)
 
 
@@ -127,41 +148,6 @@ def test_a_motor_speed_that_changes_is_no_longer_frozen() -> None:
     assert (x.omega_1_unchanged, x.bad) == (0.0, 0.0)
 
 
-@each_side
-def test_a_motor_torque_unchanged_for_t_frozen_is_frozen_more_than_ten_newton_metres_from_the_demand(
-    side: float,
-) -> None:
-    for T_ref, frozen in ((side * 10.0, False), (side * above(10.0), True)):
-        speeds = [U._replace(T_mot_est=0.0, omega_1_meas=u.omega_1_meas) for u in changing(9)]
-        x = after(speeds[:4], T_ref=T_ref)
-        assert (x.T_mot_unchanged, x.bad) == (0.75, 0.0)
-        assert after(speeds[:5], T_ref=T_ref).bad == (T_S if frozen else 0.0)
-        assert after(speeds, T_ref=T_ref).bad == (P.t_bad + T_S if frozen else 0.0)
-
-
-def test_the_distance_from_the_demand_is_what_counts() -> None:
-    speeds = [U._replace(omega_1_meas=u.omega_1_meas) for u in changing(4)]
-    assert after(speeds, T_ref=60.0).bad == 0.0
-    assert after(speeds, T_ref=40.0).bad == 0.0
-    assert after(speeds, T_ref=-50.0).bad == T_S
-
-
-def test_a_frozen_motor_torque_stays_frozen_until_it_changes() -> None:
-    """Even if what is demanded comes near it again."""
-    speeds = [U._replace(omega_1_meas=u.omega_1_meas) for u in changing(12)]
-    frozen = after(speeds[:4], T_ref=80.0)
-    assert after(speeds[4:7], frozen, T_ref=50.0).bad == 4.0 * T_S
-    good = after([speeds[4]._replace(T_mot_est=50.5)], frozen, T_ref=50.0)
-    assert (good.bad, good.T_mot_unchanged) == (0.0, 0.0)
-    again = after([u._replace(T_mot_est=50.5) for u in speeds[5:]], good, T_ref=50.0)
-    assert (again.bad, again.T_mot_unchanged) == (0.0, 1.0), "as good as any other"
-
-
-def test_an_obeying_motor_torque_counts_its_time_no_further_than_needed() -> None:
-    speeds = [U._replace(omega_1_meas=u.omega_1_meas) for u in changing(40)]
-    assert after(speeds).T_mot_unchanged == P.t_frozen
-
-
 def test_both_motor_signals_must_be_good() -> None:
     (good,) = changing(1)
     for bad in (good._replace(omega_1_meas=600.0), good._replace(T_mot_est=300.0)):
@@ -179,11 +165,9 @@ def test_at_the_start_all_that_is_plausible_is_believed() -> None:
         omega_1=150.0,
         T_mot=50.0,
         omega_1_last=150.0,
-        T_mot_last=50.0,
         omega_1_unchanged=0.0,
-        T_mot_unchanged=0.0,
-        T_mot_frozen=False,
+        loop=LoopState(50.0, 0.0),
         bad=0.0,
     )
     x = monitor.start(Input(omega_1_meas=math.nan, T_mot_est=300.0), P)
-    assert (x.omega_1, x.T_mot, x.omega_1_last, x.T_mot_last) == (0.0, 0.0, 0.0, 0.0)
+    assert (x.omega_1, x.T_mot, x.omega_1_last) == (0.0, 0.0, 0.0)

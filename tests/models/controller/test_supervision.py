@@ -23,6 +23,7 @@ from tests.models.controller.controllers import (
     driven,
     every_controller,
     run,
+    run_with_motor,
     shaken,
 )
 
@@ -76,7 +77,7 @@ FAULTS = {
     "torque is no number": {"T_mot_est": math.nan},
     "torque infinite": {"T_mot_est": -math.inf},
     "torque absurd": {"T_mot_est": 1e5},
-    "torque frozen elsewhere": {"T_mot_est": 20.0},
+    "torque that is not demanded": {"T_mot_est": 20.0},
 }
 
 
@@ -289,7 +290,7 @@ def test_damping_that_feeds_an_oscillation_lets_go_until_it_is_calm_and_confirme
     swinging = shaken(0.5, valid=False)
     swinging = [u._replace(omega_1_meas=150.0 + 4.0 * (u.omega_1_meas - 150.0)) for u in swinging]
     alone, confirmed = driven(0.5, valid=False), driven(0.5)
-    statuses = [x.status for x in run(OTHER, swinging + alone + confirmed)[1:]]
+    statuses = [x.status for x in run_with_motor(OTHER, swinging + alone + confirmed)[1:]]
     let_go = statuses.index(FALLBACK)
     assert let_go * T_S < 0.35
     assert set(statuses[let_go : len(swinging) + len(alone)]) == {FALLBACK}
@@ -299,7 +300,7 @@ def test_damping_that_feeds_an_oscillation_lets_go_until_it_is_calm_and_confirme
 def test_damping_that_fed_an_oscillation_may_begin_anew_from_rest() -> None:
     swinging = [u._replace(omega_1_meas=4.0 * (u.omega_1_meas - 150.0)) for u in shaken(0.5, valid=False)]
     standing = [Input(T_mot_est=0.001 * (k % 2)) for k in range(400)]
-    statuses = [x.status for x in run(OTHER, swinging + standing)[1:]]
+    statuses = [x.status for x in run_with_motor(OTHER, swinging + standing)[1:]]
     assert statuses[len(swinging) - 1] == FALLBACK
     rests = round((P.t_rest + P.t_fade + P.t_proof) / T_S)
     assert statuses[len(swinging) + rests - 20] == FALLBACK
@@ -341,13 +342,13 @@ def test_no_more_is_taken_and_added_than_is_said_whatever_comes_in(
 
 
 def test_the_part_of_the_landing_is_shown() -> None:
-    """And fades as the whole does."""
+    """And fades as the whole does; `T_max` is so large that the motor need not have what is demanded."""
     afloat = ROLLING._replace(T_driver=120.0, T_mot_est=0.0)
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(40)]
-    states = run(OURS, inputs, t_frozen=10.0, T_take_max=50.0)
+    states = run(OURS, inputs, t_frozen=10.0, T_max=2000.0, T_take_max=50.0)
     assert {x.T_landing for x in states[2:30]} == {-50.0}, "no more than may be taken"
-    assert {x.T_landing for x in run(OURS, inputs, t_frozen=10.0)[2:30]} == {-60.0}
-    fading = run(OURS, [u._replace(enable=k < 10) for k, u in enumerate(inputs)], t_frozen=10.0)
+    assert {x.T_landing for x in run(OURS, inputs, t_frozen=10.0, T_max=2000.0)[2:30]} == {-60.0}
+    fading = run(OURS, [u._replace(enable=k < 10) for k, u in enumerate(inputs)], t_frozen=10.0, T_max=2000.0)
     for x in fading[1:40]:
         assert x.T_landing == pytest.approx(-60.0 * x.level)
         assert OURS.output(x, afloat, None).T_landing == x.T_landing

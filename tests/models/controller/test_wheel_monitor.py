@@ -165,7 +165,7 @@ def test_the_direction_is_that_of_the_motor_when_the_speed_becomes_known(sent: f
     assert heard(new(sent), x, omega_1=60.0).omega_2 == -60.0
     unknown = heard(new(sent, valid=False), x, omega_1=60.0)
     assert heard(new(sent, counter=9), unknown, omega_1=60.0).omega_2 == 60.0
-    for omega_1, direction in ((0.0, 1.0), (-5e-324, -1.0)):
+    for omega_1, direction in ((-3.0, 1.0), (-above(3.0), -1.0)):
         assert wheels.direction_of(omega_1, 0.0, P) == direction
 
 

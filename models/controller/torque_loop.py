@@ -1,0 +1,42 @@
+"""The torque that the motor should have: the demand behind the torque loop (paper, eq. (1)), known to the controller.
+
+    tau dT_mot/dt = r          tau dr/dt = T_ref - T_mot - sqrt(2) r
+
+integrated by the trapezoidal rule, sample by sample. An estimate of the torque that is far from it is wrong, or
+the motor does not do what is demanded.
+"""
+
+from typing import Annotated, Any, NamedTuple
+
+from ..block.declaration import Real
+
+SQRT_2 = 2.0**0.5
+
+FAR = 0.05
+"""Distance of an estimate from the torque that the motor should have, over T_max, that noise and offset explain."""
+
+SHARE = 0.35
+"""Distance over that torque that the gain of the estimate explains beside it."""
+
+
+class LoopState(NamedTuple):
+    """State of the torque loop."""
+
+    T_mot: Annotated[float, Real("N.m", "torque that the motor should have")]
+    r: Annotated[float, Real("N.m", "its rate times tau")]
+
+
+def start(T_mot: Any) -> LoopState:
+    return LoopState(T_mot, 0.0)
+
+
+def update(x: LoopState, T_ref: Any, T_s: Any, p: Any) -> LoopState:
+    """The state after a sample with the demand T_ref (N.m)."""
+    h = 0.5 * T_s / p.tau
+    r = (x.r + h * (T_ref - x.T_mot)) / (1.0 + SQRT_2 * h + h * h)
+    return LoopState(x.T_mot + 2.0 * h * r, 2.0 * r - x.r)
+
+
+def agrees(x: LoopState, T_mot_est: Any, p: Any) -> Any:
+    """Whether an estimate (N.m) can be that of this torque; one that is no number cannot."""
+    return abs(T_mot_est - x.T_mot) <= FAR * p.T_max + SHARE * abs(x.T_mot)
