@@ -20,7 +20,7 @@ LEAST_CHANGE, MOST_CHANGE, SAFETY = 0.2, 5.0, 0.9
 SHORTEST_STEP = 1e-13
 """In s: a step that must be shorter is not made."""
 
-MOST_STEPS = 20_000
+MOST_STEPS = 3_000
 """Steps tried in one stretch before it is given up."""
 
 Vector = list[float]

@@ -32,11 +32,12 @@ MOST_CROSSINGS = 16
 MOST_TRIALS = 400
 """Explicit steps tried in one stretch."""
 
-COARSE_ERROR = 1e4
+COARSE_ERROR = 100.0
 """A step with more than this error is no step on which a crossing could be looked for."""
 
-DIVIDED_ERROR = 0.01
-"""Error that is allowed to the parts of a stretch that must be divided; with order 8 they are hardly shorter for it."""
+ALLOWED_ERROR = 0.01
+"""Error of a step that is made, in units of what is tolerated. Steps with this little are so short that a kink away
+from the zeros cannot pass for an accurate step; with order 8 they are hardly shorter for it."""
 
 STIFF = 50.0
 """Fastest rate times length of a stretch, above which it is left to the implicit method."""
@@ -83,7 +84,7 @@ class Integrator:
         `sides` says on which side of each zero the state is, and is kept up to date. It is
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
-        start, longest, located, allowed = Start(x, self.derivative(x, u, p), u, p), left, 0, 1.0
+        start, longest, located = Start(x, self.derivative(x, u, p), u, p), left, 0
         for _ in range(MOST_TRIALS):
             length, crossed = min(left, longest), None
             x_end, error = self.trial(*start, length)
@@ -92,7 +93,7 @@ class Integrator:
                 if crossings:
                     length, crossed = min(crossings)
                     x_end, error = self.trial(*start, length)
-            if error <= allowed:
+            if error <= ALLOWED_ERROR:
                 left -= length
                 if crossed is not None:
                     sides[crossed] = not sides[crossed]
@@ -104,8 +105,7 @@ class Integrator:
             elif self._is_stiff(start, x_end, left):
                 break
             else:
-                allowed = DIVIDED_ERROR
-                longest = length * shortened(error / allowed)
+                longest = length * shortened(error / ALLOWED_ERROR)
         x = self.implicit.advance(start.x, u, p, left)
         sides[:] = self._sides(x, u, p)
         return x

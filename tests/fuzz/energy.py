@@ -1,9 +1,13 @@
 """Mechanical energy of the plants, and the power that changes it.
 
-The energy is that of all inertias and of the springs of the drive train and the body. What changes it is the work of
-the motor, of the brakes, of the tyres (between wheels and hubs, with their rolling resistance), of the road and the
-air, and of all friction and damping; so that energy less work is constant, whatever the steps. The models add up
-torques and forces; here they are multiplied with the speeds at which they act.
+The energy is that of all inertias and of the springs of shafts, mounts and body. What changes it is the work of the
+motor, of the gear, of the brakes, of the tyres (between wheels and hubs, with their rolling resistance), of the road
+and the air, and of all friction and damping; so that energy less work is constant, whatever the steps. The models add
+up torques and forces; here they are multiplied with the speeds at which they act.
+
+The gear is kept apart. Where its damper cancels its spring, the teeth part without a force, and what is left in the
+spring is lost at a rate with a kink at the flank that no state feels and no step needs to end at. What the gear took
+is never less than what its spring holds.
 """
 
 from collections.abc import Callable, Mapping
@@ -16,16 +20,23 @@ from models.block.operators import tanh
 
 
 class Energy(NamedTuple):
-    """Of a plant: (x, p) -> energy in J, (x, u, p) -> powers in W."""
+    """Of a plant.
+
+    Attributes:
+        stored: (x, p) -> energy in J, without the spring of the gear.
+        powers: (x, u, p) -> powers in W that change it, without that of the gear.
+        spring: (x, p) -> energy in J of the spring of the gear.
+        taken: (x, p) -> power in W that the gear takes.
+    """
 
     stored: Callable[[Any, Any], Any]
     powers: Callable[[Any, Any, Any], list[Any]]
+    spring: Callable[[Any, Any], Any]
+    taken: Callable[[Any, Any], Any]
 
 
 def stored_in_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
-    y = dead_zone(x.phi, p.phi_B)
-    rotation = p.J_1 * x.omega_1 * x.omega_1 + p.J_2 * x.omega_2 * x.omega_2
-    return 0.5 * (rotation + p.C * y * y + p.m * x.v * x.v)
+    return 0.5 * (p.J_1 * x.omega_1 * x.omega_1 + p.J_2 * x.omega_2 * x.omega_2 + p.m * x.v * x.v)
 
 
 def powers_of_driveline(x: driveline.State, u: Any, p: driveline.Parameters) -> list[Any]:
@@ -38,8 +49,16 @@ def powers_of_driveline(x: driveline.State, u: Any, p: driveline.Parameters) -> 
     ]
 
 
+def spring_of_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
+    y = dead_zone(x.phi, p.phi_B)
+    return 0.5 * p.C * y * y
+
+
+def taken_in_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
+    return driveline.gear_torque(x, p) * (x.omega_1 - x.omega_2)
+
+
 def stored_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
-    y = dead_zone(x.gamma, p.phi_B / p.i)
     rotor, mounts = x.omega_1 + x.omega_p, x.theta_p + x.theta_b
     terms = [
         p.J_1 * rotor * rotor,
@@ -50,7 +69,6 @@ def stored_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Paramet
         p.m_h * x.v_h * x.v_h,
         (p.m - p.m_h) * x.v * x.v,
         p.J_y * x.omega_b * x.omega_b,
-        p.k_g * y * y,
         p.k_p * mounts * mounts,
         0.5 * p.k_s * ((1.0 - p.asym) * x.x_L * x.x_L + (1.0 + p.asym) * x.x_R * x.x_R),
         p.k_x * x.s_h * x.s_h,
@@ -61,14 +79,11 @@ def stored_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Paramet
 
 def powers_of_vehicle(x: validation_vehicle.State, u: Any, p: validation_vehicle.Parameters) -> list[Any]:
     k = validation_vehicle.wheels(x, u, p)
-    y = dead_zone(x.gamma, p.phi_B / p.i)
-    dgamma = x.omega_1 / p.i + x.omega_p - x.omega_g
     dx_L, dx_R = x.omega_g + x.omega_d - x.omega_L, x.omega_g - x.omega_d - x.omega_R
     mounts, bushing = x.omega_p + x.omega_b, x.v_h - x.v
     F_h = validation_vehicle.bushing_force(x, p)
     return [
         validation_vehicle.air_gap_torque(x, u, p) * x.omega_1,
-        (p.k_g * y - validation_vehicle.gear_torque(x, p)) * dgamma,
         -(p.c_fg * tanh(x.omega_g / p.omega_fg) + p.v_fg * x.omega_g) * x.omega_g,
         -0.5 * p.d_s * (dx_L * dx_L + dx_R * dx_R) - p.d_d * x.omega_d * x.omega_d,
         -p.d_p * mounts * mounts - p.d_x * bushing * bushing - p.d_th * x.omega_b * x.omega_b,
@@ -80,8 +95,17 @@ def powers_of_vehicle(x: validation_vehicle.State, u: Any, p: validation_vehicle
     ]
 
 
+def spring_of_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
+    y = dead_zone(x.gamma, p.phi_B / p.i)
+    return 0.5 * p.k_g * y * y
+
+
+def taken_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
+    return validation_vehicle.gear_torque(x, p) * (x.omega_1 / p.i + x.omega_p - x.omega_g)
+
+
 ENERGIES: Mapping[str, Energy] = {
-    driveline.BLOCK.name: Energy(stored_in_driveline, powers_of_driveline),
-    validation_vehicle.BLOCK.name: Energy(stored_in_vehicle, powers_of_vehicle),
+    driveline.BLOCK.name: Energy(stored_in_driveline, powers_of_driveline, spring_of_driveline, taken_in_driveline),
+    validation_vehicle.BLOCK.name: Energy(stored_in_vehicle, powers_of_vehicle, spring_of_vehicle, taken_in_vehicle),
 }
 """By the names of the plants."""

@@ -226,7 +226,7 @@ looked up: at a crossing the value is zero but for rounding. */
 static int advance_through(const Problem *problem, double t, double left, Vector x, Sides sides)
 {
     Start from;
-    double longest = left, allowed = 1.0;
+    double longest = left;
     int located = 0;
     begin_at(problem, t, x, &from);
     for (int trials = 0; trials < MOST_TRIALS; trials++) {
@@ -242,7 +242,7 @@ static int advance_through(const Problem *problem, double t, double left, Vector
                 step(problem, from.t, from.x, from.dx, length, end, &error);
             }
         }
-        if (error <= allowed) {
+        if (error <= ALLOWED_ERROR) {
             left -= length;
             if (crossed != NO_CROSSING) {
                 sides[crossed] = !sides[crossed];
@@ -258,8 +258,7 @@ static int advance_through(const Problem *problem, double t, double left, Vector
         } else if (is_stiff(problem, &from, end, left)) {
             break;
         } else {
-            allowed = DIVIDED_ERROR;
-            longest = length * shortened(error / allowed);
+            longest = length * shortened(error / ALLOWED_ERROR);
         }
     }
     const int failed = integrate_stiff(problem, &from, left);

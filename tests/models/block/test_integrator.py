@@ -87,9 +87,24 @@ def error_in_contact(integrator: MakeIntegrator, steps: int) -> float:
 
 
 def test_the_order_is_eight_where_the_block_is_smooth(integrator: MakeIntegrator) -> None:
-    steps = np.array([24, 32, 40, 48])
+    steps = np.array([40, 48, 56, 64])
     errors = [error_in_contact(integrator, n) for n in steps]
     assert -np.diff(np.log(errors)) / np.diff(np.log(steps)) == pytest.approx(8.0, abs=0.2)
+
+
+def test_teeth_that_part_and_meet_again_within_one_step_are_seen(integrator: MakeIntegrator) -> None:
+    """At a period of 1.6 ms, steps of 1 ms: what the stages make of the flank must not look accurate by chance."""
+    p = P._replace(J_1=0.0064, J_2=10.0, C=1e5, phi_B=2.5)
+    u = driveline.Input(T_mot=2000.0, T_load_rec=-690.0)
+    advance, crossings, errors = integrator(driveline.BLOCK).advance, 0, []
+    for penetration in np.linspace(0.0380, 0.0405, 50):
+        x = driveline.start(u, p)._replace(omega_1=32.0, omega_2=6.7, phi=2.5 + float(penetration))
+        exact = ExactDriveline(p, x.omega_1, x.omega_2, x.phi, side=1)
+        exact.advance(u.T_mot, u.T_load_rec, 1e-3)
+        crossings += exact.crossings
+        errors.append(abs(advance(x, u, p, 1e-3).omega_1 - exact.omega_1))
+    assert crossings > 0
+    assert max(errors) < 0.01
 
 
 def test_a_crossing_is_located_to_a_tenth_of_a_picosecond(integrator: MakeIntegrator) -> None:
@@ -241,7 +256,7 @@ def test_chatter_about_a_jump_is_refused_in_bounded_work(integrator: MakeIntegra
 
     with pytest.raises(NotIntegrable, match="x"):
         integrator(block(pushed, lambda x: x.x)).advance(Body(0.03, 0.0, 0.0), Nothing(), Nothing(), 0.1)
-    assert count < 200_000
+    assert count < 40_000
 
 
 @pytest.mark.parametrize("power", [1, 3, 9])
