@@ -61,6 +61,7 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
+	rm -rf results/faults
 	$(BIN)/driveline faults --cases 10000 --replace --quiet || test $$? = 1
 	cp results/faults/faults.md docs/
 	cp results/faults/figures/faults.png results/faults/figures/fault_pairs.png docs/figures/

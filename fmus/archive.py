@@ -5,6 +5,7 @@ import os
 import uuid
 import zipfile
 from collections.abc import Mapping
+from errno import ELOOP
 from pathlib import Path
 
 from .release import date
@@ -14,9 +15,11 @@ def write_archive(files: Mapping[str, bytes], target: Path) -> None:
     """Writes the zip archive; one that is there is replaced when the new one is complete. A link stays one.
 
     Raises:
-        OSError: its folder is a file, or what has its name is no file.
+        OSError: its folder is a file, or what has its name is no file, or links lead round in a circle.
     """
-    target = target.resolve()
+    link, target = target, Path(os.path.realpath(target))
+    if target.is_symlink():
+        raise OSError(ELOOP, os.strerror(ELOOP), str(link))
     if target.parent.exists() and not target.parent.is_dir():
         raise NotADirectoryError(f"{target.parent} is a file; a folder is needed")
     if target.exists() and not target.is_file():

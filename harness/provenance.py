@@ -44,6 +44,12 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
     raise DrivelineError(f"{there} {reason}; choose another --output, or --replace it")
 
 
+def forget(*records: Path) -> None:
+    """Removes the records of results that are about to be replaced: a run that stops leaves none that is not theirs."""
+    for record in records:
+        record.unlink(missing_ok=True)
+
+
 def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
     """In what two runs differ, in words."""
     if isinstance(before, dict) and isinstance(now, dict):
@@ -70,10 +76,10 @@ def write_record(
         "command_line": shlex.join(sys.argv),
         "run": run,
         "fmus": {
-            plant: {name: {"file": path, "digest": _digest(path)} for name, path in fit.system.instances.items()}
+            plant: {name: {"file": path, "digest": digest(path)} for name, path in fit.system.instances.items()}
             for plant, fit in fits.items()
         },
-        "inputs": {str(path): _digest(path) for path in inputs if path is not None},
+        "inputs": {str(path): digest(path) for path in inputs if path is not None},
         "files": [path.name for path in files],
         "units": {name: unit for fit in fits.values() for name, unit in units(fit).items()},
     }
@@ -102,7 +108,8 @@ def commit() -> str | None:
         return None
 
 
-def _digest(path: Path) -> str:
+def digest(path: Path) -> str:
+    """Of the content of a file."""
     return f"sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}"
 
 

@@ -58,7 +58,7 @@ def simulate(
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
     given = _checked(start(manoeuvre, seed) | dict(parameters or {}), control)
-    if given["plant.T_0"] != manoeuvre.T_0:
+    if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
         LOG.warning(
             "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
             "and swings from the first instant on",

@@ -5,7 +5,7 @@ estimates, or the message with the wheel speed. What fails in time (late, frozen
 in; what fails in value (gain, offset, noise, spikes, no number) is done to that. Without a fault the signals pass
 as they are, within the same instant.
 
-    late       what was sent `size` seconds before, at most 0.5 (of one of both faults alone)
+    late       what was sent `size` seconds before, at most 0.5 (one signal alone: that of the first fault that is late)
     frozen     what was sent last before `begin`; messages keep coming with that speed
     lost       this share of the samples or messages; the last one stays
     gain       times `size`: 0 reads zero, -1 has the wrong sign
@@ -167,7 +167,7 @@ def stays(fault: Fault, u: Input, sample: Any, p: Parameters) -> Any:
 
 def delivered(y: Signals, u: Input, late: Sent, last: Sent, fault: Fault, sample: Any, p: Parameters) -> Signals:
     """The signals y after what the fault does in time: in their place is what comes late, or what was sent last."""
-    is_late = logical_and(acts(fault, sample), fault.kind == LATE)
+    is_late = logical_and(acts(fault, sample), logical_and(fault.kind == LATE, fault.signal == _late_one(p).signal))
     fails = logical_or(is_late, stays(fault, u, sample, p))
     old = _chosen(is_late, late, last)
     message = logical_and(fails, fault.signal == WHEEL_SPEED)

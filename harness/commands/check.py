@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
         for verdict in check(path, limits(args), args.quick, args.ignore):
             verdicts.append(verdict)
             if style == "text" and not args.quiet:
-                print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule)
+                print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule, verdict.tried)
             elif style == "text":
                 print("".join(f"{path}: {verdict.severity}: {problem}\n" for problem in verdict.problems), end="")
     every = [verdict for verdicts in found.values() for verdict in verdicts]

@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
     from ..cosimulation.wiring import fit
-    from ..provenance import require_same_run, write_record
+    from ..provenance import forget, require_same_run, write_record
     from ..reports.terminal import print_table, runs_table
 
     out = Printer(args)
@@ -68,6 +68,7 @@ def run(args: argparse.Namespace) -> int:
     same["manoeuvres"] = list(dict.fromkeys(case.manoeuvre for case in todo))
     if not args.replace:
         require_same_run(record, same, tables)
+    forget(record, *(args.output / "runs" / f"{case.file_name}.json" for case in todo))
     outcomes = run_cases(todo, args.output / "runs", given)
     rows = [outcome.row for outcome in outcomes]
     if not out.silent:

@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     from ..faults.bench import looped, with_faults
     from ..faults.campaign import campaign
     from ..faults.report import announce, write, write_case
-    from ..provenance import require_same_run, write_record
+    from ..provenance import forget, require_same_run, write_record
 
     out = Printer(args)
     systems = {plant: looped(plant, given[plant]) for plant in plants}
@@ -78,6 +78,7 @@ def run(args: argparse.Namespace) -> int:
     if not args.replace:
         require_same_run(record, same, [args.output / first])
     with _injector(args.fmus) as injector:
+        forget(record)
         if args.case is not None:
             outcome, files = write_case(args.case, args.seed, injector, given, args.output)
             outcomes = [outcome]

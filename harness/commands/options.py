@@ -227,17 +227,25 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
 
 
 def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:
-    """What distinguishes a run of the loop from others: all that was set, and the FMUs.
+    """What distinguishes a run of the loop from others: all that was set, and the FMUs: ours by the start values
+    that they were built with, others by their content.
 
     Args:
         given: of `settings`.
         manoeuvre: None: several.
     """
+    from fmus.origin import origin_of
+
+    from ..provenance import digest
     from ..simulate import start
 
+    ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
+    others = {name: path for name, path in system.instances.items() if name not in system.own}
     own = start(manoeuvre, given["seed"]) if manoeuvre else {}
     return {
         "fmus": {name: str(path) for name, path in system.instances.items()},
+        "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
+        "digests": {name: digest(path) for name, path in others.items() if path.is_file()},
         "parameters": own | given["parameters"],
         "seed": given["seed"],
         "mapping": given["mapping"],

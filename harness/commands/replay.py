@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
     from ..manoeuvres.road import RoadLoad, road, torque_limit
-    from ..provenance import require_same_run, write_record
+    from ..provenance import forget, require_same_run, write_record
     from ..replay import records, replay, write
     from ..reports.terminal import print_table, rides_reasons, rides_table
 
@@ -85,6 +85,7 @@ def run(args: argparse.Namespace) -> int:
     for reason in rides_reasons(rides[0].metrics, rides[1].metrics):
         out.say(reason)
     out.say(f"{LEGEND}\n")
+    forget(record)
     files = write(rides, recording, plant, args.output)
     read = [args.recording, args.vehicle, args.parameters]
     write_record(record, same, {plant: fit(system)}, files, read)

@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.schedule import described, transfers
     from ..cosimulation.wiring import fit
-    from ..provenance import require_same_run, write_record
+    from ..provenance import forget, require_same_run, write_record
     from ..reports.csv_file import write_csv
     from ..simulate import simulate
 
@@ -100,6 +100,7 @@ def run(args: argparse.Namespace) -> int:
     fitted = fit(system)
     if Scheme(args.scheme) is Scheme.PROPAGATED:
         out.say(described(transfers(fitted.system, fitted.interfaces)))
+    forget(record)
     write_csv(results, signals)
     out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
     files = [signals]

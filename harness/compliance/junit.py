@@ -20,6 +20,7 @@ def junit(found: Mapping[str, Iterable[Verdict]], failing: Iterable[str]) -> str
         tests = [_test_case(suite, name, verdict, verdict.severity in failing) for verdict in verdicts]
         suite.set("tests", str(len(tests)))
         suite.set("failures", str(sum(tests)))
+        suite.set("skipped", str(len(suite.findall("testcase/skipped"))))
     indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode")
 
@@ -27,7 +28,9 @@ def junit(found: Mapping[str, Iterable[Verdict]], failing: Iterable[str]) -> str
 def _test_case(suite: Element, name: str, verdict: Verdict, fails: bool) -> bool:
     case = SubElement(suite, "testcase", classname=name, name=f"{verdict.rule}: {verdict.title}")
     text = "\n".join(verdict.problems)
-    if verdict.problems and fails:
+    if not verdict.tried:
+        SubElement(case, "skipped", message="not tried")
+    elif verdict.problems and fails:
         SubElement(case, "failure", message=verdict.problems[0], type=verdict.severity).text = text
     elif verdict.problems:
         SubElement(case, "system-out").text = f"{verdict.severity}:\n{text}"

@@ -23,12 +23,14 @@ class Verdict(NamedTuple):
     Attributes:
         rule: its name.
         severity: the value of its Severity.
+        tried: whether it was; if not, it has found nothing.
     """
 
     rule: str
     severity: str
     title: str
     problems: list[str]
+    tried: bool = True
 
 
 @dataclass(frozen=True)
@@ -55,5 +57,5 @@ class Rule:
             found.append(plain(error))
         return self.verdict(found)
 
-    def verdict(self, problems: list[str]) -> Verdict:
-        return Verdict(self.name, self.severity.value, self.title, problems)
+    def verdict(self, problems: list[str], tried: bool = True) -> Verdict:
+        return Verdict(self.name, self.severity.value, self.title, problems, tried)

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import ELOOP
 from pathlib import Path
 
 DEVICES = (Path("/dev"), Path("/dev/fd"), Path("/proc/self/fd"))
@@ -18,13 +19,14 @@ def complete(path: Path) -> Iterator[Path]:
 
     Raises:
         IsADirectoryError: there is a folder of that name.
+        OSError: links lead round in a circle.
     """
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; a file is needed")
     if path.exists() and (path.absolute().parent in DEVICES or not path.is_file()):
         yield path
         return
-    path = path.resolve()
+    path = destination(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
@@ -32,6 +34,18 @@ def complete(path: Path) -> Iterator[Path]:
         os.replace(unfinished, path)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def destination(path: Path) -> Path:
+    """Where links lead.
+
+    Raises:
+        OSError: round in a circle.
+    """
+    end = Path(os.path.realpath(path))
+    if end.is_symlink():
+        raise OSError(ELOOP, os.strerror(ELOOP), str(path))
+    return end
 
 
 def write_text(text: str, path: Path) -> None:

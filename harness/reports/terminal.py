@@ -25,13 +25,15 @@ def print_table(table: Table) -> None:
 SEVERITY_STYLES = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
-def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str) -> None:
-    """Prints a rule, whether it is kept, and each problem on a line of its own."""
+def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str, tried: bool = True) -> None:
+    """Prints a rule, whether it is kept, and each problem on a line of its own; or that it was not tried."""
     console = Console(highlight=False, soft_wrap=True)
     if problems:
         console.print(Text(f"  {severity:8}", style=SEVERITY_STYLES[severity]) + f"not: {title} [{rule}]", markup=False)
-    else:
+    elif tried:
         console.print(Text("  ok      ", style="green") + title)
+    else:
+        console.print(f"  -       not tried: {title}", markup=False)
     for problem in problems:
         console.print(Text(f"        - {problem}"))
 

@@ -9,6 +9,7 @@ import pytest
 from fmus import release
 from fmus.archive import write_archive
 from harness.cli import main
+from harness.reports.files import write_text
 
 FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}
 
@@ -24,6 +25,15 @@ def test_a_link_stays_one_and_its_file_is_replaced(tmp_path: Path) -> None:
     write_archive(FILES, tmp_path / "link.fmu")
     assert (tmp_path / "link.fmu").is_symlink()
     assert (tmp_path / "file.fmu").read_bytes().startswith(b"PK")
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_links_that_lead_round_in_a_circle_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.fmu").symlink_to(tmp_path / "b.fmu")
+    (tmp_path / "b.fmu").symlink_to(tmp_path / "a.fmu")
+    for write in (lambda path: write_archive(FILES, path), lambda path: write_text("text", path)):
+        with pytest.raises(OSError, match=r"symbolic links: '.*/a\.fmu'"):
+            write(tmp_path / "a.fmu")
     assert len(list(tmp_path.iterdir())) == 2
 
 

@@ -10,6 +10,7 @@ from random import Random
 from zipfile import ZipFile, ZipInfo
 
 from fmus.builds import build_fmus
+from harness.compliance.check import check
 from harness.cosimulation.system import NATIVE, PLANTS, loop
 from harness.cosimulation.wiring import fit
 from harness.errors import DrivelineError
@@ -23,6 +24,10 @@ DESCRIPTION = "modelDescription.xml"
 ATTRIBUTE = re.compile(r' (\w+)="([^"]*)"')
 LONGEST = 1000
 """Characters of a refusal, for every name of a file in it."""
+LONG_NUMBER = "9" * 5000
+"""More digits than Python makes a number of."""
+CHECKS = 0.05
+"""Share of the FMUs that are checked, in a process of their own."""
 RUNS = 0.05
 """Share of the FMUs that are still taken which are run."""
 
@@ -30,7 +35,7 @@ RUNS = 0.05
 def other_attribute(xml: str, random: Random) -> str:
     """An attribute is left out, doubled or given another value."""
     place = random.choice(list(ATTRIBUTE.finditer(xml)))
-    odd = random.choice(ODD).replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    odd = random.choice((*ODD, LONG_NUMBER)).replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     new = random.choice(("", 2 * place[0], *3 * (f' {place[1]}="{odd}"',)))
     return xml[: place.start()] + new + xml[place.end() :]
 
@@ -73,6 +78,8 @@ def attempts(folder: Path) -> Iterator[Attempt]:
     def attempt(random: Random) -> str:
         damaged(sound, path, random)
         try:
+            if random.random() < CHECKS:
+                list(check(path, quick=True))
             fit(loop(str(path), folder, NATIVE))
             if random.random() > RUNS:
                 return "fits"

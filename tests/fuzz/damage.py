@@ -4,7 +4,23 @@ from random import Random
 
 ODD = (
     *("", " ", "nan", "inf", "-inf", "1e300", "1e-320", "-1", "0", "0.5", "2147483648", "99999999999999999999"),
-    *("--", "-", "=", "true", "x", "None", "1,5", "0x10", "../../x", "/etc/passwd", "a" * 300, "\u202e", "é", "\0"),
+    *(
+        "1e999",
+        "--",
+        "-",
+        "=",
+        "true",
+        "x",
+        "None",
+        "1,5",
+        "0x10",
+        "../../x",
+        "/etc/passwd",
+        "a" * 300,
+        "\u202e",
+        "é",
+        "\0",
+    ),
 )
 """What stands where a number, a name or a path is expected."""
 

@@ -3,12 +3,19 @@
 import hashlib
 import json
 from pathlib import Path
+from shutil import copytree
+from typing import Any
+from zipfile import ZipFile
 
 import pytest
 from fmpy.util import read_csv
 
+from fmus.origin import ENTRY
+from harness import provenance
 from harness.cli import main
+from harness.commands.options import distinguishing
 from harness.cosimulation.interface import Interface
+from harness.cosimulation.system import System, loop
 from harness.errors import DrivelineError
 from harness.provenance import require_same_run
 
@@ -80,6 +87,45 @@ def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
     (tmp_path / f"{NAME}.json").unlink()
     assert main([*given, "--seed", "2"]) == 2
     assert "does not tell of which run it is" in capsys.readouterr().err
+
+
+def test_a_run_that_stops_leaves_no_record_beside_what_it_did_not_make(
+    both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
+    assert main(given) == 0
+    monkeypatch.setattr(provenance, "write_record", stopped)
+    assert main([*given, "--seed", "2", "--replace"]) != 0
+    assert {path.name for path in tmp_path.iterdir()} == {f"{NAME}.csv"}
+
+
+def told_apart(system: System) -> dict[str, Any]:
+    return distinguishing({"parameters": {}, "seed": 1, "mapping": {}}, system, None)
+
+
+def test_an_fmu_that_was_built_for_another_car_makes_another_run(both_built: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "fmus"
+    copytree(both_built, folder)
+    before = told_apart(loop(folder=folder, build="python"))
+    assert told_apart(loop(folder=folder, build="python")) == before
+    path = folder / "TwoMassDriveline.fmu"
+    with ZipFile(path) as archive:
+        told = json.loads(archive.read(ENTRY))
+    with ZipFile(path, "w") as archive:
+        archive.writestr(ENTRY, json.dumps(told | {"start_values": {"m": 1200.0}}))
+    assert told_apart(loop(folder=folder, build="python")) != before
+
+
+def test_an_fmu_of_ones_own_that_was_built_again_makes_another_run(both_built: Path, tmp_path: Path) -> None:
+    plant = tmp_path / "mine.fmu"
+    plant.write_bytes(b"one")
+    before = told_apart(loop(plant, both_built))
+    assert told_apart(loop(plant, both_built)) == before
+    plant.write_bytes(b"another")
+    assert told_apart(loop(plant, both_built)) != before
 
 
 def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:

@@ -30,6 +30,8 @@ def test_damping_is_on_or_off(value: Any) -> None:
 def test_a_start_that_disagrees_with_the_demand_is_named(built: Path, caplog: pytest.LogCaptureFixture) -> None:
     simulate(SHORT, folder=built, parameters={"plant.T_0": -12.0})
     assert caplog.text == ""
+    simulate(SHORT, folder=built, parameters={"plant.T_0": 100.0, "plant.v_0": 0.0})
+    assert caplog.text == "", "a car that stands starts without torque, whatever T_0 is"
     simulate(SHORT, folder=built, parameters={"plant.T_0": 100.0})
     assert "plant.T_0 = 100 N.m: the drive train starts with another torque than the -12 N.m" in caplog.text
 

@@ -86,6 +86,15 @@ def test_a_late_message_is_late_as_a_whole():
     assert (out.counter[NOW] == true.counter[NOW.start - 8 : NOW.stop - 8]).all()
 
 
+@pytest.mark.parametrize("second", FIELD)
+def test_of_two_faults_that_are_late_the_second_has_no_value_of_another_signal(second):
+    both = fault(LATE, MOTOR_SPEED, size=0.02) | {"kind_2": LATE, "signal_2": second, "size_2": 0.04}
+    out, true = passed(**both, begin_2=BEGIN, end_2=END)
+    assert (out.omega_1_meas[NOW] == true.omega_1_meas[NOW.start - 10 : NOW.stop - 10]).all()
+    for name in set(FIELD.values()) - {"omega_1_meas"}:
+        assert (getattr(out, name) == getattr(true, name)).all()
+
+
 def test_the_longest_delay_is_half_a_second():
     given = fault(LATE, MOTOR_SPEED, size=0.5) | {"begin_1": 0.6, "end_1": 0.7}
     out, true = passed(samples=330, **given)

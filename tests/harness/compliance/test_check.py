@@ -3,12 +3,14 @@
 import os
 import re
 import tempfile
+from xml.etree import ElementTree
 from zipfile import ZipFile
 
 import pytest
 
 from harness.compliance.behaviour_rules import BEHAVIOUR_RULES
 from harness.compliance.check import RULES, check
+from harness.compliance.junit import junit
 from harness.compliance.rule import Rule, Severity
 from harness.cosimulation.limits import Limits
 from harness.cosimulation.system import PLANTS
@@ -202,6 +204,16 @@ def test_instances_that_share_memory_are_found(tmp_path):
     """They come from one file: an FMU is unpacked once for all that is tried."""
     path = build_stranger(tmp_path, IN_GET_REAL="values[5] = now")
     assert "beside another instance, but was 0.0, at step 0" in broken(path)["instances"][1]
+
+
+def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
+    path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
+    names = {rule.name for rule in BEHAVIOUR_RULES} - {"runs", "reset"}
+    verdicts = list(check(path, ignored=["reset"]))
+    assert {verdict.rule for verdict in verdicts if not verdict.tried} == names
+    (suite,) = ElementTree.fromstring(junit({"stranger.fmu": verdicts}, ["error"]))
+    assert (suite.get("skipped"), suite.get("failures")) == ("3", "1")
+    assert len(suite.findall("testcase/skipped")) == 3
 
 
 def test_an_ignored_rule_is_not_tried(tmp_path):
