@@ -14,6 +14,7 @@ from harness.analysis.healthy_hours import (
     ROADS,
     Found,
     contradiction,
+    disobeyed,
     drive,
     found,
     half_swings,
@@ -33,7 +34,12 @@ def rows_of(**columns: object) -> np.ndarray:
     """100 samples of a car that rolls with 150 rad/s, with other columns where given; a message in every sample."""
     usual = {"motor.omega_1_meas": 150.0, "motor.T_mot_est": 0.0, "can.omega_2_can": 150.0, "can.valid": True}
     usual |= {"can.counter": np.arange(100.0), "controller.omega_2_hat": 150.0}
-    usual |= {"controller.T_damp": 0.0, "controller.T_landing": 0.0, "controller.T_driver": 50.0}
+    usual |= {
+        "controller.T_damp": 0.0,
+        "controller.T_landing": 0.0,
+        "controller.T_driver": 50.0,
+        "controller.T_ref": 50.0,
+    }
     usual |= {name.replace("__", "."): values for name, values in columns.items()}
     rows = np.zeros(100, [(name, bool if name == "can.valid" else float) for name in usual])
     for name, values in usual.items():
@@ -102,9 +108,15 @@ def test_half_swings_are_those_of_the_damping_without_the_landing():
     assert half_swings(rows_of(controller__T_damp=torque, controller__T_landing=torque)) == 0.0
 
 
+def test_a_torque_that_the_motor_was_not_asked_for_is_seen_in_the_sample():
+    assert not disobeyed(rows_of(motor__T_mot_est=50.0)).any()
+    other = np.where(np.arange(100) == 7, -50.0, 50.0)
+    assert np.flatnonzero(disobeyed(rows_of(motor__T_mot_est=other))).tolist() == [7]
+
+
 def test_of_all_drives_samples_add_up_and_the_worst_residuals_stay():
-    one, other = Found(10, 1, 0.1, 0.2, 0.3, 0.4), Found(20, 2, 0.4, 0.3, 0.2, 0.1)
-    assert worst([one, other]) == Found(30, 3, 0.4, 0.3, 0.3, 0.4)
+    one, other = Found(10, 1, 0.1, 0.2, 0.3, 0.1, 0.4), Found(20, 2, 0.4, 0.3, 0.2, 0.5, 0.1)
+    assert worst([one, other]) == Found(30, 3, 0.4, 0.3, 0.3, 0.5, 0.4)
 
 
 @pytest.fixture
@@ -137,9 +149,9 @@ def test_a_drive_with_a_wheel_that_is_told_far_too_small_shows_as_fallback(short
 
 def test_the_table_has_the_hours_and_the_fallback_of_every_road(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "120")
-    monkeypatch.setattr(healthy_hours, "found", lambda road, seed: Found(1_800_000, seed, 0.1, 0.2, math.pi, 0.4))
+    monkeypatch.setattr(healthy_hours, "found", lambda road, seed: Found(1_800_000, seed, 0.1, 0.2, math.pi, 0.5, 0.4))
     healthy_hours.main(["--hours", "0.1", "--workers", "1"])
     lines = (line.strip("│").split("│") for line in capsys.readouterr().out.splitlines() if line.startswith("│"))
     assert [[cell.strip() for cell in line] for line in lines] == [
-        [road, "2.00", "3600000", "3", "0.10", "0.20", "3.14", "0.40"] for road in ROADS
+        [road, "2.00", "3600000", "3", "0.10", "0.20", "3.14", "0.50", "0.40"] for road in ROADS
     ]
