@@ -56,11 +56,9 @@ def test_the_estimator_changes_its_mode_without_a_bump() -> None:
 
 def test_a_torque_that_is_not_demanded_is_found_without_a_bump() -> None:
     """The change per sample is at most that of the damping torque itself and of its fading."""
-    good = shaken(2.0)
-    states, always = (
-        run(BLOCK, [u._replace(T_mot_est=-50.0) if k >= 500 else u for k, u in enumerate(good)]),
-        run(BLOCK, good),
-    )
+    always = run_with_motor(BLOCK, shaken(2.0))
+    obeyed = [u._replace(T_mot_est=x.monitor.loop.T_mot) for u, x in zip(shaken(2.0), always, strict=False)]
+    states = run(BLOCK, [u._replace(T_mot_est=-50.0) if k >= 500 else u for k, u in enumerate(obeyed)])
     assert states[500 + round(P.t_bad / T_S) + 2].status == states[-1].status == FALLBACK
     assert bump(states) <= bump(always) + max(abs(x.T_damp) for x in always) * T_S / P.t_fade
 
