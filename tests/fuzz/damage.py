@@ -36,7 +36,7 @@ def spoiled_text(text: str, random: Random) -> str:
 
 def spoiled_bytes(content: bytes, random: Random) -> bytes:
     """The bytes with some changed, left out or added."""
-    place = random.randrange(len(content))
+    place = random.randrange(len(content) + 1)
     size = random.choice((1, 4, 100))
     new = random.choice((b"", random.randbytes(size), bytes(size), content[place : place + size] * 2))
     return content[:place] + new + content[place + random.choice((0, size)) :]
