@@ -51,7 +51,7 @@ def hidden(wanted: bool = True) -> Iterator[None]:
 
 def _visible() -> bool:
     in_notebook = "ipykernel" in sys.modules and find_spec("ipywidgets") is not None
-    return sys.stderr.isatty() or in_notebook
+    return in_notebook or (sys.stderr is not None and sys.stderr.isatty())
 
 
 @contextmanager

@@ -34,7 +34,7 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
         return
     try:
         before = json.loads(record.read_text(encoding="utf-8"))["run"]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         reason = f"is there, and {record} does not tell of which run it is"
     else:
         changed = next(_differences(before, json.loads(_text(run))), None)

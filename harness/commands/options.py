@@ -194,7 +194,7 @@ def megabytes(text: str) -> int:
         number = float(text)
     except ValueError:
         number = 0.0
-    if not (isfinite(number) and number > 0.0):
+    if not (isfinite(number * 1e6) and number > 0.0):
         raise argparse.ArgumentTypeError(f"{quoted(text)} is not a size above 0 MB")
     return round(number * 1e6)
 

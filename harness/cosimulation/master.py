@@ -92,7 +92,7 @@ class Loop:
         time = instants(duration, step_size)
         require(unknown(self._fitted, inputs or (), parameters or ()))
         samples = self._present({name: sampled(name, source, time) for name, source in (inputs or {}).items()})
-        wires = self._wired(scheme, tuple(samples))
+        wires = self._wired(Scheme(scheme), tuple(samples))
         table = wires.layout.table(time, samples)
         self.reset()
         self._is_new = False

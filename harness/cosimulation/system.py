@@ -4,10 +4,11 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 from ..errors import WiringError
 from ..names import nearest
+from ..plain import plain
 from .limits import USUAL, Limits
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -40,11 +41,21 @@ NameOrFile = str | Path
 
 
 class Scheme(Enum):
-    """When an output reaches the inputs it feeds; see harness.cosimulation.schedule."""
+    """When an output reaches the inputs it feeds; see harness.cosimulation.schedule.
+
+    `Scheme("jacobi")` is the scheme of that name.
+
+    Raises:
+        WiringError: there is none of that name.
+    """
 
     PROPAGATED = "propagated"
     GAUSS_SEIDEL = "gauss-seidel"
     JACOBI = "jacobi"
+
+    @classmethod
+    def _missing_(cls, value: object) -> NoReturn:
+        raise WiringError(f"unknown scheme {plain(value)}; {nearest(str(value), [scheme.value for scheme in cls])}")
 
 
 class Connection(NamedTuple):

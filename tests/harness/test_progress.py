@@ -44,6 +44,11 @@ def test_a_short_run_is_not_shown(monkeypatch):
     assert shown.getvalue() == ""
 
 
+def test_who_has_no_stderr_gets_no_progress():
+    with redirect_stderr(None):
+        make("tip-in")
+
+
 def test_a_file_gets_no_progress():
     with redirect_stderr(io.StringIO()) as written:
         make("tip-in")

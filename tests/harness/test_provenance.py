@@ -84,9 +84,10 @@ def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
     assert [main(given), main(given)] == [0, 0]
     assert main([*given, "--seed", "2"]) == 2
     assert main([*given, "--seed", "2", "--replace"]) == 0
-    (tmp_path / f"{NAME}.json").unlink()
-    assert main([*given, "--seed", "2"]) == 2
-    assert "does not tell of which run it is" in capsys.readouterr().err
+    for content in ("", 100_000 * "["):
+        (tmp_path / f"{NAME}.json").write_text(content)
+        assert main([*given, "--seed", "2"]) == 2
+        assert "does not tell of which run it is" in capsys.readouterr().err
 
 
 def test_a_run_that_stops_leaves_no_record_beside_what_it_did_not_make(

@@ -55,6 +55,13 @@ def test_a_time_is_above_zero_and_finite():
             seconds(text)
 
 
+def test_a_size_is_finite_in_bytes():
+    assert megabytes("1e302") == round(1e308)
+    for text in ("1e303", "0", "inf"):
+        with pytest.raises(ArgumentTypeError, match="not a size above 0 MB"):
+            megabytes(text)
+
+
 @pytest.mark.parametrize("take", [assignment, seed, seconds, megabytes])
 def test_what_is_long_or_strange_is_not_repeated_as_it_is(take):
     for text in ("9" * 5000, "\x1b[31m9"):

@@ -155,3 +155,13 @@ def test_what_is_not_declared_is_passed_on_within_the_instant_where_that_makes_n
     fitted = fit(System({"b": relay, "a": relay}, (Connection("a.y", "b.u"),)))
     order = Feedthrough(fitted.system, fitted.interfaces).propagation(set())
     assert [outputs[0].partition(".")[0] for outputs in order] == ["a", "b"]
+
+
+def test_a_scheme_may_be_given_by_its_name_and_none_is_taken_for_another(native):
+    system, duration = System({"motor": native / "MotorTorqueLoop.fmu"}, own=frozenset({"motor"})), 0.01
+    for scheme in Scheme:
+        named = run(system, duration, scheme=scheme.value)  # pyright: ignore[reportArgumentType]
+        assert named.tobytes() == run(system, duration, scheme=scheme).tobytes()
+    for other in ("gaus-seidel", None):
+        with pytest.raises(WiringError, match="unknown scheme .*gauss-seidel"):
+            run(system, duration, scheme=other)  # pyright: ignore[reportArgumentType]
