@@ -163,5 +163,5 @@ def test_a_scheme_may_be_given_by_its_name_and_none_is_taken_for_another(native)
         named = run(system, duration, scheme=scheme.value)  # pyright: ignore[reportArgumentType]
         assert named.tobytes() == run(system, duration, scheme=scheme).tobytes()
     for other in ("gaus-seidel", None):
-        with pytest.raises(WiringError, match="unknown scheme .*gauss-seidel"):
+        with pytest.raises(WiringError, match=r"unknown scheme .*gauss-seidel"):
             run(system, duration, scheme=other)  # pyright: ignore[reportArgumentType]
