@@ -36,6 +36,13 @@ def complete(path: Path) -> Iterator[Path]:
         unfinished.unlink(missing_ok=True)
 
 
+def remove_unfinished(folder: Path) -> None:
+    """Removes what processes that were killed while they wrote have left in a folder."""
+    for path in folder.rglob("*.part"):
+        if path.suffixes[-2:-1] and path.suffixes[-2][1:].isdigit():
+            path.unlink(missing_ok=True)
+
+
 def destination(path: Path) -> Path:
     """Where links lead.
 
