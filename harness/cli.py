@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from errno import ENOSPC
 from importlib import import_module
-from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
 
@@ -133,12 +132,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: without the name of the program; None for those of the process.
     """
-    name, output = "driveline", None
+    name = "driveline"
     try:
         with stoppable():
             try:
                 args = parser().parse_args(arguments)
-                name, output = f"driveline {args.command}", getattr(args, "output", None)
+                name = f"driveline {args.command}"
                 with hidden(getattr(args, "quiet", False) or getattr(args, "json", False)):
                     return command(args.command).run(args)
             finally:
@@ -159,9 +158,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{name}: not enough memory: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt as stop:
-        from .reports.files import remove_unfinished
-
-        if isinstance(output, Path) and output.is_dir():
-            remove_unfinished(output)
         print(f"{name}: stopped", file=sys.stderr)
         return getattr(stop, "exit_code", 130)

@@ -26,6 +26,7 @@ from typing import Any, NoReturn, TypeVar
 from .cosimulation.runs import kept_loaded
 from .errors import DrivelineError, SimulationError
 from .progress import progress
+from .reports.files import note_unfinished, remove_unfinished
 from .stopping import uninterrupted_children
 from .told import Collected, warn_once
 
@@ -103,6 +104,7 @@ def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count
             unfinished = False
         finally:
             pool.shutdown(kill_workers=unfinished)
+            remove_unfinished(Path(folder))
 
 
 _function: Callable[[Any], Any]
@@ -113,6 +115,7 @@ def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
     """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
     global _function
     _function = function
+    note_unfinished(folder)
     log = logging.getLogger(__package__)
     log.addHandler(_collected)
     log.propagate = False

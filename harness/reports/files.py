@@ -29,18 +29,41 @@ def complete(path: Path) -> Iterator[Path]:
     path = destination(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
-    try:
-        yield unfinished
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    with _noted(unfinished):
+        try:
+            yield unfinished
+            os.replace(unfinished, path)
+        finally:
+            unfinished.unlink(missing_ok=True)
+
+
+_notes: Path | None = None
+
+
+def note_unfinished(folder: Path) -> None:
+    """From now on this process notes in a folder what it has begun to write, for `remove_unfinished`."""
+    global _notes
+    _notes = folder
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Removes what processes that were killed while they wrote have left in a folder."""
-    for path in folder.rglob("*.part"):
-        if path.suffixes[-2:-1] and path.suffixes[-2][1:].isdigit():
-            path.unlink(missing_ok=True)
+    """Removes what processes that were killed while they wrote, and had noted it in the folder, have left."""
+    for note in folder.glob("*.unfinished"):
+        if (text := note.read_text(encoding="utf-8")).endswith(".part"):
+            Path(text).unlink(missing_ok=True)
+
+
+@contextmanager
+def _noted(unfinished: Path) -> Iterator[None]:
+    if _notes is None:
+        yield
+        return
+    note = _notes / f"{unfinished.name}.unfinished"
+    note.write_text(str(unfinished.absolute()), encoding="utf-8")
+    try:
+        yield
+    finally:
+        note.unlink(missing_ok=True)
 
 
 def destination(path: Path) -> Path:

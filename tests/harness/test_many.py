@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from harness.cosimulation.system import Scheme
 from harness.errors import DrivelineError, SimulationError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.many import run_many
+from harness.reports.files import complete
 from harness.simulate import simulate
 from tests import ROOT
 
@@ -184,3 +186,20 @@ def test_no_guard_is_needed(native, tmp_path, how):
 def test_a_number_of_workers_that_is_none_is_refused(workers):
     with pytest.raises(DrivelineError, match="workers = "):
         run_many(str, [1], workers=workers)
+
+
+def test_what_a_killed_worker_was_writing_goes_and_nothing_else(tmp_path):
+    def write(case):
+        if case == 0:
+            while not list(tmp_path.glob("signals.csv.*.part")):
+                time.sleep(0.01)
+            raise ValueError("this case fails while the other one writes")
+        with complete(tmp_path / "signals.csv") as unfinished:
+            unfinished.write_text("time")
+            time.sleep(60.0)
+
+    others = tmp_path / "theirs.123.part"
+    others.touch()
+    with pytest.raises(ValueError, match="this case fails"):
+        run_many(write, range(2), workers=2)
+    assert list(tmp_path.iterdir()) == [others]
