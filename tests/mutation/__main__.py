@@ -18,6 +18,7 @@ LEAST_SCORE = 0.95
 
 CONTROLLER = (
     *("damping_law", "fading", "rest", "signal_monitor", "supervision", "swings", "torque_estimator", "trust"),
+    "torque_loop",
     "wheel_monitor",
 )
 WHOLE_CONTROLLER = "tests/models/controller", "tests/models/test_damping_controller.py"
