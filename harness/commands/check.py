@@ -5,7 +5,8 @@ import json
 from pathlib import Path
 
 from ..plain import quoted
-from .options import add_limits, add_printing, limits
+from .options import add_limits, add_printing
+from .settings import limits
 
 DESCRIPTION = """\
 Checks any FMI 2.0 Co-Simulation FMU: its archive, its model description (with fmpy, and what fmpy does

@@ -9,8 +9,9 @@ from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
 from .built import built
-from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, settings
+from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer
+from .settings import blocks, distinguishing, settings
 
 LEGEND = legend(Metrics)
 

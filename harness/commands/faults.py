@@ -10,10 +10,10 @@ from typing import Any
 
 from ..cosimulation.system import BUILD, NATIVE, PLACES, PLANTS
 from ..errors import DrivelineError
-from ..plain import quoted
 from .built import built
-from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, settings
+from .options import add_loop, add_output, add_plant, add_printing, count
 from .printing import Printer
+from .settings import blocks, distinguishing, settings
 
 DESCRIPTION = """\
 Drives the loop through manoeuvres in which a signal of the controller fails, or the wheels lock or spin on ice, and
@@ -53,10 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _number(text: str) -> int:
-    number = int(text) if text.isascii() and text.isdecimal() and len(text) <= len(str(MOST_CASES)) else 0
-    if not 1 <= number <= MOST_CASES:
-        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a whole number from 1 to {MOST_CASES}")
-    return number
+    return count(text, 1, MOST_CASES)
 
 
 def run(args: argparse.Namespace) -> int:

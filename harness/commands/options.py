@@ -1,20 +1,16 @@
-"""The options that several commands have, each with its check, and how they are read."""
+"""The options that several commands have, each with its check; `harness.commands.settings` says what they mean."""
 
 import argparse
-import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
 from fmus.options import add_parameter_files, folder, output_folder
 
-from ..cosimulation.limits import USUAL, Limits
-from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS, System, loop
-from ..errors import DrivelineError
-from ..manoeuvres.manoeuvre import Manoeuvre
+from ..cosimulation.limits import USUAL
+from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
+from ..numbers import real, whole
 from ..plain import quoted
-
-LOG = logging.getLogger(__name__)
 
 LARGEST_SEED = 2**31 - 1
 """Of an FMI Integer."""
@@ -59,7 +55,7 @@ def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
 
 
 def add_loop(parser: argparse.ArgumentParser) -> None:
-    """What every run of the loop can be given beside the plant; `settings` reads it."""
+    """What every run of the loop can be given beside the plant; `harness.commands.settings` reads it."""
     parser.add_argument(
         "--set",
         action="append",
@@ -104,7 +100,7 @@ def add_fmus(parser: argparse.ArgumentParser) -> None:
 
 
 def add_limits(parser: argparse.ArgumentParser) -> None:
-    """What FMUs that are not ours may take; `limits` reads it."""
+    """What FMUs that are not ours may take."""
     parser.add_argument(
         "--time-limit",
         type=seconds,
@@ -119,11 +115,6 @@ def add_limits(parser: argparse.ArgumentParser) -> None:
         metavar="MB",
         help=f"how much it may unpack to (default: {USUAL.unpacked / 1e6:.0f})",
     )
-
-
-def limits(args: argparse.Namespace) -> Limits:
-    """What the options of `add_limits` say."""
-    return Limits(args.time_limit, args.unpacked_limit)
 
 
 def add_output(parser: argparse.ArgumentParser, default: str, files: str, of_a_run: bool = False) -> None:
@@ -154,11 +145,7 @@ def assignment(text: str) -> tuple[str, float]:
     """`instance.parameter` and value of `instance.parameter=value`; true and false are 1 and 0."""
     name, equals, value = (part.strip() for part in text.partition("="))
     instance, dot, parameter = name.partition(".")
-    try:
-        number = {"true": 1.0, "false": 0.0}.get(value.lower())
-        number = float(value) if number is None else number
-    except ValueError:
-        number = None
+    number = {"true": 1.0, "false": 0.0}.get(value.lower(), real(value))
     if not (instance and dot and parameter and equals) or number is None:
         raise argparse.ArgumentTypeError(f"{quoted(text)} is not of the form plant.J_1=0.06")
     if not isfinite(number):
@@ -168,141 +155,28 @@ def assignment(text: str) -> tuple[str, float]:
 
 def seed(text: str) -> int:
     """A whole number that an FMI Integer holds."""
-    try:
-        number = int(text)
-    except ValueError:
-        number = -1
-    if not 0 <= number <= LARGEST_SEED:
-        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a whole number from 0 to {LARGEST_SEED}")
+    return count(text, 0, LARGEST_SEED)
+
+
+def count(text: str, least: int, most: int) -> int:
+    """A whole number between these."""
+    number = whole(text, len(str(most)))
+    if number is None or not least <= number <= most:
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a whole number from {least} to {most}")
     return number
 
 
 def seconds(text: str) -> float:
     """A time above 0 s."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
-    if not (isfinite(number) and number > 0.0):
+    number = real(text)
+    if number is None or not (isfinite(number) and number > 0.0):
         raise argparse.ArgumentTypeError(f"{quoted(text)} is not a time above 0 s")
     return number
 
 
 def megabytes(text: str) -> int:
     """A size above 0 MB, in bytes."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
-    if not (isfinite(number * 1e6) and number > 0.0):
+    number = real(text)
+    if number is None or not (isfinite(number * 1e6) and number > 0.0):
         raise argparse.ArgumentTypeError(f"{quoted(text)} is not a size above 0 MB")
     return round(number * 1e6)
-
-
-def blocks(args: argparse.Namespace) -> dict[str, Any]:
-    """The blocks of the loop beside the plant."""
-    return {place: getattr(args, place) for place in OTHERS}
-
-
-def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]:
-    """What the options of `add_loop` say for a plant and a build, as arguments of `harness.simulate.simulate`.
-
-    Raises:
-        WiringError: a text of --map is not of the form that it must have.
-        DrivelineError: a file of parameters is refused.
-    """
-    from ..cosimulation.mapping import parsed
-
-    mapping = parsed(args.map)
-    system = loop(plant, args.fmus, build, mapping=mapping, limits=limits(args), **blocks(args))
-    return {
-        "parameters": _from_files(args, system) | dict(args.assignments),
-        "seed": args.seed,
-        "folder": args.fmus,
-        "build": build,
-        "mapping": mapping,
-        "limits": limits(args),
-        **blocks(args),
-    }
-
-
-def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:
-    """What distinguishes a run of the loop from others: all that was set, and the FMUs: ours by the start values
-    that they were built with, others by their content.
-
-    Args:
-        given: of `settings`.
-        manoeuvre: None: several.
-    """
-    from fmus.origin import origin_of
-
-    from ..provenance import digest
-    from ..simulate import start
-
-    ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
-    others = {name: path for name, path in system.instances.items() if name not in system.own}
-    own = start(manoeuvre, given["seed"]) if manoeuvre else {}
-    return {
-        "fmus": {name: str(path) for name, path in system.instances.items()},
-        "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
-        "digests": {name: digest(path) for name, path in others.items() if path.is_file()},
-        "parameters": own | given["parameters"],
-        "seed": given["seed"],
-        "mapping": given["mapping"],
-    }
-
-
-def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
-    """`instance.parameter` -> value: what --vehicle and --parameters name, for every instance that has it.
-
-    Raises:
-        DrivelineError: a file is refused.
-        WiringError: an FMU that is not ours has a parameter of the same name in another unit.
-    """
-    if args.vehicle is None and args.parameters is None:
-        return {}
-    from fmus.errors import ParameterFileError
-    from fmus.parameter_files import for_instances, of_plants, read_files, units
-
-    from ..cosimulation.wiring import fit, require
-
-    interfaces = fit(system).interfaces
-    names = {
-        instance: {variable.name for variable in interface.of_causality("parameter")}
-        for instance, interface in interfaces.items()
-    }
-    try:
-        values = read_files(args.vehicle, args.parameters, others=set().union(*names.values()))
-    except ParameterFileError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
-    meant = {name: unit for name, unit in units().items() if name in values}
-    if args.vehicle is not None and args.parameters is None:
-        LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
-    plant = system.instances["plant"]
-    if plant.stem not in PLANTS and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
-        LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
-    require(
-        problem
-        for instance, interface in interfaces.items()
-        for name in sorted(names[instance] & meant.keys())
-        if (problem := _other_unit(interface, f"{instance}.{name}", meant[name], system.mapping))
-    )
-    return for_instances(values, names)
-
-
-def _other_unit(interface: Any, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:
-    """Why the number of a file, in the unit that is meant, does not reach the parameter `instance.name`, or None."""
-    from ..cosimulation.interface import unit_of
-    from ..cosimulation.units import factor
-
-    theirs = mapping.get(name, name.partition(".")[2])
-    unit = next(unit_of(variable) for variable in interface.description.modelVariables if variable.name == theirs)
-    if unit in (None, "", meant):
-        return None
-    try:
-        factor(unit, meant)
-    except ValueError as reason:
-        return f"{name} {reason}, the unit of the file"
-    if name in mapping:
-        return None
-    return f"{name} is in {unit}; the file gives it in {meant} (--map {name}={theirs} converts it)"

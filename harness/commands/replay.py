@@ -10,8 +10,9 @@ from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
 from .built import built
-from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, seconds, settings
+from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
+from .settings import blocks, distinguishing, settings
 
 LEGEND = legend(RideMetrics)
 

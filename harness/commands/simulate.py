@@ -7,8 +7,9 @@ from time import perf_counter
 from ..cosimulation.system import Scheme, loop
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
-from .options import add_loop, add_output, add_plant, add_printing, blocks, distinguishing, seconds, settings
+from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
+from .settings import blocks, distinguishing, settings
 
 DESCRIPTION = """\
 Runs the closed loop of controller, motor, plant and CAN bus through one manoeuvre and writes every

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import DrivelineError
 from ..names import nearest
+from ..numbers import real
 from ..plain import plain
 
 GAP_LIMIT = 3.0
@@ -132,11 +133,8 @@ def _named(header: list[str]) -> Iterator[tuple[str, str]]:
 
 def _number(path: Path, line: int, header: list[str], row: list[str], place: int) -> float:
     cell = row[place].strip() if place < len(row) else ""
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    value = real(cell)
+    if value is None or not math.isfinite(value):
         raise RecordingError(
             f"{path}, line {line}, column {header[place].strip()}: {plain(cell, LONGEST_CELL) or 'nothing'} "
             f"is not a finite number"

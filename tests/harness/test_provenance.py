@@ -13,7 +13,7 @@ from fmpy.util import read_csv
 from fmus.origin import ENTRY
 from harness import provenance
 from harness.cli import main
-from harness.commands.options import distinguishing
+from harness.commands.settings import distinguishing
 from harness.cosimulation.interface import Interface
 from harness.cosimulation.system import System, loop
 from harness.errors import DrivelineError

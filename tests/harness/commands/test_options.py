@@ -29,7 +29,9 @@ def test_an_assignment_has_a_name_and_a_number(text, pair):
     assert assignment(text) == pair
 
 
-@pytest.mark.parametrize("text", ["", "plant.J_1", "J_1=3", "plant.=3", ".J_1=3", "plant.J_1=", "plant.J_1=heavy"])
+@pytest.mark.parametrize(
+    "text", ["", "plant.J_1", "J_1=3", "plant.=3", ".J_1=3", "plant.J_1=", "plant.J_1=heavy", "plant.m=1_000"]
+)
 def test_what_is_no_assignment_is_answered_with_one(text):
     with pytest.raises(ArgumentTypeError, match=r"plant\.J_1=0\.06"):
         assignment(text)
@@ -43,14 +45,14 @@ def test_a_parameter_is_finite(value):
 
 def test_a_seed_is_what_an_fmi_integer_holds():
     assert [seed(str(number)) for number in (0, LARGEST_SEED)] == [0, LARGEST_SEED]
-    for text in ("-1", str(LARGEST_SEED + 1), "", "one", "1.0"):
+    for text in ("-1", str(LARGEST_SEED + 1), "", "one", "1.0", "1_000", "+1", " 1", "\u0661"):
         with pytest.raises(ArgumentTypeError, match="whole number from 0 to 2147483647"):
             seed(text)
 
 
 def test_a_time_is_above_zero_and_finite():
     assert seconds("1e-9") == 1e-9
-    for text in ("0", "-0.001", "nan", "inf", "", "1 s"):
+    for text in ("0", "-0.001", "nan", "inf", "", "1 s", "1_0", "\u0661", "infinity"):
         with pytest.raises(ArgumentTypeError, match="not a time above 0 s"):
             seconds(text)
 

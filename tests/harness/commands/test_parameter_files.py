@@ -3,7 +3,7 @@
 import pytest
 
 from harness.cli import main, parser
-from harness.commands.options import settings
+from harness.commands.settings import settings
 from harness.errors import DrivelineError, WiringError
 from tests import ROOT
 from tests.foreign import build_car

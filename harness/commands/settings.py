@@ -1,0 +1,128 @@
+"""What the options of a run say: the arguments of `harness.simulate.simulate`, and what tells runs apart."""
+
+import argparse
+import logging
+from collections.abc import Mapping
+from typing import Any
+
+from ..cosimulation.limits import Limits
+from ..cosimulation.system import PLANTS, System, loop
+from ..errors import DrivelineError
+from ..manoeuvres.manoeuvre import Manoeuvre
+from .options import OTHERS
+
+LOG = logging.getLogger(__name__)
+
+
+def blocks(args: argparse.Namespace) -> dict[str, Any]:
+    """The blocks of the loop beside the plant."""
+    return {place: getattr(args, place) for place in OTHERS}
+
+
+def limits(args: argparse.Namespace) -> Limits:
+    """What the options of `add_limits` say."""
+    return Limits(args.time_limit, args.unpacked_limit)
+
+
+def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]:
+    """What the options of `add_loop` say for a plant and a build, as arguments of `harness.simulate.simulate`.
+
+    Raises:
+        WiringError: a text of --map is not of the form that it must have.
+        DrivelineError: a file of parameters is refused.
+    """
+    from ..cosimulation.mapping import parsed
+
+    mapping = parsed(args.map)
+    system = loop(plant, args.fmus, build, mapping=mapping, limits=limits(args), **blocks(args))
+    return {
+        "parameters": _from_files(args, system) | dict(args.assignments),
+        "seed": args.seed,
+        "folder": args.fmus,
+        "build": build,
+        "mapping": mapping,
+        "limits": limits(args),
+        **blocks(args),
+    }
+
+
+def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:
+    """What distinguishes a run of the loop from others: all that was set, and the FMUs: ours by the start values
+    that they were built with, others by their content.
+
+    Args:
+        given: of `settings`.
+        manoeuvre: None: several.
+    """
+    from fmus.origin import origin_of
+
+    from ..provenance import digest
+    from ..simulate import start
+
+    ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
+    others = {name: path for name, path in system.instances.items() if name not in system.own}
+    own = start(manoeuvre, given["seed"]) if manoeuvre else {}
+    return {
+        "fmus": {name: str(path) for name, path in system.instances.items()},
+        "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
+        "digests": {name: digest(path) for name, path in others.items() if path.is_file()},
+        "parameters": own | given["parameters"],
+        "seed": given["seed"],
+        "mapping": given["mapping"],
+    }
+
+
+def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
+    """`instance.parameter` -> value: what --vehicle and --parameters name, for every instance that has it.
+
+    Raises:
+        DrivelineError: a file is refused.
+        WiringError: an FMU that is not ours has a parameter of the same name in another unit.
+    """
+    if args.vehicle is None and args.parameters is None:
+        return {}
+    from fmus.errors import ParameterFileError
+    from fmus.parameter_files import for_instances, of_plants, read_files, units
+
+    from ..cosimulation.wiring import fit, require
+
+    interfaces = fit(system).interfaces
+    names = {
+        instance: {variable.name for variable in interface.of_causality("parameter")}
+        for instance, interface in interfaces.items()
+    }
+    try:
+        values = read_files(args.vehicle, args.parameters, others=set().union(*names.values()))
+    except ParameterFileError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+    meant = {name: unit for name, unit in units().items() if name in values}
+    if args.vehicle is not None and args.parameters is None:
+        LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
+    plant = system.instances["plant"]
+    if plant.stem not in PLANTS and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
+        LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
+    require(
+        problem
+        for instance, interface in interfaces.items()
+        for name in sorted(names[instance] & meant.keys())
+        if (problem := _other_unit(interface, f"{instance}.{name}", meant[name], system.mapping))
+    )
+    return for_instances(values, names)
+
+
+def _other_unit(interface: Any, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:
+    """Why the number of a file, in the unit that is meant, does not reach the parameter `instance.name`, or None."""
+    from ..cosimulation.interface import unit_of
+    from ..cosimulation.units import factor
+
+    theirs = mapping.get(name, name.partition(".")[2])
+    unit = next(unit_of(variable) for variable in interface.description.modelVariables if variable.name == theirs)
+    if unit in (None, "", meant):
+        return None
+    try:
+        factor(unit, meant)
+    except ValueError as reason:
+        return f"{name} {reason}, the unit of the file"
+    if name in mapping:
+        return None
+    return f"{name} is in {unit}; the file gives it in {meant} (--map {name}={theirs} converts it)"
