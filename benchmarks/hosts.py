@@ -28,6 +28,7 @@ from harness.cosimulation.system import PLANTS, Scheme, System, loop
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.signals import lines
 from harness.simulate import signals
+from harness.stale import warn_of_stale
 
 from . import plain_loop
 from .timed import Timed
@@ -159,8 +160,9 @@ def measure(plant: str, steps: int, turns: int) -> dict[Contender, Run]:
     for _ in range(turns):
         for contender in CONTENDERS:
             if contender.present:
+                warn_of_stale(system := loop(plant, build=contender.build))
                 with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-                    run = pool.submit(contender.host, loop(plant, build=contender.build), steps).result()
+                    run = pool.submit(contender.host, system, steps).result()
                 best[contender] = min(run, best.get(contender, run))
     return best
 

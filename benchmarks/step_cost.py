@@ -29,6 +29,7 @@ from harness.cosimulation.steps import MakeSteps, Steps, interpreted
 from harness.cosimulation.system import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, System, chosen_build, loop
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
+from harness.stale import warn_of_stale
 
 from .timed import Timed
 
@@ -152,6 +153,7 @@ def timed(system: System, duration: float, make: MakeSteps, clock: Callable[[], 
 def measure(plant: str, build: str, duration: float, repetitions: int) -> Costs:
     """Lets the contenders take turns."""
     system, costs = loop(plant, build=build), Costs()
+    warn_of_stale(system)
     steps = round(duration / STEP_SIZE)
     for _ in range(repetitions):
         costs.master.append(timed(system, duration, CompiledSteps if LIBRARY else interpreted))

@@ -15,6 +15,7 @@ from .cosimulation.runs import run
 from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, loop
 from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
+from .stale import warn_of_stale
 
 LOG = logging.getLogger(__name__)
 
@@ -65,8 +66,10 @@ def simulate(
             given["plant.T_0"],
             manoeuvre.T_0,
         )
+    system = loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping, limits=limits)
+    warn_of_stale(system)
     return run(
-        loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping, limits=limits),
+        system,
         duration=manoeuvre.duration,
         step_size=step_size,
         inputs=signals(manoeuvre, control),

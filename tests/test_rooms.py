@@ -78,6 +78,30 @@ def test_a_room_imports_from_the_rooms_that_it_may(module: str) -> None:
     assert rooms_in(module) <= ROOMS[room] | {room}
 
 
+def reached(module: str) -> set[str]:
+    """All modules of ours that are imported with a module, itself among them."""
+    found, left = set(), [module]
+    while left:
+        name = left.pop()
+        if name not in found and source(name).is_file():
+            found.add(name)
+            left += imports(name)
+    return found
+
+
+@pytest.mark.parametrize("room", ["cosimulation", "manoeuvres", "metrics", "compliance"])
+def test_what_runs_any_fmu_knows_nothing_of_how_ours_are_made(room: str) -> None:
+    for module in modules():
+        if module.startswith(f"harness.{room}."):
+            assert not {name for name in reached(module) if name.startswith(("fmus.", "models."))}, module
+
+
+def test_what_makes_an_fmu_stale_is_asked_in_one_place() -> None:
+    for module in modules():
+        if module.startswith("harness.") and module.count(".") == 1 and module != "harness.stale":
+            assert not {name for name in imports(module) if name.startswith("fmus")}, module
+
+
 def test_the_models_use_the_standard_library_alone() -> None:
     for module in modules():
         if module.startswith("models."):

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from ..progress import progress
-from ..stale import warn_of_stale
 from ..told import warn_once
 from .apart import Apart
 from .compiled import LIBRARY, CompiledSteps, why_not
@@ -80,7 +79,6 @@ def loaded(
         SimulationError: an FMU cannot be loaded.
     """
     fitted = fit(system, inputs, parameters)
-    warn_of_stale(system)
     if reason := why_not():
         warn_once(reason)
     for name in fitted.absent:

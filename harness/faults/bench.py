@@ -15,6 +15,7 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines
 from ..metrics.evaluate import at_samples
 from ..simulate import signals, start
+from ..stale import warn_of_stale
 from .cases import DURATION, SITUATIONS, Case, Fault
 from .catalogue import ICE, LOCK, SPIN
 
@@ -134,7 +135,8 @@ class Bench:
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
-            self._fitted[plant] = fit(self._system(plant))
+            warn_of_stale(system := self._system(plant))
+            self._fitted[plant] = fit(system)
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
