@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
@@ -41,6 +41,41 @@ def _stop(number: int, frame: FrameType | None) -> None:
     for other in ENDING:  # what follows is the cleaning up
         signal.signal(other, signal.SIG_IGN)
     raise Stopped(number)
+
+
+@contextmanager
+def unswallowed() -> Iterator[None]:
+    """What a signal raises within it leaves it, even where the FMU whose Python it met has made a refusal of it."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    raised: list[BaseException] = []
+
+    def noting(handler: Callable[[int, FrameType | None], object]) -> Callable[[int, FrameType | None], None]:
+        def note(number: int, frame: FrameType | None) -> None:
+            try:
+                handler(number, frame)
+            except BaseException as stop:
+                raised.append(stop)
+                raise
+
+        return note
+
+    before = {number: handler for number in (signal.SIGINT, *ENDING) if callable(handler := signal.getsignal(number))}
+    within = {number: noting(handler) for number, handler in before.items()}
+    for number, handler in within.items():
+        signal.signal(number, handler)
+    try:
+        yield
+    except Exception:
+        if not raised:
+            raise
+    finally:
+        for number, handler in before.items():
+            if signal.getsignal(number) is within[number]:  # else it is ignored by now
+                signal.signal(number, handler)
+    if raised:
+        raise raised[0]
 
 
 @contextmanager

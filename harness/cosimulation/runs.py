@@ -8,6 +8,7 @@ from threading import local
 import numpy as np
 
 from ..errors import SimulationError
+from ..stopping import unswallowed
 from .loading import LoopApart, loaded
 from .master import Loop
 from .row import Source
@@ -34,10 +35,11 @@ def run(
     """
     names = inputs or (), parameters or ()
     wanted = duration, step_size, inputs, parameters, scheme, label
-    if _here.kept is not None:
-        return _here.kept.loop(system, *names).run(*wanted)
-    with loaded(system, *names) as loop:
-        return loop.run(*wanted)
+    with unswallowed():
+        if _here.kept is not None:
+            return _here.kept.loop(system, *names).run(*wanted)
+        with loaded(system, *names) as loop:
+            return loop.run(*wanted)
 
 
 @contextmanager

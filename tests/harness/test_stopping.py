@@ -4,12 +4,15 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
 from harness.cli import main
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import simulate
 from tests import ROOT
 
 COMPARE = [sys.executable, "-m", "harness", "compare", "--manoeuvre", "drive", "--plant", "TwoMassDriveline"]
@@ -42,6 +45,29 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
     assert (process.returncode, out, err) == (code, "", "driveline compare: stopped\n")
     assert list(temporary.iterdir()) == []
     assert [path for path in results.rglob("*") if path.is_file()] == []
+
+
+class Ended(Exception):
+    """What the handler of a signal raises."""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
+    built: Path, number: signal.Signals
+) -> None:
+    def end(*_: object) -> None:
+        raise Ended
+
+    before = signal.signal(number, end)
+    clock = threading.Timer(0.7, os.kill, (os.getpid(), number))
+    clock.start()
+    try:
+        with pytest.raises(Ended):
+            simulate(MANOEUVRES["drive"], plant="ValidationVehicle", folder=built, build="python")
+        assert signal.getsignal(number) is end
+    finally:
+        clock.join()
+        signal.signal(number, before)
 
 
 def test_a_signal_that_is_ignored_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
