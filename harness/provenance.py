@@ -6,16 +6,75 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from .cosimulation.interface import unit_of
-from .cosimulation.wiring import Fit
+from .cosimulation.system import System
+from .cosimulation.wiring import Fit, fit
 from .errors import DrivelineError
 from .reports.files import write_text
 
 ROOT = Path(__file__).resolve().parents[1]
+
+
+class Results:
+    """What a run writes, see `recorded`.
+
+    Attributes:
+        files: that it has written.
+    """
+
+    def __init__(self, record: Path, systems: Mapping[str, System]) -> None:
+        self.files: list[Path] = []
+        self._record = record
+        self._systems = systems
+
+    @cached_property
+    def fits(self) -> dict[str, Fit]:
+        """The systems that run, by their plants."""
+        return {plant: fit(system) for plant, system in self._systems.items()}
+
+    def begin(self, *others: Path) -> None:
+        """From now on files are replaced, so their records go: a run that stops leaves none that is not theirs.
+
+        Args:
+            others: records of parts of the results.
+        """
+        for record in (self._record, *others):
+            record.unlink(missing_ok=True)
+
+
+@contextmanager
+def recorded(
+    record: Path,
+    run: Mapping[str, Any],
+    systems: Mapping[str, System],
+    inputs: Sequence[Path | None],
+    results: Sequence[Path] = (),
+    replace: bool = False,
+) -> Iterator[Results]:
+    """Within it a run is made and written; at its end the record tells what made the files.
+
+    Args:
+        record: the JSON file beside the results.
+        run: all that distinguishes it.
+        systems: that run, by their plants.
+        inputs: files beside the FMUs that it reads.
+        results: files that it will write, as far as their names are known.
+        replace: whether results of another run may be replaced.
+
+    Raises:
+        DrivelineError: there are results of another run; nothing has been run.
+    """
+    if not replace:
+        require_same_run(record, run, results)
+    made = Results(record, systems)
+    yield made
+    write_record(record, run, made.fits, made.files, inputs)
 
 
 def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Path]) -> None:
@@ -42,12 +101,6 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
             return
         reason = f"is of another run ({changed})"
     raise DrivelineError(f"{there} {reason}; choose another --output, or --replace it")
-
-
-def forget(*records: Path) -> None:
-    """Removes the records of results that are about to be replaced: a run that stops leaves none that is not theirs."""
-    for record in records:
-        record.unlink(missing_ok=True)
 
 
 def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:

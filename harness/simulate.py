@@ -12,7 +12,7 @@ import numpy as np
 from .cosimulation.limits import USUAL, Limits
 from .cosimulation.row import Source
 from .cosimulation.runs import run
-from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, loop
+from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, System, loop
 from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
 from .stale import warn_of_stale
@@ -77,6 +77,11 @@ def simulate(
         scheme=scheme,
         label=manoeuvre.name,
     )
+
+
+def looped(plant: NameOrFile, settings: Mapping[str, Any]) -> System:
+    """The loop that `simulate` runs with a plant and these further arguments."""
+    return loop(plant, **{name: value for name, value in settings.items() if name not in ("parameters", "seed")})
 
 
 def _checked(parameters: dict[str, Any], control: Any) -> dict[str, Any]:

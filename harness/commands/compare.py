@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..cosimulation.system import PLANTS, loop
+from ..cosimulation.system import PLANTS
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
@@ -53,46 +53,40 @@ def run(args: argparse.Namespace) -> int:
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
-    from ..cosimulation.wiring import fit
-    from ..provenance import forget, require_same_run, write_record
+    from ..provenance import recorded, write_record
     from ..reports.terminal import print_table, runs_table
+    from ..simulate import looped
 
     out = Printer(args)
     todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
     given = {plant: settings(args, plant, build) for plant, build in builds.items()}
-    systems = {
-        plant: loop(plant, args.fmus, build, mapping=given[plant]["mapping"], **blocks(args))
-        for plant, build in builds.items()
-    }
+    systems = {plant: looped(plant, given[plant]) for plant in plants}
     record, tables = args.output / "compare.json", [args.output / name for name in ("table.md", "metrics.csv")]
     same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
     same["manoeuvres"] = list(dict.fromkeys(case.manoeuvre for case in todo))
-    if not args.replace:
-        require_same_run(record, same, tables)
-    forget(record, *(args.output / "runs" / f"{case.file_name}.json" for case in todo))
-    outcomes = run_cases(todo, args.output / "runs", given)
-    rows = [outcome.row for outcome in outcomes]
-    if not out.silent:
-        print_table(runs_table(rows))
-    for reason in reasons(rows):
-        out.say(reason)
-    out.say(f"{LEGEND}\n")
-    files = write_tables(outcomes, args.output)
-    figures = write_figures(outcomes, args.output)
-    fits = {Path(plant).stem: fit(system) for plant, system in systems.items()}
-    read = [args.vehicle, args.parameters]
-    for case in todo:
-        path = args.output / "runs" / f"{case.file_name}.csv"
-        own = distinguishing(given[case.plant], systems[case.plant], MANOEUVRES[case.manoeuvre])
-        one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
-        write_record(path.with_suffix(".json"), one, {case.plant_name: fits[case.plant_name]}, [path], read)
-    write_record(record, same, fits, [*files, *figures], read)
+    by_name, read = {Path(plant).stem: system for plant, system in systems.items()}, [args.vehicle, args.parameters]
+    signals = {case: args.output / "runs" / f"{case.file_name}.csv" for case in todo}
+    with recorded(record, same, by_name, read, tables, args.replace) as made:
+        made.begin(*(path.with_suffix(".json") for path in signals.values()))
+        outcomes = run_cases(todo, args.output / "runs", given)
+        rows = [outcome.row for outcome in outcomes]
+        if not out.silent:
+            print_table(runs_table(rows))
+        for reason in reasons(rows):
+            out.say(reason)
+        out.say(f"{LEGEND}\n")
+        tables, figures = write_tables(outcomes, args.output), write_figures(outcomes, args.output)
+        made.files += [*tables, *figures]
+        for case, path in signals.items():
+            own = distinguishing(given[case.plant], systems[case.plant], MANOEUVRES[case.manoeuvre])
+            one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
+            write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
     out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
-    out.say(f"tables:  {' '.join(str(path) for path in files)}")
+    out.say(f"tables:  {' '.join(map(str, tables))}")
     for figure in figures:
         if figure.suffix == ".png":
             out.say(f"figure:  {figure} (and .pdf)")
     out.say(f"signals: {args.output / 'runs'}/*.csv ({len(outcomes)} runs)")
     out.say(f"made by: {record} (version, FMUs, parameters, units), and one beside the signals of every run")
-    out.document({"runs": [outcome.record for outcome in outcomes], "files": [*files, *figures]})
+    out.document({"runs": [outcome.record for outcome in outcomes], "files": made.files})
     return 0

@@ -60,11 +60,11 @@ def run(args: argparse.Namespace) -> int:
     plants = list(dict.fromkeys(args.plant or PLANTS))
     given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.wiring import fit
-    from ..faults.bench import looped, with_faults
+    from ..faults.bench import with_faults
     from ..faults.campaign import campaign
     from ..faults.report import announce, write, write_case
-    from ..provenance import forget, require_same_run, write_record
+    from ..provenance import recorded
+    from ..simulate import looped
 
     out = Printer(args)
     systems = {plant: looped(plant, given[plant]) for plant in plants}
@@ -72,24 +72,25 @@ def run(args: argparse.Namespace) -> int:
     same |= {"cases": args.cases} if args.case is None else {"case": args.case}
     name, first = ("faults", "faults.csv") if args.case is None else (f"case_{args.case}", f"case_{args.case}.csv")
     record = args.output / f"{name}.json"
-    if not args.replace:
-        require_same_run(record, same, [args.output / first])
     with _injector(args.fmus) as injector:
-        forget(record)
-        if args.case is not None:
-            outcome, files = write_case(args.case, args.seed, injector, given, args.output)
-            outcomes = [outcome]
-            out.say(f"case {outcome.case}")
-        else:
-            outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
-            files = write(outcomes, _arguments(args), args.output)
-        fits = {Path(plant).stem: fit(with_faults(system, injector)) for plant, system in systems.items()}
-        write_record(record, same, fits, files, [args.vehicle, args.parameters])
+        tried = {Path(plant).stem: with_faults(system, injector) for plant, system in systems.items()}
+        read = [args.vehicle, args.parameters]
+        with recorded(record, same, tried, read, [args.output / first], args.replace) as made:
+            if args.case is not None:
+                made.begin()
+                outcome, files = write_case(args.case, args.seed, injector, given, args.output)
+                outcomes = [outcome]
+                out.say(f"case {outcome.case}")
+            else:
+                outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
+                made.begin()
+                files = write(outcomes, _arguments(args), args.output)
+            made.files += files
     if not out.silent:
         announce(outcomes)
-    for file in (*files, record):
+    for file in (*made.files, record):
         out.say(f"written: {file}")
-    out.document({"cases": [outcome.record for outcome in outcomes], "files": files})
+    out.document({"cases": [outcome.record for outcome in outcomes], "files": made.files})
     return int(any(outcome.failed for outcome in outcomes))
 
 

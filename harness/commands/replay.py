@@ -4,7 +4,7 @@ import argparse
 from hashlib import sha256
 from pathlib import Path
 
-from ..cosimulation.system import PLANTS, loop
+from ..cosimulation.system import PLANTS
 from ..errors import DrivelineError
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
@@ -63,34 +63,33 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
     from ..manoeuvres.road import RoadLoad, road, torque_limit
-    from ..provenance import forget, require_same_run, write_record
+    from ..provenance import recorded
     from ..replay import records, replay, write
     from ..reports.terminal import print_table, rides_reasons, rides_table
+    from ..simulate import looped
 
     out = Printer(args)
     recording = read_recording(args.recording)
     given, plant = settings(args, args.plant, build), Path(args.plant).stem
-    system = loop(args.plant, args.fmus, build, mapping=given["mapping"], **blocks(args))
+    system = looped(args.plant, given)
     interfaces, parameters = fit(system).interfaces, given["parameters"]
     load = RoadLoad.of_plant(interfaces["plant"], parameters)
     manoeuvre = road(recording, load, args.held, torque_limit(interfaces["motor"], parameters))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held}
     same |= distinguishing(given, system, manoeuvre)
-    if not args.replace:
-        require_same_run(record, same, [metrics])
-    out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {plant}, {build} FMUs, without and with damping")
-    rides = replay(manoeuvre, recording, args.plant, **given)
-    if not out.silent:
-        print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{plant} on {recording.name}"))
-    for reason in rides_reasons(rides[0].metrics, rides[1].metrics):
-        out.say(reason)
-    out.say(f"{LEGEND}\n")
-    forget(record)
-    files = write(rides, recording, plant, args.output)
     read = [args.recording, args.vehicle, args.parameters]
-    write_record(record, same, {plant: fit(system)}, files, read)
-    for file in (*files, record):
+    with recorded(record, same, {plant: system}, read, [metrics], args.replace) as made:
+        out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {plant}, {build} FMUs, without and with damping")
+        rides = replay(manoeuvre, recording, args.plant, **given)
+        if not out.silent:
+            print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{plant} on {recording.name}"))
+        for reason in rides_reasons(rides[0].metrics, rides[1].metrics):
+            out.say(reason)
+        out.say(f"{LEGEND}\n")
+        made.begin()
+        made.files += write(rides, recording, plant, args.output)
+    for file in (*made.files, record):
         out.say(f"written: {file}")
-    out.document({"runs": records(rides, recording, plant), "files": files})
+    out.document({"runs": records(rides, recording, plant), "files": made.files})
     return 0

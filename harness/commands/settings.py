@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..cosimulation.limits import Limits
-from ..cosimulation.system import PLANTS, System, loop
+from ..cosimulation.system import PLANTS, System
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .options import OTHERS
@@ -32,18 +32,17 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
         DrivelineError: a file of parameters is refused.
     """
     from ..cosimulation.mapping import parsed
+    from ..simulate import looped
 
-    mapping = parsed(args.map)
-    system = loop(plant, args.fmus, build, mapping=mapping, limits=limits(args), **blocks(args))
-    return {
-        "parameters": _from_files(args, system) | dict(args.assignments),
+    given = {
         "seed": args.seed,
         "folder": args.fmus,
         "build": build,
-        "mapping": mapping,
+        "mapping": parsed(args.map),
         "limits": limits(args),
         **blocks(args),
     }
+    return given | {"parameters": _from_files(args, looped(plant, given)) | dict(args.assignments)}
 
 
 def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:

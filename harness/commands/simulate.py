@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
-from ..cosimulation.system import Scheme, loop
+from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, seconds
@@ -69,10 +69,9 @@ def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.schedule import described, transfers
-    from ..cosimulation.wiring import fit
-    from ..provenance import forget, require_same_run, write_record
+    from ..provenance import recorded
     from ..reports.csv_file import write_csv
-    from ..simulate import simulate
+    from ..simulate import looped, simulate
 
     out = Printer(args)
     manoeuvre = MANOEUVRES[args.manoeuvre]
@@ -80,39 +79,35 @@ def run(args: argparse.Namespace) -> int:
     name = f"{plant}_{manoeuvre.name}_{args.control}"
     signals, record = args.output / f"{name}.csv", args.output / f"{name}.json"
     given = settings(args, args.plant, build)
-    system = loop(args.plant, args.fmus, build, mapping=given["mapping"], **blocks(args))
+    system = looped(args.plant, given)
     same = {"manoeuvre": manoeuvre.name, "damping": args.control, "step_size": args.step, "scheme": args.scheme}
     same |= distinguishing(given, system, manoeuvre)
-    if not args.replace:
-        require_same_run(record, same, [signals])
-    began = perf_counter()
-    results = simulate(
-        manoeuvre,
-        plant=args.plant,
-        control=args.control == "on",
-        step_size=args.step,
-        scheme=Scheme(args.scheme),
-        **given,
-    )
-    took = perf_counter() - began
-    out.say(
-        f"{manoeuvre.name} on {plant}, {build} FMUs, damping {args.control}: {manoeuvre.duration:g} s in {took:.2f} s"
-    )
-    fitted = fit(system)
-    if Scheme(args.scheme) is Scheme.PROPAGATED:
-        out.say(described(transfers(fitted.system, fitted.interfaces)))
-    forget(record)
-    write_csv(results, signals)
-    out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
-    files = [signals]
-    if args.plot:
-        from ..reports.run_figure import plot_run
+    read = [args.vehicle, args.parameters]
+    with recorded(record, same, {plant: system}, read, [signals], args.replace) as made:
+        began = perf_counter()
+        results = simulate(
+            manoeuvre,
+            plant=args.plant,
+            control=args.control == "on",
+            step_size=args.step,
+            scheme=Scheme(args.scheme),
+            **given,
+        )
+        took = perf_counter() - began
+        of_the_run = f"{manoeuvre.name} on {plant}, {build} FMUs, damping {args.control}"
+        out.say(f"{of_the_run}: {manoeuvre.duration:g} s in {took:.2f} s")
+        if Scheme(args.scheme) is Scheme.PROPAGATED:
+            out.say(described(transfers(made.fits[plant].system, made.fits[plant].interfaces)))
+        made.begin()
+        write_csv(results, signals)
+        made.files.append(signals)
+        out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
+        if args.plot:
+            from ..reports.run_figure import plot_run
 
-        title = f"{plant}, {manoeuvre.description}, damping {args.control}"
-        for figure in plot_run(results, title, args.output / name):
-            files.append(figure)
-            out.say(f"figure:  {figure}")
-    fits = {plant: fitted}
-    write_record(record, same, fits, files, [args.vehicle, args.parameters])
+            title = f"{plant}, {manoeuvre.description}, damping {args.control}"
+            for figure in plot_run(results, title, args.output / name):
+                made.files.append(figure)
+                out.say(f"figure:  {figure}")
     out.say(f"made by: {record} (version, FMUs, parameters, units)")
     return 0

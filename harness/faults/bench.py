@@ -9,12 +9,12 @@ import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
 from ..cosimulation.runs import run
-from ..cosimulation.system import Connection, Port, System, loop
+from ..cosimulation.system import Connection, Port, System
 from ..cosimulation.wiring import Fit, fit
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines
 from ..metrics.evaluate import at_samples
-from ..simulate import signals, start
+from ..simulate import looped, signals, start
 from ..stale import warn_of_stale
 from .cases import DURATION, SITUATIONS, Case, Fault
 from .catalogue import ICE, LOCK, SPIN
@@ -141,11 +141,6 @@ class Bench:
 
     def _system(self, plant: str) -> System:
         return with_faults(looped(plant, self._settings[plant]), self._injector)
-
-
-def looped(plant: str, given: Settings) -> System:
-    """The loop with a plant, without SignalFaults."""
-    return loop(plant, **{name: value for name, value in given.items() if name not in ("parameters", "seed")})
 
 
 def with_faults(system: System, injector: Path) -> System:

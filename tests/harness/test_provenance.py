@@ -11,7 +11,7 @@ import pytest
 from fmpy.util import read_csv
 
 from fmus.origin import ENTRY
-from harness import provenance
+from harness import provenance, simulate
 from harness.cli import main
 from harness.commands.settings import distinguishing
 from harness.cosimulation.interface import Interface
@@ -101,6 +101,18 @@ def test_a_run_that_stops_leaves_no_record_beside_what_it_did_not_make(
     monkeypatch.setattr(provenance, "write_record", stopped)
     assert main([*given, "--seed", "2", "--replace"]) != 0
     assert {path.name for path in tmp_path.iterdir()} == {f"{NAME}.csv"}
+
+
+def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(
+    made: Path, both_built: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    before = {path: path.read_bytes() for path in made.iterdir()}
+    monkeypatch.setattr(simulate, "run", stopped)
+    assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(made)]) != 0
+    assert {path: path.read_bytes() for path in made.iterdir()} == before
 
 
 def told_apart(system: System) -> dict[str, Any]:
