@@ -69,7 +69,7 @@ def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> I
                 if apart is None:
                     apart = Apart([interface.path.name] * 2, limits.call)
                     apart.ask(_receive, interface)
-                yield apart.ask(_judge, rule)
+                yield rule.verdict(apart.ask(_judge, rule))
             except SimulationError as error:
                 if apart:
                     apart.close()
@@ -95,8 +95,8 @@ def _receive(interface: Interface) -> None:
     _fmu = _files.enter_context(unpacked(interface))
 
 
-def _judge(rule: Rule) -> Verdict:
+def _judge(rule: Rule) -> list[str]:
     try:
-        return rule.judge(_fmu)
+        return rule.judge(_fmu).problems
     except Exception as error:  # nobody foresees what an FMU makes of a rule
-        return rule.verdict([f"cannot be tried: {type(error).__name__}: {plain(error)}"])
+        return [f"cannot be tried: {type(error).__name__}: {plain(error)}"]

@@ -16,6 +16,7 @@ from time import monotonic
 from typing import Any
 
 from ..errors import SimulationError
+from .answers import Answer, Bytes, Forged, receive
 from .whereabouts import FUNCTIONS, Whereabouts
 
 LOOK = 0.1
@@ -56,48 +57,69 @@ class Apart:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            bufsize=0,  # a thread that waits in a buffered reader does not let the interpreter end
             env=os.environ | dict.fromkeys(("TMPDIR", "TEMP", "TMP"), self._files.name),
             start_new_session=True,
         )
-        self._was_killed = False
-        self._answers: Queue[tuple[Any, Exception | None] | None] = Queue()
+        self._was_killed = self._has_forged = False
+        self._size = 0
+        self._answers: Queue[Answer | None] = Queue()
         Thread(target=self._listen, daemon=True).start()
 
-    def ask(self, function: Callable[..., Any], *arguments: Any, watch: Callable[[float], None] | None = None) -> Any:
-        """What a function, one that can be imported, answers in the process.
-
-        Args:
-            watch: is called now and then with the time in s at which the FMUs are.
+    def ask(self, function: Callable[..., Any], *arguments: Any) -> list[str]:
+        """The texts that a function, one that can be imported, answers in the process; none for None.
 
         Raises:
             SimulationError: an FMU has ended the process, or a call lasts too long; of no more use then.
-            Exception: what the function raised.
+            Exception: what the function raised, if it is one of `harness.cosimulation.answers.ERRORS`.
         """
-        with suppress(BrokenPipeError):
-            assert self._process.stdin is not None
-            pickle.dump((function, arguments), self._process.stdin, pickle.HIGHEST_PROTOCOL)
-            self._process.stdin.flush()
+        return list(self._asked(function, arguments, 0, None).texts)
+
+    def fetch(
+        self, size: int, function: Callable[..., Any], *arguments: Any, watch: Callable[[float], None] | None = None
+    ) -> Bytes:
+        """So many bytes, which a function answers in the process; raises as `ask` does.
+
+        Args:
+            watch: is called now and then with the time in s at which the FMUs are.
+        """
+        return self._asked(function, arguments, size, watch).content
+
+    def _asked(
+        self, function: Callable[..., Any], arguments: Sequence[Any], size: int, watch: Callable[[float], None] | None
+    ) -> Answer:
+        if not self.alive:
+            raise SimulationError(self._ended())
+        self._size = size
         try:
+            self._send(pickle.dumps((function, arguments), pickle.HIGHEST_PROTOCOL))
             answer = self._wait(watch)
         except BaseException:
             self._kill()  # an answer that comes later would be taken for that to the next question
             raise
         if answer is None:
-            self._answers.put(None)  # for whoever asks again
-            self._kill(PATIENCE)
+            self._kill(0.0 if self._has_forged else PATIENCE)
             raise SimulationError(self._ended())
-        value, error = answer
-        if error is not None:
-            raise error
-        return value
+        if answer.error is not None:
+            raise answer.error
+        return answer
 
-    def _wait(self, watch: Callable[[float], None] | None) -> tuple[Any, Exception | None] | None:
+    def _send(self, question: bytes) -> None:
+        assert self._process.stdin is not None
+        left = memoryview(question)
+        with suppress(BrokenPipeError):
+            while left:
+                left = left[self._process.stdin.write(left) :]
+
+    def _wait(self, watch: Callable[[float], None] | None) -> Answer | None:
         seen, since = self._at(), monotonic()
         while True:
-            try:
+            alive = self.alive  # before the look at the answers: the last one may just have come
+            with suppress(Empty):
                 return self._answers.get(timeout=LOOK)
-            except Empty:
-                now = self._at()
+            if not alive:
+                return None  # what it has begun and left behind may hold the pipe open
+            now = self._at()
             if now != seen:
                 seen, since = now, monotonic()
             elif now[1] and monotonic() - since > self._longest_call:
@@ -107,18 +129,21 @@ class Apart:
 
     def close(self) -> None:
         """Ends it and removes its files."""
-        with suppress(BrokenPipeError):
-            assert self._process.stdin is not None
-            self._process.stdin.close()
+        assert self._process.stdin is not None
+        self._process.stdin.close()
         self._kill(PATIENCE)
         self._files.cleanup()
 
     def _listen(self) -> None:
-        """Passes on answers until the process has ended."""
+        """Passes on answers until the process has ended, or has written what is none."""
         assert self._process.stdout is not None
-        with suppress(Exception):  # an FMU may write what it likes, where it likes
+        try:
             while True:
-                self._answers.put(pickle.load(self._process.stdout))
+                self._answers.put(receive(self._process.stdout.read, lambda: self._size))
+        except Forged:
+            self._has_forged = True
+        except (EOFError, OSError, MemoryError):
+            pass
         self._answers.put(None)
 
     @property
@@ -139,6 +164,8 @@ class Apart:
         self._process.wait()
 
     def _ended(self) -> str:
+        if self._has_forged:
+            return self._call("wrote among the answers of the process that it ran in, in")
         if self._was_killed:
             return self._call("gave no more answers and was ended, in")
         code = self._process.returncode

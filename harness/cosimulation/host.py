@@ -1,6 +1,6 @@
 """The process in which FMUs that are not ours run: answers what `harness.cosimulation.apart` asks.
 
-A question is a function and its arguments, pickled; so is the answer. Whatever FMUs print is thrown away, and
+A question is a function and its arguments, pickled; the answer is plain data. Whatever FMUs print is thrown away, and
 nothing they do reaches the process that asks.
 """
 
@@ -15,6 +15,7 @@ from time import sleep
 from typing import Any, BinaryIO
 
 from . import whereabouts
+from .answers import Answer, Bytes, send
 
 
 def main() -> None:
@@ -30,16 +31,16 @@ def main() -> None:
             break
         answer = _answer(function, arguments)
         whereabouts.rest()  # writing the answer may take longer than a call may
-        pickle.dump(answer, answers, pickle.HIGHEST_PROTOCOL)
-        answers.flush()
+        send(answer, answers)
     os._exit(0)  # what FMUs have registered to be done at exit is not done
 
 
-def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Exception | None]:
+def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Answer:
     try:
-        return function(*arguments), None
+        value = function(*arguments)
     except Exception as error:
-        return None, error.with_traceback(None)
+        return Answer(error=error)
+    return Answer(content=value) if isinstance(value, Bytes) else Answer(texts=value or ())
 
 
 def _silenced() -> tuple[BinaryIO, BinaryIO]:

@@ -17,11 +17,11 @@ from .apart import Apart
 from .compiled import LIBRARY, CompiledSteps, why_not
 from .instance import label
 from .master import Loop, opened
-from .row import Source, instants, sampled
+from .row import Layout, Source, instants, sampled
 from .schedule import described, transfers
 from .steps import MakeSteps, interpreted
 from .system import Scheme, System
-from .wiring import Fit, fit
+from .wiring import Fit, fit, require, unknown
 
 LOG = logging.getLogger(__name__)
 
@@ -29,8 +29,9 @@ LOG = logging.getLogger(__name__)
 class LoopApart:
     """Loaded FMUs that run together in a process of their own; see `harness.cosimulation.master.Loop`."""
 
-    def __init__(self, apart: Apart) -> None:
+    def __init__(self, apart: Apart, fitted: Fit) -> None:
         self._apart = apart
+        self._fitted = fitted
 
     def reset(self) -> None:
         """As `Loop.reset`."""
@@ -52,10 +53,14 @@ class LoopApart:
             SimulationError: an FMU refused a call, ended the process, crashed, or did not return from a call.
         """
         time = instants(duration, step_size)
+        require(unknown(self._fitted, inputs or (), parameters or ()))
         samples = {name: sampled(name, source, time) for name, source in (inputs or {}).items()}
         wanted = duration, step_size, samples, dict(parameters or {}), scheme
+        layout = Layout(self._fitted.interfaces, [name for name in samples if name not in self._fitted.absent])
+        size = len(time) * layout.recorded.itemsize
         with progress(len(time) - 1, label) as done:
-            return self._apart.ask(_run, *wanted, watch=lambda now: done(round(now / step_size)))
+            rows = self._apart.fetch(size, _run, *wanted, watch=lambda now: done(round(now / step_size)))
+        return np.frombuffer(rows, layout.recorded)
 
 
 @contextmanager
@@ -98,7 +103,7 @@ def _apart(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator[
     apart = Apart(names, fitted.system.limits.call, folder)
     try:
         apart.ask(_load, fitted, make_steps)
-        yield LoopApart(apart)
+        yield LoopApart(apart, fitted)
         if apart.alive:
             apart.ask(_unload)
     finally:
@@ -120,8 +125,8 @@ def _reset() -> None:
     _loop.reset()
 
 
-def _run(*wanted: Any) -> np.ndarray:
-    return _loop.run(*wanted)
+def _run(*wanted: Any) -> memoryview:
+    return _loop.run(*wanted).view(np.uint8).data
 
 
 def _unload() -> None:

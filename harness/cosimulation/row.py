@@ -114,6 +114,7 @@ class Layout:
     Attributes:
         dtype: of a row, all Booleans as whole numbers.
         known: number of bytes at the beginning of a row that are known in advance.
+        recorded: dtype of a row of the results, Booleans as such.
     """
 
     def __init__(self, interfaces: Mapping[str, Interface], inputs: Collection[str]) -> None:
@@ -135,7 +136,7 @@ class Layout:
         self._truths = [name for name, kind in types.items() if kind == "Boolean"]
         for place in map(names.index, self._truths):
             formats[place], offsets[place] = "?", offsets[place] + TRUTH_BYTE
-        self._results = np.dtype(
+        self.recorded = np.dtype(
             {"names": names, "formats": formats, "offsets": offsets, "itemsize": self.dtype.itemsize}
         )
 
@@ -160,7 +161,7 @@ class Layout:
         """The same memory with the Booleans as such."""
         for name in self._truths:
             table[name] = table[name] != 0
-        return table.view(self._results)
+        return table.view(self.recorded)
 
 
 def _variable(name: str, interfaces: Mapping[str, Interface]) -> ModelVariable:

@@ -1,13 +1,18 @@
 """Whatever an FMU of somebody else's does: one line that names it and the call, and nothing is left behind."""
 
+import json
+import pickle
 import subprocess
 import sys
 import time
+from io import BytesIO
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from harness.cosimulation import apart
+from harness.cosimulation.answers import LENGTH, Answer, Forged, receive, send
 from harness.cosimulation.apart import Apart
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.limits import Limits
@@ -17,7 +22,7 @@ from harness.cosimulation.steps import interpreted
 from harness.cosimulation.system import System
 from harness.cosimulation.system import loop as looped
 from harness.cosimulation.whereabouts import current, note
-from harness.errors import SimulationError
+from harness.errors import SimulationError, WiringError
 from tests import ROOT
 from tests.foreign.stranger import build_stranger
 
@@ -105,23 +110,105 @@ def test_a_stranger_that_cuts_off_its_process_has_not_crashed(tmp_path, monkeypa
         run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
 
 
-class Slow:
-    """What takes 0.5 s to be pickled."""
+class Slow(list):
+    """Texts that take 0.5 s to be sent."""
 
-    def __reduce__(self):
+    def __iter__(self):
         time.sleep(0.5)
-        return list, ()
+        return super().__iter__()
 
 
 def slow_after_a_call():
     note(0, "fmi2Terminate")
-    return Slow()
+    return Slow(["slow"])
 
 
 def test_writing_a_large_answer_is_no_call_that_hangs():
     process = Apart(["stranger.fmu"], 0.2)
-    assert process.ask(slow_after_a_call) == []
+    assert process.ask(slow_after_a_call) == ["slow"]
     process.close()
+
+
+FORGED = """
+for (int k = 3; k < 20; k++) {
+    static const char answer[] = BYTES;
+    write(k, answer, sizeof answer - 1);
+}
+for (;;) usleep(1000)
+"""
+
+
+def in_c(content: bytes) -> str:
+    return '"' + "".join(f"\\{byte:03o}" for byte in content) + '"'
+
+
+class Harmful:
+    """What leaves a file behind when it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return Path.touch, (self.path,)
+
+
+def framed(told):
+    line = json.dumps(told).encode()
+    return LENGTH.pack(len(line)) + line
+
+
+def test_nothing_that_a_stranger_writes_among_the_answers_is_run(tmp_path):
+    pickled = pickle.dumps((Harmful(tmp_path / "harm"), None))
+    does = " ".join(FORGED.replace("BYTES", in_c(pickled)).split())
+    with pytest.raises(SimulationError, match=r"wrote among the answers .* in fmi2DoStep at 0 s"):
+        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
+    assert not (tmp_path / "harm").exists()
+
+
+@pytest.mark.parametrize(
+    "bytes_",
+    [
+        LENGTH.pack(2**63),
+        framed({"texts": [], "size": 2**62, "error": None}),
+        framed({"texts": [1], "size": 3, "error": None}),
+        framed({"texts": "abc", "size": 3, "error": None}),
+        framed({"texts": [], "size": 3}),
+        framed({"texts": [], "size": 3, "error": ["SimulationError"]}),
+        framed(["texts"]),
+        LENGTH.pack(10**5) + b"[" * 10**5,
+    ],
+)
+def test_what_is_no_answer_to_the_question_is_forged(bytes_):
+    with pytest.raises(Forged):
+        receive(BytesIO(bytes_).read, lambda: 3)
+
+
+def test_an_answer_arrives_as_it_was_sent():
+    pipe = BytesIO()
+    send(Answer(("one", "two")), pipe)
+    send(Answer(content=b"abc"), pipe)
+    send(Answer(error=WiringError("wrong")), pipe)
+    send(Answer(error=ValueError("odd\033[31m")), pipe)
+    pipe.seek(0)
+    assert receive(pipe.read, lambda: 0) == Answer(["one", "two"])
+    assert receive(pipe.read, lambda: 3) == Answer([], b"abc")
+    answers = [receive(pipe.read, lambda: 3) for _ in range(2)]
+    assert [(type(answer.error), str(answer.error)) for answer in answers] == [
+        (WiringError, "wrong"),
+        (SimulationError, "ValueError: odd [31m"),
+    ]
+    with pytest.raises(EOFError):
+        receive(pipe.read, lambda: 0)
+
+
+@pytest.mark.parametrize("own_session", ["", "setsid();"])
+def test_what_a_stranger_leaves_behind_is_not_waited_for(tmp_path, own_session):
+    """A child that it has forked holds the pipe of the answers for 20 s."""
+    does = f"{LATER} {{ if (fork() == 0) {{ {own_session} sleep(20); _exit(0); }} _exit(3); }}"
+    begun = time.monotonic()
+    with pytest.raises(SimulationError, match=r"with exit code 3, in fmi2DoStep at 0\.1 s"):
+        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
+    assert time.monotonic() - begun < 10.0
 
 
 RUN = """
