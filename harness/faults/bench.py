@@ -60,11 +60,13 @@ class Runs(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """What the controller may demand, what it may add to the driver's demand, and take from it, N.m."""
+    """What the controller may demand, what it may add to the driver's demand, and take from it, N.m; and the largest
+    speed that it takes for plausible, rad/s."""
 
     T_max: float
     T_add_max: float
     T_take_max: float
+    omega_max: float
 
 
 class Bench:
@@ -101,7 +103,7 @@ class Bench:
             start = float(variable.start) if variable and variable.start else np.inf
             return float(given.get(f"controller.{name}", start))
 
-        return Limits(value("T_max"), value("T_add_max"), value("T_take_max"))
+        return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"))
 
     def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
         key = plant, situation, noise, on_ice, control

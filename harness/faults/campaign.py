@@ -9,7 +9,8 @@ from typing import Any
 from ..many import run_many
 from .bench import Bench, Limits, Runs, Settings
 from .cases import Case, case
-from .judges import JUDGES, Evidence
+from .evidence import Evidence
+from .judges import JUDGES
 
 
 @dataclass(frozen=True)

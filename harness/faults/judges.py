@@ -5,7 +5,7 @@ shares behind the limits are those of the requirements: a wrong signal is notice
 within 0.5 s, and the drive train never swings 1.2 times as much as without control.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 
@@ -14,62 +14,25 @@ import numpy as np
 from ..metrics.evaluate import T_S
 from ..metrics.oscillation import amplitude
 from ..metrics.spectrum import band_rms
-from .bench import Limits, Runs
-from .cases import DURATION, Fault
 from .catalogue import MOTOR_SPEED, MOTOR_TORQUE
-
-WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, FALLBACK = 2, 3, 4
-"""Status of the controller."""
-
-WRONG_SPEED = 40.0
-"""Error of a speed in rad/s that has to be noticed."""
-
-RIGHT_SPEED = 20.0
-"""Error of the wheel speed in rad/s up to which it shows that the motor speed is wrong."""
-
-SILENCE = 0.06
-"""s without a message; longer than ever between healthy ones."""
+from .evidence import (
+    FALLBACK,
+    WITH_WHEEL_SPEED,
+    WITHOUT_WHEEL_SPEED,
+    Evidence,
+    motor_is_too_fast,
+    motor_signal_is_wrong,
+    signals_part,
+    time_since,
+    unchanged_for,
+    wheel_speed_is_bad,
+)
 
 NOTICED, STALE, BACK = 0.05, 0.15, 0.5
 """Times in s: to notice a wrong motor signal; to notice that no message comes; to be as before."""
 
 LEAST_RMS, LEAST_SWING = 1.0, 5.0
 """What the gear torque may always swing, N.m: rms and amplitude."""
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What the judges see.
-
-    Attributes:
-        runs: at the samples of the controller.
-        faults: of the case.
-        limits: of the controller.
-    """
-
-    runs: Runs
-    faults: Sequence[Fault]
-    limits: Limits
-
-    @property
-    def t(self) -> np.ndarray:
-        return self.runs.faulty["time"]
-
-    @property
-    def status(self) -> np.ndarray:
-        return self.runs.faulty["controller.status"]
-
-    @property
-    def begin(self) -> float:
-        """The instant before which nothing is wrong."""
-        return min(fault.begin for fault in self.faults)
-
-    @property
-    def end(self) -> float:
-        """The instant from which the signals are right again; inf if they stay wrong or nothing is wrong with them."""
-        return max(
-            (fault.end if fault.end < DURATION else inf for fault in self.faults if fault.kind.number), default=inf
-        )
 
 
 @dataclass(frozen=True)
@@ -103,59 +66,48 @@ def time_blind(seen: Evidence) -> float:
     return _longest_lag(motor_signal_is_wrong(seen), damping)
 
 
-def motor_signal_is_wrong(seen: Evidence) -> np.ndarray:
-    """Where it is: no number, a torque beyond all limits, or a speed that a good message contradicts."""
-    run = seen.runs.faulty
-    speed, torque = run["faults.omega_1_meas"], run["faults.T_mot_est"]
-    absurd = ~np.isfinite(speed) | ~(np.abs(torque) <= 2.0 * seen.limits.T_max)
-    contradicted = np.abs(speed - run["motor.omega_1_meas"]) > WRONG_SPEED
-    return absurd | (contradicted & message_is_good(seen))
-
-
-def message_is_good(seen: Evidence) -> np.ndarray:
-    """Where the controller has a wheel speed that is valid, right and not old."""
-    run = seen.runs.faulty
-    right = np.abs(run["faults.omega_2_can"] - run["plant.omega_2"]) <= RIGHT_SPEED
-    return run["faults.valid"] & run["can.valid"] & right & (_unchanged_for(run["faults.counter"]) <= SILENCE)
-
-
 def time_deaf(seen: Evidence) -> float:
     """Longest time in s after which bad messages still count as wheel speed; 0 if all are good."""
-    run = seen.runs.faulty
-    speed = run["faults.omega_2_can"]
-    absurd = ~run["faults.valid"] | ~np.isfinite(speed) | (_unchanged_for(run["faults.counter"]) > SILENCE)
-    return _longest_lag(absurd, seen.status == WITH_WHEEL_SPEED)
+    return _longest_lag(wheel_speed_is_bad(seen), seen.status == WITH_WHEEL_SPEED)
 
 
 def time_of_false_alarm(seen: Evidence) -> float:
-    """Time in s in fallback without a fault of a motor signal now or in the last 0.5 s, or for one to be tolerated."""
-    alarm = seen.status == FALLBACK
+    """Time in s in fallback that nothing calls for, nor did in the last 0.5 s: no fault of a motor signal but one to be
+    tolerated, no wheel speed that parts from the motor speed unnoticed, no motor that turns too fast."""
+    called_for = signals_part(seen) | motor_is_too_fast(seen)
     for fault in seen.faults:
         if fault.kind.signal in (MOTOR_SPEED, MOTOR_TORQUE) and not fault.kind.tolerable:
-            alarm &= ~((seen.t >= fault.begin) & (seen.t < fault.end + BACK))
+            called_for |= (seen.t >= fault.begin) & (seen.t < fault.end)
+    alarm = (seen.status == FALLBACK) & (time_since(called_for) > BACK + 0.5 * T_S)
     return T_S * float(alarm.sum())
 
 
 def time_to_return(seen: Evidence) -> float:
-    """Time in s from the end of the faults until the status is that of a healthy controller for good."""
+    """Time in s from the end of the faults until the status is that of a healthy controller for good.
+
+    What is valid in one sample is answered in the next. A motor that turns too fast is not the fault's doing.
+    """
     if seen.end == inf:
         return 0.0
-    healthy = seen.runs.healthy["controller.status"]
-    lacks_wheel = (seen.status == WITHOUT_WHEEL_SPEED) & (healthy == WITH_WHEEL_SPEED) & seen.runs.faulty["can.valid"]
-    other = np.flatnonzero(((seen.status == FALLBACK) | lacks_wheel) & (seen.t >= seen.end))
+    healthy, valid = seen.runs.healthy["controller.status"], seen.runs.faulty["can.valid"]
+    lacks_wheel = (seen.status == WITHOUT_WHEEL_SPEED) & (healthy == WITH_WHEEL_SPEED)
+    lacks_wheel[1:] &= valid[1:] & valid[:-1]
+    falls_back = (seen.status == FALLBACK) & (time_since(motor_is_too_fast(seen)) > BACK)
+    other = np.flatnonzero((falls_back | lacks_wheel) & (seen.t >= seen.end))
     return float(seen.t[other[-1]]) + T_S - seen.end if len(other) else 0.0
 
 
 def kick(seen: Evidence) -> float:
-    """Largest torque in N.m that the controller adds once it is back, less what it adds without the fault and less by
-    how much the gear torque differs from that run in the 0.2 s before."""
+    """Largest torque in N.m that the controller adds once it is back, beyond what lies between nothing and what it adds
+    without the fault, less by how much the gear torque differs from that run in the 0.2 s before."""
     if seen.end == inf:
         return 0.0
     fell = np.flatnonzero((seen.status == FALLBACK) & (seen.t >= seen.end))
     since = seen.t[fell[-1]] if len(fell) else seen.end + BACK
-    other = np.abs(_difference(seen, "controller.T_damp"))
-    swing = np.abs(_difference(seen, "plant.T_gear"))
-    excess = other - _largest_before(swing, round(0.2 / T_S))
+    added, usual = (run["controller.T_damp"] for run in (seen.runs.faulty, seen.runs.healthy))
+    beyond = np.abs(added - np.clip(added, np.minimum(usual, 0.0), np.maximum(usual, 0.0)))
+    swing = np.abs(seen.runs.faulty["plant.T_gear"] - seen.runs.healthy["plant.T_gear"])
+    excess = beyond - _largest_before(swing, round(0.2 / T_S))
     return float(excess[seen.t > since].max(initial=0.0))
 
 
@@ -181,20 +133,9 @@ def ratio_of_swing(seen: Evidence) -> float:
     return float(with_fault) / max(float(undamped), float(without), LEAST_SWING)
 
 
-def _difference(seen: Evidence, column: str) -> np.ndarray:
-    return seen.runs.faulty[column] - seen.runs.healthy[column]
-
-
-def _unchanged_for(x: np.ndarray) -> np.ndarray:
-    """For how long x has been what it is, in s."""
-    k = np.arange(len(x))
-    changed = np.concatenate(([True], x[1:] != x[:-1]))
-    return T_S * (k - np.maximum.accumulate(np.where(changed, k, 0)))
-
-
 def _longest_lag(wrong: np.ndarray, believed: np.ndarray) -> float:
     """Longest time in s from the beginning of a stretch that is wrong to where it is still believed."""
-    return float(np.where(wrong & believed, _unchanged_for(wrong) + T_S, 0.0).max())
+    return float(np.where(wrong & believed, unchanged_for(wrong) + T_S, 0.0).max())
 
 
 def _largest_before(x: np.ndarray, samples: int) -> np.ndarray:

@@ -34,9 +34,14 @@ and lasts 10 ms to 1 s, uniform in the logarithm, if nothing else is said (0.2 t
 {judges}
 
 *Wrong* is a motor signal that is no number, a torque beyond twice T_max, or a motor speed that is more than 40 rad/s
-off while a valid wheel speed says so. The swing that is called for is how much the gear torque differed from the run
-without the fault in the 0.2 s before. Beside an undamped gear torque below 1 N.m rms (5 N.m of swing), as in standing,
-these stand in its place.
+and 6 % off while a wheel speed that has been valid for 0.06 s says so.
+*Fallback* is called for by a fault of a motor signal, in the 0.5 s after it too; by a wheel speed that is wrong and has
+drifted away from the motor speed, or was wrong from its first message on, since then nothing tells which of the two is;
+and by a motor that turns faster than `omega_max`, as it does when wheels spin on ice to the end of a run.
+*Back* counts a wheel speed as missing from the second sample on in which it is valid: controllers answer with the next.
+A *kick* is what is beyond both nothing and the torque added without the fault. What the swing calls for is how much
+the gear torque differed from the run without the fault in the 0.2 s before. Beside an undamped gear torque below
+1 N.m rms (5 N.m of swing), as in standing, these stand in its place.
 
 ## Single faults
 

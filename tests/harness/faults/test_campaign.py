@@ -9,7 +9,7 @@ from harness.cosimulation.runs import run
 from harness.cosimulation.system import loop
 from harness.cosimulation.wiring import fit
 from harness.errors import WiringError
-from harness.faults import catalogue, judges
+from harness.faults import catalogue, evidence
 from harness.faults.bench import Bench, with_faults
 from harness.faults.campaign import campaign
 from harness.faults.cases import SITUATIONS, Case, Fault, case
@@ -43,7 +43,7 @@ def test_faults_and_states_are_numbered_as_in_the_models():
     for name in signals_ + faults:
         assert getattr(catalogue, name) == getattr(signal_faults, name)
     for name in ("WITH_WHEEL_SPEED", "WITHOUT_WHEEL_SPEED", "FALLBACK"):
-        assert getattr(judges, name) == getattr(supervision, name)
+        assert getattr(evidence, name) == getattr(supervision, name)
 
 
 def test_half_of_the_cases_are_pairs_of_different_kinds():
