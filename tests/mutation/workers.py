@@ -3,6 +3,7 @@
 import math
 import os
 import pickle
+import re
 import resource
 import shutil
 import stat
@@ -93,7 +94,7 @@ def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
 
     def result(fmu: Any, *others: Any) -> Any:
         starts = [record._field_defaults for record in (fmu.block.Parameters, fmu.block.Input)]
-        asked = repr((function.__module__, function.__name__, fmu.name, fmu.stop_time, starts, others))
+        asked = re.sub(" at 0x[0-9a-f]+", "", repr((function.__module__, function.__name__, fmu, starts, others)))
         kept = Path("kept", md5(asked.encode(), usedforsecurity=False).hexdigest())
         if not kept.exists():
             kept.write_bytes(pickle.dumps(function(fmu, *others)))
