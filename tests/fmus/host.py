@@ -1,6 +1,8 @@
 """A small host for the tests: variables by name, and everything the FMU logs."""
 
 from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
 
 import fmpy
 import pytest
@@ -14,11 +16,17 @@ from fmpy.fmi2 import (
 )
 
 
+@cache
+def description(path, _changed):
+    """The model description of an FMU, read once."""
+    return fmpy.read_model_description(str(path))
+
+
 class Host:
     """One instance of an FMU, the text of the last message it logged and the status of the last refusal."""
 
     def __init__(self, path, unpacked, name="instance"):
-        self.description = fmpy.read_model_description(str(path))
+        self.description = description(path, Path(path).stat().st_mtime_ns)
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.message = ""
         self.status = 0
@@ -76,11 +84,11 @@ class Host:
 
 @contextmanager
 def opened(path, folder, name="instance"):
-    """An instance of the FMU, unpacked into the folder if that is empty, and freed at the end."""
+    """An instance of the FMU, what it needs to run unpacked into the folder if that is empty, and freed at the end."""
     folder = folder.resolve()
     folder.mkdir(exist_ok=True)
     if not any(folder.iterdir()):
-        fmpy.extract(str(path), str(folder))
+        fmpy.extract(str(path), str(folder), include=lambda entry: not entry.startswith(("sources/", "documentation/")))
     host = Host(path, folder, name)
     try:
         yield host
