@@ -19,11 +19,28 @@ TOLERANCE = 1e-5
 SMALL, SMALL_TWIST = 1e-2, 1e-4
 """What is added to the size of a state: in its unit (rad/s, m/s, ...), and in rad or m, as springs are stiff."""
 
+LEAST_CHANGE, MOST_CHANGE, SAFETY = 0.2, 5.0, 0.9
+"""From one step to the next; of the length that the error allows."""
+
 GREATEST = 1e300
 """Of the sums of squares from which an error is made; beyond it the error is without bound."""
 
 Weights = dict[int, float]
 """Of the stages, by their numbers."""
+
+
+def change(error: float, halvings: int) -> float:
+    """Length of a step over that of the one before, whose error over what is allowed was that.
+
+    As the error grows with h^q, it is SAFETY error^(-1/q), but LEAST_CHANGE to MOST_CHANGE (Hairer, Norsett, Wanner,
+    section II.4); q, the order of the estimate plus 1, is 2^halvings here.
+    """
+    root = error
+    for _ in range(halvings):
+        root = math.sqrt(root)
+    if root == 0.0:
+        return MOST_CHANGE
+    return min(max(SAFETY / root, LEAST_CHANGE), MOST_CHANGE) if root == root else LEAST_CHANGE
 
 
 def small_sizes(block: ContinuousBlock) -> tuple[float, ...]:

@@ -7,15 +7,12 @@ Kinks are left to the error of the steps.
 import math
 from typing import Any
 
-from .explicit import TOLERANCE, small_sizes
+from .explicit import TOLERANCE, change, small_sizes
 from .rodas import GAMMA, A, G
 from .types import ContinuousBlock
 
 DIFFERENCE = 1e-7
 """By what a state is moved for a difference, over its size."""
-
-LEAST_CHANGE, MOST_CHANGE, SAFETY = 0.2, 5.0, 0.9
-"""From one step to the next; of the length that the error allows."""
 
 SHORTEST_STEP = 1e-13
 """In s: a step that must be shorter is not made."""
@@ -58,7 +55,7 @@ class Implicit:
                 J = self._jacobian(x, dx, u, p)
             elif length < SHORTEST_STEP:
                 break
-            length = min(left, length * change(error))
+            length = min(left, length * change(error, 2))
         raise NotIntegrable(self._fastest(x, dx))
 
     def _jacobian(self, x: Any, dx: Any, u: Any, p: Any) -> Matrix:
@@ -96,12 +93,6 @@ class Implicit:
         """The name of the state that changes fastest for its size."""
         changes = [abs(dx[n]) / (abs(x[n]) + self._small[n]) for n in self._size]
         return self._State._fields[max(self._size, key=lambda n: changes[n])]
-
-
-def change(error: float) -> float:
-    """Of the length of a step after one with that error."""
-    allowed = SAFETY / math.sqrt(math.sqrt(error)) if error > 0.0 else MOST_CHANGE
-    return min(max(allowed, LEAST_CHANGE), MOST_CHANGE) if error == error else LEAST_CHANGE
 
 
 def weighted(weights: tuple[float, ...], found: Matrix, n: int) -> float:

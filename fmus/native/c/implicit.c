@@ -134,16 +134,6 @@ static double try_step(const Problem *problem, const Start *from, Vector J[STATE
     return sqrt(total / (double)STATES);
 }
 
-/* Of the length of a step after one with that error. */
-static double change(double error)
-{
-    double allowed = error > 0.0 ? SAFETY / sqrt(sqrt(error)) : MOST_CHANGE;
-    if (error != error)
-        return LEAST_CHANGE;
-    allowed = LEAST_CHANGE > allowed ? LEAST_CHANGE : allowed;
-    return MOST_CHANGE < allowed ? MOST_CHANGE : allowed;
-}
-
 static int fastest(const Start *from)
 {
     double most = 0.0;
@@ -174,7 +164,7 @@ int integrate_stiff(const Problem *problem, Start *from, double duration)
         } else if (length < SHORTEST_STEP) {
             break;
         }
-        const double next = length * change(error);
+        const double next = length * change(error, 2);
         length = next < left ? next : left;
     }
     return 1 + fastest(from);

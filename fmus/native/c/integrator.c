@@ -37,6 +37,18 @@ void begin_at(const Problem *problem, double t, const Vector x, Start *from)
     rate(problem, t, x, from->dx);
 }
 
+double change(double error, int halvings)
+{
+    double root = error;
+    for (int k = 0; k < halvings; k++)
+        root = sqrt(root);
+    if (root == 0.0)
+        return MOST_CHANGE;
+    if (root != root)
+        return LEAST_CHANGE;
+    return fmin(fmax(SAFETY / root, LEAST_CHANGE), MOST_CHANGE);
+}
+
 enum { NO_CROSSING = -1 };
 
 #if INDICATORS
@@ -190,33 +202,41 @@ static int first_crossing(
 
 #endif
 
-/* Whether the state changes too fast, in the direction to the end of a step that failed, for explicit steps. */
-static int is_stiff(const Problem *problem, const Start *from, const Vector end, double left)
+/* Of a change of the state at the start, in units of what is tolerated. */
+static double size_of(const Vector way, const Start *from)
 {
-    Vector near, there;
-    double away = 0.0, change = 0.0;
+    double total = 0.0;
     for (int n = 0; n < STATES; n++) {
-        const double e = (end[n] - from->x[n]) / (TOLERANCE * (fabs(from->x[n]) + small[n]));
-        away += e * e;
+        const double e = way[n] / (TOLERANCE * (fabs(from->x[n]) + small[n]));
+        total += e * e;
     }
-    if (!(away > 0.0 && away <= GREATEST))
-        return 1;
-    const double share = 1.0 / sqrt(away);
-    for (int n = 0; n < STATES; n++)
-        near[n] = from->x[n] + share * (end[n] - from->x[n]);
-    rate(problem, from->t, near, there);
-    for (int n = 0; n < STATES; n++) {
-        const double e = (there[n] - from->dx[n]) / (TOLERANCE * (fabs(from->x[n]) + small[n]));
-        change += e * e;
-    }
-    return !(left * sqrt(change) <= STIFF);
+    return sqrt(total);
 }
 
-/* Of a step with that error, above 1: the share that the method, of order 8, is good for; at least a tenth. */
-static double shortened(double error)
+/* Whether the state changes too fast for explicit steps.
+
+The fastest rate is found by power iteration from the way of a step that failed: what a small change of the state does
+to its derivative is a change that is faster, and the size of that over its own is the rate. */
+static int is_stiff(const Problem *problem, const Start *from, const Vector end, double left)
 {
-    const double share = 0.9 / sqrt(sqrt(sqrt(error)));
-    return share > 0.1 ? share : 0.1;
+    Vector near, there, way;
+    double fastest_rate = 0.0;
+    for (int n = 0; n < STATES; n++)
+        way[n] = end[n] - from->x[n];
+    for (int k = 0; k < POWER_ITERATIONS; k++) {
+        const double size = size_of(way, from);
+        if (size == 0.0)
+            return 0;
+        if (!(size <= GREATEST))
+            return 1;
+        for (int n = 0; n < STATES; n++)
+            near[n] = from->x[n] + way[n] / size;
+        rate(problem, from->t, near, there);
+        for (int n = 0; n < STATES; n++)
+            way[n] = there[n] - from->dx[n];
+        fastest_rate = size_of(way, from);
+    }
+    return !(left * fastest_rate <= STIFF);
 }
 
 /* A stretch of length `left`, split at every event on its way; as for `integrate`.
@@ -234,6 +254,8 @@ static int advance_through(const Problem *problem, double t, double left, Vector
         double length = longest < left ? longest : left, error;
         int crossed = NO_CROSSING;
         step(problem, from.t, from.x, from.dx, length, end, &error);
+        if (!(error <= ALLOWED_ERROR) && is_stiff(problem, &from, end, left))
+            break;
         if (error <= COARSE_ERROR && located < MOST_CROSSINGS) {
             double to_crossing = 0.0;
             crossed = first_crossing(problem, &from, length, end, sides, &to_crossing);
@@ -247,19 +269,15 @@ static int advance_through(const Problem *problem, double t, double left, Vector
             if (crossed != NO_CROSSING) {
                 sides[crossed] = !sides[crossed];
                 located++;
-            } else {
-                longest = 2.0 * longest;
             }
             if (left <= LOCATION_TOLERANCE) {
                 memcpy(x, end, sizeof end);
                 return 0;
             }
             begin_at(problem, from.t + length, end, &from);
-        } else if (is_stiff(problem, &from, end, left)) {
-            break;
-        } else {
-            longest = length * shortened(error / ALLOWED_ERROR);
         }
+        if (crossed == NO_CROSSING || !(error <= ALLOWED_ERROR))
+            longest = length * change(error / ALLOWED_ERROR, 3);
     }
     const int failed = integrate_stiff(problem, &from, left);
     memcpy(x, from.x, sizeof from.x);

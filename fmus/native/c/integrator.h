@@ -37,6 +37,10 @@ static const Input *inputs_at(const Problem *problem, double t, Input *room);
 static void rate(const Problem *problem, double t, const Vector x, Vector dx);
 static void begin_at(const Problem *problem, double t, const Vector x, Start *from);
 
+/* Length of a step over that of the one before, whose error over what is allowed was that: SAFETY error^(-1/q), but
+LEAST_CHANGE to MOST_CHANGE; q, the order of the estimate plus 1, is 2^halvings. */
+static double change(double error, int halvings);
+
 /* implicit.c */
 
 /* Takes the state at the start to `duration` s later, with what `integrate` returns. */

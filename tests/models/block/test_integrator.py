@@ -259,6 +259,30 @@ def test_chatter_about_a_jump_is_refused_in_bounded_work(integrator: MakeIntegra
     assert count < 40_000
 
 
+@pytest.mark.parametrize(("rate", "implicit"), [(19.9, False), (20.1, True)])
+def test_a_stretch_with_a_fastest_rate_of_twenty_is_left_to_the_implicit_method(
+    integrator: MakeIntegrator, rate: float, implicit: bool
+) -> None:
+    """Which alone moves a state that rests, to learn what it does to the derivative."""
+    moved = False
+
+    def fading(x: Body, u: Any, p: Any) -> Body:
+        nonlocal moved
+        moved = moved or x.v != 0.0
+        return Body(-10.0 * rate * x.x, 0.0, 0.0)
+
+    integrator(block(fading)).advance(Body(1.0, 0.0, 0.0), Nothing(), Nothing(), 0.1)
+    assert moved is implicit
+
+
+def test_what_fades_fast_costs_little_beside_what_moves_slowly_and_far(integrator: MakeIntegrator) -> None:
+    """A brake that holds: bristles hardly move, but at once; nor is its zero looked for in steps that fail."""
+    fading = block(lambda x, u, p: Body(-400.0 * x.x, 0.0, 1000.0 + 0.1 * x.beyond), lambda x: x.x)
+    x, count = evaluations(integrator, fading, Body(1e-5, 0.0, 0.0), 0.1)
+    assert abs(x.x) < 1e-10
+    assert count < 15 * 12, "explicit steps would be 7 for stability alone, and 40 with those that fail"
+
+
 @pytest.mark.parametrize("power", [1, 3, 9])
 def test_a_flat_crossing_is_located_in_bounded_work(integrator: MakeIntegrator, power: int) -> None:
     """An indicator with a root of high order, as a state coming to rest on it sees."""
