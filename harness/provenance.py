@@ -16,7 +16,7 @@ from .cosimulation.interface import unit_of
 from .cosimulation.system import System
 from .cosimulation.wiring import Fit, fit
 from .errors import DrivelineError
-from .reports.files import write_text
+from .reports.files import remove, replaceable, write_text
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -45,7 +45,7 @@ class Results:
             others: records of parts of the results.
         """
         for record in (self._record, *others):
-            record.unlink(missing_ok=True)
+            remove(record)
 
 
 @contextmanager
@@ -92,7 +92,7 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
     if there is None:
         return
     try:
-        before = json.loads(record.read_text(encoding="utf-8"))["run"]
+        before = json.loads(record.read_text(encoding="utf-8") if record.is_file() else "")["run"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         reason = f"is there, and {record} does not tell of which run it is"
     else:
@@ -101,6 +101,16 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
             return
         reason = f"is of another run ({changed})"
     raise DrivelineError(f"{there} {reason}; choose another --output, or --replace it")
+
+
+def require_same_text(text: str, path: Path) -> None:
+    """Refuses to replace a file that has another text.
+
+    Raises:
+        DrivelineError: the file at `path` has.
+    """
+    if replaceable(path) and path.read_bytes() != text.encode():
+        raise DrivelineError(f"{path} is there with another content; choose another --output, or --replace it")
 
 
 def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:

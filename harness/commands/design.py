@@ -7,7 +7,7 @@ from pathlib import Path
 from fmus.options import file
 
 from ..errors import DrivelineError
-from .options import add_printing
+from .options import add_printing, add_replace
 from .printing import Printer
 
 DESCRIPTION = """\
@@ -32,6 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for option, meaning in (("--vehicle", "the car (default: that of all blocks)"), ("--output", "for the gains")):
         action = parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
         action.complete = "file"  # type: ignore[attr-defined]
+    add_replace(parser)
     add_printing(parser)
 
 
@@ -39,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from fmus.errors import ParameterFileError
 
+    from ..provenance import require_same_text
     from ..reports.files import write_text
 
     try:
@@ -49,6 +51,8 @@ def run(args: argparse.Namespace) -> int:
     if args.output is None:
         out.say(text.rstrip())
     else:
+        if not args.replace:
+            require_same_text(text, args.output)
         write_text(text, args.output)
         out.say(f"gains: {args.output}")
     return 0

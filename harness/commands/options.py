@@ -131,7 +131,12 @@ def add_output(parser: argparse.ArgumentParser, default: str, files: str, of_a_r
     )
     action.complete = "directory"  # type: ignore[attr-defined]
     if of_a_run:
-        parser.add_argument("--replace", action="store_true", help="replace results that are those of another run")
+        add_replace(parser)
+
+
+def add_replace(parser: argparse.ArgumentParser) -> None:
+    """--replace, without which results of another run stay."""
+    parser.add_argument("--replace", action="store_true", help="replace results that are those of another run")
 
 
 def add_printing(parser: argparse.ArgumentParser, table: bool = False) -> None:

@@ -5,7 +5,6 @@ from hashlib import sha256
 from pathlib import Path
 
 from ..cosimulation.system import PLANTS
-from ..errors import DrivelineError
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
@@ -56,9 +55,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    if not args.recording.is_file():
-        raise DrivelineError(f"there is no recording {args.recording}")
-    build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
@@ -70,6 +66,7 @@ def run(args: argparse.Namespace) -> int:
 
     out = Printer(args)
     recording = read_recording(args.recording)
+    build = built(args.plant, args.fmus, args.build, **blocks(args))
     given, plant = settings(args, args.plant, build), Path(args.plant).stem
     system = looped(args.plant, given)
     interfaces, parameters = fit(system).interfaces, given["parameters"]

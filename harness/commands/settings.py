@@ -28,10 +28,11 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     """What the options of `add_loop` say for a plant and a build, as arguments of `harness.simulate.simulate`.
 
     Raises:
-        WiringError: a text of --map is not of the form that it must have.
+        WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter.
         DrivelineError: a file of parameters is refused.
     """
     from ..cosimulation.mapping import parsed
+    from ..cosimulation.wiring import fit
     from ..simulate import looped
 
     given = {
@@ -42,7 +43,10 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
         "limits": limits(args),
         **blocks(args),
     }
-    return given | {"parameters": _from_files(args, looped(plant, given)) | dict(args.assignments)}
+    system = looped(plant, given)
+    parameters = _from_files(args, system) | dict(args.assignments)
+    fit(system, parameters=parameters)
+    return given | {"parameters": parameters}
 
 
 def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:

@@ -73,9 +73,11 @@ def read_recording(path: Path) -> Recording:
     """Reads a recorded drive. Columns are found by name and converted by unit; others are ignored.
 
     Raises:
-        RecordingError: a column is missing, doubled or of an unknown unit; a cell is not a finite
-            number; time does not increase or has a gap (naming the line); it is no CSV file in UTF-8.
+        RecordingError: there is no such file; a column is missing, doubled or of an unknown unit; a cell is not a
+            finite number; time does not increase or has a gap (naming the line); it is no CSV file in UTF-8.
     """
+    if not path.is_file():
+        raise RecordingError(f"there is no recording {path}")
     try:
         return _read(path)
     except (UnicodeDecodeError, csv.Error) as error:

@@ -14,17 +14,18 @@ def complete(path: Path) -> Iterator[Path]:
     """A path to write to; what is there at the end of the block becomes the file at `path`, after an error nothing.
 
     The folder is made if absent. A link stays one, and the file that it leads to is replaced. What is no regular file
-    (a device, a pipe) is never replaced but written to, as is whatever stands among the devices: /dev/stdout may be a
-    file.
+    (a device, a pipe that somebody reads) is never replaced but written to, as is whatever stands among the devices:
+    /dev/stdout may be a file.
 
     Raises:
         IsADirectoryError: there is a folder of that name.
-        OSError: links lead round in a circle.
+        OSError: links lead round in a circle; it is a pipe that nobody reads.
     """
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; a file is needed")
-    if path.exists() and (path.absolute().parent in DEVICES or not path.is_file()):
-        yield path
+    if path.exists() and not replaceable(path):
+        with _read(path):
+            yield path
         return
     path = destination(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -35,6 +36,37 @@ def complete(path: Path) -> Iterator[Path]:
             os.replace(unfinished, path)
         finally:
             unfinished.unlink(missing_ok=True)
+
+
+def replaceable(path: Path) -> bool:
+    """Whether it is a regular file, or a link to one, and not among the devices."""
+    return path.is_file() and path.absolute().parent not in DEVICES
+
+
+def remove(path: Path) -> None:
+    """Removes a file; a link stays one, and so does what is not to be replaced."""
+    if replaceable(path):
+        destination(path).unlink()
+
+
+@contextmanager
+def _read(path: Path) -> Iterator[None]:
+    """Holds a pipe open for writing; one that nobody reads would let the writer wait for ever.
+
+    Raises:
+        OSError: it is such a pipe.
+    """
+    if not path.is_fifo():
+        yield
+        return
+    try:
+        held = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+    except OSError as error:
+        raise OSError(error.errno, "it is a pipe that nobody reads", str(path)) from error
+    try:
+        yield
+    finally:
+        os.close(held)
 
 
 _notes: Path | None = None

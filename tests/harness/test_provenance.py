@@ -115,6 +115,23 @@ def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(
     assert {path: path.read_bytes() for path in made.iterdir()} == before
 
 
+def test_a_record_that_is_a_link_stays_one(both_built: Path, tmp_path: Path) -> None:
+    given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
+    elsewhere, link = tmp_path / "elsewhere.json", tmp_path / f"{NAME}.json"
+    link.symlink_to(elsewhere)
+    assert main(given) == 0
+    assert main([*given, "--seed", "2", "--replace"]) == 0
+    assert link.is_symlink()
+    assert json.loads(elsewhere.read_text(encoding="utf-8"))["run"]["seed"] == 2
+
+
+def test_an_unknown_parameter_is_named_although_there_are_results_of_another_run(
+    made: Path, both_built: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*RUN, "--set", "plant.J1=0.07", "--fmus", str(both_built), "--output", str(made)]) == 2
+    assert "did you mean J_1" in capsys.readouterr().err
+
+
 def told_apart(system: System) -> dict[str, Any]:
     return distinguishing({"parameters": {}, "seed": 1, "mapping": {}}, system, None)
 

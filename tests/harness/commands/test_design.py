@@ -59,3 +59,15 @@ def test_a_car_without_a_controller_is_answered_with_exit_code_2(
     assert main(["design", "--vehicle", str(car), "--output", str(gains)]) == 2
     assert said in capsys.readouterr().err
     assert not gains.exists()
+
+
+def test_gains_of_another_car_are_not_replaced_unasked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "gains.toml"
+    of_van = ["design", "--vehicle", str(VAN), "--output", str(path)]
+    assert [main(of_van), main(of_van)] == [0, 0]
+    before = path.read_bytes()
+    assert main(["design", "--output", str(path)]) == 2
+    assert f"{path} is there with another content" in capsys.readouterr().err
+    assert path.read_bytes() == before
+    assert main(["design", "--output", str(path), "--replace"]) == 0
+    assert path.read_bytes() != before

@@ -1,6 +1,7 @@
 """Recorded drives: what is read, what is refused and where, and the road made of them."""
 
 import math
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -190,3 +191,11 @@ def test_a_real_drive_gives_a_drivable_road():
     assert manoeuvre.v_0 == 0.0
     assert 0.005 < np.abs(manoeuvre.slope(t)).max() <= 0.08
     assert 0.0 <= manoeuvre.T_brake(t).min() < manoeuvre.T_brake(t).max() <= 1160.0
+
+
+def test_what_is_no_file_is_no_recording(tmp_path):
+    pipe = tmp_path / "trip.csv"
+    os.mkfifo(pipe)
+    for path in (pipe, tmp_path, tmp_path / "nothing.csv"):
+        with pytest.raises(RecordingError, match="there is no recording"):
+            read_recording(path)
