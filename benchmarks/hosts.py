@@ -22,6 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import MakeSteps, interpreted
 from harness.cosimulation.system import PLANTS, Scheme, System, loop
@@ -67,7 +68,7 @@ def _in_our_master(system: System, steps: int, make: MakeSteps) -> Run:
     timed = Timed(make)
     with loaded(system, make_steps=timed) as running:
         duration = steps * STEP_SIZE
-        results = running.run(duration, STEP_SIZE, signals(STEADY), START, Scheme.JACOBI, "benchmark")
+        results = running.run(Experiment(duration, STEP_SIZE, signals(STEADY), START, Scheme.JACOBI, "benchmark"))
     return Run(timed.seconds / steps * MICRO, float(results["plant.T_gear"][-1]))
 
 

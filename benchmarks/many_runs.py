@@ -17,6 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import Refusal, interpreted
 from harness.cosimulation.system import PLANTS, loop
@@ -43,7 +44,7 @@ def further_runs(plant: str, count: int) -> tuple[float, float]:
     with loaded(loop(plant), make_steps=steps) as running:
         for _ in range(count + 1):
             before, began = steps.seconds, process_time()
-            running.run(TIPIN.duration, inputs=signals(TIPIN), parameters=start(TIPIN))
+            running.run(Experiment(TIPIN.duration, inputs=signals(TIPIN), parameters=start(TIPIN)))
             whole.append(process_time() - began)
             alone.append(steps.seconds - before)
     return median(whole[1:]), median(alone[1:])

@@ -22,6 +22,7 @@ from rich.table import Table
 
 from harness.cosimulation.calls import Call
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.instance import Instance
 from harness.cosimulation.interface import type_of
 from harness.cosimulation.loading import loaded
@@ -146,7 +147,7 @@ def timed(system: System, duration: float, make: MakeSteps, clock: Callable[[], 
     """Microseconds per communication step."""
     manoeuvre, steps = MANOEUVRES["drive"], Timed(make, clock)
     with loaded(system, make_steps=steps) as running:
-        table = running.run(duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre), label="benchmark")
+        table = running.run(Experiment(duration, STEP_SIZE, signals(manoeuvre), start(manoeuvre), label="benchmark"))
     return steps.seconds / (len(table) - 1) * MICRO
 
 

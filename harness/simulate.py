@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from .cosimulation.experiment import Experiment, Source
 from .cosimulation.limits import USUAL, Limits
-from .cosimulation.row import Source
 from .cosimulation.runs import run
 from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, System, loop
 from .errors import WiringError
@@ -70,12 +70,14 @@ def simulate(
     warn_of_stale(system)
     return run(
         system,
-        duration=manoeuvre.duration,
-        step_size=step_size,
-        inputs=signals(manoeuvre, control),
-        parameters=given,
-        scheme=scheme,
-        label=manoeuvre.name,
+        Experiment(
+            duration=manoeuvre.duration,
+            step_size=step_size,
+            inputs=signals(manoeuvre, control),
+            parameters=given,
+            scheme=scheme,
+            label=manoeuvre.name,
+        ),
     )
 
 

@@ -17,7 +17,7 @@ from models.block.declaration import Boolean, Integer, Real, variables
 from models.block.runner import runner
 from models.block.types import Block
 
-from ..cosimulation.row import Source
+from ..cosimulation.experiment import Experiment, Source
 from ..cosimulation.runs import run
 from ..cosimulation.system import NATIVE, Scheme, System, loop
 from ..manoeuvres.catalogue import KMH
@@ -101,12 +101,7 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
     parameters = {f"block.{name}": value for name, value in given.parameters.items()}
     results = run(
         System({"block": path}, own=frozenset({"block"})),
-        steps * STEP_SIZE,
-        STEP_SIZE,
-        inputs,
-        parameters,
-        scheme=Scheme.JACOBI,
-        label=path.stem,
+        Experiment(steps * STEP_SIZE, STEP_SIZE, inputs, parameters, scheme=Scheme.JACOBI, label=path.stem),
     )
     columns = {name: name.removeprefix("block.") for name in results.dtype.names or () if name not in inputs}
     chosen = results[list(columns)]
@@ -142,7 +137,7 @@ def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Di
 def drive(system: System, manoeuvre: Manoeuvre) -> np.ndarray:
     """The loop through a manoeuvre, with damping."""
     inputs, parameters = signals(manoeuvre), start(manoeuvre)
-    return run(system, manoeuvre.duration, STEP_SIZE, inputs, parameters, Scheme.JACOBI, manoeuvre.name)
+    return run(system, Experiment(manoeuvre.duration, STEP_SIZE, inputs, parameters, Scheme.JACOBI, manoeuvre.name))
 
 
 def fed(instance: str, system: System, results: np.ndarray, manoeuvre: Manoeuvre) -> Given:

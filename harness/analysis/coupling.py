@@ -12,6 +12,7 @@ import numpy as np
 
 from models.controller.supervision import T_S
 
+from ..cosimulation.experiment import Experiment
 from ..cosimulation.runs import run
 from ..cosimulation.system import BUILD, Scheme, loop
 from ..manoeuvres.catalogue import KMH
@@ -90,8 +91,7 @@ def cosimulated(
     folder: Path = BUILD,
 ) -> np.ndarray:
     """The same run with the FMUs in `folder`, at the same instants."""
-    results = run(
-        loop(plant, folder),
+    experiment = Experiment(
         manoeuvre.duration,
         step_size,
         signals(manoeuvre),
@@ -99,7 +99,7 @@ def cosimulated(
         scheme,
         label=f"{plant}, {scheme.value}, {1e3 * step_size:g} ms",
     )
-    return results[:: round(T_S / step_size)]
+    return run(loop(plant, folder), experiment)[:: round(T_S / step_size)]
 
 
 def compare(

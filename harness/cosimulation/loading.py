@@ -4,8 +4,9 @@ The steps of a loop are then made in that process as they would be in this one, 
 """
 
 import logging
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +16,13 @@ from ..progress import progress
 from ..told import warn_once
 from .apart import Apart
 from .compiled import LIBRARY, CompiledSteps, why_not
+from .experiment import Experiment
 from .instance import label
 from .master import Loop, opened
-from .row import Layout, Source, instants, sampled
+from .row import Layout
 from .schedule import described, transfers
 from .steps import MakeSteps, interpreted
-from .system import Scheme, System
+from .system import System
 from .wiring import Fit, fit, require, unknown
 
 LOG = logging.getLogger(__name__)
@@ -37,29 +39,21 @@ class LoopApart:
         """As `Loop.reset`."""
         self._apart.ask(_reset)
 
-    def run(
-        self,
-        duration: float,
-        step_size: float = 1e-3,
-        inputs: Mapping[str, Source] | None = None,
-        parameters: Mapping[str, float] | None = None,
-        scheme: Scheme = Scheme.PROPAGATED,
-        label: str = "simulating",
-    ) -> np.ndarray:
+    def run(self, experiment: Experiment) -> np.ndarray:
         """As `Loop.run`.
 
         Raises:
             WiringError: inputs or parameters do not fit the FMUs.
             SimulationError: an FMU refused a call, ended the process, crashed, or did not return from a call.
         """
-        time = instants(duration, step_size)
-        require(unknown(self._fitted, inputs or (), parameters or ()))
-        samples = {name: sampled(name, source, time) for name, source in (inputs or {}).items()}
-        wanted = duration, step_size, samples, dict(parameters or {}), scheme
+        time = experiment.time()
+        require(unknown(self._fitted, experiment.inputs, experiment.parameters))
+        samples = experiment.samples(time)
         layout = Layout(self._fitted.interfaces, [name for name in samples if name not in self._fitted.absent])
         size = len(time) * layout.recorded.itemsize
-        with progress(len(time) - 1, label) as done:
-            rows = self._apart.fetch(size, _run, *wanted, watch=lambda now: done(round(now / step_size)))
+        sent = replace(experiment, inputs=samples, parameters=dict(experiment.parameters))
+        with progress(len(time) - 1, experiment.label) as done:
+            rows = self._apart.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
         return np.frombuffer(rows, layout.recorded)
 
 
@@ -125,8 +119,8 @@ def _reset() -> None:
     _loop.reset()
 
 
-def _run(*wanted: Any) -> memoryview:
-    return _loop.run(*wanted).view(np.uint8).data
+def _run(experiment: Experiment) -> memoryview:
+    return _loop.run(experiment).view(np.uint8).data
 
 
 def _unload() -> None:

@@ -16,8 +16,8 @@ from fmpy.fmi2 import fmi2OK, fmi2Warning
 from ..errors import SimulationError, WiringError
 from ..progress import chunks, progress
 from .calls import Call
+from .experiment import Experiment
 from .instance import Instance, instantiated, unpacked
-from .row import Source, instants, sampled
 from .steps import NOT_FINITE, MakeSteps, made
 from .system import Scheme
 from .wires import Wires, wired
@@ -61,23 +61,8 @@ class Loop:
                 instance.reset()
         self._is_new = True
 
-    def run(
-        self,
-        duration: float,
-        step_size: float = 1e-3,
-        inputs: Mapping[str, Source] | None = None,
-        parameters: Mapping[str, float] | None = None,
-        scheme: Scheme = Scheme.PROPAGATED,
-        label: str = "simulating",
-    ) -> np.ndarray:
+    def run(self, experiment: Experiment) -> np.ndarray:
         """Runs the FMUs from reset on, whatever the run before has done and however it has ended.
-
-        Args:
-            duration: in s; the run ends with the last whole step.
-            step_size: communication step in s.
-            inputs: `instance.variable` -> signal, held over each communication step.
-            parameters: `instance.variable` -> value.
-            label: of the progress display.
 
         Returns:
             Structured array with the rows of the instants k * step_size, k = 0, 1, ..., and the columns
@@ -89,16 +74,16 @@ class Loop:
             WiringError: inputs or parameters do not fit the FMUs, or the scheme does not suit them.
             SimulationError: an FMU refused a call.
         """
-        time = instants(duration, step_size)
-        require(unknown(self._fitted, inputs or (), parameters or ()))
-        samples = self._present({name: sampled(name, source, time) for name, source in (inputs or {}).items()})
-        wires = self._wired(Scheme(scheme), tuple(samples))
+        time = experiment.time()
+        require(unknown(self._fitted, experiment.inputs, experiment.parameters))
+        samples = self._present(experiment.samples(time))
+        wires = self._wired(Scheme(experiment.scheme), tuple(samples))
         table = wires.layout.table(time, samples)
         self.reset()
         self._is_new = False
-        self._step_size.value = step_size
-        self._initialize(wires, table, self._present(parameters or {}))
-        with progress(len(table) - 1, label) as done:
+        self._step_size.value = experiment.step_size
+        self._initialize(wires, table, self._present(experiment.parameters))
+        with progress(len(table) - 1, experiment.label) as done:
             for chunk in chunks(len(table) - 1):
                 refusal = wires.steps(table, chunk)
                 if refusal:

@@ -1,6 +1,6 @@
 """Runs of systems that are loaded for one run, or once for many."""
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import local
@@ -9,37 +9,28 @@ import numpy as np
 
 from ..errors import SimulationError
 from ..stopping import unswallowed
+from .experiment import Experiment
 from .loading import LoopApart, loaded
 from .master import Loop
-from .row import Source
-from .system import Scheme, System
+from .system import System
 
 MOST_KEPT = 8
 """Systems that are kept loaded at a time."""
 
 
-def run(
-    system: System,
-    duration: float,
-    step_size: float = 1e-3,
-    inputs: Mapping[str, Source] | None = None,
-    parameters: Mapping[str, float] | None = None,
-    scheme: Scheme = Scheme.PROPAGATED,
-    label: str = "simulating",
-) -> np.ndarray:
-    """Loads a system of FMUs, unless it is kept loaded, and runs it; see `Loop.run` for arguments and results.
+def run(system: System, experiment: Experiment) -> np.ndarray:
+    """Loads a system of FMUs, unless it is kept loaded, and runs it; results as of `Loop.run`.
 
     Raises:
         WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
         SimulationError: an FMU cannot be loaded, or refused a call.
     """
-    names = inputs or (), parameters or ()
-    wanted = duration, step_size, inputs, parameters, scheme, label
+    names = experiment.inputs, experiment.parameters
     with unswallowed():
         if _here.kept is not None:
-            return _here.kept.loop(system, *names).run(*wanted)
+            return _here.kept.loop(system, *names).run(experiment)
         with loaded(system, *names) as loop:
-            return loop.run(*wanted)
+            return loop.run(experiment)
 
 
 @contextmanager

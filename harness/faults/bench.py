@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
+from ..cosimulation.experiment import Experiment
 from ..cosimulation.runs import run
 from ..cosimulation.system import Connection, Port, System
 from ..cosimulation.wiring import Fit, fit
@@ -123,17 +124,10 @@ class Bench:
         control: bool = True,
     ) -> np.ndarray:
         manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
-        results = run(
-            self._system(plant),
-            DURATION,
-            inputs=signals(manoeuvre, control),
-            parameters=start(manoeuvre, noise)
-            | (_slippery(self._fit(plant)) if on_ice else {})
-            | dict(self._settings[plant]["parameters"])
-            | _parameters(faults, noise),
-            label=manoeuvre.name,
-        )
-        return at_samples(results)
+        parameters = start(manoeuvre, noise) | (_slippery(self._fit(plant)) if on_ice else {})
+        parameters |= dict(self._settings[plant]["parameters"]) | _parameters(faults, noise)
+        given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
+        return at_samples(run(self._system(plant), Experiment(DURATION, **given)))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from harness.cosimulation import row
+from harness.cosimulation import experiment
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
@@ -39,7 +39,7 @@ def test_a_start_that_disagrees_with_the_demand_is_named(built: Path, caplog: py
 def test_a_run_for_which_there_is_no_memory_is_refused_before_it_is_allocated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(row, "memory", lambda: 1001.0 * row.BYTES_OF_A_ROW)
-    assert len(row.instants(1.0, 1e-3)) == 1001
+    monkeypatch.setattr(experiment, "memory", lambda: 1001.0 * experiment.BYTES_OF_A_ROW)
+    assert len(experiment.instants(1.0, 1e-3)) == 1001
     with pytest.raises(MemoryError, match=r"a step of 0\.001 s in a run of 1\.01 s needs about"):
-        row.instants(1.01, 1e-3)
+        experiment.instants(1.01, 1e-3)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import Scheme, loop
 
@@ -49,6 +50,6 @@ def check_loop(script: str, plant: str, build: str, fmus: Path, folder: Path, **
     assert done.returncode == 0, done.stdout + done.stderr
     theirs = json.loads(answer.read_text())
     inputs = {"controller.T_driver": T_DRIVER, "controller.enable": True, "plant.T_brake": 0.0, "plant.slope": 0.0}
-    ours = run(system, STEPS * STEP_SIZE, STEP_SIZE, inputs, START, Scheme.JACOBI)[-1]
+    ours = run(system, Experiment(STEPS * STEP_SIZE, STEP_SIZE, inputs, START, Scheme.JACOBI))[-1]
     for name in OUTPUTS:
         assert theirs[name] == pytest.approx(ours[name], rel=1e-9), name

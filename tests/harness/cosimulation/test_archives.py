@@ -5,6 +5,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
 
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface
 from harness.cosimulation.limits import Limits
 from harness.cosimulation.runs import run
@@ -27,7 +28,7 @@ def test_a_hostile_archive_is_named_and_not_unpacked(stranger, tmp_path, unpacke
     copyfile(stranger, path)
     spoil(path)
     with pytest.raises(DrivelineError, match=message) as error:
-        run(System({"a": path}), 0.01)
+        run(System({"a": path}), Experiment(0.01))
     assert str(error.value).isprintable()
     assert "hostile.fmu" in str(error.value)
     assert list(unpacked.iterdir()) == []

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harness.cosimulation import loading
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
@@ -26,7 +27,7 @@ def relay(tmp_path_factory):
 
 def drive(running, manoeuvre=TIPIN, step_size=1e-3, scheme=Scheme.PROPAGATED, **changes):
     parameters = start(manoeuvre) | {name.replace("__", "."): value for name, value in changes.items()}
-    return running.run(manoeuvre.duration, step_size, signals(manoeuvre), parameters, scheme)
+    return running.run(Experiment(manoeuvre.duration, step_size, signals(manoeuvre), parameters, scheme))
 
 
 @pytest.mark.parametrize("build", ["native", "python"])
@@ -66,15 +67,15 @@ def test_inputs_of_the_run_before_are_forgotten(relay):
     """And those that are the same as before are set again: reset has put them back to their start."""
     with loaded(System({"a": relay})) as running:
         for inputs, expected in (({"a.u": 5.0}, 5.0), ({"a.u": 5.0}, 5.0), ({}, 0.0), ({"a.u": 5.0, "a.n": 1}, 5.0)):
-            results = running.run(0.01, inputs=inputs)
+            results = running.run(Experiment(0.01, inputs=inputs))
             assert (results["a.y"][1:] == expected).all()
             assert ("a.u" in (results.dtype.names or ())) == ("a.u" in inputs)
 
 
 def test_each_run_has_its_own_results(relay):
     with loaded(System({"a": relay})) as running:
-        first = running.run(0.01, inputs={"a.u": 1.0})
-        running.run(0.01, inputs={"a.u": 2.0})
+        first = running.run(Experiment(0.01, inputs={"a.u": 1.0}))
+        running.run(Experiment(0.01, inputs={"a.u": 2.0}))
     assert (first["a.u"] == 1.0).all()
     assert (first["a.y"][1:] == 1.0).all()
 
@@ -82,18 +83,18 @@ def test_each_run_has_its_own_results(relay):
 @pytest.mark.parametrize("value", [0.5, 2.0**31, -(2.0**31), float("nan"), float("inf")])
 def test_what_an_integer_does_not_hold_is_refused(relay, value):
     with loaded(System({"a": relay})) as running:
-        running.run(0.01, parameters={"a.count": 2.0**31 - 1})
+        running.run(Experiment(0.01, parameters={"a.count": 2.0**31 - 1}))
         with pytest.raises(WiringError, match=rf"a\.count = {value:g}: it must be a whole number".replace("+", r"\+")):
-            running.run(0.01, parameters={"a.count": value})
+            running.run(Experiment(0.01, parameters={"a.count": value}))
 
 
 def test_a_message_is_about_the_run_that_was_refused(relay):
     with loaded(System({"a": relay})) as running:
         with pytest.raises(WiringError, match=r"a\.count = 0\.5: it must be a whole number"):
-            running.run(0.01, parameters={"a.count": 0.5})
-        running.run(0.01)
+            running.run(Experiment(0.01, parameters={"a.count": 0.5}))
+        running.run(Experiment(0.01))
         with pytest.raises(SimulationError) as refusal:
-            running.run(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0})
+            running.run(Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
     assert str(refusal.value).count("is beyond") == 1
 
 
@@ -101,17 +102,17 @@ def test_a_loop_that_has_ended_with_fatal_says_that_it_must_be_loaded_anew(relay
     system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"),))
     with loaded(system) as running:
         with pytest.raises(SimulationError, match="with fatal"):
-            running.run(0.01, inputs={"a.u": 3.0}, parameters={"b.limit": 2.0})
+            running.run(Experiment(0.01, inputs={"a.u": 3.0}, parameters={"b.limit": 2.0}))
         with pytest.raises(SimulationError, match=r"b \(Relay\.fmu\) has ended with fatal; load it anew"):
-            running.run(0.01)
-    assert (run(system, 0.01, inputs={"a.u": 3.0})["b.y"][2:] == 3.0).all()
+            running.run(Experiment(0.01))
+    assert (run(system, Experiment(0.01, inputs={"a.u": 3.0}))["b.y"][2:] == 3.0).all()
 
 
 def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with loaded(System({"a": relay, "b": relay})) as running:
         for _ in range(3):
-            running.run(0.01)
+            running.run(Experiment(0.01))
         assert len(list(tmp_path.iterdir())) == 1
     assert list(tmp_path.iterdir()) == []
 
@@ -132,8 +133,8 @@ def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
 def test_an_input_gets_what_suits_its_type(relay, name, value, said):
     with loaded(System({"a": relay})) as running:
         with pytest.raises(WiringError, match=said):
-            running.run(0.01, inputs={name: value})
-        assert len(running.run(0.01, inputs={"a.b": 1.0, "a.n": 2**31 - 1, "a.u": True})) == 11
+            running.run(Experiment(0.01, inputs={name: value}))
+        assert len(running.run(Experiment(0.01, inputs={"a.b": 1.0, "a.n": 2**31 - 1, "a.u": True}))) == 11
 
 
 def test_that_the_steps_run_in_python_is_said_once(relay, monkeypatch, caplog):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.mapping import parsed
 from harness.cosimulation.steps import interpreted
@@ -62,7 +63,7 @@ def test_compiled_steps_and_those_in_python_convert_alike(built, theirs):
     results = []
     for make in (CompiledSteps, interpreted):
         with loaded(loop(theirs, built, mapping=MAPPING), make_steps=make) as running:
-            results.append(running.run(TIPIN.duration, 1e-3, signals(TIPIN), start(TIPIN)).tobytes())
+            results.append(running.run(Experiment(TIPIN.duration, 1e-3, signals(TIPIN), start(TIPIN))).tobytes())
     assert results[0] == results[1]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 
-from harness.cosimulation.row import instants
+from harness.cosimulation.experiment import Experiment, instants
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, Scheme, System
 from harness.errors import SimulationError, WiringError
@@ -40,13 +40,13 @@ def ramp(t):
 
 
 def test_gauss_seidel_hands_on_within_the_step(chain):
-    results = run(chain, 0.01, inputs={"a.u": ramp}, scheme=Scheme.GAUSS_SEIDEL)
+    results = run(chain, Experiment(0.01, inputs={"a.u": ramp}, scheme=Scheme.GAUSS_SEIDEL))
     for name in ("a.y", "b.y", "c.y"):
         np.testing.assert_array_equal(results[name][1:], results["a.u"][:-1])
 
 
 def test_jacobi_delays_each_connection_by_one_step(chain):
-    results = run(chain, 0.01, inputs={"a.u": ramp}, scheme=Scheme.JACOBI)
+    results = run(chain, Experiment(0.01, inputs={"a.u": ramp}, scheme=Scheme.JACOBI))
     for delay, name in enumerate(("a.y", "b.y", "c.y"), start=1):
         np.testing.assert_array_equal(results[name][delay:], results["a.u"][:-delay])
 
@@ -55,7 +55,7 @@ def test_every_type_is_passed_on(relay):
     system = System({"a": relay, "b": relay}, (Connection("a.n_out", "b.n"), Connection("a.b_out", "b.b")))
     flags = np.arange(11) % 3 == 0
     inputs, parameters = {"a.n": np.arange(11), "a.b": flags}, {"b.count": 5, "b.flag": True}
-    results = run(system, 0.01, inputs=inputs, parameters=parameters, scheme=Scheme.GAUSS_SEIDEL)
+    results = run(system, Experiment(0.01, inputs=inputs, parameters=parameters, scheme=Scheme.GAUSS_SEIDEL))
     np.testing.assert_array_equal(results["b.n_out"][1:], np.arange(10) + 5)
     np.testing.assert_array_equal(results["b.b_out"][1:], ~flags[:-1])
     assert results.dtype["b.n_out"] == np.int32
@@ -66,14 +66,14 @@ def test_inputs_may_be_constants_samples_or_functions(relay):
     system = System({"a": relay}, ())
     samples = ramp(instants(0.01, 1e-3))
     for source in (ramp, samples):
-        np.testing.assert_array_equal(run(system, 0.01, inputs={"a.u": source})["a.u"], samples)
-    np.testing.assert_array_equal(run(system, 0.01, inputs={"a.u": 3})["a.u"], np.full(11, 3.0))
+        np.testing.assert_array_equal(run(system, Experiment(0.01, inputs={"a.u": source}))["a.u"], samples)
+    np.testing.assert_array_equal(run(system, Experiment(0.01, inputs={"a.u": 3}))["a.u"], np.full(11, 3.0))
     with pytest.raises(WiringError, match=r"a\.u has \(10,\) samples; the run has 11 instants"):
-        run(system, 0.01, inputs={"a.u": np.zeros(10)})
+        run(system, Experiment(0.01, inputs={"a.u": np.zeros(10)}))
 
 
 def test_time_is_counted_in_whole_steps(relay):
-    results = run(System({"a": relay}, ()), 2.0, step_size=1e-3)
+    results = run(System({"a": relay}, ()), Experiment(2.0, step_size=1e-3))
     np.testing.assert_array_equal(results["time"], [k * 1e-3 for k in range(2001)])
     # what the FMU itself was told: t of the step plus its size
     np.testing.assert_array_equal(results["a.t"][1:], [k * 1e-3 + 1e-3 for k in range(2000)])
@@ -92,15 +92,15 @@ def test_a_run_ends_with_its_last_whole_step():
 
 def test_a_refusal_names_instance_function_time_and_reason(chain):
     with pytest.raises(SimulationError, match=r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.004 s") as refusal:
-        run(chain, 0.01, inputs={"a.u": ramp}, parameters={"b.limit": 2.5})
+        run(chain, Experiment(0.01, inputs={"a.u": ramp}, parameters={"b.limit": 2.5}))
     assert "u = 3.0 is beyond the limit of 2.5" in str(refusal.value)
 
 
 def test_an_error_leaves_no_files_behind(chain, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    run(chain, 0.01)
+    run(chain, Experiment(0.01))
     with pytest.raises(SimulationError):
-        run(chain, 0.01, inputs={"a.u": 1.0}, parameters={"a.limit": 0.5})
+        run(chain, Experiment(0.01, inputs={"a.u": 1.0}, parameters={"a.limit": 0.5}))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -108,7 +108,7 @@ def test_outputs_that_feed_back_at_the_start_are_refused(built):
     """omega_1_meas is a direct function of omega_1: fed back with its noise, it has no value."""
     system = System({"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.omega_1_meas", "motor.omega_1"),))
     with pytest.raises(SimulationError, match="algebraic loop"):
-        run(system, 0.01, parameters={"motor.sigma_omega": 5.0}, scheme=Scheme.JACOBI)
+        run(system, Experiment(0.01, parameters={"motor.sigma_omega": 5.0}, scheme=Scheme.JACOBI))
 
 
 def test_the_loop_starts_consistently(built):
@@ -130,7 +130,7 @@ def test_stepping_by_hand_gives_the_same(built, tmp_path):
     files = {"motor": built / "MotorTorqueLoop.fmu", "plant": built / f"{PLANTS[0]}.fmu"}
     wires = (Connection("motor.T_mot", "plant.T_mot"), Connection("plant.omega_1", "motor.omega_1"))
     T_ref = np.where(np.arange(201) < 50, 0.0, 60.0)
-    results = run(System(files, wires), 0.2, inputs={"motor.T_ref": T_ref}, parameters={"plant.v_0": 5.0})
+    results = run(System(files, wires), Experiment(0.2, inputs={"motor.T_ref": T_ref}, parameters={"plant.v_0": 5.0}))
     with (
         opened(files["motor"], tmp_path / "motor") as motor,
         opened(files["plant"], tmp_path / "plant") as plant,
@@ -149,7 +149,7 @@ def test_stepping_by_hand_gives_the_same(built, tmp_path):
 
 def test_csv_gives_the_same_numbers_back(relay, tmp_path):
     inputs = {"a.u": lambda t: np.sqrt(t) / 3.0, "a.b": np.arange(11) % 2 == 0}
-    results = run(System({"a": relay}, ()), 0.01, inputs=inputs)
+    results = run(System({"a": relay}, ()), Experiment(0.01, inputs=inputs))
     path = tmp_path / "new folder" / "results.csv"
     write_csv(results, path)
     read = read_csv(path)
@@ -162,10 +162,11 @@ def test_csv_gives_the_same_numbers_back(relay, tmp_path):
 def test_the_host_ends_with_exit_code_0(relay):
     script = (
         "from pathlib import Path\n"
+        "from harness.cosimulation.experiment import Experiment\n"
         "from harness.cosimulation.runs import run\n"
         "from harness.cosimulation.system import System\n"
         f"system = System({{'a': Path({str(relay)!r}), 'b': Path({str(relay)!r})}}, ())\n"
-        "for _ in range(3): run(system, 0.01)\n"
+        "for _ in range(3): run(system, Experiment(0.01))\n"
     )
     host = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True)
     assert (host.returncode, host.stdout, host.stderr) == (0, b"", b"")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import CONNECTIONS, OPTIONAL, PLACES, PLANTS, chosen_build, loop
@@ -90,7 +91,7 @@ def test_what_is_always_on_cannot_be_switched_off(built, relay):
     system = loop(PLANTS[0], built, controller=relay, mapping=FEEDTHROUGH)
     at_times = signals(SHORT) | {"controller.enable": lambda t: t < 0.5}
     with pytest.raises(WiringError, match=r"controller\.enable"):
-        run(system, SHORT.duration, inputs=at_times, parameters=start(SHORT))
+        run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))
 
 
 def test_what_is_not_optional_must_be_there(built, relay):

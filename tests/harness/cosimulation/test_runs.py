@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from harness.cosimulation import runs
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
 from harness.cosimulation.system import System
 from harness.errors import SimulationError, WiringError
@@ -22,7 +23,8 @@ def files(folder):
 
 
 def gains(system, *values):
-    return [run(system, 0.01, inputs={"a.u": 1.0}, parameters={"a.gain": value})["a.y"][-1] for value in values]
+    cases = [Experiment(0.01, inputs={"a.u": 1.0}, parameters={"a.gain": value}) for value in values]
+    return [run(system, case)["a.y"][-1] for case in cases]
 
 
 def test_a_system_is_loaded_once(relay, unpacked):
@@ -41,10 +43,13 @@ def test_a_system_is_loaded_once(relay, unpacked):
 def test_results_are_those_of_runs_that_load_anew(native):
     system = System({"can": native / "WheelSpeedCan.fmu"})
     inputs = {"can.omega_wheel_L": lambda t: 20.0 + np.sin(9.0 * t), "can.omega_wheel_R": 20.0}
-    cases = [(1, 0.3), (2, 0.3), (1, 0.2)]
-    anew = [run(system, duration, inputs=inputs, parameters={"can.seed": seed}) for seed, duration in cases]
+    cases = [
+        Experiment(duration, inputs=inputs, parameters={"can.seed": seed})
+        for seed, duration in ((1, 0.3), (2, 0.3), (1, 0.2))
+    ]
+    anew = [run(system, case) for case in cases]
     with kept_loaded():
-        kept = [run(system, duration, inputs=inputs, parameters={"can.seed": seed}) for seed, duration in cases]
+        kept = [run(system, case) for case in cases]
     for one, other in zip(anew, kept, strict=True):
         np.testing.assert_array_equal(one, other)
     assert (anew[0]["can.omega_2_can"] != anew[1]["can.omega_2_can"]).any()
@@ -54,25 +59,25 @@ def test_a_file_that_has_changed_is_loaded_anew(native, tmp_path):
     block = tmp_path / "block.fmu"
     copyfile(native / "MotorTorqueLoop.fmu", block)
     with kept_loaded():
-        assert "block.T_mot" in (run(System({"block": block}), 0.01).dtype.names or ())
+        assert "block.T_mot" in (run(System({"block": block}), Experiment(0.01)).dtype.names or ())
         copyfile(native / "WheelSpeedCan.fmu", block)
-        assert "block.counter" in (run(System({"block": block}), 0.01).dtype.names or ())
+        assert "block.counter" in (run(System({"block": block}), Experiment(0.01)).dtype.names or ())
         block.unlink()
         with pytest.raises(WiringError, match="there is no FMU"):
-            run(System({"block": block}), 0.01)
+            run(System({"block": block}), Experiment(0.01))
 
 
 def test_only_the_last_ones_are_kept(relay, unpacked):
     systems = [System({f"a{k}": relay}) for k in range(MOST_KEPT + 1)]
     with kept_loaded():
         for system in systems[:-1]:
-            run(system, 0.01)
+            run(system, Experiment(0.01))
         first, *others = unpacked.iterdir()
         first = min((first, *others), key=lambda path: path.stat().st_ctime_ns).name
         assert len(others) == MOST_KEPT - 1
-        run(systems[0], 0.01)
+        run(systems[0], Experiment(0.01))
         assert first in files(unpacked)
-        run(systems[-1], 0.01)
+        run(systems[-1], Experiment(0.01))
         assert len(files(unpacked)) == MOST_KEPT
         assert first in files(unpacked)
     assert files(unpacked) == []
@@ -83,7 +88,7 @@ def test_a_loop_that_has_ended_with_fatal_is_loaded_anew(relay, unpacked):
     with kept_loaded():
         gains(system, 1.0)
         with pytest.raises(SimulationError, match="with fatal"):
-            run(system, 0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0})
+            run(system, Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
         assert gains(system, 7.0) == [7.0]
         assert len(files(unpacked)) == 1
     assert files(unpacked) == []
@@ -93,12 +98,12 @@ def test_what_is_wrong_is_told_in_every_run(relay):
     with kept_loaded():
         for _ in range(2):
             with pytest.raises(WiringError, match="no parameter gian; did you mean gain"):
-                run(System({"a": relay}), 0.01, parameters={"a.gian": 1.0})
+                run(System({"a": relay}), Experiment(0.01, parameters={"a.gian": 1.0}))
             gains(System({"a": relay}), 1.0)
 
 
 def test_an_error_within_unloads_too(relay, unpacked):
     with pytest.raises(SimulationError), kept_loaded():
-        run(System({"a": relay}), 0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0})
+        run(System({"a": relay}), Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
     assert files(unpacked) == []
     assert runs._here.kept is None

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.feedthrough import Feedthrough, declared
 from harness.cosimulation.interface import Interface
 from harness.cosimulation.loading import loaded
@@ -63,7 +64,7 @@ def test_a_loop_says_once_what_moves_and_what_is_held(built, caplog):
     caplog.set_level(logging.INFO, "harness")
     with loaded(loop(folder=built, build="python")) as running:
         for _ in range(2):
-            running.run(0.01)
+            running.run(Experiment(0.01))
     (record,) = [r for r in caplog.records if r.levelno == logging.INFO]
     assert record.getMessage() == (
         "under the propagated scheme, over a step plant.T_mot is held, motor.omega_1 is held"
@@ -126,24 +127,25 @@ def two_motors(folder):
 def test_an_algebraic_loop_is_named_before_anything_runs(native):
     message = "a.omega_1_meas follows from b.omega_1_meas follows from a.omega_1_meas within the same instant"
     with pytest.raises(WiringError, match=f"algebraic loop: {message}"):
-        run(two_motors(native), 0.01)
+        run(two_motors(native), Experiment(0.01))
     alone = System({"a": native / "MotorTorqueLoop.fmu"}, (Connection("a.omega_1_meas", "a.omega_1"),))
     with pytest.raises(WiringError, match=r"algebraic loop: a\.omega_1_meas follows from a\.omega_1_meas within"):
-        run(alone, 0.01)
+        run(alone, Experiment(0.01))
 
 
 @pytest.mark.parametrize("scheme", [Scheme.GAUSS_SEIDEL, Scheme.JACOBI])
 def test_the_other_schemes_break_an_algebraic_loop_if_it_settles_at_the_start(native, scheme):
     noiseless = {f"{name}.{p}": 0.0 for name in "ab" for p in ("sigma_omega", "q_omega")}
-    assert (run(two_motors(native), 0.01, parameters=noiseless, scheme=scheme)["a.omega_1_meas"] == 0.0).all()
+    results = run(two_motors(native), Experiment(0.01, parameters=noiseless, scheme=scheme))
+    assert (results["a.omega_1_meas"] == 0.0).all()
     with pytest.raises(SimulationError, match="do not settle"):
-        run(two_motors(native), 0.01, scheme=scheme, parameters={"a.q_omega": 0.0, "b.q_omega": 0.0})
+        run(two_motors(native), Experiment(0.01, scheme=scheme, parameters={"a.q_omega": 0.0, "b.q_omega": 0.0}))
 
 
 def test_what_is_not_declared_makes_no_algebraic_loop(relay):
     """PythonFMU declares nothing: everything may follow from everything."""
     system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"), Connection("b.y", "a.u")))
-    assert (run(system, 0.01)["b.y"] == 0.0).all()
+    assert (run(system, Experiment(0.01))["b.y"] == 0.0).all()
     fitted = fit(system)
     feedthrough = Feedthrough(fitted.system, fitted.interfaces)
     assert [name for outputs in feedthrough.propagation(set()) for name in outputs] == [
@@ -160,8 +162,8 @@ def test_what_is_not_declared_is_passed_on_within_the_instant_where_that_makes_n
 def test_a_scheme_may_be_given_by_its_name_and_none_is_taken_for_another(native):
     system, duration = System({"motor": native / "MotorTorqueLoop.fmu"}, own=frozenset({"motor"})), 0.01
     for scheme in Scheme:
-        named = run(system, duration, scheme=scheme.value)  # pyright: ignore[reportArgumentType]
-        assert named.tobytes() == run(system, duration, scheme=scheme).tobytes()
+        named = run(system, Experiment(duration, scheme=scheme.value))  # pyright: ignore[reportArgumentType]
+        assert named.tobytes() == run(system, Experiment(duration, scheme=scheme)).tobytes()
     for other in ("gaus-seidel", None):
         with pytest.raises(WiringError, match=r"unknown scheme .*gauss-seidel"):
-            run(system, duration, scheme=other)  # pyright: ignore[reportArgumentType]
+            run(system, Experiment(duration, scheme=other))  # pyright: ignore[reportArgumentType]

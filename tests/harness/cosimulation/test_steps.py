@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import interpreted
 from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
@@ -20,12 +21,16 @@ TIPIN = replace(MANOEUVRES["tipin15"], duration=1.0)
 """Longer than what is done between two updates of the progress display."""
 
 
-def both(system, duration, inputs, parameters=None, scheme=Scheme.PROPAGATED, step_size=1e-3):
+def tipin(scheme):
+    return Experiment(TIPIN.duration, inputs=signals(TIPIN), parameters=start(TIPIN), scheme=scheme)
+
+
+def both(system, experiment):
     """The results of the two kinds of steps, as bytes."""
     results = []
     for make in (CompiledSteps, interpreted):
         with loaded(system, make_steps=make) as running:
-            results.append(running.run(duration, step_size, inputs, parameters, scheme).tobytes())
+            results.append(running.run(experiment).tobytes())
     return results
 
 
@@ -38,13 +43,13 @@ def relay(tmp_path_factory):
 @pytest.mark.parametrize("plant", PLANTS)
 def test_native_fmus_make_the_same_steps(native, plant, scheme):
     system = loop(plant, native.parent, "native")
-    compiled, in_python = both(system, TIPIN.duration, signals(TIPIN), start(TIPIN), scheme)
+    compiled, in_python = both(system, tipin(scheme))
     assert compiled == in_python
 
 
 @pytest.mark.parametrize("scheme", Scheme)
 def test_fmus_that_run_python_make_the_same_steps(built, scheme):
-    compiled, in_python = both(loop(PLANTS[0], built, "python"), TIPIN.duration, signals(TIPIN), start(TIPIN), scheme)
+    compiled, in_python = both(loop(PLANTS[0], built, "python"), tipin(scheme))
     assert compiled == in_python
 
 
@@ -54,7 +59,8 @@ def test_all_types_and_strange_values_make_the_same_steps(relay, scheme):
     system = System({"a": relay, "b": relay}, tuple(Connection(*wire) for wire in wires))
     u = np.resize([0.0, -0.0, 1.0, 1.0, 1e308, -1e308, 5e-324], 501)
     inputs = {"a.u": u, "a.n": np.arange(501) // 3 - 50, "a.b": np.arange(501) % 5 == 0}
-    compiled, in_python = both(system, 0.5, inputs, {"b.limit": 1e308, "a.limit": 1e308}, scheme)
+    limits = {"b.limit": 1e308, "a.limit": 1e308}
+    compiled, in_python = both(system, Experiment(0.5, inputs=inputs, parameters=limits, scheme=scheme))
     assert compiled == in_python
 
 
@@ -64,7 +70,7 @@ def test_a_refusal_names_instance_function_time_and_reason(relay, make):
     system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"),))
     message = r"^b \(Relay\.fmu\) answered fmi2DoStep at 0\.304 s with fatal: .*u = 303.0 is beyond the limit of 302.5"
     with loaded(system, make_steps=make) as running, pytest.raises(SimulationError, match=message):
-        running.run(0.5, inputs={"a.u": lambda t: 1e3 * t}, parameters={"b.limit": 302.5})
+        running.run(Experiment(0.5, inputs={"a.u": lambda t: 1e3 * t}, parameters={"b.limit": 302.5}))
 
 
 @pytest.mark.parametrize("make", [CompiledSteps, interpreted])
@@ -73,4 +79,4 @@ def test_a_native_fmu_says_why_it_refuses(native, make):
     T_ref = np.where(np.arange(501) < 250, 10.0, np.nan)
     message = r"^motor \(MotorTorqueLoop\.fmu\) answered fmi2SetReal at 0\.25 s .*T_ref"
     with loaded(system, make_steps=make) as running, pytest.raises(SimulationError, match=message):
-        running.run(0.5, inputs={"motor.T_ref": T_ref})
+        running.run(Experiment(0.5, inputs={"motor.T_ref": T_ref}))

@@ -15,6 +15,7 @@ from harness.cosimulation import apart
 from harness.cosimulation.answers import LENGTH, Answer, Forged, receive, send
 from harness.cosimulation.apart import Apart
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.limits import Limits
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import kept_loaded, run
@@ -76,7 +77,7 @@ def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault):
     does, message = FAULTS[fault]
     system = System({"car": build_stranger(tmp_path, **does)}, limits=Limits(call=0.5))
     with pytest.raises(SimulationError, match=message) as error:
-        run(system, 0.3)
+        run(system, Experiment(0.3))
     text = str(error.value)
     assert text.startswith("car (stranger.fmu)")
     assert len(text) < 700
@@ -89,7 +90,7 @@ def test_the_steps_in_python_name_the_same(tmp_path, fault):
     does, message = FAULTS[fault]
     system = System({"car": build_stranger(tmp_path, **does)})
     with pytest.raises(SimulationError, match=message), loaded(system, make_steps=interpreted) as loop:
-        loop.run(0.3)
+        loop.run(Experiment(0.3))
 
 
 @pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
@@ -98,7 +99,7 @@ def test_every_call_is_counted_in_both_languages(native):
     for make in (CompiledSteps, interpreted):
         with loaded(looped(folder=native.parent, build="native"), make_steps=make) as loop:
             before = current().calls
-            loop.run(0.1)
+            loop.run(Experiment(0.1))
             counted.append(current().calls - before)
     assert counted[0] == counted[1] > 100 * 4
 
@@ -107,7 +108,7 @@ def test_a_stranger_that_cuts_off_its_process_has_not_crashed(tmp_path, monkeypa
     monkeypatch.setattr(apart, "PATIENCE", 0.3)
     does = f"{LATER} {{ for (int k = 3; k < 20; k++) close(k); for (;;) usleep(1000); }}"
     with pytest.raises(SimulationError, match=r"gave no more answers and was ended, in fmi2DoStep at 0\.1 s"):
-        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
+        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), Experiment(0.3))
 
 
 class Slow(list):
@@ -161,7 +162,7 @@ def test_nothing_that_a_stranger_writes_among_the_answers_is_run(tmp_path):
     pickled = pickle.dumps((Harmful(tmp_path / "harm"), None))
     does = " ".join(FORGED.replace("BYTES", in_c(pickled)).split())
     with pytest.raises(SimulationError, match=r"wrote among the answers .* in fmi2DoStep at 0 s"):
-        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
+        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), Experiment(0.3))
     assert not (tmp_path / "harm").exists()
 
 
@@ -207,17 +208,18 @@ def test_what_a_stranger_leaves_behind_is_not_waited_for(tmp_path, own_session):
     does = f"{LATER} {{ if (fork() == 0) {{ {own_session} sleep(20); _exit(0); }} _exit(3); }}"
     begun = time.monotonic()
     with pytest.raises(SimulationError, match=r"with exit code 3, in fmi2DoStep at 0\.1 s"):
-        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), 0.3)
+        run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), Experiment(0.3))
     assert time.monotonic() - begun < 10.0
 
 
 RUN = """
 import sys
 from pathlib import Path
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import System
 
-run(System({"car": Path(sys.argv[1])}), 0.1)
+run(System({"car": Path(sys.argv[1])}), Experiment(0.1))
 """
 
 
@@ -230,7 +232,7 @@ def test_what_a_stranger_prints_goes_nowhere(tmp_path):
 def test_a_slow_stranger_may_take_longer_than_one_call(tmp_path):
     system = System({"car": build_stranger(tmp_path, IN_DO_STEP="usleep(100000)")}, limits=Limits(call=0.4))
     begun = time.monotonic()
-    assert len(run(system, 1.0, 0.1)) == 11
+    assert len(run(system, Experiment(1.0, 0.1))) == 11
     assert time.monotonic() - begun > 1.0
 
 
@@ -238,12 +240,12 @@ def test_a_stranger_keeps_its_process_and_gets_a_new_one_after_a_crash(tmp_path,
     crash = {"IN_DO_STEP": "if (time > 0.1) raise(SIGSEGV)"}
     system = System({"car": build_stranger(tmp_path, **crash)})
     with kept_loaded():
-        run(system, 0.1)
+        run(system, Experiment(0.1))
         first = list(unpacked.iterdir())
-        run(system, 0.1)
+        run(system, Experiment(0.1))
         assert list(unpacked.iterdir()) == first
         for _ in range(2):
             with pytest.raises(SimulationError, match="crashed"):
-                run(system, 0.2)
-        np.testing.assert_array_equal(run(system, 0.1)["car.v"], 0.0)
+                run(system, Experiment(0.2))
+        np.testing.assert_array_equal(run(system, Experiment(0.1))["car.v"], 0.0)
     assert list(unpacked.iterdir()) == []

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from harness.cosimulation import instance
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface, unit_of
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import PLANTS, Connection, System, chosen_build, loop
@@ -140,13 +141,13 @@ def test_types_and_causality_must_suit(built):
         ("can.omega_wheel_L", "controller.omega_2_can", "of causality input; it must be output"),
     ):
         with pytest.raises(WiringError, match=complaint):
-            run(System({"can": can, "controller": controller}, (Connection(source, target),)), 1.0)
+            run(System({"can": can, "controller": controller}, (Connection(source, target),)), Experiment(1.0))
 
 
 def test_an_input_is_fed_once(built):
     system = System({"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.T_mot", "motor.T_ref"),))
     with pytest.raises(WiringError, match=r"motor\.T_ref is fed more than once"):
-        run(system, 1.0, inputs={"motor.T_ref": 5.0})
+        run(system, Experiment(1.0, inputs={"motor.T_ref": 5.0}))
 
 
 def test_what_is_no_fmu_is_refused(built, tmp_path):

@@ -5,6 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import loop
 from harness.cosimulation.wiring import fit
@@ -57,7 +58,7 @@ def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant)
     manoeuvre = SITUATIONS["gap"].manoeuvre
     plain = loop(plant, settings[plant]["folder"], "native")
     direct, through = (
-        run(system, 1.3, inputs=signals(manoeuvre), parameters=start(manoeuvre))
+        run(system, Experiment(1.3, inputs=signals(manoeuvre), parameters=start(manoeuvre)))
         for system in (plain, with_faults(plain, injector))
     )
     assert all(np.array_equal(direct[name], through[name]) for name in direct.dtype.names or ())

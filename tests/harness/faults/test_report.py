@@ -63,7 +63,7 @@ def test_the_page_tells_how_a_case_is_run_again(outcomes):
 
 def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path, monkeypatch):
     runs = []
-    monkeypatch.setattr(bench, "run", lambda *given, **named: runs.append(1) or run(*given, **named))
+    monkeypatch.setattr(bench, "run", lambda *given: runs.append(1) or run(*given))
     again, files = write_case(2, 1, injector, settings, tmp_path)
     assert len(runs) == 3
     assert again == outcomes[1]
