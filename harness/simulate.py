@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .arguments import require_arguments
 from .cosimulation.experiment import Experiment, Source
 from .cosimulation.limits import USUAL, Limits
 from .cosimulation.runs import run
@@ -28,7 +29,7 @@ def simulate(
     step_size: float = 1e-3,
     scheme: Scheme = Scheme.PROPAGATED,
     seed: int = 1,
-    folder: Path = BUILD,
+    folder: str | Path = BUILD,
     build: str | None = None,
     *,
     controller: NameOrFile | None = None,
@@ -55,10 +56,13 @@ def simulate(
         Structured array, see `harness.cosimulation.master.Loop.run`.
 
     Raises:
-        WiringError: a block or a parameter does not fit.
+        WiringError: a block, a parameter or an argument does not fit.
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
-    given = _checked(start(manoeuvre, seed) | dict(parameters or {}), control)
+    blocks: dict[str, Any] = {"plant": plant, "controller": controller, "motor": motor, "can": can}
+    require_arguments(manoeuvre=manoeuvre, **blocks, control=control, parameters=parameters, step_size=step_size)
+    require_arguments(scheme=scheme, seed=seed, folder=folder, build=build, mapping=mapping, limits=limits)
+    given = _checked(start(manoeuvre, seed) | dict(parameters or {}))
     if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
         LOG.warning(
             "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
@@ -66,7 +70,7 @@ def simulate(
             given["plant.T_0"],
             manoeuvre.T_0,
         )
-    system = loop(plant, folder, build, controller=controller, motor=motor, can=can, mapping=mapping, limits=limits)
+    system = loop(folder=Path(folder), build=build, mapping=mapping, limits=limits, **blocks)
     warn_of_stale(system)
     return run(
         system,
@@ -86,14 +90,12 @@ def looped(plant: NameOrFile, settings: Mapping[str, Any]) -> System:
     return loop(plant, **{name: value for name, value in settings.items() if name not in ("parameters", "seed")})
 
 
-def _checked(parameters: dict[str, Any], control: Any) -> dict[str, Any]:
+def _checked(parameters: dict[str, Any]) -> dict[str, Any]:
     """The parameters, which are finite numbers.
 
     Raises:
-        WiringError: one is none, or control is neither on nor off.
+        WiringError: one is none.
     """
-    if control not in (True, False):
-        raise WiringError(f"control = {control!r}: it must be True or False")
     for name, value in parameters.items():
         if not (isinstance(value, Real | np.bool_) and abs(value) <= float_info.max):  # type: ignore[operator]
             raise WiringError(f"{name} = {value!r:.40}: a parameter is a finite number")

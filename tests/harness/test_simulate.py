@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from harness.cosimulation import experiment
@@ -25,6 +26,31 @@ def test_a_parameter_is_a_finite_number(value: Any) -> None:
 def test_damping_is_on_or_off(value: Any) -> None:
     with pytest.raises(WiringError, match="it must be True or False"):
         simulate(SHORT, control=value)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"manoeuvre": "tipin0"}, r"manoeuvre = 'tipin0': it must be a Manoeuvre, such as MANOEUVRES\['tipin15'\]"),
+        ({"plant": 3}, "plant = 3: it must be the name of a block, or the path of an FMU"),
+        ({"controller": []}, r"controller = \[\]: it must be the name of a block"),
+        ({"parameters": [1]}, r"parameters = \[1\]: it must be a dictionary"),
+        ({"parameters": {1: 2.0}}, r"parameters = \{1: 2.0\}: it must be a dictionary"),
+        ({"step_size": "1e-3"}, "step_size = '1e-3': it must be a number of seconds"),
+        ({"scheme": 3}, "scheme = 3: it must be a Scheme or its name"),
+        ({"scheme": "gauss"}, "unknown scheme gauss; known are"),
+        ({"control": np.ones(2)}, "control = .*: it must be True or False"),
+        ({"seed": 1.5}, "seed = 1.5: it must be a whole number"),
+        ({"folder": 3}, "folder = 3: it must be the path of a folder"),
+        ({"build": 3}, "build = 3: it must be 'native', 'python' or None"),
+        ({"mapping": "plant.T_gear=tau"}, "mapping = 'plant.T_gear=tau': it must be a dictionary"),
+        ({"mapping": {"plant.T_gear": 1}}, "mapping = .*: it must be a dictionary"),
+        ({"limits": 1e9}, "limits = 1000000000.0: it must be Limits"),
+    ],
+)
+def test_an_argument_of_another_kind_is_named(built: Path, given: dict[str, Any], said: str) -> None:
+    with pytest.raises(WiringError, match=said):
+        simulate(**({"manoeuvre": SHORT, "folder": str(built)} | given))
 
 
 def test_a_start_that_disagrees_with_the_demand_is_named(built: Path, caplog: pytest.LogCaptureFixture) -> None:
