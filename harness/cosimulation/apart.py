@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from math import isfinite
 from mmap import mmap
 from pathlib import Path
 from queue import Empty, Queue
@@ -17,7 +18,7 @@ from typing import Any
 
 from ..errors import SimulationError
 from .answers import Answer, Bytes, Forged, receive
-from .whereabouts import FUNCTIONS, Whereabouts
+from .whereabouts import AT_START, FUNCTIONS, Whereabouts
 
 LOOK = 0.1
 """Seconds between two looks at what the process is doing."""
@@ -174,8 +175,10 @@ class Apart:
         return self._call(f"crashed ({_name(-code)}) in")
 
     def _at(self) -> tuple[int, int, float, int]:
+        """What is noted; no call, if an FMU has written over it."""
         at = Whereabouts.from_buffer_copy(self._memory)
-        return at.instance, at.function, at.time, at.calls
+        known = 0 <= at.instance < len(self._names) and 0 <= at.function <= len(FUNCTIONS) and isfinite(at.time)
+        return (at.instance, at.function, at.time, at.calls) if known else (0, 0, AT_START, 0)
 
     def _call(self, what: str) -> str:
         """Which FMU did that in which call."""
