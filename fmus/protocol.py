@@ -62,6 +62,9 @@ BAD_VALUE = "{name} = {value!r}{unit} is refused; allowed is {allowed}"
 NOT_INTEGRABLE = (
     "the step of {size!r} s is refused; {state} changes too fast to be followed with these parameters and inputs"
 )
+TOO_MUCH_WORK = (
+    "the step of {size!r} s is refused; {state} changes so fast that it would take too long; shorter steps are allowed"
+)
 NOT_FINITE = "the step of {size!r} s is refused; {name} would be {value!r}"
 
 DAMAGED_STATE = "the FMU state is refused: its bytes are damaged"

@@ -6,6 +6,7 @@ from typing import Any
 from weakref import ref
 
 from models.block.implicit import NotIntegrable
+from models.block.integrator import TooMuchWork
 from models.block.runner import Runner, runner
 
 from .. import protocol
@@ -136,10 +137,12 @@ class BlockSlave:
         self._require(Mode.STEPPING, "fmi2DoStep")
         longest = protocol.LONGEST_COMMUNICATION_STEP
         if longest < step_size < math.inf:
-            self.log(protocol.BAD_STEP_SIZE.format(size=step_size, longest=longest), FMI_DISCARD, protocol.LOG_DISCARD)
-            return False
+            return self._discard(protocol.BAD_STEP_SIZE, size=step_size, longest=longest)
         self._check_step(current_time, step_size)
-        self._advance(current_time - self.start_time, step_size)
+        try:
+            self._advance(current_time - self.start_time, step_size)
+        except TooMuchWork as failure:
+            return self._discard(protocol.TOO_MUCH_WORK, size=step_size, state=failure.args[0])
         self.time = current_time + step_size
         return True
 
@@ -153,12 +156,17 @@ class BlockSlave:
             if self.runner.x is not before:
                 self.values.up_to_date = False
             self.values.check_outputs(self.runner.x, step_size)
-        except (NotIntegrable, Refused) as failure:
+        except (NotIntegrable, TooMuchWork, Refused) as failure:
             self.runner.restore(memory)
             self.values.up_to_date = False
-            if isinstance(failure, Refused):
+            if not isinstance(failure, NotIntegrable):
                 raise
             raise Refused(protocol.NOT_INTEGRABLE, size=step_size, state=failure.args[0]) from None
+
+    def _discard(self, sentence: str, **fields: Any) -> bool:
+        """Says why a step was not made that shorter ones can stand for."""
+        self.log(sentence.format(**fields), FMI_DISCARD, protocol.LOG_DISCARD)
+        return False
 
     def _check_step(self, current_time: float, step_size: float) -> None:
         if not 0.0 < step_size <= protocol.LONGEST_COMMUNICATION_STEP:

@@ -25,6 +25,13 @@ LEAST_CHANGE, MOST_CHANGE, SAFETY = 0.2, 5.0, 0.9
 GREATEST = 1e300
 """Of the sums of squares from which an error is made; beyond it the error is without bound."""
 
+
+class Work:
+    """What a communication step has come to so far, in explicit steps."""
+
+    steps = 0
+
+
 Weights = dict[int, float]
 """Of the stages, by their numbers."""
 

@@ -7,7 +7,7 @@ Kinks are left to the error of the steps.
 import math
 from typing import Any
 
-from .explicit import TOLERANCE, change, small_sizes
+from .explicit import TOLERANCE, Work, change, small_sizes
 from .rodas import GAMMA, A, G
 from .types import ContinuousBlock
 
@@ -19,6 +19,9 @@ SHORTEST_STEP = 1e-13
 
 MOST_STEPS = 3_000
 """Steps tried in one stretch before it is given up."""
+
+IMPLICIT_WORK = 4
+"""Of one step, in explicit ones."""
 
 Vector = list[float]
 Matrix = list[Vector]
@@ -35,8 +38,8 @@ class Implicit:
         self._derivative, self._State = block.derivative, block.State
         self._size, self._small = range(len(block.State._fields)), small_sizes(block)
 
-    def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
-        """The state `duration` s after x.
+    def advance(self, x: Any, u: Any, p: Any, duration: float, work: Work) -> Any:
+        """The state `duration` s after x; the work is added up.
 
         Raises:
             NotIntegrable: the steps become too short or too many.
@@ -45,6 +48,7 @@ class Implicit:
         dx = self._derivative(x, u, p)
         J = self._jacobian(x, dx, u, p)
         for _ in range(MOST_STEPS):
+            work.steps += IMPLICIT_WORK
             end, error = self._step(x, dx, J, u, p, length)
             if error <= 1.0:
                 left -= length
@@ -56,7 +60,7 @@ class Implicit:
             elif length < SHORTEST_STEP:
                 break
             length = min(left, length * change(error, 2))
-        raise NotIntegrable(self._fastest(x, dx))
+        raise NotIntegrable(self.fastest(x, dx))
 
     def _jacobian(self, x: Any, dx: Any, u: Any, p: Any) -> Matrix:
         """Row n holds what moves state n."""
@@ -89,7 +93,7 @@ class Implicit:
             total += e * e
         return end, math.sqrt(total / len(self._size))
 
-    def _fastest(self, x: Any, dx: Any) -> str:
+    def fastest(self, x: Any, dx: Any) -> str:
         """The name of the state that changes fastest for its size."""
         changes = [abs(dx[n]) / (abs(x[n]) + self._small[n]) for n in self._size]
         return self._State._fields[max(self._size, key=lambda n: changes[n])]

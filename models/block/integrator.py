@@ -10,7 +10,7 @@ would be needed, the stretch is left to an implicit method. Nothing is kept from
 import math
 from typing import Any, NamedTuple
 
-from .explicit import GREATEST, TOLERANCE, change, small_sizes, step, tangent, trial
+from .explicit import GREATEST, TOLERANCE, Work, change, small_sizes, step, tangent, trial
 from .implicit import Implicit
 from .types import ContinuousBlock
 
@@ -46,14 +46,23 @@ to 6, and one implicit step costs as much as four of them."""
 POWER_ITERATIONS = 2
 """To find that rate: what a step fails by is hidden in its way by slow motion, but hardly in what that way does."""
 
+MOST_WORK = 400_000
+"""Of a communication step, in explicit steps of integration; a longer one is not begun beyond it. A native FMU makes as
+many in a second, for a minute and more of driving with the car that the plants start as."""
+
+
+class TooMuchWork(ArithmeticError):
+    """Shorter communication steps are needed; the argument is the name of the state that changes fastest."""
+
 
 class Start(NamedTuple):
-    """Where a step starts: state, its derivative, and what is held over the step."""
+    """Where a step starts: state, its derivative, what is held over the step, and the work up to it."""
 
     x: Any
     dx: Any
     u: Any
     p: Any
+    work: Work
 
 
 class Integrator:
@@ -75,30 +84,35 @@ class Integrator:
 
         Raises:
             NotIntegrable: the state changes too fast to be followed.
+            TooMuchWork: it can be followed, but not as far in a reasonable time.
         """
+        work = Work()
         stretches = max(1, math.ceil(duration / self.step_size - STEP_TOLERANCE))
         sides = self._sides(x, u, p)
         for _ in range(stretches):
-            x = self._advance_through(x, u, p, duration / stretches, sides)
+            if work.steps > MOST_WORK:
+                raise TooMuchWork(self.implicit.fastest(x, self.derivative(x, u, p)))
+            start = Start(x, self.derivative(x, u, p), u, p, work)
+            x = self._advance_through(start, duration / stretches, sides)
         return x
 
-    def _advance_through(self, x: Any, u: Any, p: Any, left: float, sides: list[bool]) -> Any:
+    def _advance_through(self, start: Start, left: float, sides: list[bool]) -> Any:
         """The state after a stretch of length `left`, split at every event on its way.
 
         `sides` says on which side of each zero the state is, and is kept up to date. It is
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
-        start, longest, located = Start(x, self.derivative(x, u, p), u, p), left, 0
+        (u, p, work), longest, located = start[2:], left, 0
         for _ in range(MOST_TRIALS):
             length, crossed = min(left, longest), None
-            x_end, error = self.trial(*start, length)
+            x_end, error = self._try(start, length)
             if not error <= ALLOWED_ERROR and self._is_stiff(start, x_end, left):
                 break
             if error <= COARSE_ERROR and located < MOST_CROSSINGS:
                 crossings = self._crossings(start, length, x_end, sides)
                 if crossings:
                     length, crossed = min(crossings)
-                    x_end, error = self.trial(*start, length)
+                    x_end, error = self._try(start, length)
             if error <= ALLOWED_ERROR:
                 left -= length
                 if crossed is not None:
@@ -109,9 +123,14 @@ class Integrator:
                 start = start._replace(x=x_end, dx=self.derivative(x_end, u, p))
             if crossed is None or not error <= ALLOWED_ERROR:
                 longest = length * change(error / ALLOWED_ERROR, 3)
-        x = self.implicit.advance(start.x, u, p, left)
+        x = self.implicit.advance(start.x, u, p, left, work)
         sides[:] = self._sides(x, u, p)
         return x
+
+    def _try(self, start: Start, length: float) -> tuple[Any, float]:
+        """The state after a step of that length, and how far off it is."""
+        start.work.steps += 1
+        return self.trial(*start[:4], length)
 
     def _is_stiff(self, start: Start, x_end: Any, left: float) -> bool:
         """Whether the state changes too fast for explicit steps.
@@ -149,7 +168,7 @@ class Integrator:
         if not sides:
             return []
         end = self.event_indicators(x_end, start.u, start.p)
-        straight = self.event_indicators(self.tangent(*start, h), start.u, start.p)
+        straight = self.event_indicators(self.tangent(*start[:4], h), start.u, start.p)
         found = []
         for n, side in enumerate(sides):
             beyond = h if is_beyond(end[n], side) else None
@@ -163,11 +182,12 @@ class Integrator:
         return self.event_indicators(x, start.u, start.p)[n]
 
     def _value(self, n: int, start: Start, length: float) -> float:
-        return self._indicator(n, self.step(*start, length), start)
+        start.work.steps += 1
+        return self._indicator(n, self.step(*start[:4], length), start)
 
     def _slope(self, n: int, start: Start) -> float:
         """Time derivative of event indicator n."""
-        probe = self.tangent(*start, PROBE)
+        probe = self.tangent(*start[:4], PROBE)
         return (self._indicator(n, probe, start) - self._indicator(n, start.x, start)) / PROBE
 
     def _excursion(self, n: int, start: Start, h: float, x_end: Any, side: bool) -> float | None:

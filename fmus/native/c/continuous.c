@@ -4,23 +4,24 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-const char *advance(Memory *memory, double elapsed, double duration)
+Obstacle advance(Memory *memory, double elapsed, double duration)
 {
     Values *values = &memory->values;
-    const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p};
+    const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p, NULL};
     (void)elapsed;
     const int failed = integrate(&problem, duration, &memory->x);
     if (failed)
-        return state_names[failed - 1] + 1; /* without the dot */
+        return (Obstacle){state_names[abs(failed) - 1] + 1, failed < 0}; /* without the dot of the name */
     if (memory->moving) {
         Input room;
         values->u = *inputs_at(&problem, duration, &room);
         memset(&memory->du, 0, sizeof memory->du);
         memory->moving = 0;
     }
-    return NULL;
+    return (Obstacle){NULL, 0};
 }
 
 Status check_ticks(const Instance *instance, const Memory *memory)

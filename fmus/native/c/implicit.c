@@ -134,7 +134,7 @@ static double try_step(const Problem *problem, const Start *from, Vector J[STATE
     return sqrt(total / (double)STATES);
 }
 
-static int fastest(const Start *from)
+int fastest(const Start *from)
 {
     double most = 0.0;
     int found = 0;
@@ -154,6 +154,7 @@ int integrate_stiff(const Problem *problem, Start *from, double duration)
     double left = duration, length = duration;
     jacobian(problem, from, J);
     for (int steps = 0; steps < MOST_STEPS; steps++) {
+        *problem->work += IMPLICIT_WORK;
         const double error = try_step(problem, from, J, length, end);
         if (error <= 1.0) {
             left -= length;

@@ -45,6 +45,12 @@ typedef struct {
     Memory memory;
 } Instance;
 
+/* What is in the way of a step. */
+typedef struct {
+    const char *state;    /* the name of one that changes fast; NULL: nothing */
+    int shorter_steps_do; /* it can be followed, but it takes too long */
+} Obstacle;
+
 #if defined __GNUC__
 #define LIKE_PRINTF __attribute__((format(printf, 2, 3)))
 #else
@@ -86,8 +92,7 @@ static Status check_content(const Instance *instance, Memory *memory); /* of a s
 
 /* continuous.c or sampled.c */
 static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
-/* From `elapsed` s after the start on; NULL, or the name of a state that changes too fast to be followed. */
-static const char *advance(Memory *memory, double elapsed, double duration);
+static Obstacle advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
 static Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);

@@ -15,17 +15,22 @@ const Input *inputs_at(const Problem *problem, double t, Input *room)
 {
     if (!problem->du)
         return problem->u;
-    const real *u = (const real *)problem->u, *du = (const real *)problem->du;
-    real *at = (real *)room;
+    real u[INPUTS], du[INPUTS];
+    memcpy(u, problem->u, sizeof u);
+    memcpy(du, problem->du, sizeof du);
     for (int n = 0; n < INPUTS; n++)
-        at[n] = u[n] + t * du[n];
+        u[n] = u[n] + t * du[n];
+    memcpy(room, u, sizeof u);
     return room;
 }
 
 void rate(const Problem *problem, double t, const Vector x, Vector dx)
 {
     Input room;
-    derivative((const State *)(const void *)x, inputs_at(problem, t, &room), problem->p, (State *)(void *)dx);
+    State state, change;
+    memcpy(&state, x, sizeof state);
+    derivative(&state, inputs_at(problem, t, &room), problem->p, &change);
+    memcpy(dx, &change, sizeof change);
 }
 
 #include "dop853.h"
@@ -35,6 +40,13 @@ void begin_at(const Problem *problem, double t, const Vector x, Start *from)
     from->t = t;
     memcpy(from->x, x, sizeof(Vector));
     rate(problem, t, x, from->dx);
+}
+
+/* A step of that length, and how far off it is unless that is NULL. */
+static void make_step_to(const Problem *problem, const Start *from, double length, Vector end, double *error)
+{
+    ++*problem->work;
+    step(problem, from->t, from->x, from->dx, length, end, error);
 }
 
 double change(double error, int halvings)
@@ -58,7 +70,9 @@ typedef int Sides[INDICATORS]; /* of each zero: 1 above, 0 below */
 static void indicators_at(const Problem *problem, double t, const Vector x, real z[INDICATORS])
 {
     Input room;
-    event_indicators((const State *)(const void *)x, inputs_at(problem, t, &room), problem->p, z);
+    State state;
+    memcpy(&state, x, sizeof state);
+    event_indicators(&state, inputs_at(problem, t, &room), problem->p, z);
 }
 
 static void sides_at(const Problem *problem, double t, const Vector x, Sides sides)
@@ -92,7 +106,7 @@ static double indicator_at(int n, const Problem *problem, double t, const Vector
 static double value(int n, const Problem *problem, const Start *from, double length)
 {
     Vector end;
-    step(problem, from->t, from->x, from->dx, length, end, NULL);
+    make_step_to(problem, from, length, end, NULL);
     return indicator_at(n, problem, from->t + length, end);
 }
 
@@ -253,7 +267,7 @@ static int advance_through(const Problem *problem, double t, double left, Vector
         Vector end;
         double length = longest < left ? longest : left, error;
         int crossed = NO_CROSSING;
-        step(problem, from.t, from.x, from.dx, length, end, &error);
+        make_step_to(problem, &from, length, end, &error);
         if (!(error <= ALLOWED_ERROR) && is_stiff(problem, &from, end, left))
             break;
         if (error <= COARSE_ERROR && located < MOST_CROSSINGS) {
@@ -261,7 +275,7 @@ static int advance_through(const Problem *problem, double t, double left, Vector
             crossed = first_crossing(problem, &from, length, end, sides, &to_crossing);
             if (crossed != NO_CROSSING) {
                 length = to_crossing;
-                step(problem, from.t, from.x, from.dx, length, end, &error);
+                make_step_to(problem, &from, length, end, &error);
             }
         }
         if (error <= ALLOWED_ERROR) {
@@ -285,17 +299,26 @@ static int advance_through(const Problem *problem, double t, double left, Vector
     return failed;
 }
 
-int integrate(const Problem *problem, double duration, State *state)
+int integrate(const Problem *whole, double duration, State *state)
 {
-    real *x = (real *)state;
+    long work = 0;
+    const Problem counted = {whole->u, whole->du, whole->p, &work}, *problem = &counted;
+    Vector x;
     const double stretches = fmax(1.0, ceil(duration / LONGEST_STEP - STEP_TOLERANCE));
     const double h = duration / stretches;
     Sides sides;
+    memcpy(x, state, sizeof x);
     sides_at(problem, 0.0, x, sides);
     for (double k = 0.0; k < stretches; k += 1.0) {
+        if (work > MOST_WORK) {
+            Start from = {0.0, {0.0}, {0.0}};
+            begin_at(problem, k * h, x, &from);
+            return -(1 + fastest(&from));
+        }
         const int failed = advance_through(problem, k * h, h, x, sides);
         if (failed)
             return failed;
     }
+    memcpy(state, x, sizeof x);
     return 0;
 }

@@ -6,7 +6,7 @@
 
 enum { INPUTS = sizeof(Input) / sizeof(real), STATES = sizeof(State) / sizeof(real) };
 
-typedef real Vector[STATES];
+typedef real Vector[STATES]; /* a State, but compilers take them for different things: one is copied to the other */
 
 static const double small[STATES] = SMALL_SIZES; /* what is added to the size of a state */
 
@@ -15,6 +15,7 @@ typedef struct {
     const Input *u;
     const Input *du;
     const Parameters *p;
+    long *work; /* explicit steps that it has come to; kept by integrate */
 } Problem;
 
 /* Where a step starts: time since the start of the communication step in s, state, its derivative. */
@@ -27,8 +28,9 @@ typedef struct {
 /* integrator.c */
 
 /* Takes the state x to `duration` s later; stretches of at most LONGEST_STEP are integrated one by one. If it changes
-too fast to be followed: 1 + the number of the state that changes fastest, and x is somewhere between; else 0. */
-static int integrate(const Problem *problem, double duration, State *x);
+too fast to be followed: 1 + the number of the state that changes fastest; minus that, if shorter communication steps
+can be made; else 0. */
+static int integrate(const Problem *whole, double duration, State *x);
 
 /* The inputs t s after the start of the communication step; `room` is for them if they move. */
 static const Input *inputs_at(const Problem *problem, double t, Input *room);
@@ -45,5 +47,8 @@ static double change(double error, int halvings);
 
 /* Takes the state at the start to `duration` s later, with what `integrate` returns. */
 static int integrate_stiff(const Problem *problem, Start *from, double duration);
+
+/* The number of the state that changes fastest for its size. */
+static int fastest(const Start *from);
 
 #endif

@@ -74,11 +74,13 @@ Status make_step(Instance *instance, double time, double step_size)
     Status status = check_step(instance, time, step_size);
     if (status == OK) {
         Memory next = instance->memory;
-        const char *state = advance(&next, time - next.start_time, step_size);
+        const Obstacle obstacle = advance(&next, time - next.start_time, step_size);
         char text[NUMBER_LENGTH];
         next.time = time + step_size;
-        if (state)
-            status = refuse(instance, NOT_INTEGRABLE(write_number(text, step_size), state));
+        if (obstacle.state && obstacle.shorter_steps_do)
+            status = discard(instance, TOO_MUCH_WORK(write_number(text, step_size), obstacle.state));
+        else if (obstacle.state)
+            status = refuse(instance, NOT_INTEGRABLE(write_number(text, step_size), obstacle.state));
         else
             status = check_outputs(instance, &next, step_size);
         if (status == OK)

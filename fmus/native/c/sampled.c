@@ -5,7 +5,7 @@
 
 /* The ticks up to the end of the step that have not been made; tick k is due k SAMPLE_TIME after the start. The same
 as runner.py, operation by operation. */
-const char *advance(Memory *memory, double elapsed, double duration)
+Obstacle advance(Memory *memory, double elapsed, double duration)
 {
     const double samples = (elapsed + duration) / SAMPLE_TIME;
     const double due = ceil(samples - TICK_TOLERANCE);
@@ -16,7 +16,7 @@ const char *advance(Memory *memory, double elapsed, double duration)
     }
     if (memory->ticks - samples <= TICK_TOLERANCE)
         memory->x = memory->coming;
-    return NULL;
+    return (Obstacle){NULL, 0};
 }
 
 Status check_ticks(const Instance *instance, const Memory *memory)

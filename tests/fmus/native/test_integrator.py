@@ -24,10 +24,10 @@ from fmus.native.tableau import rosenbrock_header, step_header
 from models import two_mass_driveline as driveline
 from models.block.explicit import small_sizes
 from models.block.implicit import NotIntegrable
-from models.block.integrator import Integrator
+from models.block.integrator import Integrator, TooMuchWork
 from models.block.types import ContinuousBlock
 from tests.models.block.test_integrator import *  # noqa: F403
-from tests.models.block.test_integrator import LIVELY, Body, MakeIntegrator, Nothing, P, block
+from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIntegrator, Nothing, P, block
 
 BLOCK = """
 typedef double real;
@@ -49,7 +49,7 @@ void (*event_indicators)(const State *x, const Input *u, const Parameters *p, re
 int run(double duration, State *x);
 int run(double duration, State *x)
 {
-    const Problem problem = {0, 0, 0};
+    const Problem problem = {0, 0, 0, 0};
     return integrate(&problem, duration, x);
 }
 """
@@ -96,7 +96,7 @@ class CompiledIntegrator:
         values = (ctypes.c_double * size)(*x)
         failed = library.run(ctypes.c_double(duration), values)
         if failed:
-            raise NotIntegrable(self._block.State._fields[failed - 1])
+            raise (NotIntegrable if failed > 0 else TooMuchWork)(self._block.State._fields[abs(failed) - 1])
         return make(values)
 
 
@@ -104,6 +104,14 @@ class CompiledIntegrator:
 def integrator(tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
     """What those tests call the integrator of a block."""
     library = cache(lambda *sizes: compiled(tmp_path_factory.mktemp("integrator"), *sizes))
+    return lambda block: CompiledIntegrator(library, block)
+
+
+@pytest.fixture
+def hurried(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
+    """The same with little work allowed, which is compiled into it."""
+    monkeypatch.setattr("models.block.integrator.MOST_WORK", LITTLE_WORK)
+    library = cache(lambda *sizes: compiled(tmp_path_factory.mktemp("hurried"), *sizes))
     return lambda block: CompiledIntegrator(library, block)
 
 

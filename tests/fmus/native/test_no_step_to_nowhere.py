@@ -8,7 +8,7 @@ from pythonfmu import Fmi2Slave
 
 from fmus.fmu import Fmu
 from fmus.python.refusal import Refused
-from fmus.python.slave import BlockSlave
+from fmus.python.slave import FMI_DISCARD, BlockSlave
 from models.block.declaration import Real
 from models.block.operators import where
 from models.block.types import ContinuousBlock
@@ -94,3 +94,36 @@ def test_a_step_to_nowhere_is_refused(native_builder, tmp_path, pull, message):
     path = native_builder(Fmu(BLOCK, stop_time=1.0), tmp_path)
     assert refusal_in_c(path, tmp_path / "unpacked", pull) == message
     assert refusal_in_python(pull) == message
+
+
+@pytest.fixture
+def little_work(monkeypatch):
+    """Of integration, in both builds: a stretch is an explicit step."""
+    monkeypatch.setattr("models.block.integrator.MOST_WORK", 49)
+
+
+TOO_LONG = "the step of 0.51 s is refused; n changes so fast that it would take too long; shorter steps are allowed"
+
+
+def test_a_step_that_takes_too_long_is_discarded_in_c(little_work, native_builder, tmp_path):
+    """50 stretches can be made, 51 not; what the longer step has changed is undone."""
+    path = native_builder(Fmu(BLOCK, stop_time=1.0), tmp_path)
+    with opened(path, tmp_path / "unpacked") as host:
+        host.initialize()
+        before = host.outputs()
+        assert (host.refuses(host.step, 0.0, 0.51), host.status) == (TOO_LONG, FMI_DISCARD)
+        assert host.outputs() == before
+        host.step(0.0, 0.5)
+
+
+def test_a_step_that_takes_too_long_is_discarded_in_python(little_work):
+    slave, said = PulledSlave(instance_name="pulled", resources=""), []
+    slave.setup_experiment(0.0, None, None)
+    slave.enter_initialization_mode()
+    slave.exit_initialization_mode()
+    before = slave._get_fmu_state()
+    slave.log = lambda message, status, category: said.append((message, status))
+    assert not slave.do_step(0.0, 0.51)
+    assert said == [(TOO_LONG, FMI_DISCARD)]
+    assert slave._get_fmu_state() == before
+    assert slave.do_step(0.0, 0.5)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from models import two_mass_driveline as driveline
 from models.block.declaration import Real
 from models.block.implicit import NotIntegrable
-from models.block.integrator import Integrator
+from models.block.integrator import Integrator, TooMuchWork
 from models.block.operators import maximum, where
 from models.block.types import ContinuousBlock, no_event_indicators
 from tests.models.exact_driveline import ExactDriveline
@@ -35,6 +35,16 @@ MakeIntegrator = Callable[[ContinuousBlock], Any]
 @pytest.fixture(scope="module")
 def integrator() -> MakeIntegrator:
     """Makes the integrator of a block."""
+    return Integrator
+
+
+LITTLE_WORK = 20
+
+
+@pytest.fixture
+def hurried(monkeypatch: pytest.MonkeyPatch) -> MakeIntegrator:
+    """Makes integrators that are allowed LITTLE_WORK."""
+    monkeypatch.setattr("models.block.integrator.MOST_WORK", LITTLE_WORK)
     return Integrator
 
 
@@ -281,6 +291,28 @@ def test_what_fades_fast_costs_little_beside_what_moves_slowly_and_far(integrato
     x, count = evaluations(integrator, fading, Body(1e-5, 0.0, 0.0), 0.1)
     assert abs(x.x) < 1e-10
     assert count < 15 * 12, "explicit steps would be 7 for stability alone, and 40 with those that fail"
+
+
+@pytest.mark.parametrize(("stretches", "too_many"), [(LITTLE_WORK + 1, False), (LITTLE_WORK + 2, True)])
+def test_no_stretch_is_begun_beyond_the_work_that_is_allowed(
+    hurried: MakeIntegrator, stretches: int, too_many: bool
+) -> None:
+    moving = hurried(block(lambda x, u, p: Body(1.0, 7.0, 0.0)))
+    if too_many:
+        with pytest.raises(TooMuchWork, match="v"):
+            moving.advance(Body(-10.0, 0.0, 0.0), Nothing(), Nothing(), 0.1 * stretches)
+    else:
+        x = moving.advance(Body(-10.0, 0.0, 0.0), Nothing(), Nothing(), 0.1 * stretches)
+        assert x.x == pytest.approx(0.1 * stretches - 10.0, rel=1e-12)
+
+
+def test_locating_zeros_and_implicit_steps_are_work_too(hurried: MakeIntegrator) -> None:
+    nowhere = Body(1.0, 0.0, 0.0)
+    swinging = block(lambda x, u, p: Body(-60.0 * x.v, 60.0 * x.x, 0.0), lambda x: x.x)
+    stiff = block(lambda x, u, p: Body(math.sin(x.v) - 1e4 * x.x, 1.0, 0.0))
+    for costly in (swinging, stiff):
+        with pytest.raises(TooMuchWork):
+            hurried(costly).advance(nowhere, Nothing(), Nothing(), 0.1 * LITTLE_WORK / 4)
 
 
 @pytest.mark.parametrize("power", [1, 3, 9])
