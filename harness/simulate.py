@@ -16,7 +16,9 @@ from .cosimulation.runs import run
 from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, System, loop
 from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
+from .metrics.evaluate import T_S
 from .stale import warn_of_stale
+from .told import warn_once
 
 LOG = logging.getLogger(__name__)
 
@@ -69,6 +71,11 @@ def simulate(
             "and swings from the first instant on",
             given["plant.T_0"],
             manoeuvre.T_0,
+        )
+    if step_size > T_S * (1.0 + 1e-9):
+        warn_once(
+            f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "
+            "the damping control: it gets its signals late, does not damp with long steps, and the run has no metrics"
         )
     system = loop(folder=Path(folder), build=build, mapping=mapping, limits=limits, **blocks)
     warn_of_stale(system)

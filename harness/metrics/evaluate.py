@@ -18,6 +18,10 @@ from .step_response import Response, height_of_step, response, settling_time
 T_S = 0.002
 """Sample time of the controller in s."""
 
+STATIONARY, FADED = 0.6, 0.9
+"""Length in s of the end of a run that counts as stationary, and of the time before it in which what the control adds
+after a change of the demand fades."""
+
 COLUMNS = (
     "time",
     "controller.T_driver",
@@ -85,15 +89,15 @@ def not_finite(results: np.ndarray) -> str | None:
 
 
 def stationary_change(T_driver: np.ndarray, e: np.ndarray, T_s: float) -> float:
-    """Mean of e in N.m over the last 0.6 s.
+    """Mean of e in N.m over the last STATIONARY s.
 
     Raises:
-        Absent: the demand T_driver is not constant there.
+        Absent: the demand T_driver is not constant there and in the time before in which the response to it fades.
     """
-    last = -round(0.6 / T_s)
-    if len(T_driver) <= -last or np.ptp(T_driver[last - 1 :]) != 0.0:
-        raise Absent("the demand is not constant in the last 0.6 s")
-    return float(e[last:].mean())
+    constant = -round((FADED + STATIONARY) / T_s)
+    if len(T_driver) <= -constant or np.ptp(T_driver[constant - 1 :]) != 0.0:
+        raise Absent(f"the demand is not constant in the last {FADED + STATIONARY:g} s")
+    return float(e[-round(STATIONARY / T_s) :].mean())
 
 
 def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:

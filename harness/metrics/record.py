@@ -77,7 +77,7 @@ class Metrics:
         float,
         Metric(
             "N.m",
-            "mean torque that the control adds in the last 0.6 s of a constant demand",
+            "mean torque that the control adds in the last 0.6 s, after 0.9 s of the same demand",
             Column("stat.\nchange", "N.m", 1.0, 2),
         ),
     ]

@@ -12,6 +12,7 @@ from harness.cosimulation import experiment
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
+from harness.told import warn_once
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=0.01)
 
@@ -51,6 +52,16 @@ def test_damping_is_on_or_off(value: Any) -> None:
 def test_an_argument_of_another_kind_is_named(built: Path, given: dict[str, Any], said: str) -> None:
     with pytest.raises(WiringError, match=said):
         simulate(**({"manoeuvre": SHORT, "folder": str(built)} | given))
+
+
+@pytest.mark.parametrize(("step_size", "named"), [(0.002, False), (0.0021, True)])
+def test_a_step_longer_than_the_sample_of_the_controller_is_named_once(
+    built: Path, caplog: pytest.LogCaptureFixture, step_size: float, named: bool
+) -> None:
+    warn_once.cache_clear()
+    for _ in range(2):
+        simulate(SHORT, folder=built, step_size=step_size)
+    assert caplog.text.count("is longer than the 2 ms between samples of the damping control") == named
 
 
 def test_a_start_that_disagrees_with_the_demand_is_named(built: Path, caplog: pytest.LogCaptureFixture) -> None:

@@ -139,6 +139,15 @@ def test_stationary_change_is_the_mean_of_the_added_torque_at_the_end():
     assert evaluate(results, MANOEUVRES["creep"]).stationary_torque_change == pytest.approx(0.7)
 
 
+@pytest.mark.parametrize(("changes", "is_stationary"), [(10.498, True), (10.502, False), (11.7, False)])
+def test_what_still_fades_after_a_change_of_the_demand_is_not_stationary(changes, is_stationary):
+    results = run(duration=12.0, T_driver=lambda t: np.where(np.round(t, 9) >= changes, 20.0, 10.0))
+    metrics = evaluate(results, MANOEUVRES["creep"])
+    assert ("stationary_torque_change" in metrics.absent) != is_stationary
+    if not is_stationary:
+        assert metrics.absent["stationary_torque_change"] == "the demand is not constant in the last 1.5 s"
+
+
 @given(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
 def test_a_straight_line_has_no_band_rms(offset, slope):
     t = np.arange(2000) * T_S
