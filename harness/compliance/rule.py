@@ -33,6 +33,10 @@ class Verdict(NamedTuple):
     tried: bool = True
 
 
+Problems = Callable[..., Iterable[str]]
+"""Lists what breaks a rule; it is given what the rule is about."""
+
+
 @dataclass(frozen=True)
 class Rule:
     """A rule.
@@ -46,7 +50,7 @@ class Rule:
     name: str
     severity: Severity
     title: str
-    problems: Callable[..., Iterable[str]] = lambda *_: ()
+    problems: Problems = lambda *_: ()
 
     def judge(self, *subject: Any) -> Verdict:
         """What breaks it; one thing may be that the FMU cannot be read or refuses a call."""
@@ -59,3 +63,16 @@ class Rule:
 
     def verdict(self, problems: list[str], tried: bool = True) -> Verdict:
         return Verdict(self.name, self.severity.value, self.title, problems, tried)
+
+
+class Rules(list[Rule]):
+    """Rules for one subject, in the order in which they stand there."""
+
+    def rule(self, name: str, severity: Severity, title: str) -> Callable[[Problems], Problems]:
+        """What lists the problems of a rule becomes one of these."""
+
+        def enter(problems: Problems) -> Problems:
+            self.append(Rule(name, severity, title, problems))
+            return problems
+
+        return enter
