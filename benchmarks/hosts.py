@@ -21,11 +21,12 @@ from typing import NamedTuple
 from rich.console import Console
 from rich.table import Table
 
+from harness.control_loop import PLANTS, loop
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import MakeSteps, interpreted
-from harness.cosimulation.system import PLANTS, Scheme, System, loop
+from harness.cosimulation.system import Scheme, System
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.signals import lines
 from harness.simulate import signals

@@ -16,11 +16,11 @@ from loky import cpu_count
 from rich.console import Console
 from rich.table import Table
 
+from harness.control_loop import PLANTS, loop
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import Refusal, interpreted
-from harness.cosimulation.system import PLANTS, loop
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.many import run_many
 from harness.metrics.evaluate import evaluate

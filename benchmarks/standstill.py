@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from fmus.builds import NATIVE_FOLDER
-from harness.cosimulation.system import BUILD, PLANTS
+from harness.control_loop import BUILD, PLANTS
 
 DURATION, STEP_SIZE = 10.0, 1e-3
 """In s."""

@@ -20,6 +20,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from harness.control_loop import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, chosen_build, loop
 from harness.cosimulation.calls import Call
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.experiment import Experiment
@@ -27,7 +28,7 @@ from harness.cosimulation.instance import Instance
 from harness.cosimulation.interface import type_of
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.steps import MakeSteps, Steps, interpreted
-from harness.cosimulation.system import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, System, chosen_build, loop
+from harness.cosimulation.system import System
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
 from harness.stale import warn_of_stale

@@ -8,7 +8,7 @@ import numpy as np
 from fmus.damping_controller import FMU
 from fmus.native.compiler import host_compiler
 from fmus.native.target import PRECISIONS, target_sources
-from harness.cosimulation.system import CONNECTIONS
+from harness.control_loop import CONNECTIONS
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.simulate import signals, simulate
 from models.block.declaration import variables

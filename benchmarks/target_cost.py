@@ -17,7 +17,7 @@ from fmus.damping_controller import FMU
 from fmus.native.compiler import CompilerError, zig_compiler
 from fmus.native.target import PRECISIONS
 from fmus.native.trace import leaves
-from harness.cosimulation.system import BUILD
+from harness.control_loop import BUILD
 from harness.manoeuvres.catalogue import MANOEUVRES
 
 from .target import FLAGS, as_text, compiled, outputs, program, recorded

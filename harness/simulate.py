@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from .arguments import require_arguments
+from .control_loop import BUILD, INPUTS, PARAMETERS, NameOrFile, loop
 from .cosimulation.experiment import Experiment, Source
 from .cosimulation.limits import USUAL, Limits
 from .cosimulation.runs import run
-from .cosimulation.system import BUILD, INPUTS, PARAMETERS, NameOrFile, Port, Scheme, System, loop
+from .cosimulation.system import Port, Scheme, System
 from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
 from .metrics.evaluate import T_S
@@ -44,13 +45,13 @@ def simulate(
 
     Args:
         plant, controller, motor, can: name of a block of the project, or path of an FMU; see
-            `harness.cosimulation.system.loop`.
+            `harness.control_loop.loop`.
         control: whether the damping control is enabled.
         parameters: `instance.variable` -> value, beside the start and the seeds that this sets.
         step_size: communication step in s.
         seed: of all noise and jitter.
         folder: of the built FMUs.
-        build: "native" or "python"; None: see `harness.cosimulation.system.chosen_build`.
+        build: "native" or "python"; None: see `harness.control_loop.chosen_build`.
         mapping: names of the loop -> names of an FMU, see `harness.cosimulation.mapping`.
         limits: of FMUs that are given by their path.
 

@@ -17,9 +17,10 @@ from models.block.declaration import Boolean, Integer, Real, variables
 from models.block.runner import runner
 from models.block.types import Block
 
+from ..control_loop import NATIVE, loop
 from ..cosimulation.experiment import Experiment, Source
 from ..cosimulation.runs import run
-from ..cosimulation.system import NATIVE, Scheme, System, loop
+from ..cosimulation.system import Scheme, System
 from ..manoeuvres.catalogue import KMH
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..simulate import signals, start

@@ -11,7 +11,7 @@ import numpy as np
 from fmus.catalogue import FMUS
 from fmus.parameter_files import for_instances, read_vehicle
 
-from ..cosimulation.system import BUILD
+from ..control_loop import BUILD
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..metrics.declaration import declared
 from ..metrics.evaluate import evaluate

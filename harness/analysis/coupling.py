@@ -12,9 +12,10 @@ import numpy as np
 
 from models.controller.supervision import T_S
 
+from ..control_loop import BUILD, loop
 from ..cosimulation.experiment import Experiment
 from ..cosimulation.runs import run
-from ..cosimulation.system import BUILD, Scheme, loop
+from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import KMH
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines

@@ -13,7 +13,8 @@ import numpy as np
 
 from models.controller.torque_estimator import Estimate
 
-from ..cosimulation.system import BUILD, Scheme
+from ..control_loop import BUILD
+from ..cosimulation.system import Scheme
 from ..manoeuvres.signals import Signal
 from .coupling import NOISELESS, T_S, cosimulated, reference, short
 

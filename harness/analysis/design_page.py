@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fmus.parameter_files import read_vehicle
 
-from ..cosimulation.system import PLANTS
+from ..control_loop import PLANTS
 from ..many import run_many
 from ..metrics.declaration import declared
 from ..metrics.record import Metrics

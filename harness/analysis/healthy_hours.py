@@ -21,7 +21,7 @@ from models.controller.signal_monitor import STILL
 from models.controller.supervision import FALLBACK, T_S, Input
 from models.damping_controller import BLOCK
 
-from ..cosimulation.system import PLANTS
+from ..control_loop import PLANTS
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import lines
 from ..many import run_many

@@ -4,7 +4,7 @@ import argparse
 import sys
 from itertools import product
 
-from ..cosimulation.system import BUILDS, PLANTS
+from ..control_loop import BUILDS, PLANTS
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
 from .options import add_fmus, add_output, add_printing

@@ -5,7 +5,7 @@ import argparse
 from fmus import build_command
 from fmus.errors import BuildError
 
-from ..cosimulation.system import BUILD
+from ..control_loop import BUILD
 from ..errors import DrivelineError
 
 DESCRIPTION = build_command.DESCRIPTION

@@ -6,7 +6,7 @@ from typing import Any
 
 from fmus.errors import BuildError
 
-from ..cosimulation.system import BUILD, BUILDS, NATIVE, chosen_build, loop
+from ..control_loop import BUILD, BUILDS, NATIVE, chosen_build, loop
 from ..errors import DrivelineError
 from ..stale import warn_of_stale
 from ..told import warn_once

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..cosimulation.system import PLANTS
+from ..control_loop import PLANTS
 from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons

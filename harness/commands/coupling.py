@@ -3,7 +3,8 @@
 import argparse
 from itertools import product
 
-from ..cosimulation.system import PLANTS, Scheme, loop
+from ..control_loop import PLANTS, loop
+from ..cosimulation.system import Scheme
 from .built import built
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer

@@ -8,7 +8,7 @@ from shlex import quote
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..cosimulation.system import BUILD, NATIVE, PLACES, PLANTS
+from ..control_loop import BUILD, NATIVE, PLACES, PLANTS
 from ..errors import DrivelineError
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, count

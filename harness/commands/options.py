@@ -7,8 +7,8 @@ from typing import Any
 
 from fmus.options import add_parameter_files, folder, output_folder
 
+from ..control_loop import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..cosimulation.limits import USUAL
-from ..cosimulation.system import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..numbers import real, whole
 from ..plain import quoted
 

@@ -4,7 +4,7 @@ import argparse
 from hashlib import sha256
 from pathlib import Path
 
-from ..cosimulation.system import PLANTS
+from ..control_loop import PLANTS
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend

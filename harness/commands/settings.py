@@ -5,8 +5,9 @@ import logging
 from collections.abc import Mapping
 from typing import Any
 
+from ..control_loop import PLANTS
 from ..cosimulation.limits import Limits
-from ..cosimulation.system import PLANTS, System
+from ..cosimulation.system import System
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .options import OTHERS

@@ -13,7 +13,7 @@ from fmus.catalogue import FMUS
 from fmus.errors import BuildError
 from fmus.parameter_files import for_instances, read_files
 from fmus.python.packaging import build
-from harness.cosimulation.system import NATIVE
+from harness.control_loop import NATIVE
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
 from models.block.declaration import variables

@@ -11,7 +11,7 @@ from zipfile import ZipFile, ZipInfo
 
 from fmus.builds import build_fmus
 from harness.compliance.check import check
-from harness.cosimulation.system import NATIVE, PLANTS, loop
+from harness.control_loop import NATIVE, PLANTS, loop
 from harness.cosimulation.wiring import fit
 from harness.errors import DrivelineError
 from harness.manoeuvres.catalogue import MANOEUVRES

@@ -10,7 +10,7 @@ import pytest
 from fmpy.util import read_csv
 
 from harness.cli import COMMANDS, SHELLS, main
-from harness.cosimulation.system import PLANTS
+from harness.control_loop import PLANTS
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics
 from tests import ROOT

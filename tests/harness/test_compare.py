@@ -6,7 +6,7 @@ import pytest
 
 from harness.cli import main
 from harness.compare import cases, run_cases, write_figures, write_tables
-from harness.cosimulation.system import PLANTS
+from harness.control_loop import PLANTS
 from harness.errors import DrivelineError
 
 

@@ -14,8 +14,9 @@ from fmus.origin import ENTRY
 from harness import provenance, simulate
 from harness.cli import main
 from harness.commands.settings import distinguishing
+from harness.control_loop import loop
 from harness.cosimulation.interface import Interface
-from harness.cosimulation.system import System, loop
+from harness.cosimulation.system import System
 from harness.errors import DrivelineError
 from harness.provenance import require_same_run
 

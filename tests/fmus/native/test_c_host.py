@@ -8,7 +8,7 @@ import pytest
 
 from fmus.catalogue import FMUS
 from fmus.native.compiler import host_compiler
-from harness.cosimulation.system import NATIVE
+from harness.control_loop import NATIVE
 from tests.fmus.host import opened
 
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"

@@ -26,7 +26,7 @@ from hypothesis.stateful import (
 from fmus.catalogue import FMUS
 from fmus.description.variables import Variable, interface
 from fmus.native.compiler import host_compiler
-from harness.cosimulation.system import NATIVE
+from harness.control_loop import NATIVE
 
 PROGRAM = Path(__file__).parent / "calls.c"
 WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion")

@@ -11,7 +11,7 @@ import pytest
 from fmus.builds import build_fmus
 from fmus.errors import BuildError
 from fmus.own_file import fmu_in
-from harness.cosimulation.system import NATIVE
+from harness.control_loop import NATIVE
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.evaluate import evaluate
 from harness.simulate import simulate

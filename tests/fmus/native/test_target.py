@@ -21,7 +21,7 @@ from fmus.native.compiler import CompilerError
 from fmus.native.statements import SINGLE
 from fmus.native.target import target_sources
 from fmus.two_mass_driveline import FMU as CONTINUOUS
-from harness.cosimulation.system import NATIVE
+from harness.control_loop import NATIVE
 from harness.manoeuvres.catalogue import MANOEUVRES
 from models.damping_controller import BLOCK as CONTROLLER
 

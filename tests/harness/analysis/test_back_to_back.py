@@ -15,7 +15,7 @@ from harness.analysis.back_to_back import (
     random_inputs,
 )
 from harness.analysis.back_to_back_page import LoopRow, page
-from harness.cosimulation.system import PLANTS
+from harness.control_loop import PLANTS
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from models import two_mass_driveline

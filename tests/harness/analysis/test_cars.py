@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from harness.analysis.cars import Gains, Trial, measured, parameters
-from harness.cosimulation.system import NATIVE, PLANTS
+from harness.control_loop import NATIVE, PLANTS
 from harness.many import run_many
 from harness.metrics.record import Metrics
 from tests import ROOT

@@ -11,7 +11,7 @@ import pytest
 from fmus.options import file as a_file
 from fmus.options import folder, output_folder
 from harness.commands.options import LARGEST_SEED, assignment, megabytes, seconds, seed
-from harness.cosimulation.system import BUILD
+from harness.control_loop import BUILD
 from tests import ROOT
 
 
@@ -108,7 +108,7 @@ def test_a_file_is_no_folder(tmp_path):
 def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
     assert BUILD == ROOT / "build"
     copytree(ROOT / "harness", tmp_path / "site" / "harness", ignore=ignore_patterns("__pycache__", "*.so"))
-    asked = "from harness.cosimulation.system import BUILD; print(BUILD)"
+    asked = "from harness.control_loop import BUILD; print(BUILD)"
     done = subprocess.run(
         [sys.executable, "-c", asked],
         cwd=tmp_path,

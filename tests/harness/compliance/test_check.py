@@ -12,8 +12,8 @@ from harness.compliance.behaviour_rules import BEHAVIOUR_RULES
 from harness.compliance.check import RULES, check
 from harness.compliance.junit import junit
 from harness.compliance.rule import Rule, Severity
+from harness.control_loop import PLANTS
 from harness.cosimulation.limits import Limits
-from harness.cosimulation.system import PLANTS
 from harness.errors import DrivelineError
 from tests import ROOT
 from tests.foreign import RELAY, build_relay, tampered

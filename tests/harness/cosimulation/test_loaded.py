@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.control_loop import PLANTS, loop
 from harness.cosimulation import loading
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import PLANTS, Connection, Scheme, System, loop
+from harness.cosimulation.system import Connection, Scheme, System
 from harness.errors import SimulationError, WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start

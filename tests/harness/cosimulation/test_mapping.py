@@ -6,12 +6,12 @@ from math import pi
 import numpy as np
 import pytest
 
+from harness.control_loop import PLANTS, loop
 from harness.cosimulation.compiled import LIBRARY, CompiledSteps
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.loading import loaded
 from harness.cosimulation.mapping import parsed
 from harness.cosimulation.steps import interpreted
-from harness.cosimulation.system import PLANTS, loop
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, simulate, start

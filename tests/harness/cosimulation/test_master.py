@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 
+from harness.control_loop import PLANTS
 from harness.cosimulation.experiment import Experiment, instants
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import PLANTS, Connection, Scheme, System
+from harness.cosimulation.system import Connection, Scheme, System
 from harness.errors import SimulationError, WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.reports.csv_file import write_csv

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from harness.control_loop import CONNECTIONS, OPTIONAL, PLACES, PLANTS, chosen_build, loop
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import CONNECTIONS, OPTIONAL, PLACES, PLANTS, chosen_build, loop
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, simulate, start

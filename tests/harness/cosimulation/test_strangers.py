@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from harness.control_loop import loop as looped
 from harness.cosimulation import apart
 from harness.cosimulation.answers import LENGTH, Answer, Forged, receive, send
 from harness.cosimulation.apart import Apart
@@ -21,7 +22,6 @@ from harness.cosimulation.loading import loaded
 from harness.cosimulation.runs import kept_loaded, run
 from harness.cosimulation.steps import interpreted
 from harness.cosimulation.system import System
-from harness.cosimulation.system import loop as looped
 from harness.cosimulation.whereabouts import current, note
 from harness.errors import SimulationError, WiringError
 from tests import ROOT

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from harness.control_loop import PLANTS, chosen_build, loop
 from harness.cosimulation import instance
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface, unit_of
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import PLANTS, Connection, System, chosen_build, loop
+from harness.cosimulation.system import Connection, System
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate

@@ -5,9 +5,9 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from harness.control_loop import loop
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.runs import run
-from harness.cosimulation.system import loop
 from harness.cosimulation.wiring import fit
 from harness.errors import WiringError
 from harness.faults import catalogue, evidence
