@@ -66,18 +66,7 @@ def simulate(
     require_arguments(manoeuvre=manoeuvre, **blocks, control=control, parameters=parameters, step_size=step_size)
     require_arguments(scheme=scheme, seed=seed, folder=folder, build=build, mapping=mapping, limits=limits)
     given = _checked(start(manoeuvre, seed) | dict(parameters or {}))
-    if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
-        LOG.warning(
-            "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
-            "and swings from the first instant on",
-            given["plant.T_0"],
-            manoeuvre.T_0,
-        )
-    if step_size > T_S * (1.0 + 1e-9):
-        warn_once(
-            f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "
-            "the damping control: it gets its signals late, does not damp with long steps, and the run has no metrics"
-        )
+    _warn(manoeuvre, given, step_size)
     system = loop(folder=Path(folder), build=build, mapping=mapping, limits=limits, **blocks)
     warn_of_stale(system)
     return run(
@@ -96,6 +85,22 @@ def simulate(
 def looped(plant: NameOrFile, settings: Mapping[str, Any]) -> System:
     """The loop that `simulate` runs with a plant and these further arguments."""
     return loop(plant, **{name: value for name, value in settings.items() if name not in ("parameters", "seed")})
+
+
+def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:
+    """Names what makes a run that is hardly meant."""
+    if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
+        LOG.warning(
+            "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
+            "and swings from the first instant on",
+            given["plant.T_0"],
+            manoeuvre.T_0,
+        )
+    if step_size > T_S * (1.0 + 1e-9):
+        warn_once(
+            f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "
+            "the damping control: it gets its signals late, does not damp with long steps, and the run has no metrics"
+        )
 
 
 def _checked(parameters: dict[str, Any]) -> dict[str, Any]:

@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 from models.block.declaration import Quantity, Real, variables
 from models.block.types import Block
 
+from ..description.numbers import numbers
+
 RECORDS = {"u": "Input", "p": "Parameters", "y": "Output", "x": "State"}
 """What C calls the records of a block, by their letters."""
 
@@ -43,14 +45,7 @@ def extent(value: Any) -> str:
 
 def paths(name: str, value: Any) -> Iterator[str]:
     """What C calls each number in nested tuples, in their order."""
-    if not isinstance(value, tuple):
-        yield name
-    elif fields := getattr(value, "_fields", ()):
-        for field, item in zip(fields, value, strict=True):
-            yield from paths(f"{name}.{field}", item)
-    else:
-        for k, item in enumerate(value):
-            yield from paths(f"{name}[{k}]", item)
+    return (path for path, _ in numbers(name, value))
 
 
 def structs(records: Mapping[str, Any], names: Names = IN_FMU) -> Iterator[str]:

@@ -1,12 +1,12 @@
 """Whether an instance can have come to what a saved state holds: nothing that was read from bytes is trusted."""
 
 import math
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from models.block.runner import runner
 from models.block.types import Block, SampledBlock
 
+from ..description.numbers import numbers
 from ..description.variables import Variable, interface
 from ..protocol import ANY_NUMBER, BAD_STATE, DAMAGED_STATE, FROM_START_ON, MOST_TICKS, NEAR_ITS_TIME, Mode
 from .refusal import Refused
@@ -80,7 +80,7 @@ def _checked_memory(block: Block, u: Any, p: Any, content: Content) -> tuple[Any
     memory = shaped(content.memory, template)
     elapsed = content.time - content.start_time
     for record, value in zip(("x", "coming"), memory[1:3], strict=False):
-        for name, number in _numbers(record, value):
+        for name, number in numbers(record, value):
             if not math.isfinite(number):
                 raise Refused(BAD_STATE, name=name, value=number, allowed=ANY_NUMBER)
     if isinstance(block, SampledBlock):
@@ -103,15 +103,3 @@ def shaped(read: Any, template: Any) -> Any:
     if type(read) is not type(template):
         raise TypeError(f"{read!r} is not of the type of {template!r}")
     return read
-
-
-def _numbers(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """The numbers in nested tuples, each with its place as C writes it."""
-    if not isinstance(value, tuple):
-        yield name, value
-    elif fields := getattr(value, "_fields", ()):
-        for field, item in zip(fields, value, strict=True):
-            yield from _numbers(f"{name}.{field}", item)
-    else:
-        for k, item in enumerate(value):
-            yield from _numbers(f"{name}[{k}]", item)

@@ -13,21 +13,11 @@ from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.manoeuvres.signals import lines
 from harness.metrics.damage import damage
 from harness.metrics.declaration import Absent, declared
-from harness.metrics.evaluate import T_S, evaluate, impact_speed
+from harness.metrics.evaluate import COLUMNS, T_S, evaluate, impact_speed
 from harness.metrics.oscillation import amplitude
 from harness.metrics.record import Metrics
 from harness.metrics.spectrum import band_rms
 from models.controller import supervision
-
-COLUMNS = (
-    "time",
-    "controller.T_driver",
-    "controller.T_ref",
-    "plant.T_gear",
-    "plant.omega_1",
-    "plant.omega_2",
-    "plant.a_body",
-)
 
 
 def run(duration=6.0, interval=1e-3, **signals):
