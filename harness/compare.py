@@ -33,6 +33,9 @@ class Case(NamedTuple):
     manoeuvre: str
     control: bool
 
+    def __str__(self) -> str:
+        return f"{self.manoeuvre} on {self.plant_name}, damping {'on' if self.control else 'off'}"
+
     @property
     def plant_name(self) -> str:
         return Path(self.plant).stem
@@ -105,8 +108,12 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
     return [table, metrics]
 
 
-def write_figures(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
-    """Draws the test drive and the close-ups of the steps that were run; returns the files."""
+def write_figures(outcomes: Sequence[Outcome], folder: Path, caption: str = "") -> list[Path]:
+    """Draws the test drive and the close-ups of the steps that were run; returns the files.
+
+    Args:
+        caption: what was set, in small below.
+    """
     from .reports.figures import plot_drive, plot_step  # not for the workers, which draw nothing
 
     files = []
@@ -116,5 +123,5 @@ def write_figures(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
         if plot:
             runs = (off.results, on.results)
             stem = folder / f"{off.case.plant_name}_{name}"
-            files += plot(runs, MANOEUVRES[name], off.case.plant_name, stem)
+            files += plot(runs, MANOEUVRES[name], off.case.plant_name, stem, caption)
     return files

@@ -73,9 +73,17 @@ def replay(manoeuvre: Manoeuvre, recording: Recording, plant: str, **settings: A
         MissingExtra: the package that counts load cycles is not installed.
     """
     require_counting()
-    one = partial(ride, manoeuvre, recording, plant, **settings)
-    undamped, damped = run_many(one, (False, True), workers=2, label=recording.name)
+    one = partial(_of_words, manoeuvre, recording, plant, **settings)
+    undamped, damped = run_many(one, (WITHOUT, WITH), workers=2, label=recording.name)
     return undamped, damped
+
+
+WITHOUT, WITH = "without damping", "with damping"
+"""The cases, as messages name them."""
+
+
+def _of_words(manoeuvre: Manoeuvre, recording: Recording, plant: str, words: str, **settings: Any) -> Ride:
+    return ride(manoeuvre, recording, plant, words == WITH, **settings)
 
 
 def records(rides: Sequence[Ride], recording: Recording, plant: str) -> list[dict[str, Any]]:
@@ -86,8 +94,8 @@ def records(rides: Sequence[Ride], recording: Recording, plant: str) -> list[dic
     ]
 
 
-def write(rides: Sequence[Ride], recording: Recording, plant: str, folder: Path) -> list[Path]:
-    """Writes metrics, signals (every 10 ms) and the figure of a replay; returns the files."""
+def write(rides: Sequence[Ride], recording: Recording, plant: str, folder: Path, caption: str = "") -> list[Path]:
+    """Writes metrics, signals (every 10 ms) and the figure of a replay, with its caption; returns the files."""
     from .reports.figures import plot_replay  # not for the workers, which draw nothing
 
     files = [folder / f"{recording.name}_metrics.csv"]
@@ -101,4 +109,5 @@ def write(rides: Sequence[Ride], recording: Recording, plant: str, folder: Path)
         recorded,
         f"{plant} on the recorded drive {recording.name}",
         folder / recording.name,
+        caption,
     )

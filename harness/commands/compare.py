@@ -11,7 +11,7 @@ from ..reports.table import legend, reasons
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import blocks, caption, distinguishing, settings
 
 LEGEND = legend(Metrics)
 
@@ -75,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
         for reason in reasons(rows):
             out.say(reason)
         out.say(f"{LEGEND}\n")
-        tables, figures = write_tables(outcomes, args.output), write_figures(outcomes, args.output)
+        tables, figures = write_tables(outcomes, args.output), write_figures(outcomes, args.output, caption(args))
         made.files += [*tables, *figures]
         for case, path in signals.items():
             own = distinguishing(given[case.plant], systems[case.plant], MANOEUVRES[case.manoeuvre])

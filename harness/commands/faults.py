@@ -4,16 +4,15 @@ import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from shlex import quote
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..control_loop import BUILD, NATIVE, PLACES, PLANTS
+from ..control_loop import BUILD, NATIVE, PLANTS
 from ..errors import DrivelineError
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, count
 from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import as_given, blocks, caption, distinguishing, settings
 
 DESCRIPTION = """\
 Drives the loop through manoeuvres in which a signal of the controller fails, or the wheels lock or spin on ice, and
@@ -78,13 +77,13 @@ def run(args: argparse.Namespace) -> int:
         with recorded(record, same, tried, read, [args.output / first], args.replace) as made:
             if args.case is not None:
                 made.begin()
-                outcome, files = write_case(args.case, args.seed, injector, given, args.output)
+                outcome, files = write_case(args.case, args.seed, injector, given, args.output, caption(args))
                 outcomes = [outcome]
                 out.say(f"case {outcome.case}")
             else:
                 outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
                 made.begin()
-                files = write(outcomes, _arguments(args), args.output)
+                files = write(outcomes, f" {as_given(args)}", args.output)
             made.files += files
     if not out.silent:
         announce(outcomes)
@@ -92,20 +91,6 @@ def run(args: argparse.Namespace) -> int:
         out.say(f"written: {file}")
     out.document({"cases": [outcome.record for outcome in outcomes], "files": made.files})
     return int(any(outcome.failed for outcome in outcomes))
-
-
-def _arguments(args: argparse.Namespace) -> str:
-    """The options that make a case what it is, as they are given."""
-    given = [
-        ("seed", args.seed),
-        *(("plant", plant) for plant in args.plant or ()),
-        *((place, block) for place, block in blocks(args).items() if block != PLACES[place][0]),
-        *(("set", f"{name}={value!r}") for name, value in args.assignments),
-        *(("map", text) for text in args.map),
-        *((name, getattr(args, name)) for name in ("vehicle", "parameters", "build")),
-        ("fmus", None if args.fmus == BUILD else args.fmus),
-    ]
-    return "".join(f" --{name} {quote(str(value))}" for name, value in given if value is not None)
 
 
 @contextmanager

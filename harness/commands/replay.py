@@ -11,7 +11,7 @@ from ..reports.table import legend
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import blocks, caption, distinguishing, settings
 
 LEGEND = legend(RideMetrics)
 
@@ -85,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
-        made.files += write(rides, recording, plant, args.output)
+        made.files += write(rides, recording, plant, args.output, caption(args))
     for file in (*made.files, record):
         out.say(f"written: {file}")
     out.document({"runs": records(rides, recording, plant), "files": made.files})

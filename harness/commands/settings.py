@@ -2,12 +2,13 @@
 
 import argparse
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from shlex import quote
 from typing import Any
 
-from ..control_loop import PLANTS
+from ..control_loop import BUILD, PLACES, PLANTS
 from ..cosimulation.limits import Limits
-from ..cosimulation.system import System
+from ..cosimulation.system import Scheme, System
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .options import OTHERS
@@ -48,6 +49,38 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     parameters = _from_files(args, system) | dict(args.assignments)
     fit(system, parameters=parameters)
     return given | {"parameters": parameters}
+
+
+def as_given(args: argparse.Namespace) -> str:
+    """The options that make a run what it is, as they are given."""
+    given = [
+        ("seed", args.seed),
+        *(("plant", plant) for plant in args.plant or ()),
+        *_set(args),
+        ("build", args.build),
+        ("fmus", None if args.fmus == BUILD else args.fmus),
+    ]
+    return _joined(given)
+
+
+def caption(args: argparse.Namespace) -> str:
+    """What a figure, whose title names plant and manoeuvre, says of the options: those that are not the usual ones."""
+    usual = {"seed": 1, "step": 1e-3, "scheme": Scheme.PROPAGATED.value, "held": None}
+    return _joined([*_set(args), *((n, v) for n, v in vars(args).items() if n in usual and v != usual[n])])
+
+
+def _set(args: argparse.Namespace) -> list[tuple[str, Any]]:
+    """The options for blocks and parameters."""
+    return [
+        *((place, block) for place, block in blocks(args).items() if block != PLACES[place][0]),
+        *(("set", f"{name}={value!r}") for name, value in args.assignments),
+        *(("map", text) for text in args.map),
+        *((name, getattr(args, name)) for name in ("vehicle", "parameters")),
+    ]
+
+
+def _joined(options: Iterable[tuple[str, Any]]) -> str:
+    return " ".join(f"--{name} {quote(str(value))}" for name, value in options if value is not None)
 
 
 def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import blocks, caption, distinguishing, settings
 
 DESCRIPTION = """\
 Runs the closed loop of controller, motor, plant and CAN bus through one manoeuvre and writes every
@@ -106,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
             from ..reports.run_figure import plot_run
 
             title = f"{plant}, {manoeuvre.description}, damping {args.control}"
-            for figure in plot_run(results, title, args.output / name):
+            for figure in plot_run(results, title, args.output / name, caption(args)):
                 made.files.append(figure)
                 out.say(f"figure:  {figure}")
     out.say(f"made by: {record} (version, FMUs, parameters, units)")

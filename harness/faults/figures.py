@@ -10,7 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save
+from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
 from .bench import Runs
 from .campaign import Outcome
 from .cases import SITUATIONS, Case
@@ -89,7 +89,7 @@ def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence
     axes.set_title(heading)
 
 
-def plot_case(case: Case, runs: Runs, verdict: str, stem: Path) -> list[Path]:
+def plot_case(case: Case, runs: Runs, verdict: str, stem: Path, caption: str = "") -> list[Path]:
     """The runs of a case: what the controller got, what it did, what came of it; returns the files."""
     faulty, healthy, undamped = runs
     t = faulty["time"]
@@ -116,5 +116,5 @@ def plot_case(case: Case, runs: Runs, verdict: str, stem: Path) -> list[Path]:
         for fault in case.faults:
             for axes in (speed, torque, added, status):
                 axes.axvspan(fault.begin, min(fault.end, t[-1]), color="0.5", alpha=0.15, lw=0.0)
-        figure.suptitle(f"{case}\n{verdict}", fontsize=8.5)
+        titled(figure, f"{case}\n{verdict}", caption, 8.5)
         return save(figure, stem)

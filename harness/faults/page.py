@@ -105,6 +105,7 @@ def _judge(judge: Judge) -> list[str]:
 
 
 HEADINGS = ("kind", *(judge.name for judge in JUDGES), "not clean", "cases")
+NOT_CLEAN = HEADINGS.index("not clean")
 
 
 def matrix_rows(outcomes: Sequence[Outcome]) -> Iterator[list[str]]:
@@ -126,7 +127,7 @@ def _classes(outcomes: Sequence[Outcome]) -> str:
             key = " + ".join(sorted(outcome.kinds)), judge, outcome.case.situation, outcome.plant
             found.setdefault(key, []).append(outcome)
     if not found:
-        return "Nothing."
+        return f"All {len(outcomes)} cases are clean." if outcomes else "There are no cases."
     units = {judge.name: judge.unit for judge in JUDGES}
     rows = []
     for (kind, judge, situation, plant), cases in sorted(found.items()):

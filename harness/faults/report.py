@@ -15,22 +15,24 @@ from .campaign import Outcome, judged
 from .cases import case
 from .figures import plot_case, plot_matrix, plot_pairs
 from .judges import JUDGES
-from .page import HEADINGS, matrix_rows, page
+from .page import HEADINGS, NOT_CLEAN, matrix_rows, page
 
 
 def announce(outcomes: Sequence[Outcome]) -> None:
-    """Prints the matrix of kinds and judges; of a single case, what each judge measured."""
+    """Prints the rows of the matrix that are not clean, if there are any, and a summary; of a single case, what each
+    judge measured."""
     if len(outcomes) == 1:
         print_table(_verdicts(outcomes[0]))
         return
     table = Table(title="cases that are not clean", title_justify="left", box=SIMPLE_HEAD, padding=0)
     for heading in HEADINGS:
         table.add_column(heading, justify="left" if heading == "kind" else "right", no_wrap=heading == "kind")
-    for row in matrix_rows(outcomes):
-        if row[-1] != "0":
-            table.add_row(*row)
-    print_table(table)
     failed = sum(bool(outcome.failed) for outcome in outcomes)
+    for row in matrix_rows(outcomes):
+        if row[NOT_CLEAN] != "0":
+            table.add_row(*row)
+    if failed:
+        print_table(table)
     print(f"{len(outcomes)} cases, {len(outcomes) - failed} clean, {failed} not clean")
 
 
@@ -59,9 +61,14 @@ def write(outcomes: Sequence[Outcome], arguments: str, folder: Path) -> list[Pat
 
 
 def write_case(
-    number: int, seed: int, injector: Path, settings: Mapping[str, Settings], folder: Path
+    number: int, seed: int, injector: Path, settings: Mapping[str, Settings], folder: Path, caption: str = ""
 ) -> tuple[Outcome, list[Path]]:
-    """Runs one case again, writes its signals and draws them; arguments as of `harness.faults.campaign.campaign`."""
+    """Runs one case again, writes its signals and draws them.
+
+    Args:
+        seed, injector, settings: as of `harness.faults.campaign.campaign`.
+        caption: what was set, in small below the figure.
+    """
     bench, each = Bench(injector, settings), case(number, seed, tuple(settings))
     runs = bench.runs(each)
     outcome = judged(each, runs, bench.limits(each.plant))
@@ -69,4 +76,4 @@ def write_case(
     files = [stem.with_suffix(".csv")]
     write_csv(runs.faulty, files[0])
     verdict = f"not clean: {', '.join(outcome.failed)}" if outcome.failed else "clean"
-    return outcome, [*files, *plot_case(each, runs, verdict, stem)]
+    return outcome, [*files, *plot_case(each, runs, verdict, stem, caption)]

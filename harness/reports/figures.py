@@ -6,6 +6,7 @@ Every figure is written as PNG and PDF; the same runs give the same bytes.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from matplotlib import style
@@ -42,6 +43,12 @@ METADATA = {
     "pdf": {"CreationDate": None, "Producer": None, "Creator": None},
 }
 """What matplotlib would say of date and origin, by the kind of file: nothing."""
+
+CAPTION_SIZE = 7.5
+"""In points."""
+
+CHARACTER = 0.6
+"""Width of a character of a title over its size; on average it is less."""
 
 TITLES = ("without damping", "with damping")
 
@@ -104,7 +111,9 @@ STEP_PANELS = (
 )
 
 
-def plot_drive(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path) -> list[Path]:
+def plot_drive(
+    runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path, caption: str = ""
+) -> list[Path]:
     """Speeds and torques over a whole drive, as in Figs. 7 and 8 of the paper.
 
     Args:
@@ -112,24 +121,28 @@ def plot_drive(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, ste
         manoeuvre: that both ran.
         plant: its name, for the title.
         stem: path of the files without their ending.
+        caption: what was set, in small below.
 
     Returns:
         The files written.
     """
-    return _compare(runs, DRIVE_PANELS, (0.0, manoeuvre.duration), f"{plant}, {manoeuvre.description}", stem)
+    title = f"{plant}, {manoeuvre.description}"
+    return _compare(runs, DRIVE_PANELS, (0.0, manoeuvre.duration), title, stem, caption)
 
 
-def plot_step(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path) -> list[Path]:
+def plot_step(
+    runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path, caption: str = ""
+) -> list[Path]:
     """Close-up of a step: gear torque with its estimate, damping torque and speeds.
 
     Arguments and result are those of `plot_drive`.
     """
     window = (manoeuvre.t_0 - 0.1, manoeuvre.t_0 + 1.4)
-    return _compare(runs, STEP_PANELS, window, f"{plant}, {manoeuvre.description}", stem)
+    return _compare(runs, STEP_PANELS, window, f"{plant}, {manoeuvre.description}", stem, caption)
 
 
 def plot_replay(
-    runs: Sequence[np.ndarray], recorded: tuple[np.ndarray, np.ndarray], title: str, stem: Path
+    runs: Sequence[np.ndarray], recorded: tuple[np.ndarray, np.ndarray], title: str, stem: Path, caption: str = ""
 ) -> list[Path]:
     """A recorded drive: speed against the recorded one, gear torque without and with damping, a close-up.
 
@@ -139,6 +152,7 @@ def plot_replay(
         recorded: time in s and speed in m/s of the recording.
         title: of the figure.
         stem: path of the files without their ending.
+        caption: what was set, in small below.
 
     Returns:
         The files written.
@@ -149,7 +163,7 @@ def plot_replay(
         t = runs[0]["time"]
         speed.plot(*recorded, color=BLACK, label="recorded")
         speed.plot(t, runs[1]["plant.v"], color=BLUE, label="simulated, with damping", rasterized=True)
-        figure.suptitle(title, fontsize=10)
+        titled(figure, title, caption)
         speed.set(ylabel="speed in m/s", xlim=(t[0], t[-1]))
         for axes, window in ((torque, (t[0], t[-1])), (close, _roughest(runs[0]))):
             shown = (t >= window[0]) & (t <= window[1])
@@ -176,12 +190,17 @@ def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:
 
 
 def _compare(
-    runs: Sequence[np.ndarray], panels: Sequence[Panel], window: tuple[float, float], title: str, stem: Path
+    runs: Sequence[np.ndarray],
+    panels: Sequence[Panel],
+    window: tuple[float, float],
+    title: str,
+    stem: Path,
+    caption: str,
 ) -> list[Path]:
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 2.0 * len(panels) + 0.7), layout=ConstrainedLayoutEngine(h_pad=0.11))
         grid = figure.subplots(len(panels), len(runs), sharex=True, sharey="row", squeeze=False)
-        figure.suptitle(title, fontsize=10)
+        titled(figure, title, caption)
         for row, panel in zip(grid, panels, strict=True):
             row[0].set_ylabel(panel.label)
             for axes, run in zip(row, runs, strict=True):
@@ -221,6 +240,19 @@ def _gear_ratio(run: np.ndarray) -> float:
     """Motor speed over wheel speed, from the two measures of the wheel speed."""
     wheel = 0.5 * (run["plant.omega_wheel_L"] + run["plant.omega_wheel_R"])
     return float(np.dot(run["plant.omega_2"], wheel) / np.dot(wheel, wheel))
+
+
+def titled(figure: Figure, title: str, caption: str = "", size: float = 10.0) -> None:
+    """A title above and a caption below, in as many lines as they need; `size` in points is that of the title."""
+    figure.suptitle(_lines(figure, title, size), fontsize=size)
+    if caption:
+        figure.supxlabel(_lines(figure, caption, CAPTION_SIZE), fontsize=CAPTION_SIZE, color="0.4")
+
+
+def _lines(figure: Figure, text: str, size: float) -> str:
+    """The text in lines that are not wider than the figure; a dollar is one, not the begin of a formula."""
+    width = int((figure.get_figwidth() - 0.4) * 72.0 / (CHARACTER * size))
+    return "\n".join(fill(line, width) for line in text.replace("$", r"\$").splitlines())
 
 
 def legend(axes: Axes) -> None:

@@ -7,7 +7,7 @@ from matplotlib import style
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .figures import BLACK, BLUE, GREEN, GREY, STYLE, VERMILION, Line, Panel, draw, legend, save
+from .figures import BLACK, BLUE, GREEN, GREY, STYLE, VERMILION, Line, Panel, draw, legend, save, titled
 
 DEMAND = Line("controller.T_driver", r"$T_{driver}$, demand", BLACK, "--", 0.8)
 
@@ -41,12 +41,13 @@ PANELS = (
 )
 
 
-def plot_run(results: np.ndarray, title: str, stem: Path) -> list[Path]:
+def plot_run(results: np.ndarray, title: str, stem: Path, caption: str = "") -> list[Path]:
     """Draws one run of the loop.
 
     Args:
         results: of `harness.simulate.simulate`.
         stem: path of the files without their ending.
+        caption: what was set, in small below.
 
     Returns:
         The files written.
@@ -54,7 +55,7 @@ def plot_run(results: np.ndarray, title: str, stem: Path) -> list[Path]:
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 8.4), layout=ConstrainedLayoutEngine(h_pad=0.12))
         rows = figure.subplots(len(PANELS), 1, sharex=True)
-        rows[0].set_title(title, fontsize=10, pad=22)
+        titled(figure, title, caption)
         for axes, panel in zip(rows, PANELS, strict=True):
             draw(axes, panel, results, np.full(len(results), True))
             axes.set_ylabel(panel.label)

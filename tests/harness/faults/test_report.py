@@ -10,12 +10,13 @@ import pytest
 
 from harness.cli import main
 from harness.commands import faults
+from harness.commands.settings import as_given
 from harness.cosimulation.runs import run
 from harness.faults import bench
 from harness.faults.campaign import campaign
 from harness.faults.catalogue import KINDS
 from harness.faults.page import page
-from harness.faults.report import write, write_case
+from harness.faults.report import announce, write, write_case
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,20 @@ def test_pairs_that_are_not_clean_are_named_too(outcomes):
     singles, pairs = page(bad, "").partition("## What is not clean")[2].split("Pairs of faults:")
     for outcome in bad:
         assert f"| {' + '.join(sorted(outcome.kinds))} |" in (pairs if len(outcome.kinds) == 2 else singles)
-    assert page([], "").count("Nothing.") == 2
+    assert page([], "").count("There are no cases.") == 2
+
+
+def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
+    clean, bad = (
+        [replace(outcome, measured=dict.fromkeys(outcome.measured, value)) for outcome in outcomes]
+        for value in (-1e6, 1e6)
+    )
+    announce(clean)
+    assert capsys.readouterr().out == f"{len(clean)} cases, {len(clean)} clean, 0 not clean\n"
+    announce([bad[0], *clean[1:]])
+    said = capsys.readouterr().out
+    assert f"{len(clean)} cases, {len(clean) - 1} clean, 1 not clean\n" in said
+    assert [kind for kind in KINDS if f" {kind} " in said] == [kind for kind in KINDS if kind in bad[0].kinds]
 
 
 def test_the_page_tells_how_a_case_is_run_again(outcomes):
@@ -55,7 +69,7 @@ def test_the_page_tells_how_a_case_is_run_again(outcomes):
     parser = ArgumentParser()
     faults.add_arguments(parser)
     first = parser.parse_args(options)
-    text = page(outcomes, faults._arguments(first))
+    text = page(outcomes, f" {as_given(first)}")
     again = next(line for line in text.splitlines() if line.startswith("    driveline faults --case NUMBER"))
     words = shlex.split(again)[2:]
     assert vars(parser.parse_args(["--case", "3", *words[2:]])) == vars(first) | {"case": 3}

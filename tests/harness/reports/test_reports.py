@@ -9,12 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from rich.console import Console
 
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics, RideMetrics
-from harness.reports.figures import plot_drive, plot_replay, plot_step
+from harness.reports.figures import plot_drive, plot_replay, plot_step, titled
 from harness.reports.files import complete, remove, write_text
 from harness.reports.table import SHOWN, Row, cells, legend, reasons, values, write_markdown, write_metrics
 from harness.reports.terminal import rides_reasons, rides_table, runs_table
@@ -203,6 +206,20 @@ def test_what_another_controller_does_not_show_is_not_drawn(results, tmp_path):
     shown = [name for name in results.dtype.names if name not in ("controller.T_gear_hat", "controller.T_damp")]
     files = plot_step([results[shown]] * 2, MANOEUVRES["tipin15"], "Plant", tmp_path / "run")
     assert all(file.stat().st_size > 0 for file in files)
+
+
+@pytest.mark.parametrize("size", [8.5, 10.0])
+def test_titles_and_captions_are_not_cut(size):
+    title = "ValidationVehicle, stand on a 10 % grade under the brakes, then pull away uphill, damping on" * 2
+    figure = Figure(figsize=(7.2, 4.0), layout=ConstrainedLayoutEngine())
+    figure.subplots()
+    titled(figure, title, "--set plant.phi_B=0.03 --vehicle 'my $cars$/van.toml' " * 4, size)
+    FigureCanvasAgg(figure).draw()
+    assert len(figure.texts) == 2
+    for text in figure.texts:
+        box = text.get_window_extent()
+        assert 0.0 < box.x0 < box.x1 < figure.bbox.width
+        assert 0.0 < box.y0 < box.y1 < figure.bbox.height
 
 
 def test_a_replay_shorter_than_the_close_up_is_drawn(results, tmp_path):
