@@ -17,6 +17,7 @@ from .cosimulation.runs import run
 from .cosimulation.system import Port, Scheme, System
 from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
+from .manoeuvres.signals import Signal
 from .metrics.evaluate import T_S
 from .stale import warn_of_stale
 from .told import warn_once
@@ -74,7 +75,7 @@ def simulate(
         Experiment(
             duration=manoeuvre.duration,
             step_size=step_size,
-            inputs=signals(manoeuvre, control),
+            inputs=signals(manoeuvre, control, step_size),
             parameters=given,
             scheme=scheme,
             label=manoeuvre.name,
@@ -115,9 +116,22 @@ def _checked(parameters: dict[str, Any]) -> dict[str, Any]:
     return parameters
 
 
-def signals(manoeuvre: Manoeuvre, control: bool = True) -> dict[str, Source]:
-    """What the loop is given from outside during a manoeuvre."""
-    return {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
+def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) -> dict[str, Source]:
+    """What the loop is given from outside during a manoeuvre.
+
+    The controller samples its inputs at the instants. The plant holds brake and slope for a communication step of
+    `step_size` s; it gets what they are in the middle of the step, as straight lines are on average. Held from its
+    beginning, they would be late by half a step, and how a car comes to rest depends on that.
+    """
+    given = {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
+    return {
+        name: _ahead(value, 0.5 * step_size) if name.startswith("plant.") else value for name, value in given.items()
+    }
+
+
+def _ahead(signal: Signal, time: float) -> Signal:
+    """The signal as it is `time` s later."""
+    return lambda t: signal(t + time)
 
 
 def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:

@@ -11,6 +11,8 @@ import pytest
 from harness.cosimulation import experiment
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.manoeuvres.signals import lines
+from harness.metrics.evaluate import evaluate
 from harness.simulate import simulate
 from harness.told import warn_once
 
@@ -80,3 +82,22 @@ def test_a_run_for_which_there_is_no_memory_is_refused_before_it_is_allocated(
     assert len(experiment.instants(1.0, 1e-3)) == 1001
     with pytest.raises(MemoryError, match=r"a step of 0\.001 s in a run of 1\.01 s needs about"):
         experiment.instants(1.01, 1e-3)
+
+
+def test_the_plant_holds_over_a_step_what_its_inputs_are_in_the_middle_of_it(native: Path) -> None:
+    """The controller samples at the instants."""
+    ramps = replace(SHORT, T_driver=lines((0.0, 0.0), (1.0, 1.0)), T_brake=lines((0.0, 0.0), (1.0, 1e3)))
+    results = simulate(ramps, step_size=2e-3, folder=native.parent)
+    assert results["controller.T_driver"] == pytest.approx(results["time"], abs=1e-12)
+    assert results["plant.T_brake"] == pytest.approx(1e3 * (results["time"] + 1e-3), abs=1e-9)
+
+
+@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
+def test_how_a_car_comes_to_rest_does_not_depend_on_the_communication_step(native: Path, plant: str) -> None:
+    """The teeth go to and fro in the gap until the car is off again: half a step of the brake shows fourfold there."""
+    stop = MANOEUVRES["launch_brake"]
+    coarse, fine = (
+        evaluate(simulate(stop, plant, step_size=step_size, folder=native.parent), stop) for step_size in (1e-3, 5e-4)
+    )
+    assert coarse.end_swing == pytest.approx(fine.end_swing, rel=0.01)
+    assert coarse.gear_torque_rms == pytest.approx(fine.gear_torque_rms, rel=1e-3)
