@@ -116,12 +116,17 @@ def found(road: Road, seed: int) -> Found:
     return Found(
         samples=len(rows),
         fallback=int(np.count_nonzero(rows["controller.status"] == FALLBACK)),
-        jump=float(abs(np.diff(omega_1)).max()) / P.e_jump,
+        jump=float(jumps(omega_1).max()) / P.e_jump,
         contradiction=contradiction(rows) / P.t_apart,
         half_swings=half_swings(rows) / swings.MOST,
         torque=longest(disobeyed(rows)) * T_S / P.t_bad,
         frozen=longest((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > STILL)) * T_S / P.t_frozen,
     )
+
+
+def jumps(omega_1: np.ndarray) -> np.ndarray:
+    """How far a speed is from that of the last sample, or from where that was going, in rad/s (signal_monitor)."""
+    return np.minimum(abs(np.diff(omega_1))[1:], abs(np.diff(omega_1, n=2)))
 
 
 SIGNALS = {

@@ -31,6 +31,9 @@ from .evidence import (
 NOTICED, STALE, BACK = 0.05, 0.15, 0.5
 """Times in s: to notice a wrong motor signal; to notice that no message comes; to be as before."""
 
+NEAR = 0.05
+"""Time in s by which teeth that have swung otherwise may meet earlier or later."""
+
 LEAST_RMS, LEAST_SWING = 1.0, 5.0
 """What the gear torque may always swing, N.m: rms and amplitude."""
 
@@ -99,13 +102,14 @@ def time_to_return(seen: Evidence) -> float:
 
 def kick(seen: Evidence) -> float:
     """Largest torque in N.m that the controller adds once it is back, beyond what lies between nothing and what it adds
-    without the fault, less by how much the gear torque differs from that run in the 0.2 s before."""
+    within NEAR of that instant without the fault, less by how much the gear torque differs from that run in the 0.2 s
+    before."""
     if seen.end == inf:
         return 0.0
     fell = np.flatnonzero((seen.status == FALLBACK) & (seen.t >= seen.end))
     since = seen.t[fell[-1]] if len(fell) else seen.end + BACK
     added, usual = (run["controller.T_damp"] for run in (seen.runs.faulty, seen.runs.healthy))
-    beyond = np.abs(added - np.clip(added, np.minimum(usual, 0.0), np.maximum(usual, 0.0)))
+    beyond = np.abs(added - np.clip(added, -_largest_near(-usual), _largest_near(usual)))
     swing = np.abs(seen.runs.faulty["plant.T_gear"] - seen.runs.healthy["plant.T_gear"])
     excess = beyond - _largest_before(swing, round(0.2 / T_S))
     return float(excess[seen.t > since].max(initial=0.0))
@@ -142,6 +146,13 @@ def _largest_before(x: np.ndarray, samples: int) -> np.ndarray:
     """The largest of x among this many samples up to each."""
     padded = np.concatenate((np.full(samples - 1, x[0]), x))
     return np.lib.stride_tricks.sliding_window_view(padded, samples).max(axis=1)
+
+
+def _largest_near(x: np.ndarray) -> np.ndarray:
+    """The largest of x and 0 within NEAR of each sample."""
+    samples = round(NEAR / T_S)
+    padded = np.pad(x, samples)
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * samples + 1).max(axis=1).clip(0.0)
 
 
 JUDGES = (

@@ -1,14 +1,15 @@
 """Which of the received motor signals can be used: those that are good, else what is expected in their place.
 
-A motor speed is bad when it is not finite, out of range, jumping (far both from the speed of the last
-sample and from what is expected now) or frozen (unchanged for t_frozen while the motor turns); a motor
-torque when it is not finite, out of range, or far from what the motor should have (torque_loop). A speed
-that is bad for longer than t_bad is followed wherever it is plausible, so that it can prove itself (trust).
+A motor speed is bad when it is not finite, out of range, jumping (far from the speed of the last sample,
+from where that was going, and from what the model expects), frozen (unchanged for t_frozen while the motor
+turns) or backing (away from the demand and from what the model expects); a motor torque when it is not
+finite, out of range, or far from what the motor should have (torque_loop). A speed that is bad for longer
+than t_bad is followed wherever it is plausible, so that it can prove itself (trust).
 """
 
 from typing import Annotated, Any, NamedTuple
 
-from ..block.declaration import Real
+from ..block.declaration import Boolean, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
 from . import torque_loop
 from .torque_loop import LoopState
@@ -16,16 +17,24 @@ from .torque_loop import LoopState
 STILL = 1.0
 """Motor speed in rad/s below which an unchanging speed is taken for standstill."""
 
+PUSH = 0.25
+"""Torque over T_max with which no car begins to roll backwards."""
+
+BACKING = 1.5
+"""Speed in rad/s by which the motor turns faster backwards than expected, which noise does not explain."""
+
 
 class MonitorState(NamedTuple):
     """State of the signal monitor."""
 
     omega_1: Annotated[float, Real("rad/s", "motor speed used last")]
+    omega_1_change: Annotated[float, Real("rad/s", "its change in that sample")]
     T_mot: Annotated[float, Real("N.m", "torque estimate used last")]
     omega_1_last: Annotated[float, Real("rad/s", "motor speed received last")]
     omega_1_unchanged: Annotated[float, Real("s", "time since that speed changed")]
     loop: LoopState
     bad: Annotated[float, Real("s", "time since the motor signals were good")]
+    against: Annotated[bool, Boolean("the motor turns backwards while the demand pushes forwards")]
 
 
 def start(u: Any, p: Any) -> MonitorState:
@@ -33,11 +42,13 @@ def start(u: Any, p: Any) -> MonitorState:
     T_mot = where(plausible(u.T_mot_est, 2.0 * p.T_max), u.T_mot_est, 0.0)
     return MonitorState(
         omega_1=omega_1,
+        omega_1_change=0.0,
         T_mot=T_mot,
         omega_1_last=omega_1,
         omega_1_unchanged=0.0,
         loop=torque_loop.start(T_mot),
         bad=0.0,
+        against=False,
     )
 
 
@@ -61,27 +72,42 @@ def speed(omega_1_meas: Any, expected: Any, p: Any) -> Any:
     return where(plausible(omega_1_meas, p.omega_max), omega_1_meas, expected)
 
 
-def update(x: MonitorState, u: Any, increment: Any, T_ref: Any, T_s: Any, p: Any) -> MonitorState:
+def is_near(x: MonitorState, omega_1: Any, expected: Any, p: Any) -> Any:
+    """Whether a speed is near that of the last sample, where that was going, or what is expected (rad/s)."""
+    going, last = abs(omega_1 - x.omega_1 - x.omega_1_change), abs(omega_1 - x.omega_1)
+    return minimum(minimum(going, last), abs(omega_1 - expected)) <= p.e_jump
+
+
+def update(
+    x: MonitorState, u: Any, pushed: Any, omega_1_hat: Any, increment: Any, T_ref: Any, T_s: Any, p: Any
+) -> MonitorState:
     """The state after the signals of one sample.
 
     Args:
         u: input with omega_1_meas, T_mot_est.
-        increment: by which the motor speed should have changed since the last sample, rad/s.
+        pushed: whether the demand pushes the car forwards, and no wheel speed tells how it rolls.
+        omega_1_hat: the model's motor speed of this sample, rad/s.
+        increment: by which it has changed since the last sample, rad/s.
         T_ref: demand that the motor has, N.m.
     """
     expected = clip(x.omega_1 + increment, -p.omega_max, p.omega_max)
     omega_1, T_mot = speed(u.omega_1_meas, expected, p), torque(u.T_mot_est, x.loop, p)
-    near = logical_or(abs(omega_1 - expected) <= p.e_jump, abs(omega_1 - x.omega_1) <= p.e_jump)
+    near = is_near(x, omega_1, expected, p)
+    against = logical_and(pushed, omega_1 < -p.omega_still)
+    backing = logical_and(against, omega_1 - omega_1_hat < -BACKING)
     omega_1_unchanged = where(u.omega_1_meas == x.omega_1_last, x.omega_1_unchanged + T_s, 0.0)
     frozen = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
     possible = logical_and(plausible(u.omega_1_meas, p.omega_max), is_torque(u.T_mot_est, x.loop, p))
-    good = logical_and(logical_and(possible, near), logical_not(frozen))
+    good = logical_and(logical_and(possible, near), logical_not(logical_or(frozen, backing)))
     bad = where(good, 0.0, minimum(x.bad + T_s, p.t_bad + T_s))
+    used = where(logical_or(near, bad > p.t_bad), omega_1, expected)
     return MonitorState(
-        omega_1=where(logical_or(near, bad > p.t_bad), omega_1, expected),
+        omega_1=used,
+        omega_1_change=used - x.omega_1,
         T_mot=T_mot,
         omega_1_last=where(is_finite(u.omega_1_meas), u.omega_1_meas, 0.0),
         omega_1_unchanged=minimum(omega_1_unchanged, p.t_frozen),
         loop=torque_loop.update(x.loop, T_ref, T_s, p),
         bad=bad,
+        against=against,
     )

@@ -53,7 +53,7 @@ class Parameters(NamedTuple):
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 2000.0
     e_max: Annotated[float, Real("rad/s", "largest distance of a usable wheel speed", 1.0, 1000.0)] = 40.0
-    e_jump: Annotated[float, Real("rad/s", "largest change of the motor speed in a sample", 1.0, 1000.0)] = 20.0
+    e_jump: Annotated[float, Real("rad/s", "largest jump of the motor speed in a sample", 1.0, 1000.0)] = 8.0
     e_wheel: Annotated[float, Real("rad/s", "largest distance of the motor from the wheel speed", 1.0, 1000.0)] = 30.0
 
 
@@ -182,8 +182,10 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
         """The states of the estimator and of the monitors with the signals of this sample."""
         T_mot = monitor.torque(u.T_mot_est, x.monitor.loop, p)
         e = estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
-        increment = estimator.motion(e, p).omega_1 - estimator.motion(x.estimator, p).omega_1
-        signals = monitor.update(x.monitor, u, increment, x.T_ref, T_S, p)
+        omega_1_hat = estimator.motion(e, p).omega_1
+        increment = omega_1_hat - estimator.motion(x.estimator, p).omega_1
+        pushed = logical_and(demand(u, p) > monitor.PUSH * p.T_max, x.wheels.silence >= p.t_stale)
+        signals = monitor.update(x.monitor, u, pushed, omega_1_hat, increment, x.T_ref, T_S, p)
         e = estimator.take_motor_speed(e, signals.omega_1, p)
         omega_2_hat = estimator.motion(e, p).omega_2
         heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, omega_2_hat, T_S, p)
@@ -198,7 +200,9 @@ def supervised(name: str, description: str, module: str, estimator: Estimator, l
 
         confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
         feeding = swings.feeds(x.swings)
-        trusting = trust.update(x.trust, signals.bad, heard.apart, feeding, confirmed, resting >= 1.0, T_S, p)
+        trusting = trust.update(
+            x.trust, signals.bad, heard.apart, feeding, confirmed, signals.against, resting >= 1.0, T_S, p
+        )
         trusted = trust.is_trusted(trusting)
         wheel = logical_and(wheels.hears_wheels(heard, u, p), trusted)
 

@@ -10,7 +10,7 @@ that for a time that doubles with every such oscillation; or the car has come to
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Real
-from ..block.operators import logical_and, logical_not, logical_or, minimum, where
+from ..block.operators import clip, logical_and, logical_not, logical_or, minimum, where
 
 LONGEST = 32.0
 """Proof that is asked for at the most, over t_proof."""
@@ -33,7 +33,7 @@ def is_trusted(x: TrustState) -> Any:
 
 
 def update(
-    x: TrustState, bad: Any, apart: Any, feeding: Any, confirmed: Any, resting: Any, T_s: Any, p: Any
+    x: TrustState, bad: Any, apart: Any, feeding: Any, confirmed: Any, against: Any, resting: Any, T_s: Any, p: Any
 ) -> TrustState:
     """The state after one sample.
 
@@ -41,13 +41,16 @@ def update(
         bad, apart: time in s since the motor signals were good, and since they were not contradicted.
         feeding: whether the damping feeds the oscillation.
         confirmed: whether the wheel speed is a witness and the damping torque small.
+        against: whether the motor turns against a demand that pushes the car.
         resting: whether the car is at rest.
     """
     failing = logical_or(logical_or(bad > p.t_bad, apart > p.t_apart), feeding)
     caught = logical_and(logical_or(x.caught, feeding), logical_not(resting))
-    convincing = logical_and(logical_and(bad <= 0.0, apart <= 0.0), logical_or(logical_not(caught), confirmed))
+    good = logical_and(bad <= 0.0, apart <= 0.0)
+    convincing = logical_and(good, logical_or(logical_not(caught), confirmed))
     doubled = where(feeding, minimum(2.0 * x.needed, LONGEST * p.t_proof), x.needed)
     needed = where(resting, p.t_proof, doubled)
-    proving = where(convincing, minimum(x.proof + T_s, needed), 0.0)
+    step = where(against, -T_s, T_s)
+    proving = where(convincing, clip(x.proof + step, 0.0, needed), 0.0)
     proof = where(failing, 0.0, where(is_trusted(x), needed, proving))
     return TrustState(proof=proof, needed=needed, caught=logical_and(caught, proof < needed))

@@ -5,16 +5,15 @@ in use while such messages keep coming. Any message that says a speed is a witne
 speed that is far from it, unless it is the messages that have leapt from one to the next while the motor
 speed has not: then they are doubted, until one is near the motor speed again.
 
-The teeth of a wheel do not tell its direction. It is taken from the motor when the wheel speed becomes
-known, and kept for as long as it is and is not doubted: a car that turns round passes the speeds at which it
-is not known.
+The teeth of a wheel do not tell its direction. It is taken from the motor while the messages are silent or
+doubted, and kept otherwise: a car that turns round passes the speeds at which they say nothing.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import is_finite, logical_and, logical_not, logical_or, minimum, where
-from .signal_monitor import plausible
+from .signal_monitor import PUSH, plausible
 
 LATE = 0.025
 """Time in s by which the motor speed is held back to compare it with messages, about their age."""
@@ -25,16 +24,12 @@ SHARE = 0.06
 LEAP = 20.0
 """Change in rad/s from one message to the next that the motor speed has to follow."""
 
-PUSH = 0.25
-"""Motor torque over T_max with which no car rolls backwards."""
-
 
 class WheelState(NamedTuple):
     """State of the wheel monitor."""
 
     counter: Annotated[float, Real("1", "counter of the message received last")]
     omega_2: Annotated[float, Real("rad/s", "speed received last, with its direction")]
-    known: Annotated[bool, Boolean("the messages say a speed")]
     direction: Annotated[float, Real("1", "1 forwards, -1 backwards")]
     usable: Annotated[bool, Boolean("a message has come that corrects the estimate")]
     unused: Annotated[float, Real("s", "time since such a message")]
@@ -52,7 +47,6 @@ def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=direction * message(u),
-        known=known,
         direction=direction,
         usable=False,
         unused=where(known, 0.0, p.t_stale),
@@ -90,7 +84,7 @@ def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_
         omega_2_hat: estimate before the message, rad/s.
     """
     known = has_wheel_speed(u, p)
-    believed = logical_and(x.known, logical_not(x.doubted))
+    believed = logical_and(x.silence < p.t_stale, logical_not(x.doubted))
     direction = where(believed, x.direction, direction_of(omega_1, T_mot, p))
     new = logical_and(u.counter != x.counter, known)
     omega_2 = where(new, direction * message(u), x.omega_2)
@@ -105,7 +99,6 @@ def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=omega_2,
-        known=known,
         direction=direction,
         usable=usable,
         unused=where(usable, 0.0, minimum(x.unused + T_s, p.t_stale)),

@@ -24,12 +24,17 @@ def above(limit: float) -> float:
 
 
 def after(
-    inputs: Iterable[Input], x: MonitorState | None = None, increment: float = 0.0, T_ref: float = 50.0
+    inputs: Iterable[Input],
+    x: MonitorState | None = None,
+    increment: float = 0.0,
+    T_ref: float = 50.0,
+    pushed: bool = False,
+    omega_1_hat: float = 0.0,
 ) -> MonitorState:
     """The state after these inputs."""
     x = monitor.start(U, P) if x is None else x
     for u in inputs:
-        x = monitor.update(x, u, increment, T_ref, T_S, P)
+        x = monitor.update(x, u, pushed, omega_1_hat, increment, T_ref, T_S, P)
     return x
 
 
@@ -113,6 +118,34 @@ def test_a_motor_speed_may_jump_where_it_is_expected_to(side: float) -> None:
     assert after([U._replace(omega_1_meas=-side * 40.0)], last(0.0), increment=side * 50.0).bad == 0.0
 
 
+@each_side
+def test_a_motor_speed_may_go_on_as_it_was_going(side: float) -> None:
+    """By e_jump more or less, as it does when wheels lock and the model does not know."""
+    going = last(0.0)._replace(omega_1_change=side * 60.0)
+    most, more = (after([U._replace(omega_1_meas=side * jump)], going) for jump in (100.0, above(100.0)))
+    assert (most.bad, most.omega_1, most.omega_1_change) == (0.0, side * 100.0, side * 100.0)
+    assert (more.bad, more.omega_1, more.omega_1_change) == (T_S, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("omega_1", "omega_1_hat", "pushed", "against", "backing"),
+    [
+        (-10.0, -8.51, True, True, False),
+        (-10.0, -8.49, True, True, True),
+        (-10.0, -8.49, False, False, False),
+        (-3.0, 10.0, True, False, False),
+        (-3.01, 10.0, True, True, True),
+        (-10.0, -20.0, True, True, False),
+    ],
+)
+def test_a_motor_that_is_pushed_forwards_turns_backwards_no_faster_than_expected(
+    omega_1: float, omega_1_hat: float, pushed: bool, against: bool, backing: bool
+) -> None:
+    """Rolling back on a slope is as expected; a speed of the wrong sign is not."""
+    x = after([U._replace(omega_1_meas=omega_1)], last(0.0), pushed=pushed, omega_1_hat=omega_1_hat)
+    assert (x.against, x.bad > 0.0) == (against, backing)
+
+
 def test_a_motor_speed_that_has_jumped_is_followed_after_t_bad() -> None:
     """It is bad for as long as it is not, and may then prove itself."""
     x, seen = last(0.0), []
@@ -163,11 +196,13 @@ def test_bad_signals_count_their_time_no_further_than_needed() -> None:
 def test_at_the_start_all_that_is_plausible_is_believed() -> None:
     assert monitor.start(U, P) == MonitorState(
         omega_1=150.0,
+        omega_1_change=0.0,
         T_mot=50.0,
         omega_1_last=150.0,
         omega_1_unchanged=0.0,
         loop=LoopState(50.0, 0.0),
         bad=0.0,
+        against=False,
     )
     x = monitor.start(Input(omega_1_meas=math.nan, T_mot_est=300.0), P)
     assert (x.omega_1, x.T_mot, x.omega_1_last) == (0.0, 0.0, 0.0)

@@ -215,7 +215,7 @@ def test_what_the_law_says_is_added_to_the_demand() -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_demand_and_damping_together_are_limited(side: float) -> None:
-    x, p = started(ROLLING._replace(T_driver=side * 170.0))
+    x, p = started(ROLLING._replace(T_driver=side * 170.0), e_jump=20.0)
     x = OTHER.update(x, ROLLING._replace(T_driver=side * 170.0, omega_1_meas=150.0 - side * 10.0), p)
     assert (x.T_ref, x.T_damp, x.added) == (side * 180.0, side * 10.0, (side * 20.0, 0.0))
 
@@ -244,7 +244,7 @@ def test_the_damping_fades_out_at_rest() -> None:
 
 def test_signals_are_bridged_before_they_lead_to_fallback() -> None:
     """What full damping adds is held while the law has lost its estimate."""
-    x, p = started(ROLLING, t_bad=2.0 * T_S, t_fade=2.0 * T_S, k_v=1.0, omega_v=0.0)
+    x, p = started(ROLLING, t_bad=2.0 * T_S, t_fade=2.0 * T_S, k_v=1.0, omega_v=0.0, e_jump=20.0)
     x = OTHER.update(x, ROLLING._replace(omega_1_meas=160.0), p)
     seen = []
     for k in range(5):
@@ -284,6 +284,22 @@ def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> N
     assert set(statuses[first:back]) == {FALLBACK}
     assert (back - 200) * T_S == pytest.approx(P.t_proof, abs=0.02 + 2.0 * T_S), "a message comes every 20 ms"
     assert set(statuses[back:]) == {WITH_WHEEL_SPEED}
+
+
+def test_a_motor_that_is_pushed_out_of_rest_backwards_is_not_believed() -> None:
+    """Below the least wheel speed; from t_bad on, and for as long as it turns the wrong way."""
+    launch = [
+        Input(T_driver=100.0, T_mot_est=100.0 + 1e-3 * (k % 2), omega_1_meas=-2.0 * k, counter=k // 10)
+        for k in range(400)
+    ]
+    wrong, right = (
+        run_with_motor(OTHER, [u._replace(omega_1_meas=sign * u.omega_1_meas) for u in launch])[1:]
+        for sign in (1.0, -1.0)
+    )
+    first = [x.status for x in wrong].index(FALLBACK)
+    assert first * T_S == pytest.approx(P.t_bad, abs=4.0 * T_S)
+    assert {x.status for x in wrong[first:]} == {FALLBACK}
+    assert {x.status for x in right} == {WITHOUT_WHEEL_SPEED}
 
 
 def test_damping_that_feeds_an_oscillation_lets_go_until_it_is_calm_and_confirmed() -> None:

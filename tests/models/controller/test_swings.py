@@ -6,7 +6,7 @@ import pytest
 
 from models.controller import swings
 from models.controller.supervision import Parameters
-from models.controller.swings import EXCUSE, MOST, SWING, T_FORGET, SwingState
+from models.controller.swings import CALM, EXCUSE, GROWS, MOST, SWING, T_FORGET, SwingState
 
 P = Parameters(T_max=100.0)
 T_S = T_FORGET / 8.0
@@ -26,8 +26,22 @@ def test_a_half_swing_reaches_over_a_torque_on_both_sides(side: float) -> None:
     assert after([side * more, -side * more]).count == 1.0
     assert after([side * PEAK, -side * more]).count == 0.0
     assert after([side * more, -side * PEAK]).count == 0.0
-    assert swings.is_calm(side * PEAK, P)
-    assert not swings.is_calm(side * more, P)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_half_swing_that_is_far_smaller_than_the_one_before_is_not_counted(side: float) -> None:
+    """For that is what damping makes of it; and none is counted twice."""
+    enough = GROWS * 40.0
+    assert after([side * 40.0, -side * enough]).count == 1.0
+    assert after([side * 40.0, -side * math.nextafter(enough, 0.0)]).count == 0.0
+    assert after([side * 40.0, -side * 20.0, -side * enough, -side * 90.0]).count == 1.0 - 1.0 / 8.0
+    assert after([side * 40.0, -side * 20.0, side * 14.0]).count == 1.0, "14 is enough after 20"
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_small_damping_torque_is_calm(side: float) -> None:
+    assert swings.is_calm(side * CALM * P.T_max, P)
+    assert not swings.is_calm(side * math.nextafter(CALM * P.T_max, math.inf), P)
 
 
 def test_every_change_of_side_is_one() -> None:
@@ -51,22 +65,32 @@ def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
 
 def test_nothing_is_counted_while_the_damping_is_faded_out() -> None:
     x = swings.update(after([20.0]), -20.0, 60.0, False, T_S, P)
-    assert x == SwingState(side=0.0, count=0.0, T_driver=60.0)
+    assert x == swings.start(60.0)
     assert swings.update(x, 20.0, 60.0, True, T_S, P).count == 0.0
 
 
-def test_an_oscillation_that_stays_is_found_with_its_fifth_half_swing() -> None:
-    """At 8 Hz."""
-    period = round(0.125 / 0.002)
+@pytest.mark.parametrize(("amplitude", "growth"), [(30.0, 1.0), (12.0, 1.1), (30.0, 0.9)])
+def test_an_oscillation_that_stays_is_found_with_its_fourth_half_swing(amplitude: float, growth: float) -> None:
+    """At 8 Hz; `growth`: of a half swing over the one before."""
+    half = round(0.0625 / 0.002)
     x, found = swings.start(50.0), []
-    for k in range(3 * period):
-        torque = 30.0 * math.sin(2.0 * math.pi * k / period)
+    for k in range(8 * half):
+        torque = amplitude * growth ** (k / half) * math.sin(math.pi * k / half)
         x = swings.update(x, torque, 50.0, True, 0.002, P)
         found.append(swings.feeds(x))
-    assert found.index(True) / period == pytest.approx(2.1, abs=0.1)
+    assert found.index(True) / half == pytest.approx(3.3, abs=0.3)
+
+
+def test_an_oscillation_that_is_damped_is_not_found() -> None:
+    half = round(0.0625 / 0.002)
+    x = swings.start(50.0)
+    for k in range(8 * half):
+        x = swings.update(x, 80.0 * 0.6 ** (k / half) * math.sin(math.pi * k / half), 50.0, True, 0.002, P)
+        assert x.count == 0.0
 
 
 def test_it_feeds_from_a_number_on() -> None:
-    assert swings.feeds(SwingState(1.0, MOST, 0.0))
-    assert not swings.feeds(SwingState(1.0, math.nextafter(MOST, 0.0), 0.0))
-    assert swings.start(20.0) == SwingState(side=0.0, count=0.0, T_driver=20.0)
+    x = swings.start(20.0)
+    assert x == SwingState(side=0.0, peak=0.0, enough=0.0, count=0.0, T_driver=20.0)
+    assert swings.feeds(x._replace(count=MOST))
+    assert not swings.feeds(x._replace(count=math.nextafter(MOST, 0.0)))

@@ -10,7 +10,7 @@ from models.controller.trust import LONGEST, TrustState
 
 P = Parameters(t_bad=1.0, t_apart=2.0, t_proof=1.0)
 T_S = 0.25
-GOOD = {"bad": 0.0, "apart": 0.0, "feeding": False, "confirmed": False, "resting": False}
+GOOD = {"bad": 0.0, "apart": 0.0, "feeding": False, "confirmed": False, "against": False, "resting": False}
 TRUSTED = trust.start(P)
 LOST = TrustState(proof=0.0, needed=1.0, caught=False)
 CAUGHT = TrustState(proof=0.0, needed=2.0, caught=True)
@@ -49,6 +49,14 @@ def test_signals_prove_themselves_by_being_good_for_a_time() -> None:
 
 def test_one_bad_sample_is_enough_to_begin_anew() -> None:
     assert after(1, after(3, LOST), bad=T_S) == after(1, after(3, LOST), apart=T_S) == LOST
+
+
+def test_a_motor_that_turns_against_the_demand_takes_back_what_was_proved() -> None:
+    """Teeth that bounce turn it, too, but most of the time it goes where it is pushed."""
+    x = after(1, after(3, LOST), against=True)
+    assert x.proof == 0.5
+    assert after(5, x, against=True).proof == 0.0
+    assert trust.is_trusted(after(5, against=True)), "what is trusted stays so"
 
 
 def test_trusted_signals_are_not_lost_by_one_bad_sample() -> None:

@@ -163,8 +163,9 @@ def test_the_direction_is_that_of_the_motor_when_the_speed_becomes_known(sent: f
     x = heard(new(sent), standing, omega_1=-60.0, omega_2_hat=-60.0)
     assert (x.direction, x.omega_2, x.usable) == (-1.0, -60.0, True)
     assert heard(new(sent), x, omega_1=60.0).omega_2 == -60.0
-    unknown = heard(new(sent, valid=False), x, omega_1=60.0)
-    assert heard(new(sent, counter=9), unknown, omega_1=60.0).omega_2 == 60.0
+    for silence, speed in ((P.t_stale, 60.0), (math.nextafter(P.t_stale, 0.0), -60.0)):
+        silent = x._replace(silence=silence)
+        assert heard(new(sent, counter=9), silent, omega_1=60.0).omega_2 == speed
     for omega_1, direction in ((-3.0, 1.0), (-above(3.0), -1.0)):
         assert wheels.direction_of(omega_1, 0.0, P) == direction
 
@@ -204,7 +205,7 @@ def test_only_a_witness_contradicts() -> None:
 def test_at_the_start_all_that_is_plausible_is_believed() -> None:
     x = wheels.start(U, 140.0, 0.0, P)
     assert x == WheelState(
-        counter=7.0, omega_2=150.0, known=True, direction=1.0, usable=False, unused=0.0, silence=0.0,
+        counter=7.0, omega_2=150.0, direction=1.0, usable=False, unused=0.0, silence=0.0,
         doubted=False, witness=True, late=140.0, late_then=140.0, apart=0.0,
     )  # fmt: skip
     assert type(x.counter) is type(heard(U).counter) is float, "as it is declared"
