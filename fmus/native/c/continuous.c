@@ -112,14 +112,7 @@ static int is_differentiable(const Instance *instance, Reference reference, int 
     return 0;
 }
 
-Status get_directional_derivative(
-    const Instance *instance,
-    const Reference unknown[],
-    size_t unknowns,
-    const Reference known[],
-    size_t knowns,
-    const double change[],
-    double result[])
+Status get_directional_derivative(const Instance *instance, const Direction *direction, double result[])
 {
     const Memory *memory = &instance->memory;
     const Values *values = &memory->values;
@@ -127,19 +120,19 @@ Status get_directional_derivative(
     State dx;
     memset(&changes, 0, sizeof changes);
     memset(&dx, 0, sizeof dx);
-    for (size_t k = 0; k < unknowns; k++)
-        if (!is_differentiable(instance, unknown[k], 1))
+    for (size_t k = 0; k < direction->unknowns; k++)
+        if (!is_differentiable(instance, direction->unknown[k], 1))
             return ERROR;
-    for (size_t k = 0; k < knowns; k++) {
-        if (!is_differentiable(instance, known[k], 0))
+    for (size_t k = 0; k < direction->knowns; k++) {
+        if (!is_differentiable(instance, direction->known[k], 0))
             return ERROR;
-        *place_of(&changes, &variables[known[k]]) += change[k];
+        *place_of(&changes, &variables[direction->known[k]]) += direction->change[k];
     }
     if (memory->mode == INITIALIZATION)
         start_rate(&values->u, &values->p, &changes.u, &changes.p, &changes.y);
     else
         output_rate(&memory->x, &values->u, &values->p, &dx, &changes.u, &changes.y);
-    for (size_t k = 0; k < unknowns; k++)
-        result[k] = *place_of(&changes, &variables[unknown[k]]);
+    for (size_t k = 0; k < direction->unknowns; k++)
+        result[k] = *place_of(&changes, &variables[direction->unknown[k]]);
     return OK;
 }

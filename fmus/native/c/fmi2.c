@@ -259,8 +259,8 @@ fmi2Status fmi2GetDirectionalDerivative(
     const Instance *instance = ready(c, INITIALIZATION | STEPPING | TERMINATED, complete, __func__);
     if (!instance)
         return fmi2Error;
-    return in_fmi(
-        get_directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown));
+    const Direction direction = {vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown};
+    return in_fmi(get_directional_derivative(instance, &direction, dvUnknown));
 }
 
 /* Whether all orders of derivatives are 1; else they are refused. */

@@ -51,6 +51,15 @@ typedef struct {
     int shorter_steps_do; /* it can be followed, but it takes too long */
 } Obstacle;
 
+/* What a directional derivative is asked of, and along which change. */
+typedef struct {
+    const Reference *unknown;
+    size_t unknowns;
+    const Reference *known;
+    size_t knowns;
+    const double *change; /* of each known */
+} Direction;
+
 #if defined __GNUC__
 #define LIKE_PRINTF __attribute__((format(printf, 2, 3)))
 #else
@@ -96,13 +105,6 @@ static Obstacle advance(Memory *memory, double elapsed, double duration); /* fro
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
 static Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);
-static Status get_directional_derivative(
-    const Instance *instance,
-    const Reference unknown[],
-    size_t unknowns,
-    const Reference known[],
-    size_t knowns,
-    const double change[],
-    double result[]);
+static Status get_directional_derivative(const Instance *instance, const Direction *direction, double result[]);
 
 #endif

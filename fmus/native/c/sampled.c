@@ -56,20 +56,9 @@ Status get_output_rates(const Instance *instance, const Reference references[], 
     return refuse_rates(instance, "output derivatives");
 }
 
-Status get_directional_derivative(
-    const Instance *instance,
-    const Reference unknown[],
-    size_t unknowns,
-    const Reference known[],
-    size_t knowns,
-    const double change[],
-    double result[])
+Status get_directional_derivative(const Instance *instance, const Direction *direction, double result[])
 {
-    (void)unknown;
-    (void)unknowns;
-    (void)known;
-    (void)knowns;
-    (void)change;
+    (void)direction;
     (void)result;
     return refuse_rates(instance, "directional derivatives");
 }
