@@ -13,7 +13,7 @@ from .description.variables import interface
 from .errors import BuildError
 from .fmu import Fmu
 from .origin import is_stale, origin_of
-from .own_file import fmu_in
+from .own_file import fmu_in, place
 
 BUILDS = ("python", "native", "both")
 PLATFORMS = ("host", "all")
@@ -64,7 +64,8 @@ def build_fmus(
     if own and builds in ("python", "both"):
         raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
     of_the_project = builders(builds, platform) if len(own) < len(fmus) else []
-    of_own = [_guarded(builder) for builder in builders("native", platform)] if own else []
+    files = [Path(name) for name in names if name.endswith(".py")]
+    of_own = [_guarded(builder, files) for builder in builders("native", platform)] if own else []
     start_values = read_files(vehicle, parameters, own)
     for fmu in fmus:
         for build in of_own if fmu in own else of_the_project:
@@ -177,8 +178,8 @@ def _into_own_folder(builder: Builder, fmu: Fmu, folder: Path) -> Path:
     return builder(fmu, folder / NATIVE_FOLDER)
 
 
-def _guarded(builder: Builder) -> Builder:
-    """The builder for blocks that are not ours: whatever goes wrong in one is a BuildError."""
+def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
+    """The builder for blocks in these files, which are not ours: whatever goes wrong in one is a BuildError."""
 
     def build(fmu: Fmu, folder: Path) -> Path:
         try:
@@ -186,6 +187,8 @@ def _guarded(builder: Builder) -> Builder:
         except OSError:
             raise
         except Exception as error:
-            raise BuildError(f"{fmu.name} cannot be built: {type(error).__name__}: {error}") from error
+            raise BuildError(
+                f"{place(error, files)}: {fmu.name} cannot be built: {type(error).__name__}: {error}"
+            ) from error
 
     return build

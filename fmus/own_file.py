@@ -1,8 +1,10 @@
 """An FMU that is declared in a Python file of the user's own."""
 
 import sys
+from collections.abc import Sequence
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
+from traceback import extract_tb
 
 from .errors import BuildError
 from .fmu import Fmu
@@ -20,7 +22,7 @@ def fmu_in(path: Path) -> Fmu:
     name = path.stem
     if _taken(name, path):
         raise BuildError(f"{path}: there is a module called {name}; give the file another name")
-    spec = spec_from_file_location(name, path)
+    spec = spec_from_file_location(name, path.absolute())
     if spec is None or spec.loader is None:
         raise BuildError(f"{path} is not a Python file")
     module = module_from_spec(spec)
@@ -29,12 +31,22 @@ def fmu_in(path: Path) -> Fmu:
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise BuildError(f"{path} cannot be run: {type(error).__name__}: {error}") from error
+        raise BuildError(f"{place(error, [path])}: it cannot be run: {type(error).__name__}: {error}") from error
     fmu = getattr(module, "FMU", None)
     if not isinstance(fmu, Fmu):
         del sys.modules[name]
         raise BuildError(f"{path} has no line `FMU = Fmu(BLOCK, stop_time=10.0)`")
     return fmu
+
+
+def place(error: BaseException, files: Sequence[Path]) -> str:
+    """The file and the line of it from which an error came, as far as it is in one of some files; else the files."""
+    by_name = {str(path.absolute()): path for path in files}
+    places = [(frame.filename, frame.lineno) for frame in extract_tb(error.__traceback__)]
+    if isinstance(error, SyntaxError):
+        places.append((str(error.filename), error.lineno))
+    own = [f"{by_name[name]}, line {line}" for name, line in places if name in by_name]
+    return own[-1] if own else ", ".join(map(str, files))
 
 
 def _taken(name: str, path: Path) -> bool:

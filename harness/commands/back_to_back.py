@@ -40,16 +40,19 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: only this measurement needs the models
     from fmus.catalogue import FMUS
 
-    from ..analysis.back_to_back import compare_block, compare_loop, random_inputs
+    from ..analysis.back_to_back import Differences, compare_block, compare_loop, random_inputs
     from ..analysis.back_to_back_page import LoopRow, page
     from ..many import run_many
     from ..reports.files import write_text
 
-    random = {
-        name: compare_block(name, random_inputs(fmu.block, RANDOM_STEPS), args.fmus) for name, fmu in FMUS.items()
-    }
+    def compare_alone(name: str) -> Differences:
+        return compare_block(name, random_inputs(FMUS[name].block, RANDOM_STEPS), args.fmus)
+
+    random = dict(zip(FMUS, run_many(compare_alone, FMUS, label="blocks alone"), strict=True))
     cases = list(product(PLANTS, MANOEUVRES))
-    found = run_many(lambda case: compare_loop(case[0], MANOEUVRES[case[1]], args.fmus), cases)
+    found = run_many(
+        lambda case: compare_loop(case[0], MANOEUVRES[case[1]], args.fmus), cases, label="blocks in the loop"
+    )
     loops = [LoopRow(plant, name, blocks) for (plant, name), blocks in zip(cases, found, strict=True)]
     path = args.output / "back_to_back.md"
     write_text(page(random, RANDOM_STEPS, loops), path)

@@ -106,13 +106,24 @@ def test_a_block_of_a_file_has_no_python_build(tmp_path: Path, builds: str) -> N
     assert "MyVehicle has a native build only" in done.stderr
 
 
+def line_of(piece: str) -> int:
+    """Of the example, from 1 on."""
+    return EXAMPLE[: EXAMPLE.index(piece)].count("\n") + 1
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("import nonsense", "cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
-        ("FMU = (", "cannot be run: SyntaxError"),
-        (EXAMPLE.replace("p.r * braking_force", "p.s * braking_force"), "MyVehicle cannot be built: AttributeError"),
-        (EXAMPLE.replace("tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"), "MyVehicle cannot be built: TypeError: a model"),
+        ("import nonsense", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
+        ("\nFMU = (", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),
+        (
+            EXAMPLE.replace("p.r * braking_force", "p.s * braking_force"),
+            f"line {line_of('p.r * braking_force')}: MyVehicle cannot be built: AttributeError",
+        ),
+        (
+            EXAMPLE.replace("tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"),
+            f"line {line_of('tanh(x.v / p.v_rr)')}: MyVehicle cannot be built: TypeError: a model",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str, said: str) -> None:
