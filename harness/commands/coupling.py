@@ -12,7 +12,8 @@ from .printing import Printer
 DESCRIPTION = """\
 Runs the loop under every scheme and several communication steps and compares it with its monolithic
 solution: the coupling error of each signal, the order with which it falls, and the dead time that a
-scheme adds to each connection and around the loop. The result is a page of Markdown, coupling.md in the
+scheme adds to each connection and around the loop; and how far the metrics of every manoeuvre depend on the
+communication step. The result is a page of Markdown, coupling.md in the
 output folder.
 """
 
@@ -41,6 +42,7 @@ def run(args: argparse.Namespace) -> int:
     from ..analysis.coupling import MANOEUVRES, compare
     from ..analysis.coupling_page import page
     from ..analysis.dead_time import dead_times
+    from ..analysis.step_dependence import compare_all
     from ..cosimulation.schedule import transfers
     from ..cosimulation.wiring import fit
     from ..reports.files import write_text
@@ -53,6 +55,7 @@ def run(args: argparse.Namespace) -> int:
         transfers(fitted.system, fitted.interfaces),
         list(fitted.interfaces),
         STEP_SIZE,
+        compare_all(args.fmus),
     )
     path = args.output / "coupling.md"
     write_text(text, path)

@@ -7,6 +7,7 @@ from harness.analysis import coupling
 from harness.analysis.coupling import MANOEUVRES, NOISELESS, PLANTS, SIGNALS, T_S, compare, cosimulated, reference
 from harness.analysis.coupling_page import page
 from harness.analysis.dead_time import dead_times, lateness
+from harness.analysis.step_dependence import Case
 from harness.cosimulation.schedule import Transfer
 from harness.cosimulation.system import Scheme
 from tests.foreign import tampered
@@ -92,10 +93,15 @@ def test_the_page_says_what_was_measured():
     comparison = coupling.Comparison("TwoMassDriveline", IN_CONTACT, Scheme.JACOBI, deviations)
     assert comparison.order("plant.T_gear") == pytest.approx(1.0)
     late = {(Scheme.JACOBI, 1e-3): {"T_mot to the plant": 5e-4}}
-    text = page([comparison], late, {"plant.T_mot": Transfer.INTERPOLATED}, ["motor", "plant"], 1e-3)
+    metrics = {
+        Case("TwoMassDriveline", "launch", control): {"overshoot": 0.002, "end_swing": 0.004}
+        for control in (True, False)
+    }
+    text = page([comparison], late, {"plant.T_mot": Transfer.INTERPOLATED}, ["motor", "plant"], 1e-3, metrics)
     assert "it interpolates (`plant.T_mot`)" in text
     assert "along its derivative (none here)" in text
     assert "| T_mot to the plant | 0.50 |" in text
     assert "| TwoMassDriveline | 20 to 100 N.m, the teeth stay in contact | jacobi | 3 / 1 |" in text
     assert "| jacobi | 1 | 0.5 | 1.0 |" in text
     assert "`motor`, `plant`" in text
+    assert "| TwoMassDriveline | launch | 0.4 (end swing) | 0.4 (end swing) |" in text
