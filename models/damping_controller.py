@@ -15,7 +15,7 @@ nor motion) the damping fades out and the estimator is held, until there is one 
 """
 
 from .controller import damping_law, torque_estimator
-from .controller.supervision import supervised
+from .controller.supervised import supervised
 
 BLOCK = supervised(
     name="DampingController",

@@ -11,15 +11,12 @@ what the damping alone may take.
 
 from typing import Annotated, Any, NamedTuple
 
-from ..block.declaration import Boolean, Enumeration, Integer, Real, merged
-from ..block.operators import branch, clip, is_finite, logical_and, logical_not, logical_or, where
-from ..block.types import SampledBlock
+from ..block.declaration import Boolean, Enumeration, Integer, Real
+from ..block.operators import clip, is_finite, logical_and, logical_or, where
 from ..vehicle import CAR, MotorLag
-from . import rest, swings, trust
 from . import signal_monitor as monitor
-from . import wheel_monitor as wheels
-from .fading import toward
-from .parts import Addition, Estimator, Law, Motion
+from . import swings, trust
+from .parts import Addition, Motion
 from .signal_monitor import MonitorState
 from .swings import SwingState
 from .trust import TrustState
@@ -136,6 +133,18 @@ def is_doubtful(signals: MonitorState, heard: WheelState) -> Any:
     return logical_or(signals.bad > 0.0, heard.apart > 0.0)
 
 
+def is_pushed(x: State, u: Input, p: Any) -> Any:
+    """Whether the demand pushes the car forwards, and no wheel speed tells how it rolls."""
+    return logical_and(demand(u, p) > monitor.PUSH * p.T_max, x.wheels.silence >= p.t_stale)
+
+
+def trust_after(x: State, signals: MonitorState, heard: WheelState, resting: Any, p: Any) -> TrustState:
+    """The trust in the motor signals with those of this sample; `resting`: the car is at rest."""
+    confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
+    feeding = swings.feeds(x.swings)
+    return trust.update(x.trust, signals.bad, heard.apart, feeding, confirmed, signals.against, resting, T_S, p)
+
+
 def damping_limited(added: Addition, p: Any) -> Addition:
     return added._replace(damping=clip(added.damping, -p.T_add_max, p.T_add_max))
 
@@ -145,111 +154,3 @@ def limited(torque: Any, T_driver: Any, p: Any) -> Any:
     lower = where(T_driver > 0.0, p.T_take_max, p.T_add_max)
     upper = where(T_driver < 0.0, p.T_take_max, p.T_add_max)
     return clip(torque, -lower, upper)
-
-
-def supervised(name: str, description: str, module: str, estimator: Estimator, law: Law) -> SampledBlock:
-    """A controller as a block: its parameters are those of the estimator, of the law and of the supervision.
-
-    Args:
-        name, description, module: see `models.block.types`.
-    """
-
-    def start(u: Input, p: Any) -> State:
-        """Estimate from the motor signals of t = 0, the driver's demand passed through."""
-        T_driver = demand(u, p)
-        signals, wheel = monitor.start(u, p), wheels.has_wheel_speed(u, p)
-        e = estimator.start(signals.omega_1, signals.T_mot, wheel, p)
-        motion = estimator.motion(e, p)
-        return State(
-            estimator=e,
-            law=law.start(motion, p),
-            monitor=signals,
-            wheels=wheels.start(u, signals.omega_1, signals.T_mot, p),
-            swings=swings.start(T_driver),
-            trust=trust.start(p),
-            level=where(u.enable, 1.0, 0.0),
-            quiet=where(rest.is_still(T_driver, signals.omega_1, p), rest.longest(p), 0.0),
-            opposing=0.0,
-            added=Addition(0.0, 0.0),
-            T_ref=T_driver,
-            T_damp=0.0,
-            T_landing=0.0,
-            ahead=motion,
-            status=status(u.enable, True, wheel),
-        )
-
-    def measured(x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState]:
-        """The states of the estimator and of the monitors with the signals of this sample."""
-        T_mot = monitor.torque(u.T_mot_est, x.monitor.loop, p)
-        e = estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
-        omega_1_hat = estimator.motion(e, p).omega_1
-        increment = omega_1_hat - estimator.motion(x.estimator, p).omega_1
-        pushed = logical_and(demand(u, p) > monitor.PUSH * p.T_max, x.wheels.silence >= p.t_stale)
-        signals = monitor.update(x.monitor, u, pushed, omega_1_hat, increment, x.T_ref, T_S, p)
-        e = estimator.take_motor_speed(e, signals.omega_1, p)
-        omega_2_hat = estimator.motion(e, p).omega_2
-        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, omega_2_hat, T_S, p)
-        e = branch(heard.usable, lambda: estimator.take_wheel_speed(e, heard.omega_2, T_S, p), lambda: e)
-        return e, signals, heard
-
-    def update(x: State, u: Input, p: Any) -> State:
-        e, signals, heard = measured(x, u, p)
-        T_driver = demand(u, p)
-        quiet = rest.quiet_time(x.quiet, rest.is_still(T_driver, signals.omega_1, p), T_S, p)
-        resting = rest.share(quiet, p)
-
-        confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
-        feeding = swings.feeds(x.swings)
-        trusting = trust.update(
-            x.trust, signals.bad, heard.apart, feeding, confirmed, signals.against, resting >= 1.0, T_S, p
-        )
-        trusted = trust.is_trusted(trusting)
-        wheel = logical_and(wheels.hears_wheels(heard, u, p), trusted)
-
-        doubtful = logical_or(is_doubtful(signals, heard), is_doubtful(x.monitor, x.wheels))
-        afresh = logical_and(doubtful, logical_not(trusted))
-        e = branch(afresh, lambda: estimator.restart(e, signals.omega_1, signals.T_mot, p), lambda: e)
-        e = branch(resting >= 1.0, lambda: estimator.restart(e, 0.0, 0.0, p), lambda: e)
-
-        def later(h: Any) -> Motion:
-            return estimator.motion_after(e, signals.T_mot, h, p)
-
-        motion = estimator.motion(e, p)
-        before = branch(afresh, lambda: law.start(motion, p), lambda: x.law)
-        acting, adding = law.update(before, motion, later, T_driver, T_S, p)
-        added = branch(trusted, lambda: damping_limited(adding, p), lambda: x.added)
-        level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
-        share = level * (1.0 - resting)
-        T_ref = clip(T_driver + limited(share * (added.damping + added.landing), T_driver, p), -p.T_max, p.T_max)
-        return State(
-            estimator=estimator.finish(e, wheel, T_S, p),
-            law=acting,
-            monitor=signals,
-            wheels=heard,
-            swings=swings.update(x.swings, share * added.damping, T_driver, trusted, T_S, p),
-            trust=trusting,
-            level=level,
-            quiet=quiet,
-            opposing=adding.damping,
-            added=added,
-            T_ref=T_ref,
-            T_damp=T_ref - T_driver,
-            T_landing=limited(share * added.landing, T_driver, p),
-            ahead=later(T_S),
-            status=status(u.enable, trusted, wheel),
-        )
-
-    return SampledBlock(
-        name=name,
-        description=description,
-        module=module,
-        Parameters=merged("Parameters", estimator.Parameters, law.Parameters, Parameters),
-        Input=Input,
-        State=State,
-        Output=Output,
-        start=start,
-        output=output,
-        update=update,
-        sample_time=T_S,
-        tolerates_bad_input=True,
-    )

@@ -17,7 +17,17 @@ from workers import survivors
 LEAST_SCORE = 0.95
 
 CONTROLLER = (
-    *("damping_law", "fading", "rest", "signal_monitor", "supervision", "swings", "torque_estimator", "trust"),
+    *(
+        "damping_law",
+        "fading",
+        "rest",
+        "signal_monitor",
+        "supervised",
+        "supervision",
+        "swings",
+        "torque_estimator",
+        "trust",
+    ),
     "torque_loop",
     "wheel_monitor",
 )

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from models import damping_controller
 from models.block.types import SampledBlock
-from models.controller.supervision import T_S, Input, State, supervised
+from models.controller.supervised import supervised
+from models.controller.supervision import T_S, Input, State
 from tests.models.controller import motor_speed, speed_washout
 
 OURS = damping_controller.BLOCK

@@ -8,7 +8,8 @@ from models.block.declaration import variables
 from models.block.runner import runner
 from models.controller import damping_law, supervision, torque_estimator
 from models.controller.parts import Estimator, Law
-from models.controller.supervision import T_S, supervised
+from models.controller.supervised import supervised
+from models.controller.supervision import T_S
 from tests.models.controller import motor_speed, speed_washout
 from tests.models.controller.controllers import OTHER, ROLLING, run, shaken
 

@@ -1,0 +1,150 @@
+"""A controller: an estimator and a law under the supervision, as a block."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..block.declaration import merged
+from ..block.operators import branch, clip, logical_and, logical_not, logical_or, where
+from ..block.types import SampledBlock
+from . import rest, swings, trust
+from . import signal_monitor as monitor
+from . import wheel_monitor as wheels
+from .fading import toward
+from .parts import Addition, Estimator, Law, Motion
+from .signal_monitor import MonitorState
+from .supervision import (
+    T_S,
+    Input,
+    Output,
+    Parameters,
+    State,
+    damping_limited,
+    demand,
+    is_doubtful,
+    is_pushed,
+    limited,
+    output,
+    status,
+    trust_after,
+)
+from .wheel_monitor import WheelState
+
+
+@dataclass(frozen=True)
+class Supervised:
+    """An estimator and a law under supervision."""
+
+    estimator: Estimator
+    law: Law
+
+    def start(self, u: Input, p: Any) -> State:
+        """Estimate from the motor signals of t = 0, the driver's demand passed through."""
+        T_driver = demand(u, p)
+        signals, wheel = monitor.start(u, p), wheels.has_wheel_speed(u, p)
+        e = self.estimator.start(signals.omega_1, signals.T_mot, wheel, p)
+        motion = self.estimator.motion(e, p)
+        return State(
+            estimator=e,
+            law=self.law.start(motion, p),
+            monitor=signals,
+            wheels=wheels.start(u, signals.omega_1, signals.T_mot, p),
+            swings=swings.start(T_driver),
+            trust=trust.start(p),
+            level=where(u.enable, 1.0, 0.0),
+            quiet=where(rest.is_still(T_driver, signals.omega_1, p), rest.longest(p), 0.0),
+            opposing=0.0,
+            added=Addition(0.0, 0.0),
+            T_ref=T_driver,
+            T_damp=0.0,
+            T_landing=0.0,
+            ahead=motion,
+            status=status(u.enable, True, wheel),
+        )
+
+    def update(self, x: State, u: Input, p: Any) -> State:
+        """What was measured, whether it is trusted, and what is added to the demand."""
+        e, signals, heard = self.measured(x, u, p)
+        T_driver = demand(u, p)
+        quiet = rest.quiet_time(x.quiet, rest.is_still(T_driver, signals.omega_1, p), T_S, p)
+        resting = rest.share(quiet, p)
+        trusting = trust_after(x, signals, heard, resting >= 1.0, p)
+        trusted = trust.is_trusted(trusting)
+        wheel = logical_and(wheels.hears_wheels(heard, u, p), trusted)
+
+        doubtful = logical_or(is_doubtful(signals, heard), is_doubtful(x.monitor, x.wheels))
+        afresh = logical_and(doubtful, logical_not(trusted))
+        e = self.restarted(e, signals, afresh, resting >= 1.0, p)
+        acting, adding = self.acting(x.law, e, signals.T_mot, T_driver, afresh, p)
+
+        added = branch(trusted, lambda: damping_limited(adding, p), lambda: x.added)
+        level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
+        share = level * (1.0 - resting)
+        T_ref = clip(T_driver + limited(share * (added.damping + added.landing), T_driver, p), -p.T_max, p.T_max)
+        return State(
+            estimator=self.estimator.finish(e, wheel, T_S, p),
+            law=acting,
+            monitor=signals,
+            wheels=heard,
+            swings=swings.update(x.swings, share * added.damping, T_driver, trusted, T_S, p),
+            trust=trusting,
+            level=level,
+            quiet=quiet,
+            opposing=adding.damping,
+            added=added,
+            T_ref=T_ref,
+            T_damp=T_ref - T_driver,
+            T_landing=limited(share * added.landing, T_driver, p),
+            ahead=self.estimator.motion_after(e, signals.T_mot, T_S, p),
+            status=status(u.enable, trusted, wheel),
+        )
+
+    def measured(self, x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState]:
+        """The states of the estimator and of the monitors with the signals of this sample."""
+        T_mot = monitor.torque(u.T_mot_est, x.monitor.loop, p)
+        e = self.estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
+        omega_1_hat = self.estimator.motion(e, p).omega_1
+        increment = omega_1_hat - self.estimator.motion(x.estimator, p).omega_1
+        signals = monitor.update(x.monitor, u, is_pushed(x, u, p), omega_1_hat, increment, x.T_ref, T_S, p)
+        e = self.estimator.take_motor_speed(e, signals.omega_1, p)
+        omega_2_hat = self.estimator.motion(e, p).omega_2
+        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, omega_2_hat, T_S, p)
+        corrected = branch(heard.usable, lambda: self.estimator.take_wheel_speed(e, heard.omega_2, T_S, p), lambda: e)
+        return corrected, signals, heard
+
+    def restarted(self, e: Any, signals: MonitorState, afresh: Any, resting: Any, p: Any) -> Any:
+        """The estimator, started afresh where the signals are to be doubted, and held at rest."""
+        followed = branch(afresh, lambda: self.estimator.restart(e, signals.omega_1, signals.T_mot, p), lambda: e)
+        return branch(resting, lambda: self.estimator.restart(followed, 0.0, 0.0, p), lambda: followed)
+
+    def acting(self, x: Any, e: Any, T_mot: Any, T_driver: Any, afresh: Any, p: Any) -> tuple[Any, Addition]:
+        """The state of the law, started afresh with the estimator, and what it would add to the demand."""
+
+        def later(h: Any) -> Motion:
+            return self.estimator.motion_after(e, T_mot, h, p)
+
+        motion = self.estimator.motion(e, p)
+        before = branch(afresh, lambda: self.law.start(motion, p), lambda: x)
+        return self.law.update(before, motion, later, T_driver, T_S, p)
+
+
+def supervised(name: str, description: str, module: str, estimator: Estimator, law: Law) -> SampledBlock:
+    """A controller as a block: its parameters are those of the estimator, of the law and of the supervision.
+
+    Args:
+        name, description, module: see `models.block.types`.
+    """
+    controller = Supervised(estimator, law)
+    return SampledBlock(
+        name=name,
+        description=description,
+        module=module,
+        Parameters=merged("Parameters", estimator.Parameters, law.Parameters, Parameters),
+        Input=Input,
+        State=State,
+        Output=Output,
+        start=controller.start,
+        output=output,
+        update=controller.update,
+        sample_time=T_S,
+        tolerates_bad_input=True,
+    )
