@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from math import isfinite
 
-from ..cosimulation.instance import Unpacked
+from ..cosimulation.unpacked import Unpacked
 from .host import Outputs, hosted
 from .rule import Rules, Severity
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from ..cosimulation import archive
 from ..cosimulation.apart import Apart
-from ..cosimulation.instance import Unpacked, unpacked
 from ..cosimulation.interface import Interface
 from ..cosimulation.limits import USUAL, Limits
+from ..cosimulation.unpacked import Unpacked, unpacked
 from ..errors import DrivelineError, SimulationError
 from ..plain import plain
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive

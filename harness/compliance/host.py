@@ -7,8 +7,9 @@ from typing import Any
 
 from fmpy.model_description import ModelVariable
 
-from ..cosimulation.instance import Instance, Unpacked, instantiated
+from ..cosimulation.instance import Instance, instantiated
 from ..cosimulation.interface import type_of
+from ..cosimulation.unpacked import Unpacked
 
 Outputs = list[tuple[str, Any]]
 

@@ -1,4 +1,4 @@
-"""An FMU at work: unpacked, loaded, instantiated, and afterwards gone without a trace."""
+"""An FMU at work: loaded, instantiated, and afterwards gone without a trace."""
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -6,9 +6,7 @@ from contextlib import contextmanager
 from ctypes import byref, c_int, c_void_p
 from itertools import count
 from math import isfinite
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import fmpy
 from fmpy.fmi1 import FMICallException
@@ -26,9 +24,9 @@ from fmpy.logging import addLoggerProxy
 
 from ..errors import SimulationError, WiringError
 from ..plain import plain
-from .archive import unpack
 from .interface import Interface, type_of
-from .whereabouts import AT_START, note, rest
+from .unpacked import Unpacked
+from .whereabouts import AT_START, note
 
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
 
@@ -180,36 +178,6 @@ def _typed(instance: str, name: str, kind: str, value: float) -> float:
     if whole[kind] and not (abs(value) < 2**31 and value == int(value)):
         raise WiringError(f"{instance}.{name} = {value:g}: it must be a whole number of less than 2^31")
     return int(value) if whole[kind] else float(value)
-
-
-class Unpacked(NamedTuple):
-    """An FMU and the folder that has its files."""
-
-    interface: Interface
-    folder: str
-
-
-@contextmanager
-def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpacked]:
-    """The FMU with its files, which vanish at the end.
-
-    Args:
-        folder: in which it is unpacked; None: that for temporary files.
-
-    Raises:
-        SimulationError: it cannot be unpacked, or has no binary for this platform.
-    """
-    path = interface.path
-    with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as files:
-        if not files.isascii():
-            raise SimulationError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
-        rest()  # unpacking may take longer than a call may
-        unpack(path, files)
-        platforms = fmpy.supported_platforms(files)
-        if fmpy.platform not in platforms:
-            has = ", ".join(platforms) or "none"
-            raise SimulationError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
-        yield Unpacked(interface, files)
 
 
 @contextmanager

@@ -17,9 +17,10 @@ from ..errors import SimulationError, WiringError
 from ..progress import chunks, progress
 from .calls import Call
 from .experiment import Experiment
-from .instance import Instance, instantiated, unpacked
+from .instance import Instance, instantiated
 from .steps import NOT_FINITE, MakeSteps, made
 from .system import Scheme
+from .unpacked import unpacked
 from .wires import Wires, wired
 from .wiring import Fit, require, unknown
 

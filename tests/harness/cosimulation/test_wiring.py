@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from harness.control_loop import PLANTS, chosen_build, loop
-from harness.cosimulation import instance
+from harness.cosimulation import unpacked
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface, unit_of
 from harness.cosimulation.runs import run
@@ -22,7 +22,7 @@ SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)
 def nothing_is_unpacked(request, monkeypatch):
     """Whatever is wrong is found before any FMU is unpacked."""
     if "runs" not in request.node.name:
-        monkeypatch.setattr(instance.fmpy, "extract", lambda *_, **__: pytest.fail("an FMU was unpacked"))
+        monkeypatch.setattr(unpacked, "unpack", lambda *_: pytest.fail("an FMU was unpacked"))
 
 
 def face(path):
