@@ -20,6 +20,8 @@ from tests.fmus.test_state import (  # noqa: F401
 )
 from tests.fmus.test_time import (  # noqa: F401
     test_a_new_instance_shows_what_it_would_start_with,
+    test_a_run_does_not_stop_before_its_start,
+    test_a_run_ends_at_its_stop_time,
     test_a_sampled_block_does_not_depend_on_the_communication_step,
     test_a_step_from_another_time_is_refused,
     test_a_step_that_is_not_positive_or_too_long_is_refused,
@@ -30,6 +32,7 @@ from tests.fmus.test_time import (  # noqa: F401
     test_outputs_are_right_at_the_start_and_parameters_in_effect,
     test_outputs_change_with_time_alone,
     test_the_shortest_and_the_longest_step_are_allowed,
+    test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset,
     test_the_time_of_a_host_may_be_a_microsecond_off,
     test_time_counts_from_the_start_time,
 )
