@@ -23,12 +23,12 @@ def description(path, _changed):
 
 
 class Host:
-    """One instance of an FMU, the text of the last message it logged and the status of the last refusal."""
+    """One instance of an FMU, the last message it logged, under which name, and the status of the last refusal."""
 
     def __init__(self, path, unpacked, name="instance"):
         self.description = description(path, Path(path).stat().st_mtime_ns)
         self.variables = {v.name: v for v in self.description.modelVariables}
-        self.message = ""
+        self.message = self.named = ""
         self.status = 0
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
@@ -43,8 +43,9 @@ class Host:
         )
         self.fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
 
-    def _keep(self, _environment, _name, _status, _category, message):
+    def _keep(self, _environment, name, _status, _category, message):
         """Without the line that PythonFMU puts before a message of ours."""
+        self.named = name.decode()
         self.message = message.decode().rpartition("\n")[2]
 
     def names(self, causality):

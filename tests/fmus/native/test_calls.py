@@ -130,7 +130,53 @@ def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, said):
         )
         assert made is None
         assert said in host.message
+        assert host.named == (given["name"] or b"").decode()
         assert binary.fmi2Instantiate(given["name"], 1, given["guid"], None, None, 0, 1) is None
+
+
+@pytest.mark.parametrize("missing", ["allocateMemory", "freeMemory"])
+def test_without_callbacks_for_memory_nothing_is_instantiated(native, tmp_path, missing):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        binary = ctypes.CDLL(host.fmu.dll._name)
+        binary.fmi2Instantiate.restype = ctypes.c_void_p
+        callbacks = type(host._callbacks).from_buffer_copy(host._callbacks)
+        setattr(callbacks, missing, type(getattr(callbacks, missing))())
+        guid = str(host.description.guid).encode()
+        assert binary.fmi2Instantiate(b"other", 1, guid, None, ctypes.byref(callbacks), 0, 1) is None
+        assert (host.named, "callbacks for memory" in host.message) == ("other", True)
+
+
+ONE = ctypes.c_size_t(1)
+
+COMPLETE = {
+    "fmi2SetDebugLogging": (1, ONE, (ctypes.c_char_p * 1)(b"logStatusError")),
+    "fmi2GetFMUstate": (ctypes.byref(ctypes.c_void_p()),),
+    "fmi2SetFMUstate": ("state",),
+    "fmi2SerializedFMUstateSize": ("state", ctypes.byref(ctypes.c_size_t())),
+    "fmi2SerializeFMUstate": ("state", ctypes.create_string_buffer(10000), ctypes.c_size_t(10000)),
+    "fmi2DeSerializeFMUstate": ("bytes", "size", ctypes.byref(ctypes.c_void_p())),
+    "fmi2GetDirectionalDerivative": (
+        *((ctypes.c_uint * 1)(2), ONE, (ctypes.c_uint * 1)(0), ONE),
+        *((ctypes.c_double * 1)(1.0), (ctypes.c_double * 1)()),
+    ),
+}
+"""Arguments of calls that succeed; the state, its bytes and their number stand for those of the test."""
+
+
+@pytest.mark.parametrize("function", COMPLETE)
+def test_an_argument_that_is_missing_is_an_error(native, tmp_path, function):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        state = host.fmu.getFMUstate()
+        saved = bytes(host.fmu.serializeFMUstate(state))
+        ours = {"state": state, "bytes": saved, "size": ctypes.c_size_t(len(saved))}
+        given = [ours.get(each, each) if isinstance(each, str) else each for each in COMPLETE[function]]
+        for k, each in enumerate(given):
+            if isinstance(each, int | ctypes.c_size_t):
+                continue
+            assert call(host, function, *given[:k], None, *given[k + 1 :]) == ERROR
+            assert (host.named, host.message) == ("instance", f"{function}: an argument is NULL")
+        assert call(host, function, *given) == OK
 
 
 def status(host, function, kind, value):
@@ -175,14 +221,18 @@ def test_messages_are_given_out_by_category(native, tmp_path):
         assert messages() == [True, True]
         host.fmu.setDebugLogging(False, ["logStatusDiscard"])
         assert messages() == [False, True]
+        host.fmu.setDebugLogging(False, ["logStatusError"])
+        assert messages() == [False, False]
+        host.fmu.setDebugLogging(True, [])
         host.fmu.setDebugLogging(False, [])
         assert messages() == [False, False]
         host.fmu.setDebugLogging(True, ["logStatusDiscard"])
         assert messages() == [True, False]
         host.fmu.setDebugLogging(True, [])
-        assert "there are logStatusError and logStatusDiscard" in host.refuses(
-            host.fmu.setDebugLogging, True, ["logEvents"]
-        )
+        message = host.refuses(host.fmu.setDebugLogging, True, ["logEvents"])
+        assert message == "log category logEvents is unknown; there are logStatusError and logStatusDiscard"
+        assert call(host, "fmi2SetDebugLogging", 1, ONE, (ctypes.c_char_p * 1)()) == ERROR
+        assert "log category NULL is unknown" in host.message
         assert messages() == [True, True]
 
 
