@@ -1,6 +1,7 @@
 """Inputs that move within a step, rates of change of outputs, directional derivatives."""
 
 import math
+import sys
 
 import pytest
 from fmpy.fmi1 import FMICallException
@@ -73,11 +74,30 @@ def test_a_ramp_out_of_the_range_is_refused_and_nothing_moves(native, tmp_path):
         host.step(0.0, 0.005)
 
 
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_ramp_may_end_at_the_bound(native, tmp_path, sign):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        ramp(host, T_ref=sign * 2000.0)
+        host.step(0.0, 1.0)
+        assert host.get("T_ref") == sign * 2000.0
+
+
+def test_after_a_ramp_the_outputs_no_longer_follow_it(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(q_omega=0.0)
+        ramp(host, omega_1=1000.0)
+        assert rates_of(host, "omega_1_meas") == [1000.0]
+        host.step(0.0, 0.01)
+        assert rates_of(host, "omega_1_meas") == [0.0]
+
+
 @pytest.mark.parametrize("rate", [math.nan, math.inf])
 def test_a_rate_that_is_not_finite_is_refused(native, tmp_path, rate):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         assert "as derivative of T_ref" in host.refuses(ramp, host, T_ref=rate)
         assert "T_mot is not an input" in host.refuses(ramp, host, T_mot=1.0)
+        ramp(host, T_ref=math.copysign(sys.float_info.max, rate))
 
 
 def test_only_first_derivatives_exist(native, tmp_path):
@@ -86,6 +106,8 @@ def test_only_first_derivatives_exist(native, tmp_path):
         for call in (host.fmu.setRealInputDerivatives, host.fmu.getRealOutputDerivatives):
             values = [[0.0]] if call == host.fmu.setRealInputDerivatives else []
             assert "order 2 is refused" in host.refuses(call, [0], [2], *values)
+            values = [[0.0]] if values else []
+            assert "reference 99" in host.refuses(call, [99], [1], *values)
 
 
 @every_continuous
@@ -133,8 +155,17 @@ def test_after_initialization_only_inputs_can_be_known(native, tmp_path):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize()
         assert derivative(host, "omega_1_meas", "omega_1") == 0.0, "it is rounded"
-        assert "tau cannot be a known" in host.refuses(derivative, host, "T_mot", "tau")
+        message = host.refuses(derivative, host, "T_mot", "tau")
+        assert message == "tau cannot be a known of a directional derivative; allowed is any input"
         assert "T_ref cannot be the unknown" in host.refuses(derivative, host, "T_ref", "T_ref")
+
+
+def test_during_initialization_parameters_can_be_known_too(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.fmu.setupExperiment()
+        host.fmu.enterInitializationMode()
+        message = host.refuses(derivative, host, "T_mot", "T_mot")
+        assert message == "T_mot cannot be a known of a directional derivative; allowed is any input or parameter"
 
 
 @pytest.mark.parametrize("name", [name for name in FMUS if name not in CONTINUOUS])

@@ -1,0 +1,100 @@
+"""What a saved state may hold: all that an instance can have come to, and nothing else."""
+
+import math
+import struct
+import sys
+import zlib
+
+import pytest
+
+from fmus.catalogue import FMUS
+from tests.fmus.forged import HEAD, forged
+from tests.fmus.host import opened
+
+SEED = 123457
+OUTPUTS_KNOWN = -2
+"""Its place in a state, in numbers; it is one that Python builds do not have."""
+
+
+def saved(host):
+    return bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
+
+
+def restore(host, state):
+    host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(state))
+
+
+def with_number(state, place, number):
+    """The state with another number in the place, which counts numbers from the first input or from the end."""
+    at = HEAD + 8 * place if place >= 0 else len(state) + 8 * place
+    body = state[4:at] + number + state[at + 8 :]
+    return zlib.crc32(body).to_bytes(4, "little") + body
+
+
+def with_seed(state, seed):
+    return with_number(state, (state.index(struct.pack("=d", SEED)) - HEAD) // 8, struct.pack("=d", seed))
+
+
+@pytest.fixture
+def motor(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(seed=SEED)
+        yield host
+
+
+@pytest.mark.parametrize(
+    ("seed", "message"),
+    [
+        (1_000_001.0, "seed = 1000001 is refused"),
+        (-1.0, "seed = -1 is refused"),
+        (1_000_000.5, "seed = 1000000.5 is refused"),
+        (1.5, "its bytes are damaged"),
+    ],
+)
+def test_a_parameter_is_what_could_have_been_set(motor, seed, message):
+    assert message.removesuffix(" is refused") in motor.refuses(restore, motor, with_seed(saved(motor), seed))
+
+
+@pytest.mark.parametrize("seed", [0.0, 1_000_000.0])
+def test_a_parameter_may_be_at_its_bounds(motor, seed):
+    restore(motor, with_seed(saved(motor), seed))
+    assert motor.get("seed") == seed
+
+
+@pytest.mark.parametrize("T_ref", [-2000.0, 2000.0])
+def test_an_input_may_be_at_its_bounds_and_a_rate_as_large_as_a_number_can_be(motor, T_ref):
+    motor.set(T_ref=T_ref)
+    motor.fmu.setRealInputDerivatives([motor.variables["T_ref"].valueReference], [1], [sys.float_info.max])
+    restore(motor, saved(motor))
+    assert motor.get("T_ref") == T_ref
+
+
+def test_a_run_may_start_and_stop_at_the_last_time_that_there_is(native, tmp_path):
+    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(start_time=sys.float_info.max, stop_time=sys.float_info.max)
+        restore(host, saved(host))
+
+
+def test_a_state_that_is_no_number_is_refused_after_the_end_of_the_run_too(motor):
+    motor.fmu.terminate()
+    states = len(FMUS["MotorTorqueLoop"].block.State._fields)
+    assert "x.T_mot = nan" in motor.refuses(restore, motor, forged(saved(motor), "state", math.nan, states=states))
+
+
+def test_outputs_that_are_known_are_numbers(motor):
+    first_output = motor.variables["T_mot"].valueReference
+    state = with_number(saved(motor), OUTPUTS_KNOWN, struct.pack("=q", 1))
+    restore(motor, with_number(state, first_output, struct.pack("=d", sys.float_info.max)))
+    assert motor.get("T_mot") == sys.float_info.max
+    message = motor.refuses(restore, motor, with_number(state, first_output, struct.pack("=d", math.inf)))
+    assert "T_mot = inf" in message
+
+
+@pytest.mark.parametrize("counter", [-(2**31), 2**31 - 1])
+def test_a_controller_keeps_signals_that_are_absurd(native, tmp_path, counter):
+    with opened(native / "DampingController.fmu", tmp_path) as host:
+        host.initialize()
+        host.set(omega_1_meas=math.nan, T_mot_est=math.inf, counter=counter)
+        restore(host, saved(host))
+        assert math.isnan(host.get("omega_1_meas"))
+        assert (host.get("T_mot_est"), host.get("counter")) == (math.inf, counter)
