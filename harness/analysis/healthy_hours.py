@@ -157,10 +157,7 @@ def longest(condition: np.ndarray) -> int:
 
 
 def half_swings(rows: np.ndarray) -> float:
-    """Most half swings of the damping torque that nothing explains (swings).
-
-    A lower bound where the torque as a whole is limited, for its parts are told only within that limit.
-    """
+    """Most half swings of the damping torque that nothing explains (swings)."""
     damping, T_driver = rows["controller.T_damp"] - rows["controller.T_landing"], rows["controller.T_driver"]
     x, most = swings.start(float(T_driver[0])), 0.0
     for torque, demand in zip(damping.tolist(), T_driver.tolist(), strict=True):
@@ -199,7 +196,6 @@ def main(arguments: list[str] | None = None) -> None:
     console = Console()
     console.print(table)
     console.print("The residuals are the largest, over the thresholds from which on they count as a fault.")
-    console.print("Where the torque as a whole was limited, the half swings are a lower bound.")
 
 
 if __name__ == "__main__":

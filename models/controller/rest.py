@@ -7,6 +7,9 @@ from typing import Any
 
 from ..block.operators import logical_and, maximum, minimum, where
 
+LAUNCH = 1.0
+"""Time in s after rest for which a car is pulling away: nothing was tense in it that could push it back."""
+
 
 def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
     """Neither demand nor motion."""
@@ -21,6 +24,11 @@ def longest(p: Any) -> Any:
 def quiet_time(quiet: Any, still: Any, T_s: Any, p: Any) -> Any:
     """Time in s without demand and motion, one sample later; counted no further than needed."""
     return where(still, minimum(quiet + T_s, longest(p)), 0.0)
+
+
+def time_since(since: Any, resting: Any, T_s: Any) -> Any:
+    """Time in s since the car was at rest, one sample later; counted no further than LAUNCH."""
+    return where(resting, 0.0, minimum(since + T_s, LAUNCH))
 
 
 def share(quiet: Any, p: Any) -> Any:

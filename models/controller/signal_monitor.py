@@ -2,7 +2,7 @@
 
 A motor speed is bad when it is not finite, out of range, jumping (far from the speed of the last sample,
 from where that was going, and from what the model expects), frozen (unchanged for t_frozen while the motor
-turns) or backing (away from the demand and from what the model expects); a motor torque when it is not
+turns) or backing (after rest, away from the demand and from what the model expects); a motor torque when it is not
 finite, out of range, or far from what the motor should have (torque_loop). A speed that is bad for longer
 than t_bad is followed wherever it is plausible, so that it can prove itself (trust).
 """
@@ -79,13 +79,22 @@ def is_near(x: MonitorState, omega_1: Any, expected: Any, p: Any) -> Any:
 
 
 def update(
-    x: MonitorState, u: Any, pushed: Any, omega_1_hat: Any, increment: Any, T_ref: Any, T_s: Any, p: Any
+    x: MonitorState,
+    u: Any,
+    pushed: Any,
+    launching: Any,
+    omega_1_hat: Any,
+    increment: Any,
+    T_ref: Any,
+    T_s: Any,
+    p: Any,
 ) -> MonitorState:
     """The state after the signals of one sample.
 
     Args:
         u: input with omega_1_meas, T_mot_est.
         pushed: whether the demand pushes the car forwards, and no wheel speed tells how it rolls.
+        launching: whether the car was at rest a moment ago.
         omega_1_hat: the model's motor speed of this sample, rad/s.
         increment: by which it has changed since the last sample, rad/s.
         T_ref: demand that the motor has, N.m.
@@ -94,7 +103,7 @@ def update(
     omega_1, T_mot = speed(u.omega_1_meas, expected, p), torque(u.T_mot_est, x.loop, p)
     near = is_near(x, omega_1, expected, p)
     against = logical_and(pushed, omega_1 < -p.omega_still)
-    backing = logical_and(against, omega_1 - omega_1_hat < -BACKING)
+    backing = logical_and(logical_and(against, launching), omega_1 - omega_1_hat < -BACKING)
     omega_1_unchanged = where(u.omega_1_meas == x.omega_1_last, x.omega_1_unchanged + T_s, 0.0)
     frozen = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
     possible = logical_and(plausible(u.omega_1_meas, p.omega_max), is_torque(u.T_mot_est, x.loop, p))

@@ -21,6 +21,7 @@ from .supervision import (
     damping_limited,
     demand,
     is_doubtful,
+    is_launching,
     is_pushed,
     limited,
     output,
@@ -52,6 +53,7 @@ class Supervised:
             trust=trust.start(p),
             level=where(u.enable, 1.0, 0.0),
             quiet=where(rest.is_still(T_driver, signals.omega_1, p), rest.longest(p), 0.0),
+            since_rest=rest.LAUNCH,
             opposing=0.0,
             added=Addition(0.0, 0.0),
             T_ref=T_driver,
@@ -80,20 +82,23 @@ class Supervised:
         level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
         share = level * (1.0 - resting)
         T_ref = clip(T_driver + limited(share * (added.damping + added.landing), T_driver, p), -p.T_max, p.T_max)
+        T_landing = limited(share * added.landing, T_driver, p)
+        T_damping = T_ref - T_driver - T_landing
         return State(
             estimator=self.estimator.finish(e, wheel, T_S, p),
             law=acting,
             monitor=signals,
             wheels=heard,
-            swings=swings.update(x.swings, share * added.damping, T_driver, trusted, T_S, p),
+            swings=swings.update(x.swings, T_damping, T_driver, trusted, T_S, p),
             trust=trusting,
             level=level,
             quiet=quiet,
+            since_rest=rest.time_since(x.since_rest, resting >= 1.0, T_S),
             opposing=adding.damping,
             added=added,
             T_ref=T_ref,
             T_damp=T_ref - T_driver,
-            T_landing=limited(share * added.landing, T_driver, p),
+            T_landing=T_landing,
             ahead=self.estimator.motion_after(e, signals.T_mot, T_S, p),
             status=status(u.enable, trusted, wheel),
         )
@@ -104,7 +109,8 @@ class Supervised:
         e = self.estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
         omega_1_hat = self.estimator.motion(e, p).omega_1
         increment = omega_1_hat - self.estimator.motion(x.estimator, p).omega_1
-        signals = monitor.update(x.monitor, u, is_pushed(x, u, p), omega_1_hat, increment, x.T_ref, T_S, p)
+        pushed, launching = is_pushed(x, u, p), is_launching(x)
+        signals = monitor.update(x.monitor, u, pushed, launching, omega_1_hat, increment, x.T_ref, T_S, p)
         e = self.estimator.take_motor_speed(e, signals.omega_1, p)
         omega_2_hat = self.estimator.motion(e, p).omega_2
         heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, omega_2_hat, T_S, p)

@@ -14,8 +14,8 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Boolean, Enumeration, Integer, Real
 from ..block.operators import clip, is_finite, logical_and, logical_or, where
 from ..vehicle import CAR, MotorLag
+from . import rest, swings, trust
 from . import signal_monitor as monitor
-from . import swings, trust
 from .parts import Addition, Motion
 from .signal_monitor import MonitorState
 from .swings import SwingState
@@ -48,7 +48,7 @@ class Parameters(NamedTuple):
     T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
-    omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 2000.0
+    omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 3000.0
     e_max: Annotated[float, Real("rad/s", "largest distance of a usable wheel speed", 1.0, 1000.0)] = 40.0
     e_jump: Annotated[float, Real("rad/s", "largest jump of the motor speed in a sample", 1.0, 1000.0)] = 8.0
     e_wheel: Annotated[float, Real("rad/s", "largest distance of the motor from the wheel speed", 1.0, 1000.0)] = 30.0
@@ -75,6 +75,7 @@ class State(NamedTuple):
     trust: TrustState
     level: Annotated[float, Real("1", "share of the damping that acts")]
     quiet: Annotated[float, Real("s", "time without demand and motion")]
+    since_rest: Annotated[float, Real("s", "time since the car was at rest")]
     opposing: Annotated[float, Real("N.m", "what the law would damp with")]
     added: Addition
     T_ref: Annotated[float, Real("N.m", "torque reference")]
@@ -136,6 +137,11 @@ def is_doubtful(signals: MonitorState, heard: WheelState) -> Any:
 def is_pushed(x: State, u: Input, p: Any) -> Any:
     """Whether the demand pushes the car forwards, and no wheel speed tells how it rolls."""
     return logical_and(demand(u, p) > monitor.PUSH * p.T_max, x.wheels.silence >= p.t_stale)
+
+
+def is_launching(x: State) -> Any:
+    """Whether the car was at rest a moment ago."""
+    return x.since_rest < rest.LAUNCH
 
 
 def trust_after(x: State, signals: MonitorState, heard: WheelState, resting: Any, p: Any) -> TrustState:

@@ -4,12 +4,14 @@ Behind a signal that is wrong in a way that no comparison shows, damping may pus
 shows in the damping torque: in a damped drive train it dies away after a change of the demand, each half
 swing far smaller than the one before. Half swings are counted that reach SWING on both sides and GROWS of
 the one before; they are forgotten at one a T_FORGET, and at one for each EXCUSE by which the demand changes.
+What counts is the torque that acts: at full demand T_max leaves the damping one side only, and an
+oscillation that is braked by half the swings dies away slowly.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, maximum, where
+from ..block.operators import clip, logical_and, logical_not, maximum, where
 
 SWING = 0.1
 """Least damping torque of a half swing, over T_max."""
@@ -20,8 +22,11 @@ GROWS = 0.7
 EXCUSE = 0.2
 """Change of the demand that explains a half swing, over T_max."""
 
+AHEAD = 1.0
+"""Half swings that a change of the demand can explain before they come."""
+
 T_FORGET = 0.5
-"""Time in s after which a half swing is forgotten."""
+"""Time in s after which a half swing is forgotten, or no longer explained ahead."""
 
 MOST = 2.5
 """Half swings that the damping does not make in a drive train that it damps."""
@@ -57,8 +62,9 @@ def update(x: SwingState, damping: Any, T_driver: Any, acting: Any, T_s: Any, p:
     peak = where(side * damping > 0.0, maximum(where(turned, 0.0, x.peak), size), x.peak)
     enough = where(turned, GROWS * x.peak, x.enough)
     counts = logical_and(enough > 0.0, peak >= enough)
-    explained = T_s / T_FORGET + abs(T_driver - x.T_driver) / (EXCUSE * p.T_max)
-    count = maximum(x.count - explained, 0.0) + where(counts, 1.0, 0.0)
+    forgotten = x.count - clip(x.count, -T_s / T_FORGET, T_s / T_FORGET)
+    explained = abs(T_driver - x.T_driver) / (EXCUSE * p.T_max)
+    count = maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0)
     return SwingState(
         side=where(acting, side, 0.0),
         peak=where(acting, peak, 0.0),

@@ -172,8 +172,8 @@ def test_a_speed_that_jumps_by_8_radians_per_second_is_not_used(jump: float, use
     assert (BLOCK.update(x, bad, P).monitor.bad == 0.0) == used
 
 
-@pytest.mark.parametrize(("omega", "used"), [(1999.0, True), (2001.0, False)])
-def test_no_motor_turns_faster_than_2000_radians_per_second(omega: float, used: bool) -> None:
+@pytest.mark.parametrize(("omega", "used"), [(2999.0, True), (3001.0, False)])
+def test_no_motor_turns_faster_than_3000_radians_per_second(omega: float, used: bool) -> None:
     x = BLOCK.start(ROLLING._replace(omega_1_meas=omega, omega_2_can=omega), P)
     assert (x.monitor.omega_1 == omega) == (x.status == WITH_WHEEL_SPEED) == used
 

@@ -29,12 +29,13 @@ def after(
     increment: float = 0.0,
     T_ref: float = 50.0,
     pushed: bool = False,
+    launching: bool = True,
     omega_1_hat: float = 0.0,
 ) -> MonitorState:
     """The state after these inputs."""
     x = monitor.start(U, P) if x is None else x
     for u in inputs:
-        x = monitor.update(x, u, pushed, omega_1_hat, increment, T_ref, T_S, P)
+        x = monitor.update(x, u, pushed, launching, omega_1_hat, increment, T_ref, T_S, P)
     return x
 
 
@@ -141,9 +142,13 @@ def test_a_motor_speed_may_go_on_as_it_was_going(side: float) -> None:
 def test_a_motor_that_is_pushed_forwards_turns_backwards_no_faster_than_expected(
     omega_1: float, omega_1_hat: float, pushed: bool, against: bool, backing: bool
 ) -> None:
-    """Rolling back on a slope is as expected; a speed of the wrong sign is not."""
-    x = after([U._replace(omega_1_meas=omega_1)], last(0.0), pushed=pushed, omega_1_hat=omega_1_hat)
-    assert (x.against, x.bad > 0.0) == (against, backing)
+    """Rolling back on a slope is as expected, a speed of the wrong sign is not; a car that was moving may be thrown
+    back by its tyres and bushings."""
+    for launching in (True, False):
+        x = after(
+            [U._replace(omega_1_meas=omega_1)], last(0.0), pushed=pushed, launching=launching, omega_1_hat=omega_1_hat
+        )
+        assert (x.against, x.bad > 0.0) == (against, backing and launching)
 
 
 def test_a_motor_speed_that_has_jumped_is_followed_after_t_bad() -> None:

@@ -288,16 +288,17 @@ def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> N
 
 def test_a_motor_that_is_pushed_out_of_rest_backwards_is_not_believed() -> None:
     """Below the least wheel speed; from t_bad on, and for as long as it turns the wrong way."""
+    resting = [Input(T_driver=0.0, T_mot_est=1e-3 * (k % 2)) for k in range(round(0.5 / T_S))]
     launch = [
         Input(T_driver=100.0, T_mot_est=100.0 + 1e-3 * (k % 2), omega_1_meas=-2.0 * k, counter=k // 10)
         for k in range(400)
     ]
     wrong, right = (
-        run_with_motor(OTHER, [u._replace(omega_1_meas=sign * u.omega_1_meas) for u in launch])[1:]
+        run_with_motor(OTHER, resting + [u._replace(omega_1_meas=sign * u.omega_1_meas) for u in launch])[1:]
         for sign in (1.0, -1.0)
     )
     first = [x.status for x in wrong].index(FALLBACK)
-    assert first * T_S == pytest.approx(P.t_bad, abs=4.0 * T_S)
+    assert (first - len(resting)) * T_S == pytest.approx(P.t_bad, abs=4.0 * T_S)
     assert {x.status for x in wrong[first:]} == {FALLBACK}
     assert {x.status for x in right} == {WITHOUT_WHEEL_SPEED}
 

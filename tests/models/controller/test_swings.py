@@ -6,7 +6,7 @@ import pytest
 
 from models.controller import swings
 from models.controller.supervision import Parameters
-from models.controller.swings import CALM, EXCUSE, GROWS, MOST, SWING, T_FORGET, SwingState
+from models.controller.swings import AHEAD, CALM, EXCUSE, GROWS, MOST, SWING, T_FORGET, SwingState
 
 P = Parameters(T_max=100.0)
 T_S = T_FORGET / 8.0
@@ -61,6 +61,19 @@ def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
     changed = 50.0 + side * 0.25 * EXCUSE * P.T_max
     counted = after([20.0, -20.0, 0.0, 0.0], [50.0, 50.0, changed, changed]).count
     assert counted == pytest.approx(1.0 - 0.25 - 2.0 / 8.0)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_one_half_swing_may_follow_a_change_of_the_demand(side: float) -> None:
+    """However large the change, one and no more; and within T_FORGET."""
+    for change in (AHEAD * EXCUSE, 10.0 * EXCUSE):
+        changed = 50.0 + side * change * P.T_max
+        x = after([0.0, 20.0], [50.0, changed])
+        assert x.count == -AHEAD
+        x = swings.update(x, -20.0, changed, True, T_S, P)
+        assert x.count == pytest.approx(1.0 - AHEAD + 1.0 / 8.0)
+    assert after([0.0] * 9, [50.0] + [90.0] * 8).count == pytest.approx(-1.0 / 8.0)
+    assert after([0.0] * 10, [50.0] + [90.0] * 9).count == 0.0
 
 
 def test_nothing_is_counted_while_the_damping_is_faded_out() -> None:
