@@ -59,7 +59,6 @@ docs: $(READY) ## the pages of the documentation that are computed
 	$(BIN)/driveline back-to-back --output docs
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m fmus.description.blocks_page
-	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m benchmarks.target_cost
 	rm -rf results/faults
 	$(BIN)/driveline faults --cases 10000 --replace --quiet || test $$? = 1

@@ -24,6 +24,9 @@ from . import monolithic
 LATE = 0.062
 """Delay in s: half a period of the swing."""
 
+ROUNDING = 1e-9
+"""Of times, in s."""
+
 FAULTS: dict[str, Callable[[float], float]] = {
     "200 rad/s too much": lambda omega_1: omega_1 + 200.0,
     "half of it": lambda omega_1: 0.5 * omega_1,
@@ -41,7 +44,7 @@ def received(fault: str) -> Callable[[float, Any], Any]:
 
     def late(t: float, sent: Any) -> Any:
         sent_before.append((t, sent.omega_1_meas))
-        while len(sent_before) > 1 and sent_before[1][0] <= t - LATE:
+        while len(sent_before) > 1 and sent_before[1][0] <= t - LATE + ROUNDING:
             del sent_before[0]
         return sent._replace(omega_1_meas=sent_before[0][1])
 
