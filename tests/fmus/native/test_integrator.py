@@ -7,6 +7,7 @@ import ctypes
 import math
 import subprocess
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -156,3 +157,59 @@ def test_it_looks_for_a_crossing_where_python_does(
         return seen
 
     assert set(looked_at(integrator)) == set(looked_at(Integrator))
+
+
+Looked = Callable[[MakeIntegrator], tuple[set[tuple[float, ...]], set[tuple[float, ...]]]]
+
+
+def looks(derivative: Callable[[Any], Body], indicators: tuple[Callable[[Any], float], ...], start: Body) -> Looked:
+    """Where an integrator looks at the derivative, and where at the indicators."""
+
+    def looked_at(make: MakeIntegrator) -> tuple[set[tuple[float, ...]], set[tuple[float, ...]]]:
+        rates: set[tuple[float, ...]] = set()
+        zeros: set[tuple[float, ...]] = set()
+
+        def rate(x: Any, _u: Any, _p: Any) -> Body:
+            rates.add(tuple(x))
+            return derivative(x)
+
+        def indicator(x: Any) -> float:
+            zeros.add(tuple(x))
+            return indicators[0](x)
+
+        seen = block(rate, indicator)
+        if len(indicators) > 1:
+            seen = replace(seen, event_indicators=lambda x, u, p: (indicator(x), *(each(x) for each in indicators[1:])))
+        make(seen).advance(start, Nothing(), Nothing(), 0.1)
+        return rates, zeros
+
+    return looked_at
+
+
+@given(
+    turn=st.floats(0.001, 0.099),
+    depth=st.floats(-1e-3, 1e-2),
+    side=st.sampled_from([-1.0, 1.0]),
+    other=st.floats(-0.01, 0.3),
+)
+def test_it_looks_for_an_excursion_where_python_does(
+    integrator: MakeIntegrator, turn: float, depth: float, side: float, other: float
+) -> None:
+    """A body thrown up to `depth` beyond a zero, which turns at the time `turn`; another zero is on its way."""
+    g = 50.0
+    top = side * depth
+    start = Body(top - side * 0.5 * g * turn**2, side * g * turn, 0.0)
+    looked_at = looks(lambda x: Body(x[1], -side * g, 0.0), (lambda x: x[0], lambda x: x[0] + side * other), start)
+    assert looked_at(integrator) == looked_at(Integrator)
+
+
+@settings(max_examples=60)
+@given(stiffness=st.floats(0.0, 6.0), coupling=st.floats(-1.0, 1.0), x=st.floats(-1.0, 1.0), v=st.floats(-10.0, 10.0))
+def test_a_block_of_any_stiffness_is_integrated_as_in_python(
+    integrator: MakeIntegrator, stiffness: float, coupling: float, x: float, v: float
+) -> None:
+    """Which method is taken depends on it."""
+    rate = 10.0**stiffness
+    stiff = block(lambda s, u, p: Body(s.v, -rate * (s.v + coupling * s.x), math.tanh(rate * s.x)), lambda s: 1.0)
+    ends = (make(stiff).advance(Body(x, v, 0.0), Nothing(), Nothing(), 0.1) for make in (integrator, Integrator))
+    assert next(ends) == next(ends)
