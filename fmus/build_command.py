@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .builds import BUILDS, PLATFORMS, build_fmus
 from .catalogue import FMUS
+from .comparators import COMPARATORS
 from .options import add_parameter_files, output_folder
 
 DESCRIPTION = """\
@@ -22,6 +23,7 @@ def examples(program: str) -> str:
     """How the program is called."""
     return f"""\
 FMUs: {", ".join(FMUS)}
+only by name, controllers to compare ours with: {", ".join(COMPARATORS)}
 
 examples:
   {program}                            all FMUs, each build that is possible here

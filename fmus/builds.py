@@ -43,7 +43,7 @@ def build_fmus(
 
     Args:
         names: of FMUs of the project, or paths of Python files with a block of the user's own, of which there is a
-            native build only; none for all of the project.
+            native build only; none for all of the project but the comparators.
         folder: for the files; the native ones go to NATIVE_FOLDER in it.
         builds: one of BUILDS; None for each that is possible here.
         platform: of the native builds, one of PLATFORMS.
@@ -53,11 +53,11 @@ def build_fmus(
         BuildError: a name is unknown, a build is not possible here, a file is refused, or a block of the user's own
             cannot be built.
     """
-    from .catalogue import FMUS
+    from .catalogue import EVERY, FMUS
     from .parameter_files import read_files
 
     fmus = [_named(name) for name in dict.fromkeys(names or FMUS)]
-    own = [fmu for fmu in fmus if fmu not in FMUS.values()]
+    own = [fmu for fmu in fmus if fmu not in EVERY.values()]
     built = [fmu.name for fmu in fmus]
     if same := sorted({name for name in built if built.count(name) > 1}):
         raise BuildError(f"{same[0]} is the name of several FMUs, which would overwrite each other")
@@ -88,7 +88,7 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
         NotPossible: there is something to build, and it is not possible here.
         BuildError: start values that one was built with are refused by what it is now.
     """
-    from .catalogue import FMUS
+    from .catalogue import EVERY
 
     where = folder / NATIVE_FOLDER if build == "native" else folder
     made = []
@@ -96,7 +96,7 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
         if is_stale(path := where / f"{name}.fmu"):
             origin = origin_of(path)
             platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
-            fmu = _as_built(FMUS[name], origin.start_values, path) if origin else FMUS[name]
+            fmu = _as_built(EVERY[name], origin.start_values, path) if origin else EVERY[name]
             made += [builder(fmu, folder) for builder in builders(build, platform)]
     return made
 
@@ -120,16 +120,16 @@ def _as_built(fmu: Fmu, start_values: Mapping[str, Any], path: Path) -> Fmu:
 
 
 def _named(name: str) -> Fmu:
-    from .catalogue import FMUS
+    from .catalogue import EVERY
 
-    if name in FMUS:
-        return FMUS[name]
+    if name in EVERY:
+        return EVERY[name]
     if name.endswith(".py"):
         return fmu_in(Path(name))
     if name.endswith(".toml"):
         raise BuildError(f"{name} is no FMU; a car is given as --vehicle {name}, its gains as --parameters")
-    near = get_close_matches(name, FMUS, n=2, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(FMUS)}"
+    near = get_close_matches(name, EVERY, n=2, cutoff=0.5)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(EVERY)}"
     raise BuildError(f"unknown FMU {name}; {hint}")
 
 

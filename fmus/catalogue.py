@@ -1,6 +1,7 @@
-"""The FMUs of the project."""
+"""The FMUs of the project, and with them those of the comparators."""
 
 from . import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
+from .comparators import COMPARATORS
 from .fmu import Fmu
 
 FMUS: dict[str, Fmu] = {
@@ -14,3 +15,6 @@ FMUS: dict[str, Fmu] = {
     )
 }
 """By name, in the order in which they are built."""
+
+EVERY: dict[str, Fmu] = FMUS | COMPARATORS
+"""Those too that are built only when they are asked for by name."""

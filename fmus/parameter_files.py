@@ -15,7 +15,7 @@ from typing import Any
 from models.block.declaration import Real
 
 from . import two_mass_driveline
-from .catalogue import FMUS
+from .catalogue import EVERY, FMUS
 from .description.variables import LARGEST, Variable, interface
 from .errors import ParameterFileError
 from .fmu import Fmu
@@ -60,7 +60,7 @@ def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = 
     Raises:
         ParameterFileError: names the lines with what is not known, no number or out of range.
     """
-    everything, of_car = _owners([*FMUS.values(), *own]), _of_car(own)
+    everything, of_car = _owners([*EVERY.values(), *own]), _of_car(own)
     of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
     return _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
 
@@ -71,7 +71,7 @@ def read_parameters(path: Path) -> dict[str, Any]:
     Raises:
         ParameterFileError: as for `read_vehicle`.
     """
-    everything, of_car = _owners(FMUS.values()), dict.fromkeys(_of_car(), OF_CAR)
+    everything, of_car = _owners(EVERY.values()), dict.fromkeys(_of_car(), OF_CAR)
     of_controller = {name: everything[name] for name in everything if name not in of_car}
     return _read(path, of_controller, (), of_car | OF_A_RUN)
 
@@ -89,7 +89,7 @@ def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[
 
 def units() -> dict[str, str]:
     """The unit of every entry that our own blocks have and that is a Real; "1" for none."""
-    declared = {name: owners[0][1].declaration for name, owners in _owners(FMUS.values()).items()}
+    declared = {name: owners[0][1].declaration for name, owners in _owners(EVERY.values()).items()}
     return {name: declaration.unit for name, declaration in declared.items() if isinstance(declaration, Real)}
 
 

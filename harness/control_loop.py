@@ -21,10 +21,13 @@ BUILDS = ("python", NATIVE)
 BUILD_HELP = "native FMUs or those that run Python (default: native where all FMUs of the loop have that build)"
 """Of the option --build."""
 
+COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "PerfectState")
+"""Controllers that ours is compared with."""
+
 # the torque of the motor does not depend on its speed, so it is stepped first and then known over the step
 PLACES = {
     "motor": ("MotorTorqueLoop",),
-    "controller": ("DampingController",),
+    "controller": ("DampingController", *COMPARATORS),
     "can": ("WheelSpeedCan",),
     "plant": ("TwoMassDriveline", "ValidationVehicle"),
 }
@@ -48,6 +51,14 @@ CONNECTIONS = (
     Connection("can.valid", "controller.valid"),
     Connection("can.counter", "controller.counter"),
 )
+
+TRUTH = (
+    Connection("plant.omega_1", "controller.omega_1", "rad/s"),
+    Connection("plant.omega_2", "controller.omega_2", "rad/s"),
+    Connection("plant.phi", "controller.phi", "rad"),
+    Connection("plant.T_gear", "controller.T_gear", "N.m"),
+)
+"""What the comparator PerfectState gets beside what is measured."""
 
 INPUTS = (
     Port("controller.T_driver", "N.m"),
@@ -109,9 +120,10 @@ def loop(
         WiringError: there is no such block or build.
     """
     blocks = {"plant": plant, "controller": controller, "motor": motor, "can": can}
+    files = _files(blocks, folder, build or _chosen_build(blocks, folder))
     return System(
-        instances=_files(blocks, folder, build or _chosen_build(blocks, folder)),
-        connections=CONNECTIONS,
+        instances=files,
+        connections=CONNECTIONS + (TRUTH if files["controller"].stem == "PerfectState" else ()),
         inputs=INPUTS,
         parameters=PARAMETERS,
         outputs=OUTPUTS,

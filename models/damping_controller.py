@@ -3,9 +3,7 @@
 The estimator (torque_estimator) is run once a sample, its estimate taken T_pred ahead, to when the
 torque will act; the damping law (damping_law) adds to the driver's demand what opposes the twisting
 motion and vanishes when stationary. Damping and landing together take no more than T_take_max from the
-demand and add no more than T_add_max to it; modes fade within t_fade. The literal form of the paper, an
-imperfect derivative of the estimated gear torque (Sugiura and Hori 1996) behind an observer without load,
-is lambda_v = k_d = T_pred = 0, L_T_l = Lw_T_l = L_can_T_l = 0, T_gap = T_max.
+demand and add no more than T_add_max to it; modes fade within t_fade.
 
 A motor speed or torque that is not finite, out of range, jumping or frozen is not used. If that lasts, if
 the wheel speed contradicts the motor speed, or if the damping feeds an oscillation, the driver's demand is

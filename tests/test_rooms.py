@@ -15,11 +15,12 @@ COSIMULATION = {"harness", "harness.cosimulation"}
 ROOMS = {
     "models.block": set(),
     "models.controller": {"models", "models.block"},
+    "models.comparators": {"models.block", "models.controller"},
     "models": {"models.block", "models.controller"},
     "fmus.description": {"fmus", "models.block"},
     "fmus.python": {"fmus", "fmus.description", "models.block"},
     "fmus.native": {"fmus", "fmus.description", "models.block"},
-    "fmus": {"fmus.description", "fmus.python", "fmus.native", "models", "models.block"},
+    "fmus": {"fmus.description", "fmus.python", "fmus.native", "models", "models.block", "models.comparators"},
     "": {"fmus"},
     "harness.cosimulation": {"harness"},
     "harness.manoeuvres": COSIMULATION,

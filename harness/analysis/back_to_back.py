@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fmus.catalogue import FMUS
+from fmus.catalogue import EVERY
 from models.block.declaration import Boolean, Integer, Real, variables
 from models.block.runner import runner
 from models.block.types import Block
@@ -111,9 +111,9 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
 
 
 def compare_block(name: str, given: Given, folder: Path) -> Differences:
-    """A block of FMUS alone; the native FMUs are in the folder `native` of the folder."""
+    """A block of the project alone; the native FMUs are in the folder `native` of the folder."""
     native = by_fmu(folder / NATIVE / f"{name}.fmu", given)
-    functions = by_functions(FMUS[name].block, given)
+    functions = by_functions(EVERY[name].block, given)
     return Differences(difference(functions, native), difference(by_fmu(folder / f"{name}.fmu", given), native))
 
 
@@ -123,7 +123,7 @@ def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Di
     reference = drive(native, manoeuvre)
     found = {}
     for instance, path in native.instances.items():
-        block, given = FMUS[path.stem].block, fed(instance, native, reference, manoeuvre)
+        block, given = EVERY[path.stem].block, fed(instance, native, reference, manoeuvre)
         own = outputs(instance, block, reference)
         other = python.instances[instance]
         exchanged = drive(replace(native, instances={**native.instances, instance: other}), manoeuvre)
@@ -145,7 +145,7 @@ def fed(instance: str, system: System, results: np.ndarray, manoeuvre: Manoeuvre
     """What an instance is fed with in a run under Jacobi."""
     sources = {connection.target: connection.source for connection in system.connections}
     inputs = {}
-    for name, _, value in variables(FMUS[system.instances[instance].stem].block.Input):
+    for name, _, value in variables(EVERY[system.instances[instance].stem].block.Input):
         target = f"{instance}.{name}"
         source = sources.get(target, target)
         inputs[name] = results[source] if source in (results.dtype.names or ()) else np.full(len(results), value)

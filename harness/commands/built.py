@@ -6,7 +6,7 @@ from typing import Any
 
 from fmus.errors import BuildError
 
-from ..control_loop import BUILD, BUILDS, NATIVE, chosen_build, loop
+from ..control_loop import BUILD, BUILDS, COMPARATORS, NATIVE, chosen_build, loop
 from ..errors import DrivelineError
 from ..stale import warn_of_stale
 from ..told import warn_once
@@ -29,7 +29,8 @@ def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> 
     if missing:
         where = "" if folder == BUILD else f" --output {quote(str(folder))}"
         only = f" --build {NATIVE}" if build == NATIVE else ""
-        raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{only}{where}` makes it")
+        name = f" {missing[0].stem}" if missing[0].stem in COMPARATORS else ""
+        raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{name}{only}{where}` makes it")
     warn_of_stale(system)
     return build
 

@@ -72,7 +72,7 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
             f"--{place}",
             metavar="NAME|FILE",
             default=names[0],
-            help=f"{meaning}: an FMU in the place of %(default)s",
+            help=f"{meaning}: {', '.join(names)} or an FMU (default: %(default)s)",
         )
         action.complete = _names_or_fmus(names)  # type: ignore[attr-defined]
     parser.add_argument(

@@ -9,7 +9,7 @@ variable, its checks, the tables of the documentation) is read from here with `v
 
 import math
 from collections import namedtuple
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, get_type_hints
 
@@ -100,6 +100,18 @@ def with_defaults(record: Any, values: Mapping[str, Any]) -> Any:
     """A NamedTuple class like this one with other start values, by the names of its fields."""
     fields = {field: (hint, values.get(field, start)) for field, (hint, start) in _fields(record).items()}
     return _record(record.__name__, fields)
+
+
+def without(record: Any, names: Collection[str]) -> Any:
+    """A NamedTuple class like this one, but for the fields of these names.
+
+    Raises:
+        TypeError: it does not have one of them.
+    """
+    fields = _fields(record)
+    if unknown := sorted(set(names) - fields.keys()):
+        raise TypeError(f"{record.__module__}.{record.__name__} has no field {unknown[0]}")
+    return _record(record.__name__, {name: fields[name] for name in fields if name not in names})
 
 
 def _fields(record: Any) -> dict[str, tuple[Any, Any]]:

@@ -1,4 +1,4 @@
-"""The controller of the project, another one from two parts of the tests, and what they are given."""
+"""The controller of the project, another one from two other parts, and what they are given."""
 
 import math
 from collections.abc import Iterable
@@ -10,18 +10,11 @@ from hypothesis import strategies as st
 
 from models import damping_controller
 from models.block.types import SampledBlock
-from models.controller.supervised import supervised
+from models.comparators import speed_washout
 from models.controller.supervision import T_S, Input, State
-from tests.models.controller import motor_speed, speed_washout
 
 OURS = damping_controller.BLOCK
-OTHER = supervised(
-    name="SpeedWashout",
-    description="Active damping of the drive train: washout of the motor speed",
-    module=speed_washout.__name__,
-    estimator=motor_speed,
-    law=speed_washout,
-)
+OTHER = speed_washout.BLOCK
 EVERY = (OURS, OTHER)
 
 every_controller = pytest.mark.parametrize("block", EVERY, ids=lambda block: block.name)

@@ -6,21 +6,22 @@ import pytest
 
 from models.block.declaration import variables
 from models.block.runner import runner
+from models.comparators import measured_speeds
+from models.comparators.speed_washout import Washout
 from models.controller import damping_law, supervision, torque_estimator
 from models.controller.parts import Estimator, Law
 from models.controller.supervised import supervised
 from models.controller.supervision import T_S
-from tests.models.controller import motor_speed, speed_washout
 from tests.models.controller.controllers import OTHER, ROLLING, run, shaken
 
 
 def test_the_parameters_are_those_of_the_parts_and_of_the_supervision() -> None:
-    parts = motor_speed.Parameters, speed_washout.Parameters, supervision.Parameters
+    parts = measured_speeds.Parameters, Washout.Parameters, supervision.Parameters
     assert variables(OTHER.Parameters) == tuple(v for part in parts for v in variables(part))
 
 
-@pytest.mark.parametrize("law", [damping_law, speed_washout], ids=lambda law: law.__name__)
-@pytest.mark.parametrize("estimator", [torque_estimator, motor_speed], ids=lambda estimator: estimator.__name__)
+@pytest.mark.parametrize("law", [damping_law, Washout()], ids=["damping_law", "washout"])
+@pytest.mark.parametrize("estimator", [torque_estimator, measured_speeds], ids=lambda estimator: estimator.__name__)
 def test_every_law_damps_behind_every_estimator(estimator: Estimator, law: Law) -> None:
     """A part declares all that it reads beside the parameters of the supervision."""
     states = run(supervised("Joined", "of any two parts", __name__, estimator, law), shaken(0.5))

@@ -1,17 +1,21 @@
 """An estimator that is no more than the measured speeds, between samples those of a rigid drive train.
 
 J domega_1/dt = T_mot
+
+The wheel speed is that of the last message, as old as it is; while no wheel speed comes, that of the
+motor stands for it. It fades from one to the other.
 """
 
 from typing import Annotated, Any, NamedTuple
 
-from models.block.declaration import Real
-from models.block.operators import where
-from models.controller.parts import Motion
+from ..block.declaration import Real
+from ..block.operators import where
+from ..controller.fading import toward
+from ..controller.parts import Motion
 
 
 class Parameters(NamedTuple):
-    J: Annotated[float, Real("kg.m2", "inertia of motor and vehicle, motor side", 0.001, 100.0)] = 2.0
+    J: Annotated[float, Real("kg.m2", "inertia of motor, wheels and vehicle, motor side", 0.001, 100.0)] = 1.87
 
 
 class SpeedState(NamedTuple):
@@ -20,7 +24,7 @@ class SpeedState(NamedTuple):
     omega_1: Annotated[float, Real("rad/s", "speed of the motor")]
     omega_2: Annotated[float, Real("rad/s", "speed in the last message, motor side")]
     T_mot: Annotated[float, Real("N.m", "motor torque of the last sample")]
-    wheel: Annotated[float, Real("1", "1 while the wheel speed is in use")]
+    share: Annotated[float, Real("1", "share of the wheel speed, 0 while none comes")]
 
 
 def start(omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> SpeedState:
@@ -28,7 +32,7 @@ def start(omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> SpeedState:
 
 
 def restart(x: SpeedState, omega_1: Any, T_mot: Any, p: Any) -> SpeedState:
-    return SpeedState(omega_1, omega_1, T_mot, x.wheel)
+    return SpeedState(omega_1, omega_1, T_mot, x.share)
 
 
 def predict(x: SpeedState, T_mot: Any, T_s: Any, p: Any) -> SpeedState:
@@ -44,11 +48,12 @@ def take_wheel_speed(x: SpeedState, omega_2: Any, T_s: Any, p: Any) -> SpeedStat
 
 
 def finish(x: SpeedState, wheel: Any, T_s: Any, p: Any) -> SpeedState:
-    return x._replace(wheel=where(wheel, 1.0, 0.0))
+    return x._replace(share=toward(x.share, where(wheel, 1.0, 0.0), T_s, p))
 
 
 def motion(x: SpeedState, p: Any) -> Motion:
-    return Motion(x.omega_1, x.omega_2, phi=0.0, T_gear=x.T_mot)
+    omega_2 = x.omega_1 - x.share * (x.omega_1 - x.omega_2)
+    return Motion(x.omega_1, omega_2, phi=0.0, T_gear=x.T_mot)
 
 
 def motion_after(x: SpeedState, T_mot: Any, h: Any, p: Any) -> Motion:

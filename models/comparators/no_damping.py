@@ -1,0 +1,37 @@
+"""No damping: the driver's demand is passed through, within the same limits and as late.
+
+T_damp = 0
+"""
+
+from typing import Any, NamedTuple
+
+from ..controller.parts import Addition, Motion
+from ..controller.supervised import supervised
+from . import measured_speeds
+
+
+class Nothing(NamedTuple):
+    """The law has neither parameters nor a state."""
+
+
+class NoLaw:
+    """The law."""
+
+    Parameters: type[Any] = Nothing
+
+    def start(self, motion: Motion, p: Any) -> Nothing:
+        return Nothing()
+
+    def update(
+        self, x: Nothing, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+    ) -> tuple[Nothing, Addition]:
+        return x, Addition(damping=0.0, landing=0.0)
+
+
+BLOCK = supervised(
+    name="NoDamping",
+    description="Comparator: no damping, the driver's demand is passed through",
+    module=__name__,
+    estimator=measured_speeds,
+    law=NoLaw(),
+)

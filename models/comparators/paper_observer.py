@@ -1,0 +1,35 @@
+"""The paper's observer taken literally, and the imperfect derivative of its gear torque (Sugiura and Hori 1996).
+
+    J_1 domega_1/dt = T_mot - T_gear
+    J_2 domega_2/dt = T_gear
+           dphi/dt  = omega_1 - omega_2          T_gear = C b(phi, phi_B)
+
+    T_damp = -k_T s/(s + omega_w) T_gear
+
+The vehicle takes no share of the gear torque, nor is there a load.
+"""
+
+from ..controller import damping_law, torque_estimator
+from ..controller.supervised import supervised
+from .fixed import fixed
+
+GAINS = {
+    "L_omega_1": 0.2997,
+    "L_omega_2": 0.1313,
+    "L_phi": -0.0069,
+    "Lw_omega_1": 0.2996,
+    "Lw_omega_2": 0.1308,
+    "Lw_phi": -0.0069,
+    "L_can_omega_1": 0.000865,
+    "L_can_omega_2": 0.00368,
+    "L_can_phi": -7.63e-05,
+}
+"""Of the Riccati equations that ours come from, for this model."""
+
+BLOCK = supervised(
+    name="PaperObserver",
+    description="Comparator: damping by the derivative of the gear torque that the paper's observer estimates",
+    module=__name__,
+    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, Lw_T_l=0.0, L_can_T_l=0.0),
+    law=fixed(damping_law, {"k_T": 2.0, "omega_w": 120.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, T_gap=0.0, t_land=0.0),
+)

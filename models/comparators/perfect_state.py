@@ -1,0 +1,69 @@
+"""State feedback with perfect signals: what knowing the plant's own motion would be worth. A mark, and no product.
+
+    T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear]
+
+with the motion T_pred ahead by the estimator's model, from the plant's true motion now. The supervision
+has the measured signals, as ever.
+"""
+
+from dataclasses import replace
+from typing import Annotated, Any, NamedTuple
+
+from ..block.declaration import Real, merged
+from ..block.operators import branch, clip, is_finite
+from ..controller import supervision, torque_estimator
+from ..controller.signal_monitor import MonitorState
+from ..controller.supervised import Supervised, supervised
+from ..controller.torque_estimator import Estimate, EstimatorState, bounded
+from ..controller.wheel_monitor import WheelState
+from . import state_feedback
+from .fixed import fixed
+
+NO_GAINS = {name: 0.0 for name in torque_estimator.Parameters._fields if name.startswith("L")}
+
+MODEL = fixed(torque_estimator, T_age=supervision.T_S, **NO_GAINS)
+"""The estimator's model alone: nothing that is measured corrects it."""
+
+
+class Truth(NamedTuple):
+    """What the plant tells beside what is measured."""
+
+    omega_1: Annotated[float, Real("rad/s", "true speed of the motor")] = 0.0
+    omega_2: Annotated[float, Real("rad/s", "true speed of the wheels, motor side")] = 0.0
+    phi: Annotated[float, Real("rad", "true twist of the drive train, motor side")] = 0.0
+    T_gear: Annotated[float, Real("N.m", "true gear torque, motor side")] = 0.0
+
+
+class Informed(Supervised):
+    """A controller that is told the truth."""
+
+    def measured(self, x: Any, u: Any, p: Any) -> tuple[Any, MonitorState, WheelState]:
+        expected, signals, heard = super().measured(x, u, p)
+        return told(expected, u, p), signals, heard
+
+
+def told(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
+    """The state of the model with the plant's motion; as expected where that is not finite.
+
+    Its twist is that which makes the true gear torque and, in the gap, the true one.
+    """
+    phi = u.T_gear / p.C + clip(u.phi, -p.phi_B, p.phi_B)
+    true = bounded(Estimate(u.omega_1, u.omega_2, phi, 0.0), p)
+    known = is_finite(u.omega_1 + u.omega_2 + u.phi + u.T_gear)
+    return expected._replace(estimate=branch(known, lambda: true, lambda: expected.estimate))
+
+
+_CONTROLLER = Informed(MODEL, state_feedback.LAW)
+
+BLOCK = replace(
+    supervised(
+        name="PerfectState",
+        description="Mark: damping by state feedback of the plant's true motion",
+        module=__name__,
+        estimator=MODEL,
+        law=state_feedback.LAW,
+    ),
+    Input=merged("Input", supervision.Input, Truth),
+    start=_CONTROLLER.start,
+    update=_CONTROLLER.update,
+)

@@ -1,0 +1,50 @@
+"""Proportional feedback of the speed difference, with the wheel speed as late as the bus delivers it.
+
+    T_damp = -k_delta s/(s + omega_delta) (omega_1 - omega_2_can)
+
+Nothing while no wheel speed comes, as below 5 km/h. The washout takes away what the delay makes of a car that
+speeds up, and an error of the wheel radius; omega_delta = 0 leaves it out.
+"""
+
+from typing import Annotated, Any, NamedTuple
+
+from ..block.declaration import Real
+from ..controller.parts import Addition, Motion
+from ..controller.supervised import supervised
+from . import measured_speeds
+
+
+class DifferenceParameters(NamedTuple):
+    k_delta: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0)] = 2.0
+    omega_delta: Annotated[float, Real("rad/s", "corner frequency of its washout", 0.0, 400.0)] = 4.25
+
+
+class DifferenceState(NamedTuple):
+    """State of the washout of the speed difference."""
+
+    slow: Annotated[float, Real("rad/s", "part of the speed difference that does not change")]
+
+
+class Difference:
+    """The law."""
+
+    Parameters: type[Any] = DifferenceParameters
+
+    def start(self, motion: Motion, p: Any) -> DifferenceState:
+        return DifferenceState(slow=0.0)
+
+    def update(
+        self, x: DifferenceState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+    ) -> tuple[DifferenceState, Addition]:
+        changing = motion.omega_1 - motion.omega_2 - x.slow
+        slow = x.slow + p.omega_delta * T_s * changing
+        return DifferenceState(slow), Addition(damping=-p.k_delta * changing, landing=0.0)
+
+
+BLOCK = supervised(
+    name="SpeedDifference",
+    description="Comparator: damping by the difference of motor speed and received wheel speed",
+    module=__name__,
+    estimator=measured_speeds,
+    law=Difference(),
+)

@@ -1,0 +1,47 @@
+"""Washout of the motor speed: what changes of it is opposed.
+
+T_damp = -k_v s/(s + omega_v) omega_1
+"""
+
+from typing import Annotated, Any, NamedTuple
+
+from ..block.declaration import Real
+from ..controller.parts import Addition, Motion
+from ..controller.supervised import supervised
+from . import measured_speeds
+
+
+class WashoutParameters(NamedTuple):
+    k_v: Annotated[float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 20.0)] = 2.0
+    omega_v: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = 25.0
+
+
+class WashoutState(NamedTuple):
+    """State of the washout of the motor speed."""
+
+    slow: Annotated[float, Real("rad/s", "part of the motor speed that does not change")]
+
+
+class Washout:
+    """The law."""
+
+    Parameters: type[Any] = WashoutParameters
+
+    def start(self, motion: Motion, p: Any) -> WashoutState:
+        return WashoutState(motion.omega_1)
+
+    def update(
+        self, x: WashoutState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+    ) -> tuple[WashoutState, Addition]:
+        changing = motion.omega_1 - x.slow
+        slow = x.slow + p.omega_v * T_s * changing
+        return WashoutState(slow), Addition(damping=-p.k_v * changing, landing=0.0)
+
+
+BLOCK = supervised(
+    name="SpeedWashout",
+    description="Comparator: damping by a washout of the motor speed",
+    module=__name__,
+    estimator=measured_speeds,
+    law=Washout(),
+)

@@ -1,0 +1,11 @@
+"""Linear state feedback: our damping law for a drive train without a gap.
+
+    T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear]
+
+with the motion T_pred ahead. Without a gap there is nothing to land in.
+"""
+
+from ..controller import damping_law
+from .fixed import fixed
+
+LAW = fixed(damping_law, phi_B=0.0, k_gap=1.0, T_gap=0.0, t_land=0.0)

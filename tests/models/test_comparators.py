@@ -1,0 +1,139 @@
+"""The controllers that ours is compared with, each by its law."""
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from models.backlash import dead_zone
+from models.block.declaration import without
+from models.comparators import (
+    linear_observer,
+    no_damping,
+    paper_observer,
+    perfect_state,
+    speed_difference,
+)
+from models.controller import supervision
+from models.controller.supervision import T_S, Input, State
+from tests.models.controller.controllers import OURS, driven, run, shaken
+
+LITERAL = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0, "t_land": 0.0}
+LINEAR = {"phi_B": 0.0, "k_gap": 0.3, "t_land": 0.1, "T_gap": 10.0}
+
+
+def torques(states: list[State]) -> list[float]:
+    return [x.T_ref for x in states]
+
+
+def test_without_damping_the_demand_is_passed_through() -> None:
+    inputs = shaken(0.3)
+    assert torques(run(no_damping.BLOCK, inputs))[1:] == [u.T_driver for u in inputs]
+
+
+@pytest.mark.parametrize("omega_delta", [0.0, 20.0])
+def test_the_speed_difference_is_that_to_the_wheel_speed_received_last(omega_delta: float) -> None:
+    inputs, slow = shaken(0.4), 0.0
+    received = inputs[0].omega_1_meas
+    states = run(speed_difference.BLOCK, inputs, k_delta=1.5, omega_delta=omega_delta)
+    for x, before, u in zip(states[1:], [inputs[0], *inputs], inputs, strict=False):
+        if u.counter != before.counter:
+            received = u.omega_2_can
+        changing = u.omega_1_meas - received - slow
+        slow += omega_delta * T_S * changing
+        assert x.T_damp == pytest.approx(-1.5 * changing, abs=1e-9)
+    assert max(abs(x.T_damp) for x in states) > 5.0
+
+
+def test_where_no_wheel_speed_is_valid_the_speed_difference_does_nothing() -> None:
+    states = run(speed_difference.BLOCK, shaken(0.4, valid=False))
+    assert {x.T_damp for x in states} == {0.0}
+
+
+def test_the_speed_difference_fades_in_with_the_first_valid_message() -> None:
+    """A fiftieth more of it with each sample, so that no jump comes of it."""
+    silent = driven(0.2, valid=False)
+    states = run(speed_difference.BLOCK, [*silent, *(u._replace(counter=900 + u.counter) for u in shaken(0.3))])
+    changes = [abs(b.T_damp - a.T_damp) for a, b in pairwise(states[100:])]
+    assert {x.T_damp for x in states[:101]} == {0.0}
+    assert max(changes[:3]) < 0.6
+
+
+def test_the_paper_s_observer_is_ours_without_vehicle_and_load() -> None:
+    p = paper_observer.BLOCK.Parameters()
+    given = {name: getattr(p, name) for name in p._fields} | LITERAL
+    inputs = shaken(0.4)
+    states = run(paper_observer.BLOCK, inputs)
+    assert torques(states) == torques(run(OURS, inputs, **given))
+    assert max(abs(x.T_damp) for x in states) > 5.0
+
+
+def test_the_gear_torque_that_it_estimates_is_washed_out() -> None:
+    states = run(paper_observer.BLOCK, shaken(0.4), k_T=0.5)
+    p, slow = paper_observer.BLOCK.Parameters(k_T=0.5), states[0].law.washout
+    for x in states[1:]:
+        fed_back = 0.5 * p.C * dead_zone(x.estimator.estimate.phi, p.phi_B)
+        assert x.T_damp == pytest.approx(slow - fed_back, abs=1e-9)
+        slow += p.omega_w * T_S * (fed_back - slow)
+
+
+def test_the_linear_observer_is_ours_without_a_gap() -> None:
+    inputs = shaken(0.4)
+    states, p = run(linear_observer.BLOCK, inputs), linear_observer.BLOCK.Parameters()
+    assert torques(states) == torques(run(OURS, inputs, **LINEAR))
+    for x in states:
+        assert x.ahead.T_gear == p.C * x.ahead.phi
+
+
+@pytest.mark.parametrize(
+    ("block", "names"),
+    [
+        (paper_observer.BLOCK, [*LITERAL, "k_gap", "T_gap"]),
+        (linear_observer.BLOCK, LINEAR),
+        (perfect_state.BLOCK, ["k_gap", "t_land", "T_gap", "L_phi"]),
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_what_is_fixed_cannot_be_set(block: Any, names: Any) -> None:
+    assert not set(names) & set(block.Parameters._fields)
+
+
+def informed(inputs: list[Input], **truth: float) -> list[Any]:
+    """Inputs of PerfectState, which is told that the motor turns faster and faster than the wheels."""
+    told = {"omega_1": 150.0, "omega_2": 140.0, "phi": 0.5, "T_gear": 40.0} | truth
+    return [perfect_state.BLOCK.Input(*u)._replace(**told) for u in inputs]
+
+
+def test_perfect_signals_are_fed_back_as_they_are() -> None:
+    states = run(perfect_state.BLOCK, informed(shaken(0.1)), T_pred=0.0, k_d=1.0, k_T=0.5, omega_w=0.0)
+    at_start = 0.5 * states[0].ahead.T_gear
+    assert [x.T_damp for x in states[1:]] == pytest.approx([at_start - (10.0 + 0.5 * 40.0)] * 50, abs=0.2)
+
+
+def test_what_is_measured_changes_nothing_of_what_perfect_signals_damp() -> None:
+    calm, noisy = (run(perfect_state.BLOCK, informed(inputs)) for inputs in (driven(0.2), shaken(0.2)))
+    assert torques(calm) == torques(noisy)
+
+
+def test_in_the_gap_the_twist_is_the_true_one_and_beyond_it_that_of_the_gear_torque() -> None:
+    p = perfect_state.BLOCK.Parameters()
+    e = perfect_state.MODEL.start(150.0, 50.0, False, p)
+    for phi, T_gear, expected in ((0.1, 0.0, 0.1), (0.9, 11.74, p.phi_B + 0.1), (-0.9, -11.74, -p.phi_B - 0.1)):
+        (u,) = informed([Input()], phi=phi, T_gear=T_gear)
+        motion = perfect_state.MODEL.motion(perfect_state.told(e, u, p), p)
+        assert motion.phi == pytest.approx(expected, rel=1e-12)
+        assert motion.T_gear == pytest.approx(T_gear, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["omega_1", "omega_2", "phi", "T_gear"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e308])
+def test_a_truth_that_is_none_ends_in_no_torque_that_is_none(name: str, value: float) -> None:
+    for x in run(perfect_state.BLOCK, informed(shaken(0.05), **{name: value})):
+        assert abs(x.T_damp) <= supervision.Parameters().T_take_max
+
+
+def test_only_what_is_declared_can_be_left_out() -> None:
+    with pytest.raises(TypeError, match="has no field J_3"):
+        without(supervision.Parameters, ["T_max", "J_3"])
+    assert "T_max" not in without(supervision.Parameters, ["T_max"])._fields
