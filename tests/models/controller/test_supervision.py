@@ -164,7 +164,7 @@ def test_it_starts_in_the_mode_that_it_is_asked_for() -> None:
     off, _ = started(ROLLING._replace(enable=False))
     assert (off.level, off.status) == (0.0, OFF)
     deaf, _ = started(ROLLING._replace(valid=False))
-    assert (deaf.level, deaf.status, deaf.estimator.wheel) == (1.0, WITHOUT_WHEEL_SPEED, 0.0)
+    assert (deaf.level, deaf.status, deaf.estimator.share) == (1.0, WITHOUT_WHEEL_SPEED, 0.0)
 
 
 def test_a_car_that_stands_at_the_start_is_at_rest() -> None:
@@ -374,7 +374,7 @@ def test_the_part_of_the_landing_is_shown() -> None:
 def test_in_fallback_the_wheel_speed_is_not_in_use() -> None:
     x, p = started(ROLLING, t_bad=0.0)
     x = OTHER.update(x, ROLLING._replace(T_mot_est=math.nan), p)
-    assert (x.status, x.estimator) == (FALLBACK, (150.0, 150.0, 50.0, 0.0))
+    assert (x.status, x.estimator) == (FALLBACK, (150.0, 150.0, 50.0, 1.0 - T_S / p.t_fade))
 
 
 def test_the_state_moves_by_one_sample_a_sample() -> None:
