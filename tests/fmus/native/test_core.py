@@ -1,5 +1,7 @@
 """The C is a core, and an adapter of the standard around it: another version of the standard is another adapter."""
 
+import re
+
 import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
@@ -13,5 +15,5 @@ def test_the_adapter_alone_knows_fmi(name):
     sources = c_sources(FMUS[name])
     assert {"run.c", "shared.h", "variables.h", "operators.h"} <= set(sources)
     assert sources.pop("all.c")
-    knowing = {file for file, text in sources.items() if b"fmi" in text.lower()}
+    knowing = {file for file, text in sources.items() if re.search(rb"fmi(?!n\()", text.lower())}  # fmin( is C's own
     assert knowing == {"fmi2.c", "fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"}
