@@ -11,7 +11,7 @@ class Sent(NamedTuple):
     omega_1_meas: float
 
 
-@pytest.mark.parametrize(("fault", "speed"), zip(FAULTS, (350.0, 75.0, 0.0, -150.0), strict=True))
+@pytest.mark.parametrize(("fault", "speed"), [*zip(FAULTS, (350.0, 75.0, 0.0, -150.0), strict=True)])
 def test_a_wrong_speed_is_received_at_every_sample(fault: str, speed: float) -> None:
     assert received(fault)(1.0, Sent(150.0)) == Sent(speed)
 
