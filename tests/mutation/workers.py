@@ -37,11 +37,11 @@ TIME_LIMIT = 10
 """Of computing in a test, in s: a mutant that needs more does not end, and is found."""
 
 COMPILER = """#!/bin/sh
-# cc that compiles a file again only when it, a header or an option has changed
+# cc that compiles a file again only when it, what it includes or an option has changed
 for argument; do
     case $argument in
     *.c)
-        key=$( (echo "$options"; cat "$argument" *.h "${argument%/*}"/*.h) 2>/dev/null | md5sum | cut -c1-32)
+        key=$( (echo "$options"; cc $options -E -P "$argument" -o -) 2>/dev/null | md5sum | cut -c1-32)
         object=OBJECTS/$key.o
         [ -f "$object" ] || cc $options -O0 -c "$argument" -o "$object$$" || exit 1
         [ -f "$object" ] || mv "$object$$" "$object"
