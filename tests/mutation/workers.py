@@ -38,18 +38,20 @@ TIME_LIMIT = 10
 
 COMPILER = """#!/bin/sh
 # cc that compiles a file again only when it, what it includes or an option has changed
-for argument; do
-    case $argument in
+while [ $# -gt 0 ]; do
+    case $1 in
+    -o) output=$2; shift ;;
     *.c)
-        key=$( (echo "$options"; cc $options -E -P "$argument" -o -) 2>/dev/null | md5sum | cut -c1-32)
+        key=$( (echo "$options"; cc $options -E -P "$1") 2>/dev/null | md5sum | cut -c1-32)
         object=OBJECTS/$key.o
-        [ -f "$object" ] || cc $options -O0 -c "$argument" -o "$object$$" || exit 1
+        [ -f "$object" ] || cc $options -O0 -c "$1" -o "$object$$" || exit 1
         [ -f "$object" ] || mv "$object$$" "$object"
         objects="$objects $object" ;;
-    *) options="$options $argument" ;;
+    *) options="$options $1" ;;
     esac
+    shift
 done
-exec cc $objects $options
+exec cc $objects $options -o "$output"
 """
 
 
