@@ -55,7 +55,7 @@ TESTS = {
     "fmus/native/c/sampled.c": ("tests/fmus/native/test_runner.py", *CALLS),
     "fmus/native/c/integrator.c": (*INTEGRATOR, "tests/fmus/native/test_rates.py"),
     "fmus/native/c/implicit.c": INTEGRATOR,
-    "fmus/native/c/operators.h": ("tests/fmus/native/test_functions.py",),
+    "fmus/native/c/operators.h": ("tests/fmus/native/test_functions.py", "tests/fmus/native/test_rates.py"),
     "fmus/native/c/continuous.c": ("tests/fmus/native/test_rates.py", *CALLS),
     "fmus/native/c/content.c": ("tests/fmus/native/test_same_words.py", "tests/fmus/test_state.py", *CALLS),
     **{f"fmus/native/c/{name}.c": CALLS for name in ("run", "values", "state", "messages", "fmi2")},
