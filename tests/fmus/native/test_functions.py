@@ -96,12 +96,21 @@ def test_the_controller_copes_with_the_same_bad_signals(functions, signal, value
         x = block.update(x, u, p)
 
 
-@pytest.mark.parametrize(("x", "y"), [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0)])
-def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
-    program = f'#include "operators.h"\n#include <stdio.h>\nint main(void) {{ printf("%a", modulo({x!r}, {y!r})); }}'
+def computed_by_operators(tmp_path, expression):
+    """The value of an expression in C."""
+    program = f'#include "operators.h"\n#include <stdio.h>\nint main(void) {{ printf("%a", {expression}); }}'
     (tmp_path / "block.h").write_text("typedef double real;\n")
     (tmp_path / "operators.h").write_bytes((C_FILES / "operators.h").read_bytes())
     (tmp_path / "main.c").write_text(program)
     subprocess.run([host_compiler(), "main.c", "-o", "main", "-lm"], cwd=tmp_path, check=True)
-    said = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout
-    assert float.fromhex(said) == x % y
+    return float.fromhex(subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout)
+
+
+@pytest.mark.parametrize(("x", "y"), [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0)])
+def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
+    assert computed_by_operators(tmp_path, f"modulo({x!r}, {y!r})") == x % y
+
+
+@pytest.mark.parametrize(("x", "sign"), [(-2.5, -1.0), (-0.0, 0.0), (0.0, 0.0), (5e-324, 1.0), (2.5, 1.0)])
+def test_the_sign_of_a_number_is_that_of_its_distance_from_zero(native_builder, tmp_path, x, sign):
+    assert computed_by_operators(tmp_path, f"sign_of({x!r})") == sign
