@@ -68,16 +68,12 @@ def swing(plant: str, manoeuvre: str, fault: str | None) -> tuple[float, float]:
     return rms, float(np.mean(y["controller.status"] == FALLBACK))
 
 
-def answered(case: tuple[str, str, str | None]) -> tuple[float, float]:
-    return swing(*case)
-
-
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.parse_args(arguments)
     alone = dict.fromkeys((plant, manoeuvre, None) for plant in monolithic.PLANTS for manoeuvre, _ in CASES)
     cases = [*alone, *((plant, *case) for plant in monolithic.PLANTS for case in CASES)]
-    answers = dict(zip(cases, run_many(answered, cases, label="faults"), strict=True))
+    answers = dict(zip(cases, run_many(lambda case: swing(*case), cases, label="faults"), strict=True))
     table = Table("manoeuvre", "motor speed", "plant", "over without control", "in fallback")
     for plant, manoeuvre, fault in cases[len(alone) :]:
         rms, share = answers[plant, manoeuvre, fault]

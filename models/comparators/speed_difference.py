@@ -9,6 +9,7 @@ speeds up, and an error of the wheel radius; omega_delta = 0 leaves it out.
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
+from ..controller.damping_law import washed_out
 from ..controller.parts import Addition, Motion
 from ..controller.supervised import supervised
 from . import measured_speeds
@@ -36,9 +37,9 @@ class Difference:
     def update(
         self, x: DifferenceState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
     ) -> tuple[DifferenceState, Addition]:
-        changing = motion.omega_1 - motion.omega_2 - x.slow
-        slow = x.slow + p.omega_delta * T_s * changing
-        return DifferenceState(slow), Addition(damping=-p.k_delta * changing, landing=0.0)
+        difference = motion.omega_1 - motion.omega_2
+        slow = washed_out(x.slow, difference, p.omega_delta, T_s)
+        return DifferenceState(slow), Addition(damping=-p.k_delta * (difference - x.slow), landing=0.0)
 
 
 BLOCK = supervised(

@@ -6,6 +6,7 @@ T_damp = -k_v s/(s + omega_v) omega_1
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
+from ..controller.damping_law import washed_out
 from ..controller.parts import Addition, Motion
 from ..controller.supervised import supervised
 from . import measured_speeds
@@ -33,9 +34,8 @@ class Washout:
     def update(
         self, x: WashoutState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
     ) -> tuple[WashoutState, Addition]:
-        changing = motion.omega_1 - x.slow
-        slow = x.slow + p.omega_v * T_s * changing
-        return WashoutState(slow), Addition(damping=-p.k_v * changing, landing=0.0)
+        slow = washed_out(x.slow, motion.omega_1, p.omega_v, T_s)
+        return WashoutState(slow), Addition(damping=-p.k_v * (motion.omega_1 - x.slow), landing=0.0)
 
 
 BLOCK = supervised(

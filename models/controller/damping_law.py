@@ -41,7 +41,7 @@ def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: 
     changing = fed_back(later(p.T_pred), p)
     landing = where(in_gap(motion, p), minimum(x.landing + T_s, p.t_land + T_s), 0.0)
     added = Addition(damping=x.washout - changing, landing=soft_landing(T_driver, landing, p) - T_driver)
-    return LawState(washed_out(x.washout, changing, T_s, p), landing), added
+    return LawState(washed_out(x.washout, changing, p.omega_w, T_s), landing), added
 
 
 def in_gap(motion: Motion, p: Any) -> Any:
@@ -54,9 +54,9 @@ def fed_back(motion: Motion, p: Any) -> Any:
     return k_d * (motion.omega_1 - motion.omega_2) + p.k_T * motion.T_gear
 
 
-def washed_out(stationary: Any, value: Any, T_s: Any, p: Any) -> Any:
-    """The stationary part of `value` at the next sample."""
-    return stationary + minimum(p.omega_w * T_s, 1.0) * (value - stationary)
+def washed_out(stationary: Any, value: Any, corner: Any, T_s: Any) -> Any:
+    """The stationary part of `value` at the next sample, behind a washout with that corner frequency (rad/s)."""
+    return stationary + minimum(corner * T_s, 1.0) * (value - stationary)
 
 
 def soft_landing(T_driver: Any, landing: Any, p: Any) -> Any:

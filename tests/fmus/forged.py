@@ -34,7 +34,16 @@ def _forged_in_c(saved: bytes, place: str, value: float, back: int) -> bytes:
     else:
         offset = len(saved) - 8 * FROM_THE_END[place]
     new = struct.pack("=q" if place == "mode" else "=d", value)
-    body = saved[4:offset] + new + saved[offset + 8 :]
+    return with_number(saved, offset, new)
+
+
+def with_number(saved: bytes, offset: int, number: bytes) -> bytes:
+    """A state of a native build with other 8 bytes at the offset, and its checksum."""
+    return sealed(saved[4:offset] + number + saved[offset + 8 :])
+
+
+def sealed(body: bytes) -> bytes:
+    """A state of a native build."""
     return zlib.crc32(body).to_bytes(4, "little") + body
 
 

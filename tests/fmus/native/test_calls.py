@@ -9,6 +9,7 @@ from fmpy.fmi1 import FMICallException
 
 from fmus.catalogue import FMUS
 from models.block.declaration import with_defaults
+from tests.fmus.forged import sealed
 from tests.fmus.host import opened
 
 OK, DISCARD, ERROR = 0, 2, 3
@@ -241,7 +242,7 @@ def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checks
     """With a mode that does not exist; with more in it than there is."""
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         body = change(bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:])
-        forged = zlib.crc32(body).to_bytes(4, "little") + body
+        forged = sealed(body)
         assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, forged)
 
 
@@ -258,7 +259,7 @@ def test_a_build_whose_name_does_not_end_is_named_as_far_as_there_is_room(native
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         body = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:]
         body = b"x" * 44 + body[44:]
-        forged = zlib.crc32(body).to_bytes(4, "little") + body
+        forged = sealed(body)
         assert f"saved by {43 * 'x'}, this is" in host.refuses(host.fmu.deSerializeFMUstate, forged)
 
 

@@ -3,17 +3,16 @@
 import math
 import struct
 import sys
-import zlib
 
 import pytest
 
 from fmus.catalogue import FMUS
-from tests.fmus.forged import HEAD, forged
+from tests.fmus.forged import HEAD, forged, with_number
 from tests.fmus.host import opened
 
 SEED = 123457
-OUTPUTS_KNOWN = -2
-"""Its place in a state, in numbers; it is one that Python builds do not have."""
+OUTPUTS_KNOWN = 2
+"""Its place in a state, in numbers from the end; it is one that Python builds do not have."""
 
 
 def saved(host):
@@ -24,15 +23,8 @@ def restore(host, state):
     host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(state))
 
 
-def with_number(state, place, number):
-    """The state with another number in the place, which counts numbers from the first input or from the end."""
-    at = HEAD + 8 * place if place >= 0 else len(state) + 8 * place
-    body = state[4:at] + number + state[at + 8 :]
-    return zlib.crc32(body).to_bytes(4, "little") + body
-
-
 def with_seed(state, seed):
-    return with_number(state, (state.index(struct.pack("=d", SEED)) - HEAD) // 8, struct.pack("=d", seed))
+    return with_number(state, state.index(struct.pack("=d", SEED)), struct.pack("=d", seed))
 
 
 @pytest.fixture
@@ -82,8 +74,9 @@ def test_a_state_that_is_no_number_is_refused_after_the_end_of_the_run_too(motor
 
 
 def test_outputs_that_are_known_are_numbers(motor):
-    first_output = motor.variables["T_mot"].valueReference
-    state = with_number(saved(motor), OUTPUTS_KNOWN, struct.pack("=q", 1))
+    first_output = HEAD + 8 * motor.variables["T_mot"].valueReference
+    state = saved(motor)
+    state = with_number(state, len(state) - 8 * OUTPUTS_KNOWN, struct.pack("=q", 1))
     restore(motor, with_number(state, first_output, struct.pack("=d", sys.float_info.max)))
     assert motor.get("T_mot") == sys.float_info.max
     message = motor.refuses(restore, motor, with_number(state, first_output, struct.pack("=d", math.inf)))

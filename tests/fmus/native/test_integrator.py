@@ -7,7 +7,6 @@ import ctypes
 import math
 import subprocess
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -141,49 +140,40 @@ def test_it_is_that_of_python_bit_by_bit_where_the_block_is_stiff(
     assert integrator(driveline.BLOCK).advance(x, u, p, 0.01) == Integrator(driveline.BLOCK).advance(x, u, p, 0.01)
 
 
+Looked = Callable[[MakeIntegrator], tuple[set[Body], set[Body]]]
+
+
+def looks(derivative: Callable[[Any], Body], start: Body, *indicators: Callable[[Any], float]) -> Looked:
+    """Where an integrator looks at the derivative, and where at the first indicator."""
+
+    def looked_at(make: MakeIntegrator) -> tuple[set[Body], set[Body]]:
+        rates: set[Body] = set()
+        zeros: set[Body] = set()
+
+        def rate(x: Body, _u: Any, _p: Any) -> Body:
+            rates.add(x)
+            return derivative(x)
+
+        def first(x: Body) -> float:
+            zeros.add(x)
+            return indicators[0](x)
+
+        make(block(rate, first, *indicators[1:])).advance(start, Nothing(), Nothing(), 0.1)
+        return rates, zeros
+
+    return looked_at
+
+
 @given(at=st.floats(0.001, 0.099), slope=st.floats(0.0, 100.0), power=st.sampled_from([0, 1, 3, 9]))
 def test_it_looks_for_a_crossing_where_python_does(
     integrator: MakeIntegrator, at: float, slope: float, power: int
 ) -> None:
-    def looked_at(make: MakeIntegrator) -> list[float]:
-        seen = []
-
-        def indicator(x: Body) -> float:
-            seen.append(x.x)
-            return math.copysign(abs(x.x - at) ** power, x.x - at)
-
-        curved = block(lambda x, u, p: Body(1.0 + slope * x.x, 0.0, 0.0), indicator)
-        make(curved).advance(Body(0.0, 0.0, 0.0), Nothing(), Nothing(), 0.1)
-        return seen
-
-    assert set(looked_at(integrator)) == set(looked_at(Integrator))
-
-
-Looked = Callable[[MakeIntegrator], tuple[set[tuple[float, ...]], set[tuple[float, ...]]]]
-
-
-def looks(derivative: Callable[[Any], Body], indicators: tuple[Callable[[Any], float], ...], start: Body) -> Looked:
-    """Where an integrator looks at the derivative, and where at the indicators."""
-
-    def looked_at(make: MakeIntegrator) -> tuple[set[tuple[float, ...]], set[tuple[float, ...]]]:
-        rates: set[tuple[float, ...]] = set()
-        zeros: set[tuple[float, ...]] = set()
-
-        def rate(x: Any, _u: Any, _p: Any) -> Body:
-            rates.add(tuple(x))
-            return derivative(x)
-
-        def indicator(x: Any) -> float:
-            zeros.add(tuple(x))
-            return indicators[0](x)
-
-        seen = block(rate, indicator)
-        if len(indicators) > 1:
-            seen = replace(seen, event_indicators=lambda x, u, p: (indicator(x), *(each(x) for each in indicators[1:])))
-        make(seen).advance(start, Nothing(), Nothing(), 0.1)
-        return rates, zeros
-
-    return looked_at
+    looked_at = looks(
+        lambda x: Body(1.0 + slope * x.x, 0.0, 0.0),
+        Body(0.0, 0.0, 0.0),
+        lambda x: math.copysign(abs(x.x - at) ** power, x.x - at),
+    )
+    assert looked_at(integrator) == looked_at(Integrator)
 
 
 @given(
@@ -199,7 +189,7 @@ def test_it_looks_for_an_excursion_where_python_does(
     g = 50.0
     top = side * depth
     start = Body(top - side * 0.5 * g * turn**2, side * g * turn, 0.0)
-    looked_at = looks(lambda x: Body(x[1], -side * g, 0.0), (lambda x: x[0], lambda x: x[0] + side * other), start)
+    looked_at = looks(lambda x: Body(x.v, -side * g, 0.0), start, lambda x: x.x, lambda x: x.x + side * other)
     assert looked_at(integrator) == looked_at(Integrator)
 
 

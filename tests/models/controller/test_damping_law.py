@@ -85,7 +85,7 @@ def test_the_washout_forgets_what_stays() -> None:
 
 @pytest.mark.parametrize(("omega_w", "share"), [(3.5, 0.875), (4.0, 1.0), (4.5, 1.0)])
 def test_a_washout_faster_than_the_samples_takes_one(omega_w: float, share: float) -> None:
-    assert law.washed_out(10.0, 26.0, T_S, P._replace(omega_w=omega_w)) == 10.0 + share * 16.0
+    assert law.washed_out(10.0, 26.0, omega_w, T_S) == 10.0 + share * 16.0
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
