@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from models.block.declaration import Real
+from models.block.declaration import Integer, Real
 
 from . import two_mass_driveline
 from .catalogue import EVERY, FMUS
@@ -91,6 +91,13 @@ def units() -> dict[str, str]:
     """The unit of every entry that our own blocks have and that is a Real; "1" for none."""
     declared = {name: owners[0][1].declaration for name, owners in _owners(EVERY.values()).items()}
     return {name: declaration.unit for name, declaration in declared.items() if isinstance(declaration, Real)}
+
+
+def seeds() -> tuple[int, int]:
+    """The least and the largest seed that all blocks with noise take."""
+    declared = [variable.declaration for _, variable in _owners(EVERY.values())["seed"]]
+    bounds = [(of.minimum, of.maximum) for of in declared if isinstance(of, Integer)]
+    return max(least for least, _ in bounds), min(most for _, most in bounds)
 
 
 def of_plants() -> set[str]:

@@ -13,7 +13,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from rich.console import Console
 from rich.table import Table
 
 from models.controller import swings, torque_loop, wheel_monitor
@@ -25,6 +24,7 @@ from ..control_loop import PLANTS
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import lines
 from ..many import run_many
+from ..reports.terminal import print_table
 from ..simulate import simulate
 
 P = BLOCK.Parameters()
@@ -193,9 +193,8 @@ def main(arguments: list[str] | None = None) -> None:
         of = worst(run_many(partial(found, road), range(1, drives + 1), options.workers, label=name))
         hours = of.samples * T_S / 3600.0
         table.add_row(name, f"{hours:.2f}", f"{of.samples}", f"{of.fallback}", *(f"{value:.2f}" for value in of[2:]))
-    console = Console()
-    console.print(table)
-    console.print("The residuals are the largest, over the thresholds from which on they count as a fault.")
+    print_table(table)
+    print("The residuals are the largest, over the thresholds from which on they count as a fault.")
 
 
 if __name__ == "__main__":

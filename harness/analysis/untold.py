@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 from rich.table import Table
 
 from models.controller.supervision import FALLBACK
@@ -19,6 +18,7 @@ from models.controller.supervision import FALLBACK
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..many import run_many
 from ..metrics.spectrum import band_rms
+from ..reports.terminal import print_table
 from . import monolithic
 
 LATE = 0.062
@@ -78,7 +78,7 @@ def main(arguments: list[str] | None = None) -> None:
     for plant, manoeuvre, fault in cases[len(alone) :]:
         rms, share = answers[plant, manoeuvre, fault]
         table.add_row(manoeuvre, fault, plant, f"{rms / answers[plant, manoeuvre, None][0]:.2f}", f"{share:.0%}")
-    Console().print(table)
+    print_table(table)
 
 
 if __name__ == "__main__":

@@ -12,9 +12,6 @@ from ..cosimulation.limits import USUAL
 from ..numbers import real, whole
 from ..plain import quoted
 
-LARGEST_SEED = 2**31 - 1
-"""Of an FMI Integer."""
-
 OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
 """The blocks of the loop beside the plant, and what they are."""
 
@@ -159,8 +156,10 @@ def assignment(text: str) -> tuple[str, float]:
 
 
 def seed(text: str) -> int:
-    """A whole number that an FMI Integer holds."""
-    return count(text, 0, LARGEST_SEED)
+    """A whole number that all blocks with noise take."""
+    from fmus.parameter_files import seeds  # not for help
+
+    return count(text, *seeds())
 
 
 def count(text: str, least: int, most: int) -> int:

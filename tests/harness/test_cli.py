@@ -56,6 +56,10 @@ def test_the_version_is_that_of_the_package(capsys):
         (["simulate", "--set", "plant.J_1"], "plant.J_1=0.06"),
         (["simulate", "--scheme", "gaus"], "gauss-seidel"),
         (["simulate", "--seed", "1.5"], "'1.5' is not a whole number"),
+        *(
+            ([*command, "--seed", "1000001"], "argument --seed: '1000001' is not a whole number from 0 to 1000000")
+            for command in (["simulate"], ["compare"], ["replay", "trip.csv"], ["faults"])
+        ),
         (["simulate", "--step", "nan"], "'nan' is not a time above 0 s"),
         (["simulate", "--output", ""], "the name of the folder is empty"),
         (["replay", "trip.csv", "--held", "0"], "'0' is not a time above 0 s"),

@@ -8,10 +8,13 @@ from shutil import copytree, ignore_patterns
 
 import pytest
 
+from fmus.catalogue import FMUS
 from fmus.options import file as a_file
 from fmus.options import folder, output_folder
-from harness.commands.options import LARGEST_SEED, assignment, megabytes, seconds, seed
+from fmus.parameter_files import seeds
+from harness.commands.options import assignment, megabytes, seconds, seed
 from harness.control_loop import BUILD
+from models.block.declaration import Integer, variables
 from tests import ROOT
 
 
@@ -43,10 +46,15 @@ def test_a_parameter_is_finite(value):
         assignment(f"plant.m={value}")
 
 
-def test_a_seed_is_what_an_fmi_integer_holds():
-    assert [seed(str(number)) for number in (0, LARGEST_SEED)] == [0, LARGEST_SEED]
-    for text in ("-1", str(LARGEST_SEED + 1), "", "one", "1.0", "1_000", "+1", " 1", "\u0661"):
-        with pytest.raises(ArgumentTypeError, match="whole number from 0 to 2147483647"):
+def test_a_seed_is_what_the_blocks_declare():
+    least, most = seeds()
+    for name in ("MotorTorqueLoop", "WheelSpeedCan"):
+        declared = next(v.declaration for v in variables(FMUS[name].block.Parameters) if v.name == "seed")
+        assert isinstance(declared, Integer)
+        assert (declared.minimum, declared.maximum) == (least, most)
+    assert [seed(str(number)) for number in (least, most)] == [least, most]
+    for text in (str(least - 1), str(most + 1), "", "one", "1.0", "1_000", "+1", " 1", "\u0661"):
+        with pytest.raises(ArgumentTypeError, match=f"whole number from {least} to {most}$"):
             seed(text)
 
 
