@@ -90,8 +90,6 @@ class Integrator:
         stretches = max(1, math.ceil(duration / self.step_size - STEP_TOLERANCE))
         sides = self._sides(x, u, p)
         for _ in range(stretches):
-            if work.steps > MOST_WORK:
-                raise TooMuchWork(self.implicit.fastest(x, self.derivative(x, u, p)))
             start = Start(x, self.derivative(x, u, p), u, p, work)
             x = self._advance_through(start, duration / stretches, sides)
         return x
@@ -103,6 +101,8 @@ class Integrator:
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
         (u, p, work), longest, located = start[2:], left, 0
+        if work.steps > MOST_WORK:
+            raise TooMuchWork(self.implicit.fastest(start.x, start.dx))
         for _ in range(MOST_TRIALS):
             length, crossed = min(left, longest), None
             x_end, error = self._try(start, length)
@@ -138,10 +138,10 @@ class Integrator:
         The fastest rate is found by power iteration from the way of a step that failed: what a small change of the
         state does to its derivative is a change that is faster, and the size of that over its own is the rate.
         """
-        x, dx, rate = start.x, start.dx, 0.0
+        x, dx = start.x, start.dx
         way = [end - value for value, end in zip(x, x_end, strict=True)]
+        size = self._size(way, x)
         for _ in range(POWER_ITERATIONS):
-            size = self._size(way, x)
             if size == 0.0:
                 return False
             if not size <= GREATEST:
@@ -149,8 +149,8 @@ class Integrator:
             near = type(x)._make(value + part / size for value, part in zip(x, way, strict=True))
             there = self.derivative(near, start.u, start.p)
             way = [fast - slow for fast, slow in zip(there, dx, strict=True)]
-            rate = self._size(way, x)
-        return not left * rate <= STIFF
+            size = self._size(way, x)
+        return not left * size <= STIFF
 
     def _size(self, way: list[float], x: Any) -> float:
         """Of a change of the state x, in units of what is tolerated."""

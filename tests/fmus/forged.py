@@ -7,7 +7,7 @@ import zlib
 HEAD = 48
 """Of a state of a native build, in bytes: checksum and GUID; all that follows are numbers of 8 bytes."""
 
-FROM_THE_END = {"start_time": 8, "stop_time": 7, "time": 6, "ticks": 5, "mode": 4}
+FROM_THE_END = {"start_time": 7, "stop_time": 6, "time": 5, "ticks": 4, "mode": 3}
 """Places in a native state, in numbers; before them lie the two states of a block."""
 
 IN_JSON = {"mode": (0,), "start_time": (1,), "stop_time": (2,), "time": (3,), "ticks": (6, 3)}
@@ -30,7 +30,7 @@ def _forged_in_c(saved: bytes, place: str, value: float, back: int) -> bytes:
     if place == "input":
         offset = HEAD
     elif place == "state":
-        offset = len(saved) - 8 * (8 + back)
+        offset = len(saved) - 8 * (7 + back)
     else:
         offset = len(saved) - 8 * FROM_THE_END[place]
     new = struct.pack("=q" if place == "mode" else "=d", value)

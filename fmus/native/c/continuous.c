@@ -7,21 +7,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const Input still; /* rates of change of inputs that are held */
+
+/* The rates of change of the inputs; NULL if they are held. */
+static const Input *moving(const Memory *memory)
+{
+    return memcmp(&memory->du, &still, sizeof still) ? &memory->du : NULL;
+}
+
 Obstacle advance(Memory *memory, double elapsed, double duration)
 {
     Values *values = &memory->values;
-    const Problem problem = {&values->u, memory->moving ? &memory->du : NULL, &values->p, NULL};
+    const Problem problem = {&values->u, moving(memory), &values->p, NULL};
     (void)elapsed;
     const int failed = integrate(&problem, duration, &memory->x);
     if (failed)
         return (Obstacle){state_names[abs(failed) - 1] + 1, failed < 0}; /* without the dot of the name */
-    if (memory->moving) {
-        Input room;
+    Input room;
+    if (problem.du)
         values->u = *inputs_at(&problem, duration, &room);
-        memset(&memory->du, 0, sizeof memory->du);
-        memory->moving = 0;
-    }
-    return (Obstacle){NULL, 0};
+    memory->du = still;
+    return (Obstacle){.state = NULL};
 }
 
 Status check_ticks(const Instance *instance, const Memory *memory)
@@ -34,7 +40,7 @@ Status check_ticks(const Instance *instance, const Memory *memory)
 Status check_moving_inputs(Instance *instance, double duration)
 {
     Memory *memory = &instance->memory;
-    for (unsigned k = 0; memory->moving && k < variable_count && variables[k].causality == INPUT; k++) {
+    for (unsigned k = 0; moving(memory) && k < variable_count && variables[k].causality == INPUT; k++) {
         const Variable *variable = &variables[k];
         const double end = *place_of(&memory->values, variable) + duration * *rate_of(&memory->du, variable);
         char text[NUMBER_LENGTH];
@@ -68,7 +74,6 @@ Status set_input_rates(Instance *instance, const Reference references[], size_t 
     }
     for (size_t k = 0; k < count; k++)
         *rate_of(&instance->memory.du, &variables[references[k]]) = rates[k];
-    instance->memory.moving = instance->memory.moving || count > 0;
     return OK;
 }
 
@@ -116,10 +121,9 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
 {
     const Memory *memory = &instance->memory;
     const Values *values = &memory->values;
-    Values changes;
-    State dx;
-    memset(&changes, 0, sizeof changes);
-    memset(&dx, 0, sizeof dx);
+    static const Values unchanged;
+    static const State at_rest;
+    Values changes = unchanged;
     for (size_t k = 0; k < direction->unknowns; k++)
         if (!is_differentiable(instance, direction->unknown[k], 1))
             return ERROR;
@@ -131,7 +135,7 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
     if (memory->mode == INITIALIZATION)
         start_rate(&values->u, &values->p, &changes.u, &changes.p, &changes.y);
     else
-        output_rate(&memory->x, &values->u, &values->p, &dx, &changes.u, &changes.y);
+        output_rate(&memory->x, &values->u, &values->p, &at_rest, &changes.u, &changes.y);
     for (size_t k = 0; k < direction->unknowns; k++)
         result[k] = *place_of(&changes, &variables[direction->unknown[k]]);
     return OK;

@@ -129,7 +129,7 @@ fmi2Component fmi2Instantiate(
     if (!functions)
         return NULL;
     const char *why = objection(instanceName, fmuType, fmuGUID, functions);
-    Component *component = why ? NULL : functions->allocateMemory(1, sizeof *component + strlen(instanceName) + 1);
+    Component *component = why ? NULL : functions->allocateMemory(1, offsetof(Component, name) + strlen(instanceName) + 1);
     if (!component) {
         say(functions, instanceName ? instanceName : "", ERROR, why ? why : "fmi2Instantiate: no memory");
         return NULL;

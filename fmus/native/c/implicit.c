@@ -51,7 +51,7 @@ static int factorise(Matrix *matrix, double diagonal)
     }
     for (int k = 0; k < STATES; k++) {
         int pivot = k;
-        for (int i = k + 1; i < STATES; i++)
+        for (int i = k; i < STATES; i++)
             if (fabs(rows[i][k]) > fabs(rows[pivot][k]))
                 pivot = i;
         if (pivot != k) {

@@ -27,7 +27,7 @@ typedef struct {
 /* All that a saved state holds; whole multiples of 8 bytes, so that it has no gaps. */
 typedef struct {
     Values values;     /* the outputs in it are those of the present when outputs_known */
-    Input du;          /* rates of change of the inputs during the next step */
+    Input du;          /* rates of change of the inputs during the next step; 0 if they are held */
     State x;           /* from the end of initialization mode on */
     State coming;      /* of a sampled block: what its last tick computed */
     double start_time; /* s */
@@ -35,7 +35,6 @@ typedef struct {
     double time;       /* s */
     double ticks;      /* of a sampled block: ticks made */
     int64_t mode;
-    int64_t moving;        /* whether du is not zero */
     int64_t outputs_known;
     int64_t last_step;     /* status of the last step */
 } Memory;

@@ -122,7 +122,7 @@ static double slope(int n, const Problem *problem, const Start *from)
 /* Length of a step to beyond zero n, if the state goes there and is back before h; else 0. */
 static double excursion(int n, const Problem *problem, const Start *from, double h, const Vector end, int side)
 {
-    Start back = {0.0, {0.0}, {0.0}};
+    Start back;
     begin_at(problem, from->t + h, end, &back);
     const double here = slope(n, problem, from), there = slope(n, problem, &back);
     if (there * here >= 0.0)
@@ -234,11 +234,10 @@ to its derivative is a change that is faster, and the size of that over its own 
 static int is_stiff(const Problem *problem, const Start *from, const Vector end, double left)
 {
     Vector near, there, way;
-    double fastest_rate = 0.0;
     for (int n = 0; n < STATES; n++)
         way[n] = end[n] - from->x[n];
+    double size = size_of(way, from);
     for (int k = 0; k < POWER_ITERATIONS; k++) {
-        const double size = size_of(way, from);
         if (size == 0.0)
             return 0;
         if (!(size <= GREATEST))
@@ -248,9 +247,9 @@ static int is_stiff(const Problem *problem, const Start *from, const Vector end,
         rate(problem, from->t, near, there);
         for (int n = 0; n < STATES; n++)
             way[n] = there[n] - from->dx[n];
-        fastest_rate = size_of(way, from);
+        size = size_of(way, from);
     }
-    return !(left * fastest_rate <= STIFF);
+    return !(left * size <= STIFF);
 }
 
 /* A stretch of length `left`, split at every event on its way; as for `integrate`.
@@ -263,6 +262,8 @@ static int advance_through(const Problem *problem, double t, double left, Vector
     double longest = left;
     int located = 0;
     begin_at(problem, t, x, &from);
+    if (*problem->work > MOST_WORK)
+        return -(1 + fastest(&from));
     for (int trials = 0; trials < MOST_TRIALS; trials++) {
         Vector end;
         double length = longest < left ? longest : left, error;
@@ -310,11 +311,6 @@ int integrate(const Problem *whole, double duration, State *state)
     memcpy(x, state, sizeof x);
     sides_at(problem, 0.0, x, sides);
     for (double k = 0.0; k < stretches; k += 1.0) {
-        if (work > MOST_WORK) {
-            Start from = {0.0, {0.0}, {0.0}};
-            begin_at(problem, k * h, x, &from);
-            return -(1 + fastest(&from));
-        }
         const int failed = advance_through(problem, k * h, h, x, sides);
         if (failed)
             return failed;

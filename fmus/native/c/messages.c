@@ -36,7 +36,7 @@ Status discard(const Instance *instance, const char *format, ...)
 }
 
 /* The fewest digits that read back as the same number; returns the power of ten of the first digit. */
-static int shortest_digits(char digits[DIGITS + 1], double value)
+static int shortest_digits(char *digits, double value)
 {
     char text[NUMBER_LENGTH];
     for (int precision = 0; precision < DIGITS; precision++) {
@@ -59,24 +59,22 @@ static int shortest_digits(char digits[DIGITS + 1], double value)
 
 char *write_number(char text[NUMBER_LENGTH], double value)
 {
-    char digits[DIGITS + 1], *at = text;
+    char digits[DIGITS + 1];
+    const char *sign = signbit(value) ? "-" : "";
     if (value != value)
         return strcpy(text, "nan");
-    if (copysign(1.0, value) < 0.0)
-        *at++ = '-';
     if (fabs(value) > DBL_MAX) {
-        strcpy(at, "inf");
+        snprintf(text, NUMBER_LENGTH, "%sinf", sign);
         return text;
     }
     const int power = shortest_digits(digits, fabs(value)), count = (int)strlen(digits);
-    const size_t room = NUMBER_LENGTH - 1;
     if (power < -4 || power >= 16)
-        snprintf(at, room, "%c%s%se%+03d", digits[0], count > 1 ? "." : "", digits + 1, power);
+        snprintf(text, NUMBER_LENGTH, "%s%c%s%se%+03d", sign, digits[0], count > 1 ? "." : "", digits + 1, power);
     else if (power < 0)
-        snprintf(at, room, "0.%.*s%s", -power - 1, "000", digits);
+        snprintf(text, NUMBER_LENGTH, "%s0.%.*s%s", sign, -power - 1, "000", digits);
     else if (count <= power + 1)
-        snprintf(at, room, "%s%.*s.0", digits, power + 1 - count, "0000000000000000");
+        snprintf(text, NUMBER_LENGTH, "%s%s%.*s.0", sign, digits, power + 1 - count, "0000000000000000");
     else
-        snprintf(at, room, "%.*s.%s", power + 1, digits, digits + power + 1);
+        snprintf(text, NUMBER_LENGTH, "%s%.*s.%s", sign, power + 1, digits, digits + power + 1);
     return text;
 }

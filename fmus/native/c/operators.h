@@ -15,16 +15,17 @@ __asm__(".symver pow, pow@GLIBC_2.2.5");
 __asm__(".symver fmod, fmod@GLIBC_2.2.5");
 #endif
 
-/* x % y as in Python: with the sign of y. Whole numbers, as the noise has them, do not need fmod, which is slow. */
+static inline int is_integer(real x)
+{
+    const real most = (real)4503599627370496.0; /* 2^52 */
+    return x > -most && x < most && (real)(long long)x == x;
+}
+
+/* x % y as in Python: with the sign of y. Integers, as the noise has them, do not need fmod, which is slow. */
 static inline real modulo(real x, real y)
 {
-    const real whole = (real)4503599627370496.0; /* 2^52 */
-    if (x >= 0 && x < whole && y >= 1 && y < whole) {
-        const long long m = (long long)x, n = (long long)y;
-        if ((real)m == x && (real)n == y)
-            return (real)(m % n);
-    }
-    const real rest = (real)fmod(x, y);
+    const int integers = is_integer(x) && is_integer(y) && y != 0;
+    const real rest = integers ? (real)((long long)x % (long long)y) : (real)fmod(x, y);
     return rest * y < 0 ? rest + y : rest;
 }
 

@@ -1,6 +1,7 @@
 /* Saved states: copies of the instance's memory, and their form as bytes. */
 #include "instance.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* What goes before the memory in the bytes of a state: whether they are whole, and which build they are of. */
@@ -54,9 +55,8 @@ Status serialize_state(const Instance *instance, const void *state, void *bytes,
     if (size < needed)
         return refuse(
             instance, "size = %lu is refused; a state takes %lu bytes", (unsigned long)size, (unsigned long)needed);
-    Head head;
-    memset(&head, 0, sizeof head);
-    strncpy(head.guid, model_guid, sizeof head.guid - 1);
+    Head head = {.guid = ""};
+    snprintf(head.guid, sizeof head.guid, "%s", model_guid);
     memcpy(bytes, &head, sizeof head);
     memcpy((char *)bytes + sizeof head, state, sizeof(Memory));
     head.checksum = checksum_of(bytes, needed);

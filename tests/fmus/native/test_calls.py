@@ -9,7 +9,7 @@ from fmpy.fmi1 import FMICallException
 
 from fmus.catalogue import FMUS
 from models.block.declaration import with_defaults
-from tests.fmus.forged import sealed
+from tests.fmus.forged import forged, sealed
 from tests.fmus.host import opened
 
 OK, DISCARD, ERROR = 0, 2, 3
@@ -237,13 +237,12 @@ def test_messages_are_given_out_by_category(native, tmp_path):
         assert messages() == [True, True]
 
 
-@pytest.mark.parametrize("change", [lambda body: body[:-32] + bytes([3]) + body[-31:], lambda body: body + bytes(8)])
+@pytest.mark.parametrize("change", [lambda saved: forged(saved, "mode", 3), lambda saved: sealed(saved[4:] + bytes(8))])
 def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checksum(native, tmp_path, change):
     """With a mode that does not exist; with more in it than there is."""
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        body = change(bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:])
-        forged = sealed(body)
-        assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, forged)
+        saved = change(bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate())))
+        assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, saved)
 
 
 def test_a_saved_state_tells_its_checksum_and_its_build(native, tmp_path):
@@ -258,9 +257,8 @@ def test_a_saved_state_tells_its_checksum_and_its_build(native, tmp_path):
 def test_a_build_whose_name_does_not_end_is_named_as_far_as_there_is_room(native, tmp_path):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         body = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:]
-        body = b"x" * 44 + body[44:]
-        forged = sealed(body)
-        assert f"saved by {43 * 'x'}, this is" in host.refuses(host.fmu.deSerializeFMUstate, forged)
+        saved = sealed(b"x" * 44 + body[44:])
+        assert f"saved by {43 * 'x'}, this is" in host.refuses(host.fmu.deSerializeFMUstate, saved)
 
 
 @pytest.mark.parametrize("name", FMUS)

@@ -83,6 +83,15 @@ def test_outputs_that_are_known_are_numbers(motor):
     assert "T_mot = inf" in message
 
 
+def test_outputs_that_were_asked_for_are_not_computed_again(motor):
+    motor.get("T_mot")
+    first_output = HEAD + 8 * motor.variables["T_mot"].valueReference
+    restore(motor, with_number(saved(motor), first_output, struct.pack("=d", 123.0)))
+    assert motor.get("T_mot") == 123.0
+    motor.set(T_ref=1.0)
+    assert motor.get("T_mot") != 123.0
+
+
 @pytest.mark.parametrize("counter", [-(2**31), 2**31 - 1])
 def test_a_controller_keeps_signals_that_are_absurd(native, tmp_path, counter):
     with opened(native / "DampingController.fmu", tmp_path) as host:

@@ -7,6 +7,7 @@ import ctypes
 import math
 import subprocess
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ from fmus.native.packaging import C_FILES
 from fmus.native.shared_header import shared_header
 from fmus.native.tableau import rosenbrock_header, step_header
 from models import two_mass_driveline as driveline
-from models.block.explicit import small_sizes
+from models.block.explicit import TOLERANCE, small_sizes
 from models.block.implicit import NotIntegrable
 from models.block.integrator import Integrator, TooMuchWork
 from models.block.types import ContinuousBlock
@@ -32,7 +33,7 @@ from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIn
 BLOCK = """
 typedef double real;
 typedef struct {{ real x[{states}]; }} State;
-typedef struct {{ real none; }} Input, Parameters;
+typedef struct {{ real u; }} Input, Parameters;
 #define INDICATORS {indicators}
 #define SMALL_SIZES {{ {sizes} }}
 extern double LONGEST_STEP;
@@ -46,16 +47,19 @@ RUN = """
 double LONGEST_STEP;
 void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
 void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);
-int run(double duration, State *x);
-int run(double duration, State *x)
+int run(double duration, State *x, const Input *u, const Input *du);
+int run(double duration, State *x, const Input *u, const Input *du)
 {
-    const Problem problem = {0, 0, 0, 0};
+    const Problem problem = {u, du, 0, 0};
     return integrate(&problem, duration, x);
 }
 """
 
+BOUNDS = "-fsanitize=bounds", "-fsanitize-undefined-trap-on-error"
+"""Ends the process at an index out of its array."""
+
 Numbers = ctypes.POINTER(ctypes.c_double)
-Function = ctypes.CFUNCTYPE(None, Numbers, ctypes.c_void_p, ctypes.c_void_p, Numbers)
+Function = ctypes.CFUNCTYPE(None, Numbers, Numbers, ctypes.c_void_p, Numbers)
 
 
 def compiled(folder: Path, states: int, indicators: int, sizes: tuple[float, ...]) -> ctypes.CDLL:
@@ -67,23 +71,33 @@ def compiled(folder: Path, states: int, indicators: int, sizes: tuple[float, ...
     folder.joinpath("dop853.h").write_text(step_header())
     folder.joinpath("rodas.h").write_text(rosenbrock_header())
     folder.joinpath("shared.h").write_text(shared_header())
-    command = [host_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC", "-I.", f"-I{C_FILES}", "run.c"]
+    command = [
+        host_compiler(),
+        *FLAGS,
+        *BOUNDS,
+        "-fvisibility=default",
+        "-shared",
+        "-fPIC",
+        "-I.",
+        f"-I{C_FILES}",
+        "run.c",
+    ]
     subprocess.run([*command, "-o", "integrator.so", "-lm"], cwd=folder, check=True)
     return ctypes.CDLL(str(folder / "integrator.so"))
 
 
 class CompiledIntegrator:
-    """`advance` of the integrator, as C does it."""
+    """`advance` of the integrator, as C does it. Inputs given as a number move, at the rate that is given."""
 
     def __init__(self, library: Callable[[int, int, tuple[float, ...]], ctypes.CDLL], block: ContinuousBlock) -> None:
         self._library, self._block = library, block
 
-    def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
+    def advance(self, x: Any, u: Any, p: Any, duration: float, slope: float | None = None) -> Any:
         make, size = self._block.State._make, len(x)
 
         def called(function: Callable[..., Any]) -> Any:
-            def call(x: Any, _u: Any, _p: Any, result: Any) -> None:
-                for k, value in enumerate(function(make(x[:size]), u, p)):
+            def call(x: Any, moved: Any, _p: Any, result: Any) -> None:
+                for k, value in enumerate(function(make(x[:size]), u if slope is None else moved[0], p)):
                     result[k] = value
 
             return Function(call)
@@ -94,7 +108,8 @@ class CompiledIntegrator:
             ctypes.c_void_p.in_dll(library, name).value = ctypes.cast(function, ctypes.c_void_p).value
         ctypes.c_double.in_dll(library, "LONGEST_STEP").value = self._block.step_size
         values = (ctypes.c_double * size)(*x)
-        failed = library.run(ctypes.c_double(duration), values)
+        moving = (None, None) if slope is None else map(ctypes.byref, map(ctypes.c_double, (u, slope)))
+        failed = library.run(ctypes.c_double(duration), values, *moving)
         if failed:
             raise (NotIntegrable if failed > 0 else TooMuchWork)(self._block.State._fields[abs(failed) - 1])
         return make(values)
@@ -203,3 +218,55 @@ def test_a_block_of_any_stiffness_is_integrated_as_in_python(
     stiff = block(lambda s, u, p: Body(s.v, -rate * (s.v + coupling * s.x), math.tanh(rate * s.x)), lambda s: 1.0)
     ends = (make(stiff).advance(Body(x, v, 0.0), Nothing(), Nothing(), 0.1) for make in (integrator, Integrator))
     assert next(ends) == next(ends)
+
+
+Rates = Callable[[Body, float], Body]
+Zero = Callable[[Body, float], float]
+
+
+def watched(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body]]:
+    """A block with one number as its input, and where its derivative is asked for."""
+    asked: list[Body] = []
+
+    def watch(x: Body, u: float, _p: Any) -> Body:
+        asked.append(x)
+        return derivative(x, u)
+
+    return replace(block(watch), event_indicators=lambda x, u, p: (zero(x, u),)), asked
+
+
+def ends_with_moving_input(
+    integrator: MakeIntegrator, derivative: Rates, start: Body, slope: float, zero: Zero = lambda x, u: 1.0
+) -> None:
+    """Of C, whose input moves from start.beyond at that rate, and of Python, where it is the third state."""
+    with_input, asked = watched(derivative, zero)
+    as_state, asked_in_python = watched(
+        lambda x, _u: derivative(x, x.beyond)._replace(beyond=slope), lambda x, _u: zero(x, x.beyond)
+    )
+    end = integrator(with_input).advance(start._replace(beyond=0.0), start.beyond, Nothing(), 0.1, slope)
+    wanted = Integrator(as_state).advance(start, 0.0, Nothing(), 0.1)
+    assert end[:2] == pytest.approx(wanted[:2], abs=20.0 * TOLERANCE)
+    assert len(asked) <= 1.5 * len(asked_in_python) + 20
+
+
+@settings(max_examples=60)
+@given(stiffness=st.floats(0.0, 5.0), u=st.floats(-1.0, 1.0), slope=st.floats(-100.0, 100.0), lag=st.floats(0.0, 3.0))
+def test_an_input_that_moves_is_followed_like_a_state(
+    integrator: MakeIntegrator, stiffness: float, u: float, slope: float, lag: float
+) -> None:
+    """With as few looks at the derivative, stiff or not: a drift that is wrong would cost many more."""
+
+    def follows(x: Body, u: float) -> Body:
+        return Body(10.0**stiffness * (math.sin(u) - x.x), 10.0**lag * (u * u - x.v), 0.0)
+
+    ends_with_moving_input(integrator, follows, Body(math.sin(u), u * u, u), slope)
+
+
+@given(at=st.floats(0.001, 0.099), slope=st.floats(-100.0, 100.0), v=st.floats(-10.0, 10.0))
+def test_a_zero_that_moves_with_an_input_is_located(
+    integrator: MakeIntegrator, at: float, slope: float, v: float
+) -> None:
+    start = Body(at * (slope - v), v, 0.0)
+    ends_with_moving_input(
+        integrator, lambda x, u: Body(x.v, -1e4 * max(x.x - u, 0.0), 0.0), start, slope, lambda x, u: x.x - u
+    )
