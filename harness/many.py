@@ -15,8 +15,8 @@ import gc
 import logging
 import os
 import sys
-from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import ExitStack, closing
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from pickle import loads
 from tempfile import TemporaryDirectory
@@ -49,23 +49,45 @@ def run_many(
         Exception: what the function raised first in the order of the cases; its message or a note names the case.
         SimulationError: a worker crashed.
     """
-    from loky import cpu_count  # only those who need processes load it
-
-    if workers is not None and not (isinstance(workers, int) and workers >= 1):
-        raise DrivelineError(f"workers = {workers!r}: it must be a whole number from 1 on, or None")
+    require_workers(workers)
     todo = list(cases)
-    count = min(workers or cpu_count(), len(todo))
-    source = _here(function, todo) if count <= 1 else _in_workers(function, todo, count)
     answers = []
-    with closing(source), progress(len(todo), label) as done:
-        for answer in source:
+    with many(function, min(workers or _cores(), max(len(todo), 1))) as answered, progress(len(todo), label) as done:
+        for answer in answered(todo):
             answers.append(answer)
             done(len(answers))
     return answers
 
 
-def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Generator[Answer, None, None]:
-    with kept_loaded():
+@contextmanager
+def many(
+    function: Callable[[Case], Answer], workers: int | None = None
+) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
+    """What gives the answers for cases, in their order, and can be asked again: processes and FMUs stay loaded.
+
+    Args and errors as of `run_many`.
+    """
+    require_workers(workers)
+    count = workers or _cores()
+    with _here(function) if count == 1 else _in_workers(function, count) as answered:
+        yield answered
+
+
+def require_workers(workers: int | None) -> None:
+    """Refuses a number of workers that is none."""
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+        raise DrivelineError(f"workers = {workers!r}: it must be a whole number from 1 on, or None")
+
+
+def _cores() -> int:
+    from loky import cpu_count  # only those who need processes load it
+
+    return cpu_count()
+
+
+@contextmanager
+def _here(function: Callable[[Case], Answer]) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
+    def answered(cases: Iterable[Case]) -> Iterator[Answer]:
         for case in cases:
             try:
                 answer = function(case)
@@ -73,8 +95,14 @@ def _here(function: Callable[[Case], Answer], cases: Sequence[Case]) -> Generato
                 _raise(error, case)
             yield answer
 
+    with kept_loaded():
+        yield answered
 
-def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count: int) -> Generator[Answer, None, None]:
+
+@contextmanager
+def _in_workers(
+    function: Callable[[Case], Answer], count: int
+) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     """New interpreters (FMUs that run Python do not survive a fork); nothing of them is left at the end."""
     from multiprocessing import resource_tracker
 
@@ -87,11 +115,12 @@ def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count
             with uninterrupted_children():
                 tracker.ensure_running()
         pool = ProcessPoolExecutor(count, initializer=_begin, initargs=(Path(folder), function))
-        unfinished = True
-        try:
+
+        def answered(cases: Iterable[Case]) -> Iterator[Answer]:
+            todo = list(cases)
             with uninterrupted_children():
-                futures = [pool.submit(_answer, case) for case in cases]
-            for case, future in zip(cases, futures, strict=True):
+                futures = [pool.submit(_answer, case) for case in todo]
+            for case, future in zip(todo, futures, strict=True):
                 try:
                     answer, warnings = future.result()
                 except BrokenProcessPool as error:
@@ -101,6 +130,10 @@ def _in_workers(function: Callable[[Case], Answer], cases: Sequence[Case], count
                 for text in warnings:
                     warn_once(text)
                 yield answer
+
+        unfinished = True
+        try:
+            yield answered
             unfinished = False
         finally:
             pool.shutdown(kill_workers=unfinished)

@@ -31,12 +31,14 @@ ROOMS = {
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
     | {"models", "models.block", "models.controller"},
+    "harness.tuning": COSIMULATION
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"},
     "harness": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
-    | {"harness.faults"},
+    | {"harness.faults", "harness.tuning"},
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
 the analysis knows the models."""

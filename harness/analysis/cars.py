@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fmus.catalogue import FMUS
+from fmus.catalogue import EVERY
 from fmus.parameter_files import for_instances, read_vehicle
 
-from ..control_loop import BUILD
+from ..control_loop import BUILD, PLACES
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..metrics.declaration import declared
 from ..metrics.evaluate import evaluate
@@ -44,10 +44,17 @@ def own_gains(vehicle: Path | None) -> dict[str, float]:
     return design(*records(read_vehicle(vehicle) if vehicle else {}))
 
 
-def loop_parameters(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
-    """Entries of parameter files as parameters of the loop with a plant of ours, `instance.name` -> value."""
-    blocks = {"plant": plant, "motor": "MotorTorqueLoop", "can": "WheelSpeedCan", "controller": "DampingController"}
-    return for_instances(values, {place: FMUS[name].block.Parameters._fields for place, name in blocks.items()})
+def loop_records(plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
+    """The declared parameters of the blocks of a loop, by their places, with a plant and a controller of ours."""
+    blocks = {place: names[0] for place, names in PLACES.items()} | {"plant": plant, "controller": controller}
+    return {place: EVERY[name].block.Parameters for place, name in blocks.items()}
+
+
+def loop_parameters(values: Mapping[str, Any], plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
+    """Entries of parameter files as parameters of the loop with a plant and a controller of ours, `instance.name` ->
+    value."""
+    records = loop_records(plant, controller)
+    return for_instances(values, {place: record._fields for place, record in records.items()})
 
 
 def parameters(trial: Trial) -> dict[str, Any]:

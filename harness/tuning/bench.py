@@ -1,0 +1,101 @@
+"""The bench on which a controller is measured: a car, the runs that count, and what the reference makes of them.
+
+```python
+bench = Bench("SpeedWashout")
+with bench.opened() as costs_of:
+    print([costs.total() for costs in costs_of([{"k_v": 1.5}, {"k_v": 2.5}])])
+```
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..analysis.box import deviating
+from ..analysis.design import design
+from ..analysis.weights import records
+from ..control_loop import BUILD, PLACES
+from ..many import many
+from ..metrics.evaluate import evaluate
+from ..metrics.record import Metrics
+from ..simulate import simulate
+from .cost import Costs, costs
+from .runs import RUNS, Run
+
+REFERENCE = PLACES["controller"][0]
+"""The controller with the gains that `driveline design` computes for the car."""
+
+
+class Trial(NamedTuple):
+    """A run with a controller and parameters of it."""
+
+    controller: str
+    parameters: Mapping[str, float]
+    run: Run
+
+    def __str__(self) -> str:
+        return f"{self.run} with {self.controller} {dict(self.parameters)}"
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A controller on a car.
+
+    Attributes:
+        controller: by name.
+        car: entries of the vehicle file.
+        folder, build: of the FMUs, see `harness.simulate.simulate`.
+        runs: that count.
+    """
+
+    controller: str = REFERENCE
+    car: Mapping[str, Any] = field(default_factory=dict)
+    folder: Path = BUILD
+    build: str | None = None
+    runs: Sequence[Run] = RUNS
+
+    def measured(self, trial: Trial) -> Metrics:
+        """The metrics of one run."""
+        controller, parameters, run = trial
+        results = simulate(
+            run.manoeuvre,
+            plant=run.plant,
+            controller=controller,
+            parameters=deviating({**self.car, **parameters}, run.plant, controller, run.deviation),
+            seed=run.seed,
+            folder=self.folder,
+            build=self.build,
+        )
+        return evaluate(results, run.manoeuvre)
+
+    def reference(self) -> dict[str, float]:
+        """The gains that are computed for the car."""
+        return design(*records(self.car))
+
+    @contextmanager
+    def opened(
+        self, workers: int | None = None
+    ) -> Iterator[Callable[[Sequence[Mapping[str, float]]], Iterator[Costs]]]:
+        """What gives the costs of candidates (parameters of the controller by name), in their order, on all cores.
+
+        The same candidates cost the same, whoever stands beside them and however many processes share the runs.
+
+        Args:
+            workers: see `harness.many.run_many`.
+        """
+        with many(self.measured, workers) as answers:
+
+            def metrics(controller: str, candidates: Sequence[Mapping[str, float]]) -> Iterator[list[Metrics]]:
+                found = answers(Trial(controller, candidate, run) for candidate in candidates for run in self.runs)
+                for _ in candidates:
+                    yield [next(found) for _ in self.runs]
+
+            reference = next(metrics(REFERENCE, [self.reference()]))
+
+            def costs_of(candidates: Sequence[Mapping[str, float]]) -> Iterator[Costs]:
+                for found in metrics(self.controller, candidates):
+                    yield costs(self.runs, found, reference)
+
+            yield costs_of
