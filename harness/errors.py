@@ -15,3 +15,7 @@ class SimulationError(DrivelineError):
     """An FMU refused a call; the message names instance, function, time and what the FMU logged."""
 
     exit_code = 1
+
+
+class MissingExtra(DrivelineError):
+    """A package of an optional extra is not installed; the message names the extra."""

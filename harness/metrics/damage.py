@@ -5,15 +5,11 @@ from types import ModuleType
 
 import numpy as np
 
-from ..errors import DrivelineError
+from ..errors import MissingExtra
 from .declaration import Absent
 
 EXPONENT = 5.0
 """Slope of the assumed fatigue line."""
-
-
-class MissingExtra(DrivelineError):
-    """A package of an optional extra is not installed; the message names the extra."""
 
 
 def require_counting() -> ModuleType:

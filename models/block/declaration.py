@@ -16,13 +16,19 @@ from typing import Any, NamedTuple, get_type_hints
 
 @dataclass(frozen=True)
 class Real:
-    """A floating-point quantity with its unit (Modelica notation, "1" for none) and bounds."""
+    """A floating-point quantity with its unit (Modelica notation, "1" for none) and bounds.
+
+    Attributes:
+        search: range, for the default car, in which a search for the best value stays; None: it is given, as what
+            belongs to the car is, or computed. Where it begins above 0 the search goes by factors.
+    """
 
     unit: str
     description: str
     minimum: float = -math.inf
     maximum: float = math.inf
     nominal: float | None = None
+    search: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

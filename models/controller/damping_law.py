@@ -17,13 +17,23 @@ from .parts import Addition, Motion
 
 class Parameters(NamedTuple):
     phi_B: HalfGap = CAR.phi_B
-    T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02)] = GAINS["T_pred"]
-    k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0)] = GAINS["k_d"]
-    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0)] = GAINS["k_gap"]
-    k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0)] = GAINS["k_T"]
-    omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = GAINS["omega_w"]
-    T_gap: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0)] = GAINS["T_gap"]
-    t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0)] = GAINS["t_land"]
+    T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02, search=(0.0, 0.012))] = (
+        GAINS["T_pred"]
+    )
+    k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0, search=(0.3, 10.0))] = (
+        GAINS["k_d"]
+    )
+    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0, search=(0.1, 2.0))] = GAINS["k_gap"]
+    k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0, search=(0.003, 5.0))] = GAINS["k_T"]
+    omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(0.5, 300.0))] = (
+        GAINS["omega_w"]
+    )
+    T_gap: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0, search=(10.0, 150.0))] = (
+        GAINS["T_gap"]
+    )
+    t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0, search=(0.02, 0.3))] = GAINS[
+        "t_land"
+    ]
 
 
 class LawState(NamedTuple):

@@ -11,11 +11,10 @@ import pytest
 
 from harness.cli import main
 from harness.cosimulation.interface import Interface
-from harness.errors import WiringError
+from harness.errors import MissingExtra, WiringError
 from harness.manoeuvres.recording import read_recording
 from harness.manoeuvres.road import HELD_MIN, RoadLoad, road
 from harness.manoeuvres.town_drive import PATH
-from harness.metrics.damage import MissingExtra
 from harness.replay import replay, ride, write
 from tests import ROOT
 
