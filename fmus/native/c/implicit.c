@@ -28,13 +28,10 @@ static void jacobian(const Problem *problem, const Start *from, Vector J[STATES]
     }
 }
 
-/* The rate at which the derivative moves with the inputs; nothing if they are held. */
+/* The rate at which the derivative moves with the inputs. */
 static void drift(const Problem *problem, const Start *from, double h, Vector df)
 {
     Vector there;
-    memset(df, 0, sizeof(Vector));
-    if (!problem->du)
-        return;
     rate(problem, from->t + DIFFERENCE * h, from->x, there);
     for (int n = 0; n < STATES; n++)
         df[n] = (there[n] - from->dx[n]) / (DIFFERENCE * h);
@@ -111,7 +108,8 @@ static double try_step(const Problem *problem, const Start *from, Vector J[STATE
         return INFINITY;
     memcpy(at, from->x, sizeof at);
     memcpy(dx, from->dx, sizeof dx);
-    drift(problem, from, h, df);
+    if (problem->du)
+        drift(problem, from, h, df);
     for (int i = 0; i < STAGES; i++) {
         if (i > 0) {
             for (int n = 0; n < STATES; n++)

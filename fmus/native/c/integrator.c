@@ -54,11 +54,7 @@ double change(double error, int halvings)
     double root = error;
     for (int k = 0; k < halvings; k++)
         root = sqrt(root);
-    if (root == 0.0)
-        return MOST_CHANGE;
-    if (root != root)
-        return LEAST_CHANGE;
-    return fmin(fmax(SAFETY / root, LEAST_CHANGE), MOST_CHANGE);
+    return fmin(fmax(SAFETY / root, LEAST_CHANGE), MOST_CHANGE); /* fmax takes the number if the other is none */
 }
 
 enum { NO_CROSSING = -1 };
@@ -149,8 +145,7 @@ static double locate(int n, const Problem *problem, const Start *from, double fa
         const int bisect = slow == 3 || z_far == z_near;
         double length = bisect ? near + 0.5 * width : far - z_far * width / (z_far - z_near);
         const double least = near + 0.3 * LOCATION_TOLERANCE, most = far - 0.3 * LOCATION_TOLERANCE;
-        length = length > least ? length : least;
-        length = length < most ? length : most;
+        length = fmin(fmax(length, least), most);
         const double z = value(n, problem, from, length);
         if ((z > 0.0) != side) {
             far = length;
@@ -266,18 +261,15 @@ static int advance_through(const Problem *problem, double t, double left, Vector
         return -(1 + fastest(&from));
     for (int trials = 0; trials < MOST_TRIALS; trials++) {
         Vector end;
-        double length = longest < left ? longest : left, error;
+        double length = fmin(longest, left), error;
         int crossed = NO_CROSSING;
         make_step_to(problem, &from, length, end, &error);
         if (!(error <= ALLOWED_ERROR) && is_stiff(problem, &from, end, left))
             break;
         if (error <= COARSE_ERROR && located < MOST_CROSSINGS) {
-            double to_crossing = 0.0;
-            crossed = first_crossing(problem, &from, length, end, sides, &to_crossing);
-            if (crossed != NO_CROSSING) {
-                length = to_crossing;
+            crossed = first_crossing(problem, &from, length, end, sides, &length);
+            if (crossed != NO_CROSSING)
                 make_step_to(problem, &from, length, end, &error);
-            }
         }
         if (error <= ALLOWED_ERROR) {
             left -= length;

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -25,7 +26,7 @@ from fmus.native.tableau import rosenbrock_header, step_header
 from models import two_mass_driveline as driveline
 from models.block.explicit import TOLERANCE, small_sizes
 from models.block.implicit import NotIntegrable
-from models.block.integrator import Integrator, TooMuchWork
+from models.block.integrator import RESOLUTION, Integrator, TooMuchWork
 from models.block.types import ContinuousBlock
 from tests.models.block.test_integrator import *  # noqa: F403
 from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIntegrator, Nothing, P, block
@@ -191,6 +192,39 @@ def test_it_looks_for_a_crossing_where_python_does(
     assert looked_at(integrator) == looked_at(Integrator)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("behind", [1.0, 1.0 + 1e-6, 1e3])
+@pytest.mark.parametrize("until", [0.05, 1.0])
+def test_what_lies_at_the_resolution_has_crossed_no_zero_in_c_either(
+    integrator: MakeIntegrator, side: float, behind: float, until: float
+) -> None:
+    """An indicator that goes to its resolution at 0.03 s, and further at `until`."""
+
+    def ledge(x: Body) -> float:
+        return side * (1.0 if x.x < 0.03 else -RESOLUTION if x.x < until else -behind * RESOLUTION)
+
+    looked_at = looks(lambda x: Body(1.0, 0.0, 0.0), Body(0.0, 0.0, 0.0), ledge)
+    assert looked_at(integrator) == looked_at(Integrator)
+
+
+def end_of(make: MakeIntegrator, moved: ContinuousBlock) -> Body | str:
+    """The state after a while, or that which changes too fast."""
+    try:
+        return make(moved).advance(Body(0.0, 0.0, 0.0), Nothing(), Nothing(), 0.1)
+    except NotIntegrable as refusal:
+        return str(refusal)
+
+
+@settings(max_examples=40)
+@given(kinks=st.integers(1, 80), jump=st.floats(0.1, 100.0))
+def test_kinks_without_indicators_cost_as_many_steps_as_in_python(
+    integrator: MakeIntegrator, kinks: int, jump: float
+) -> None:
+    """Until there are too many, and the rest is left to the implicit method."""
+    kinked = block(lambda x, u, p: Body(1.0, jump * (int(10.0 * kinks * x.x) % 2), 0.0), lambda x: 1.0)
+    assert end_of(integrator, kinked) == end_of(Integrator, kinked)
+
+
 @given(
     turn=st.floats(0.001, 0.099),
     depth=st.floats(-1e-3, 1e-2),
@@ -206,6 +240,14 @@ def test_it_looks_for_an_excursion_where_python_does(
     start = Body(top - side * 0.5 * g * turn**2, side * g * turn, 0.0)
     looked_at = looks(lambda x: Body(x.v, -side * g, 0.0), start, lambda x: x.x, lambda x: x.x + side * other)
     assert looked_at(integrator) == looked_at(Integrator)
+
+
+@pytest.mark.parametrize("power", [6, 12, 60, 150, 290])
+def test_a_block_that_leaves_all_numbers_is_left_to_the_implicit_method_as_in_python(
+    integrator: MakeIntegrator, power: int
+) -> None:
+    wild = block(lambda x, u, p: Body(-(10.0**power) * (x.x - 1.0), 1.0, 0.0), lambda x: 1.0)
+    assert end_of(integrator, wild) == end_of(Integrator, wild)
 
 
 @settings(max_examples=60)
@@ -224,29 +266,39 @@ Rates = Callable[[Body, float], Body]
 Zero = Callable[[Body, float], float]
 
 
-def watched(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body]]:
-    """A block with one number as its input, and where its derivative is asked for."""
+def watched(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], list[float]]:
+    """A block with one number as its input, where its derivative is asked for, and what its indicator answered."""
     asked: list[Body] = []
+    zeros: list[float] = []
 
     def watch(x: Body, u: float, _p: Any) -> Body:
         asked.append(x)
         return derivative(x, u)
 
-    return replace(block(watch), event_indicators=lambda x, u, p: (zero(x, u),)), asked
+    def indicators(x: Body, u: float, _p: Any) -> tuple[float]:
+        zeros.append(zero(x, u))
+        return (zeros[-1],)
+
+    return replace(block(watch), event_indicators=indicators), asked, zeros
 
 
 def ends_with_moving_input(
     integrator: MakeIntegrator, derivative: Rates, start: Body, slope: float, zero: Zero = lambda x, u: 1.0
-) -> None:
-    """Of C, whose input moves from start.beyond at that rate, and of Python, where it is the third state."""
-    with_input, asked = watched(derivative, zero)
-    as_state, asked_in_python = watched(
+) -> tuple[list[float], list[float]]:
+    """Are the same in C, whose input moves from start.beyond at that rate, and in Python, where it is the third state.
+
+    Returns:
+        What the indicator answered, in both.
+    """
+    with_input, asked, zeros = watched(derivative, zero)
+    as_state, asked_in_python, zeros_in_python = watched(
         lambda x, _u: derivative(x, x.beyond)._replace(beyond=slope), lambda x, _u: zero(x, x.beyond)
     )
     end = integrator(with_input).advance(start._replace(beyond=0.0), start.beyond, Nothing(), 0.1, slope)
     wanted = Integrator(as_state).advance(start, 0.0, Nothing(), 0.1)
     assert end[:2] == pytest.approx(wanted[:2], abs=20.0 * TOLERANCE)
     assert len(asked) <= 1.5 * len(asked_in_python) + 20
+    return zeros, zeros_in_python
 
 
 @settings(max_examples=60)
@@ -270,3 +322,24 @@ def test_a_zero_that_moves_with_an_input_is_located(
     ends_with_moving_input(
         integrator, lambda x, u: Body(x.v, -1e4 * max(x.x - u, 0.0), 0.0), start, slope, lambda x, u: x.x - u
     )
+
+
+@given(
+    turn=st.floats(0.001, 0.099),
+    depth=st.floats(1e-6, 1e-2),
+    side=st.sampled_from([-1.0, 1.0]),
+    slope=st.floats(-100.0, 100.0),
+)
+def test_an_excursion_beyond_a_zero_that_moves_is_found(
+    integrator: MakeIntegrator, turn: float, depth: float, side: float, slope: float
+) -> None:
+    """A body thrown up to `depth` beyond what moves, where it turns at the time `turn`."""
+    g = 50.0
+    start = Body(side * (depth - 0.5 * g * turn**2), side * g * turn + slope, 0.0)
+
+    def thrown(x: Body, u: float) -> Body:
+        return Body(x.v, -side * g, 0.0)
+
+    zeros = ends_with_moving_input(integrator, thrown, start, slope, lambda x, u: x.x - u)
+    apart = np.abs(np.subtract.outer(*zeros))
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-6, "they look at other places"
