@@ -124,25 +124,26 @@ static double try_step(const Problem *problem, const Start *from, Vector J[STATE
     }
     double total = 0.0;
     for (int n = 0; n < STATES; n++) {
-        const double last = found[STAGES - 1][n], x = fabs(from->x[n]);
+        const double last = found[STAGES - 1][n];
         end[n] = at[n] + last;
-        const double e = last / (TOLERANCE * ((fabs(end[n]) > x ? fabs(end[n]) : x) + small[n]));
+        const double e = last / (TOLERANCE * (fmax(fabs(from->x[n]), fabs(end[n])) + small[n]));
         total += e * e;
     }
     return sqrt(total / (double)STATES);
 }
 
+/* How fast state n changes for its size. */
+static double pace(const Start *from, int n)
+{
+    return fabs(from->dx[n]) / (fabs(from->x[n]) + small[n]);
+}
+
 int fastest(const Start *from)
 {
-    double most = 0.0;
     int found = 0;
-    for (int n = 0; n < STATES; n++) {
-        const double changes = fabs(from->dx[n]) / (fabs(from->x[n]) + small[n]);
-        if (n == 0 || changes > most) {
-            most = changes;
+    for (int n = 0; n < STATES; n++)
+        if (pace(from, n) > pace(from, found))
             found = n;
-        }
-    }
     return found;
 }
 
@@ -163,8 +164,7 @@ int integrate_stiff(const Problem *problem, Start *from, double duration)
         } else if (length < SHORTEST_STEP) {
             break;
         }
-        const double next = length * change(error, 2);
-        length = next < left ? next : left;
+        length = fmin(length * change(error, 2), left);
     }
     return 1 + fastest(from);
 }

@@ -215,6 +215,28 @@ def end_of(make: MakeIntegrator, moved: ContinuousBlock) -> Body | str:
         return str(refusal)
 
 
+@pytest.mark.parametrize("which", ["x", "v", "beyond"])
+def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, which: str) -> None:
+    """The state that changes fastest is named."""
+
+    def pushed(x: Body) -> Body:
+        return Body(0.0, 0.0, 0.0)._replace(**{which: -1.0 if getattr(x, which) > 0.0 else 0.5})
+
+    asked: list[set[Body]] = []
+    for make in (integrator, Integrator):
+        asked.append(set())
+
+        def watch(x: Body, _u: Any, _p: Any) -> Body:
+            asked[-1].add(x)
+            return pushed(x)
+
+        with pytest.raises(NotIntegrable, match=which):
+            make(block(watch, lambda x: getattr(x, which))).advance(
+                Body(0.0, 0.0, 0.0)._replace(**{which: 0.03}), Nothing(), Nothing(), 0.1
+            )
+    assert asked[0] == asked[1]
+
+
 @settings(max_examples=40)
 @given(kinks=st.integers(1, 80), jump=st.floats(0.1, 100.0))
 def test_kinks_without_indicators_cost_as_many_steps_as_in_python(
