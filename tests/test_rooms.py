@@ -27,10 +27,11 @@ ROOMS = {
     "harness.metrics": {"harness", "harness.manoeuvres"},
     "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
+    "harness.linear": {"harness", "harness.metrics", "models", "models.block", "models.controller"},
     "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports"},
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
-    | {"models", "models.block", "models.controller"},
+    | {"harness.linear", "models", "models.block", "models.controller"},
     "harness.tuning": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"},
     "harness": COSIMULATION
@@ -38,10 +39,10 @@ ROOMS = {
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
-    | {"harness.faults", "harness.tuning"},
+    | {"harness.faults", "harness.linear", "harness.tuning"},
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
-the analysis knows the models."""
+the analysis and its linear loop know the models."""
 
 
 def modules() -> Iterator[str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from fmus.parameter_files import read_vehicle
 
 from ..control_loop import PLANTS
+from ..linear.modes import swing
 from ..many import run_many
 from ..metrics.declaration import declared
 from ..metrics.record import Metrics
@@ -14,7 +15,6 @@ from ..reports.files import write_text
 from ..reports.markdown import markdown_table
 from ..reports.table import number
 from .cars import Gains, Trial, measured, own_gains
-from .closed_loop import swing
 from .design import design
 from .weights import records
 

@@ -5,10 +5,7 @@ values of that instant, and every torque between two instants is the true one. T
 the dead time of the master are measured against it; it runs the models themselves.
 """
 
-from collections import namedtuple
 from collections.abc import Callable, Mapping
-from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +13,8 @@ import numpy as np
 from models import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
 from models.block.runner import runner
 from models.block.types import Block, ContinuousBlock
+
+from ..linear.driven import motor_and_plant
 
 INTERVAL = wheel_speed_can.T_S
 """Interval in s of the results; the sample times of all blocks are whole multiples of it."""
@@ -30,40 +29,6 @@ Signals = Callable[[int], tuple[float, float, float]]
 
 Received = Callable[[float, Any], Any]
 """Time in s and what was sent to the controller -> what it receives."""
-
-
-@cache
-def motor_and_plant(plant: ContinuousBlock) -> ContinuousBlock:
-    """Motor and plant as one continuous block; its input is that of the plant with T_ref for T_mot."""
-    split = len(MOTOR.State._fields)
-    motor_declared = {f"motor_{name}": declared for name, declared in MOTOR.State.__annotations__.items()}
-    declared = motor_declared | plant.State.__annotations__
-    State: Any = namedtuple("State", declared)
-    State.__annotations__ = declared
-
-    def parts(x: Any, u: Any) -> tuple[Any, Any, Any, Any]:
-        x_motor, x_plant = MOTOR.State(*x[:split]), plant.State(*x[split:])
-        u_motor = MOTOR.Input(T_ref=u.T_mot, omega_1=x_plant.omega_1)
-        return x_motor, u_motor, x_plant, u._replace(T_mot=x_motor.T_mot)
-
-    def start(u: Any, p: Any) -> Any:
-        x_plant = plant.start(u, p[1])
-        return State(*MOTOR.start(MOTOR.Input(u.T_mot, x_plant.omega_1), p[0]), *x_plant)
-
-    def derivative(x: Any, u: Any, p: Any) -> Any:
-        x_motor, u_motor, x_plant, u_plant = parts(x, u)
-        return State(*MOTOR.derivative(x_motor, u_motor, p[0]), *plant.derivative(x_plant, u_plant, p[1]))
-
-    def output(x: Any, u: Any, p: Any) -> Any:
-        x_motor, u_motor, x_plant, u_plant = parts(x, u)
-        return MOTOR.output(x_motor, u_motor, p[0]), plant.output(x_plant, u_plant, p[1])
-
-    def event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
-        _, _, x_plant, u_plant = parts(x, u)
-        return plant.event_indicators(x_plant, u_plant, p[1])
-
-    functions = {"start": start, "derivative": derivative, "output": output, "event_indicators": event_indicators}
-    return replace(plant, State=State, **functions)
 
 
 def run(

@@ -67,9 +67,9 @@ def designed(vehicle: Path | None = None) -> str:
     """
     from fmus.parameter_files import read_vehicle
 
-    from ..analysis.closed_loop import swing
     from ..analysis.design import design, gains_file
     from ..analysis.weights import records
+    from ..linear.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
     gains = design(plant, motor, can)

@@ -6,11 +6,11 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from harness.analysis.closed_loop import closed_loop, modes, swing
 from harness.analysis.design import design, landing_torque
 from harness.analysis.kalman import DesignError, motor_speed_gains, process_noise, transition
 from harness.analysis.weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
 from harness.commands.design import designed
+from harness.linear.modes import swing
 from models.block.declaration import variables
 from models.damping_controller import BLOCK
 from tests import ROOT
@@ -117,30 +117,6 @@ def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
     A = transition(PLANT, 0.9)
     assert A[3].tolist() == [0.0, 0.0, 0.0, 1.0]
     assert np.all(np.linalg.eigvalsh(process_noise(PLANT, MOTOR, drive_train(PLANT, MOTOR, CAN), WEIGHTS)) > 0.0)
-
-
-@pytest.mark.parametrize(
-    "car", [{}, SECOND_CAR, {"phi_B": 0.0}, {"C": 58.7, "m": 900.0}, {"phi_B": 0.314, "m": 3500.0}]
-)
-def test_the_loop_is_stable_in_contact_and_swings_less_than_without_damping(car: dict[str, float]) -> None:
-    plant, motor, can = records(car)
-    gains = design(plant, motor, can)
-    poles = np.abs(np.linalg.eigvals(closed_loop(plant, motor, gains)))
-    assert np.sort(poles)[-2] < 1.0, "all but one,"
-    assert poles.max() == pytest.approx(1.0), "the speed of the car"
-    alone, damped = swing(plant, motor, gains)
-    assert alone.damping_ratio == pytest.approx(0.0, abs=1e-6)
-    assert damped.damping_ratio > 0.4
-
-
-def test_without_feedback_the_loop_has_the_modes_of_its_parts() -> None:
-    found = modes(closed_loop(PLANT, MOTOR, design() | {"k_d": 0.0, "k_T": 0.0}))
-    wheels = PLANT.J_2 + PLANT.m * PLANT.r**2 / PLANT.i**2
-    omega_0 = sqrt(PLANT.C * (1.0 / PLANT.J_1 + 1.0 / wheels))
-    expected = [(omega_0 / (2.0 * pi), 0.0), (1.0 / (2.0 * pi * MOTOR.tau), sqrt(0.5))]
-    for frequency, damping_ratio in expected:
-        near = min(found, key=lambda mode: abs(mode.frequency - frequency))
-        assert near == pytest.approx((frequency, damping_ratio), abs=1e-6)
 
 
 @pytest.mark.parametrize(

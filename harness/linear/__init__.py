@@ -1,0 +1,1 @@
+"""The loop as a linear system, derived from the functions of its blocks: margins, poles, describing functions."""

@@ -1,0 +1,79 @@
+"""Rates of change of a function of records, by differences: where it is made of straight pieces, they are exact."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import DrivelineError
+
+STEP = 1e-4
+"""By which every quantity is moved to either side, in its unit; small beside all that is not a rounding error."""
+
+BENT = 1e-5
+"""Difference of the rates to both sides, over the larger one or 1, from which on a function has a kink there."""
+
+
+class NotLinear(DrivelineError):
+    """A function has a kink where its rates of change are asked for; the text names the quantities."""
+
+
+class Rates(NamedTuple):
+    """Rates of change of some quantities (rows) over others (columns), to either side.
+
+    Attributes:
+        forward, backward: matrices (rows, columns).
+    """
+
+    forward: np.ndarray
+    backward: np.ndarray
+
+    @property
+    def mean(self) -> np.ndarray:
+        return 0.5 * (self.forward + self.backward)
+
+    @property
+    def bent(self) -> np.ndarray:
+        """Where there is a kink."""
+        larger = np.maximum(np.abs(self.forward), np.abs(self.backward))
+        return np.abs(self.forward - self.backward) > BENT * np.maximum(larger, 1.0)
+
+
+def names(record: Any, prefix: str = "") -> list[str]:
+    """Names of the numbers in a record, `estimator.estimate.phi`, in their order."""
+    if not isinstance(record, tuple):
+        return [prefix]
+    fields = getattr(type(record), "_fields", range(len(record)))
+    inner = zip(fields, record, strict=True)
+    return [name for field, item in inner for name in names(item, f"{prefix}.{field}" if prefix else str(field))]
+
+
+def numbers(record: Any) -> list[Any]:
+    """The numbers in a record, in their order."""
+    return [number for item in record for number in numbers(item)] if isinstance(record, tuple) else [record]
+
+
+def like(record: Any, values: Sequence[Any]) -> Any:
+    """A record of the shape of another with these numbers."""
+    left = iter(values)
+
+    def made(item: Any) -> Any:
+        if not isinstance(item, tuple):
+            return next(left)
+        return getattr(type(item), "_make", tuple)([made(inner) for inner in item])
+
+    return made(record)
+
+
+def rates(function: Callable[[Sequence[Any]], Sequence[Any]], at: Sequence[Any], columns: Sequence[int]) -> Rates:
+    """Rates of change of what a function of numbers gives, over the numbers of these indices, at a point."""
+    here = np.array(function(at), dtype=float)
+
+    def moved(k: int, step: float) -> np.ndarray:
+        there = list(at)
+        there[k] += step
+        return (np.array(function(there), dtype=float) - here) / step
+
+    empty = np.zeros((len(here), 0))
+    forward, backward = (np.column_stack([empty, *(moved(k, h) for k in columns)]) for h in (STEP, -STEP))
+    return Rates(forward, backward)
