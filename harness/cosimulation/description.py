@@ -18,6 +18,8 @@ from .limits import USUAL, Limits
 
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 
+WHOLE = re.compile(r"[+-]?[0-9]{1,19}")
+
 
 def read(path: Path, limits: Limits = USUAL) -> ModelDescription:
     """The model description of an FMU.
@@ -28,10 +30,8 @@ def read(path: Path, limits: Limits = USUAL) -> ModelDescription:
     if not path.is_file():
         raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
     text = described(path, limits)
-    if b"<!DOCTYPE" in text:
-        raise WiringError(f"the model description of {path} declares a document type, which FMI does not know")
     try:
-        root = ElementTree.parse(BytesIO(text)).getroot()
+        root = ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
     except Exception as error:  # what it raises depends on the encoding that the text claims to have
         raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
     cosimulation = root.find("CoSimulation")
@@ -47,6 +47,13 @@ def read(path: Path, limits: Limits = USUAL) -> ModelDescription:
     except Exception as error:  # fmpy raises bare exceptions
         reason = plain(error if type(error) is Exception else f"{type(error).__name__} {error}")
         raise WiringError(f"the model description of {path} cannot be read: {reason}") from error
+
+
+class _Elements(ElementTree.TreeBuilder):
+    """Those of a text, in whatever encoding, that stands for itself: no entities, no other files."""
+
+    def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
+        raise ValueError("it declares a document type, which FMI does not know")
 
 
 def _problems(root: Element, cosimulation: Element) -> Iterator[str]:
@@ -114,8 +121,7 @@ def _above_zero(text: str) -> bool:
 
 
 def _whole(text: str, lowest: int = -(2**31), highest: int = 2**31 - 1) -> bool:
-    digits = text.strip().lstrip("+-")
-    return digits.isdecimal() and len(digits) < 20 and lowest <= int(text) <= highest
+    return bool(WHOLE.fullmatch(text.strip())) and lowest <= int(text) <= highest
 
 
 def _reference(text: str) -> bool:

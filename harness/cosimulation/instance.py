@@ -170,14 +170,13 @@ def label(name: str, interface: Interface) -> str:
 
 
 def _typed(instance: str, name: str, kind: str, value: float) -> float:
-    whole = {"Real": False, "Integer": True, "Boolean": True}
-    if kind not in whole:
-        raise WiringError(f"{instance}.{name} is a {kind}; only numbers and truth values can be set")
+    if kind == "Real":
+        return float(value)
     if kind == "Boolean" and value not in (0, 1):
         raise WiringError(f"{instance}.{name} = {value:g}: it must be true (1) or false (0)")
-    if whole[kind] and not (abs(value) < 2**31 and value == int(value)):
+    if not (abs(value) < 2**31 and value == int(value)):
         raise WiringError(f"{instance}.{name} = {value:g}: it must be a whole number of less than 2^31")
-    return int(value) if whole[kind] else float(value)
+    return int(value)
 
 
 @contextmanager

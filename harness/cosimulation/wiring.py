@@ -1,5 +1,6 @@
 """Whether FMUs fit together: names, causality, types and units, checked before anything runs."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
@@ -7,6 +8,7 @@ from fmpy.model_description import ModelVariable
 
 from ..errors import WiringError
 from ..names import nearest
+from ..plain import plain
 from . import mapping
 from .interface import Interface, type_of, unit_of
 from .system import Connection, Port, System
@@ -45,6 +47,7 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     problems = list(mapping.apply(system, interfaces))
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
     found = Fit(system.without(absent), interfaces, absent)
+    problems += _twins(interfaces)
     require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
     return found
 
@@ -61,7 +64,10 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
     for causality, names in {"input": inputs, "parameter": parameters}.items():
         for name in names:
             if name not in fitted.absent:
-                yield from find(name, causality, fitted.interfaces)[1]
+                variable, missing = find(name, causality, fitted.interfaces)
+                yield from missing
+                if variable and type_of(variable) == "String":
+                    yield f"{name} is a String; only numbers and truth values can be set"
             if name in targets:
                 yield f"{name} is fed more than once"
 
@@ -70,6 +76,15 @@ def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:
     instance, _, variable = name.partition(".")
     interface = interfaces.get(instance)
     return interface is not None and variable not in interface.variables.keys() | interface.refused
+
+
+def _twins(interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    """What an FMU has more than one of, by a name that is then no name."""
+    for instance, interface in interfaces.items():
+        variables = [v for v in interface.description.modelVariables if v.causality in ("input", "output", "parameter")]
+        for name, number in Counter(str(v.name) for v in variables).items():
+            if number > 1:
+                yield f"{instance}: {interface.path.name} has {number} variables of the name {plain(name)}"
 
 
 def _misfits(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:

@@ -61,6 +61,7 @@ def test_an_archive_may_unpack_to_the_limit_and_no_further(stranger, tmp_path):
         ('<Real unit="N.m" start="0"/>', '<Real unit="N.m" start="NaN"/>', "start of T_mot is 'NaN'"),
         ('<Real unit="N.m" start="0"/>', "", "T_mot has no type"),
         ('<Real unit="N.m" start="0"/>', '<Integer start="1.5"/>', "start of T_mot is '1.5'"),
+        ('<Real unit="N.m" start="0"/>', '<Integer start="+-1"/>', r"start of T_mot is '\+-1'"),
         ('<Real unit="N.m" start="0"/>', '<Boolean start="maybe"/>', "start of T_mot is 'maybe'"),
         (
             '<Real unit="N.m" start="0"/>',
@@ -88,6 +89,17 @@ def test_a_description_that_cannot_be_used_is_named(stranger, tmp_path, old, new
         Interface(path)
     assert "faulty.fmu" in str(error.value)
     assert str(error.value).isprintable()
+
+
+def test_a_document_type_is_found_in_any_encoding(stranger, tmp_path):
+    def hidden(xml: str) -> str:
+        _, _, rest = xml.partition("?>")
+        declared = '<!DOCTYPE x [<!ENTITY name "T_brake">]>'
+        return '<?xml version="1.0" encoding="UTF-16"?>' + declared + rest.replace('name="T_brake"', 'name="&name;"')
+
+    path = tampered(stranger, tmp_path / "faulty.fmu", hidden, encoding="utf-16")
+    with pytest.raises(WiringError, match="declares a document type"):
+        Interface(path)
 
 
 def test_an_archive_without_a_description_is_none(tmp_path):

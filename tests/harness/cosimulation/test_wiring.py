@@ -1,5 +1,6 @@
 """Whether FMUs fit together is known before the run: the two plants do, foreign ones are told why not."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -80,6 +81,26 @@ def test_a_misnamed_variable_is_named(built, tmp_path, old, new, complaint):
     plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(old, new, 1))
     with pytest.raises(WiringError, match=complaint):
         simulate(MANOEUVRES["tipin15"], plant, folder=built)
+
+
+def test_a_name_that_two_variables_have_is_refused(built, tmp_path):
+    plant = tampered(
+        built / f"{PLANTS[0]}.fmu", tmp_path / "twins.fmu", lambda xml: xml.replace('name="J_1"', 'name="J_2"', 1)
+    )
+    with pytest.raises(WiringError, match=r"^plant: twins\.fmu has 2 variables of the name J_2$"):
+        simulate(SHORT, plant, parameters={"plant.J_2": 0.3}, folder=built)
+
+
+def test_a_text_cannot_be_set(built, tmp_path):
+    def change(xml):
+        return re.sub(r'(name="(?:enable|k_d)"[^>]*>\s*)<\w+[^>]*/>', r'\1<String start="x"/>', xml)
+
+    controller = tampered(built / "DampingController.fmu", tmp_path / "theirs.fmu", change)
+    with pytest.raises(WiringError) as error:
+        simulate(SHORT, controller=controller, parameters={"controller.k_d": 2.0}, folder=built)
+    assert str(error.value).splitlines() == [
+        f"controller.{name} is a String; only numbers and truth values can be set" for name in ("enable", "k_d")
+    ]
 
 
 def in_unit(name, old, new):
