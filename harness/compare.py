@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .errors import DrivelineError
 from .manoeuvres.catalogue import MANOEUVRES
 from .many import run_many
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
+from .names import require_different
 from .reports.csv_file import write_csv
 from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
@@ -73,10 +73,7 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     Raises:
         DrivelineError: two plants have the same name, by which their files would be told apart.
     """
-    names = [Path(plant).stem for plant in plants]
-    for name in names:
-        if names.count(name) > 1:
-            raise DrivelineError(f"two plants are called {name}; rename the file of one")
+    require_different(plants)
     return [
         Case(plant, manoeuvre, control) for plant in plants for manoeuvre in manoeuvres for control in (False, True)
     ]

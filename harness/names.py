@@ -1,7 +1,10 @@
-"""Sentences about names that are not known."""
+"""Names: what to say of one that is not known, and whether they tell plants apart."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from pathlib import Path
+
+from .errors import DrivelineError
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -15,3 +18,15 @@ def nearest(name: str, known: Iterable[str]) -> str:
     if close:
         return f"did you mean {' or '.join(close)}?"
     return f"known are: {', '.join(names)}"
+
+
+def require_different(plants: Iterable[str | Path]) -> None:
+    """Refuses plants, by name or file, that tables and files could not tell apart.
+
+    Raises:
+        DrivelineError: two have the same name.
+    """
+    names = [Path(plant).stem for plant in plants]
+    for name in names:
+        if names.count(name) > 1:
+            raise DrivelineError(f"two plants are called {name}; rename the file of one")

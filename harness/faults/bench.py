@@ -15,6 +15,7 @@ from ..cosimulation.wiring import Fit, fit
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal, lines
 from ..metrics.evaluate import at_samples
+from ..names import require_different
 from ..simulate import looped, signals, start
 from ..stale import warn_of_stale
 from .cases import DURATION, SITUATIONS, Case, Fault
@@ -78,7 +79,11 @@ class Bench:
         Args:
             injector: FMU of SignalFaults.
             settings: of the loop with each plant.
+
+        Raises:
+            DrivelineError: two plants have the same name, by which the cases are told apart.
         """
+        require_different(settings)
         self._injector = injector
         self._settings = settings
         self._made: dict[Any, np.ndarray] = {}

@@ -12,7 +12,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
 from .bench import Runs
-from .campaign import Outcome
+from .campaign import Outcome, count
 from .cases import SITUATIONS, Case
 from .catalogue import KINDS
 from .judges import JUDGES
@@ -40,13 +40,7 @@ def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Pat
 
 def _by_judge(outcomes: Sequence[Outcome]) -> np.ndarray:
     """For each kind and judge: cases not clean, cases."""
-    return np.array(
-        [
-            [(sum(judge.name in each.failed for each in of_kind), len(of_kind)) for judge in JUDGES]
-            for kind in KINDS
-            for of_kind in [[outcome for outcome in outcomes if kind in outcome.kinds]]
-        ]
-    )
+    return np.array([[count(outcomes, kind, judge.name) for judge in JUDGES] for kind in KINDS])
 
 
 def _by_situation(outcomes: Sequence[Outcome]) -> np.ndarray:

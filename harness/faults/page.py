@@ -6,7 +6,8 @@ from ..reports.markdown import markdown_table
 from .campaign import Outcome, count
 from .cases import DURATION, SITUATIONS
 from .catalogue import KINDS
-from .judges import JUDGES, Judge
+from .evidence import HEARD, SHARE, WRONG_SPEED
+from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
 
 PAGE = """\
 # The controller under faults
@@ -33,15 +34,15 @@ and lasts 10 ms to 1 s, uniform in the logarithm, if nothing else is said (0.2 t
 
 {judges}
 
-*Wrong* is a motor signal that is no number, a torque beyond twice T_max, or a motor speed that is more than 40 rad/s
-and 6 % off while a wheel speed that has been valid for 0.06 s says so.
-*Fallback* is called for by a fault of a motor signal, in the 0.5 s after it too; by a wheel speed that is wrong and has
-drifted away from the motor speed, or was wrong from its first message on, since then nothing tells which of the two is;
-and by a motor that turns faster than `omega_max`, as it does when wheels spin on ice to the end of a run.
+*Wrong* is a motor signal that is no number, a torque beyond twice T_max, or a motor speed that is more than
+{off:g} rad/s and {share:g} % off while a wheel speed that has been valid for {heard:g} s says so.
+*Fallback* is called for by a fault of a motor signal, in the {back:g} s after it too; by a wheel speed that is wrong
+and has drifted away from the motor speed, or was wrong from its first message on, since then nothing tells which of the
+two is; and by a motor that turns faster than `omega_max`, as it does when wheels spin on ice to the end of a run.
 *Back* counts a wheel speed as missing from the second sample on in which it is valid: controllers answer with the next.
 A *kick* is what is beyond both nothing and the torque added without the fault. What the swing calls for is how much
 the gear torque differed from the run without the fault in the 0.2 s before. Beside an undamped gear torque below
-1 N.m rms (5 N.m of swing), as in standing, these stand in its place.
+{least_rms:g} N.m rms ({least_swing:g} N.m of swing), as in standing, these stand in its place.
 
 ## Single faults
 
@@ -92,6 +93,12 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
             ((s.name, s.description, f"{s.first:g} and {s.last:g}") for s in SITUATIONS.values()),
             labels=2,
         ),
+        off=WRONG_SPEED,
+        share=100.0 * SHARE,
+        heard=HEARD,
+        back=BACK,
+        least_rms=LEAST_RMS,
+        least_swing=LEAST_SWING,
         judges=markdown_table(["judge", "what it measures", "unit", "limit"], map(_judge, JUDGES), labels=3),
         matrix=_matrix(singles),
         pair_matrix=_matrix(pairs),

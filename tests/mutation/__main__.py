@@ -17,18 +17,16 @@ from workers import survivors
 LEAST_SCORE = 0.95
 
 CONTROLLER = (
-    *(
-        "damping_law",
-        "fading",
-        "rest",
-        "signal_monitor",
-        "supervised",
-        "supervision",
-        "swings",
-        "torque_estimator",
-        "trust",
-    ),
+    "damping_law",
+    "fading",
+    "rest",
+    "signal_monitor",
+    "supervised",
+    "supervision",
+    "swings",
+    "torque_estimator",
     "torque_loop",
+    "trust",
     "wheel_monitor",
 )
 WHOLE_CONTROLLER = "tests/models/controller", "tests/models/test_damping_controller.py"

@@ -9,7 +9,7 @@ from harness.control_loop import loop
 from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.runs import run
 from harness.cosimulation.wiring import fit
-from harness.errors import WiringError
+from harness.errors import DrivelineError, WiringError
 from harness.faults import catalogue, evidence
 from harness.faults.bench import Bench, with_faults
 from harness.faults.campaign import campaign
@@ -18,7 +18,7 @@ from harness.faults.catalogue import KINDS, LOCK, SPIN
 from harness.faults.page import page
 from harness.simulate import signals, start
 from models import signal_faults
-from models.controller import supervision
+from models.controller import supervision, wheel_monitor
 from tests.foreign import tampered
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
@@ -45,6 +45,16 @@ def test_faults_and_states_are_numbered_as_in_the_models():
         assert getattr(catalogue, name) == getattr(signal_faults, name)
     for name in ("WITH_WHEEL_SPEED", "WITHOUT_WHEEL_SPEED", "FALLBACK"):
         assert getattr(evidence, name) == getattr(supervision, name)
+
+
+def test_a_contradiction_and_a_leap_are_what_the_controller_takes_for_them():
+    assert supervision.Parameters().e_wheel == evidence.APART
+    assert (wheel_monitor.SHARE, wheel_monitor.LEAP) == (evidence.SHARE, evidence.LEAP)
+
+
+def test_plants_of_the_same_name_are_refused(tmp_path):
+    with pytest.raises(DrivelineError, match="two plants are called car"):
+        campaign(range(1, 3), 1, tmp_path / "SignalFaults.fmu", {"mine/car.fmu": {}, "theirs/car.fmu": {}})
 
 
 def test_half_of_the_cases_are_pairs_of_different_kinds():
