@@ -60,15 +60,15 @@ def build_car(folder: Path, **theirs: tuple[str, str, float]) -> Path:
     return tampered(build_relay(folder, script), folder / "Theirs.fmu", with_units)
 
 
-def tampered(fmu: Path, copy: Path, change: Callable[[str], str], encoding: str = "utf-8", **added: bytes) -> Path:
-    """Copies an FMU with its model description changed, in that encoding, and files added (path -> content)."""
+def tampered(fmu: Path, copy: Path, change: Callable[[str], str], **added: bytes) -> Path:
+    """Copies an FMU with its model description changed and files added (path -> content)."""
     with ZipFile(fmu) as source, ZipFile(copy, "w") as target:
         for entry in source.infolist():
             content = source.read(entry)
             if entry.filename == DESCRIPTION:
                 changed = change(content.decode("utf-8"))
                 assert changed.encode("utf-8") != content or added, "nothing was changed"
-                content = changed.encode(encoding)
+                content = changed.encode("utf-8")
             target.writestr(entry, content)
         for path, content in added.items():
             target.writestr(path, content)
