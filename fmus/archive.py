@@ -15,7 +15,8 @@ def write_archive(files: Mapping[str, bytes], target: Path) -> None:
     """Writes the zip archive; one that is there is replaced when the new one is complete. A link stays one.
 
     Raises:
-        OSError: its folder is a file, or what has its name is no file, or links lead round in a circle.
+        OSError: its folder is a file, or what has its name is no file, or links lead round in a circle; it cannot be
+            written, as on a full disk.
     """
     link, target = target, Path(os.path.realpath(target))
     if target.is_symlink():
@@ -29,6 +30,8 @@ def write_archive(files: Mapping[str, bytes], target: Path) -> None:
     try:
         _write(files, unfinished)
         os.replace(unfinished, target)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(target)) from error
     finally:
         unfinished.unlink(missing_ok=True)
 

@@ -17,7 +17,7 @@ from .errors import DrivelineError
 from .names import nearest
 from .plain import plain
 from .progress import hidden
-from .stopping import forget_stdout, stoppable
+from .stopping import forget_stdout, reopen_closed_streams, stoppable
 
 COMMANDS = {
     "build": "build the FMUs",
@@ -133,6 +133,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: without the name of the program; None for those of the process.
     """
     name = "driveline"
+    reopen_closed_streams()
     try:
         with stoppable():
             try:
@@ -141,8 +142,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 with hidden(getattr(args, "quiet", False) or getattr(args, "json", False)):
                     return command(args.command).run(args)
             finally:
-                if sys.stdout:
-                    sys.stdout.flush()
+                sys.stdout.flush()
     except BrokenPipeError:
         forget_stdout()  # the reader has gone
         return 1

@@ -1,4 +1,5 @@
-"""How a process is stopped: at the keyboard, by a signal that ends processes, or by a reader that has gone."""
+"""How a process is stopped: at the keyboard, by a signal that ends processes, or by a reader that has gone or never
+was."""
 
 import os
 import signal
@@ -89,6 +90,16 @@ def uninterrupted_children() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def reopen_closed_streams() -> None:
+    """What is printed to a stream that was closed before the process began goes nowhere, and the number of the stream
+    is taken, so that no file that is opened later gets what an FMU or another process prints."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            stream = open(os.devnull, mode, encoding="utf-8")  # noqa: SIM115 (open as long as the process)
+            os.set_inheritable(stream.fileno(), True)
+            setattr(sys, name, stream)
 
 
 def forget_stdout() -> None:

@@ -19,23 +19,35 @@ def complete(path: Path) -> Iterator[Path]:
 
     Raises:
         IsADirectoryError: there is a folder of that name.
-        OSError: links lead round in a circle; it is a pipe that nobody reads.
+        OSError: links lead round in a circle; it is a pipe that nobody reads; it cannot be written, as on a full disk.
     """
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; a file is needed")
-    if path.exists() and not replaceable(path):
-        with _read(path):
-            yield path
-        return
-    path = destination(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
-    with _noted(unfinished):
-        try:
-            yield unfinished
-            os.replace(unfinished, path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+    with _naming(path):
+        if path.exists() and not replaceable(path):
+            with _read(path):
+                yield path
+            return
+        path = destination(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
+        with _noted(unfinished):
+            try:
+                yield unfinished
+                os.replace(unfinished, path)
+            finally:
+                unfinished.unlink(missing_ok=True)
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """An error of the system that names no file, as that of a full disk, names this one."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None or error.filename is not None:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def replaceable(path: Path) -> bool:

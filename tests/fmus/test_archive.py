@@ -2,6 +2,7 @@
 
 import ast
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,23 @@ def test_links_that_lead_round_in_a_circle_are_refused(tmp_path: Path) -> None:
         with pytest.raises(OSError, match=r"symbolic links: '.*/a\.fmu'"):
             write(tmp_path / "a.fmu")
     assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a limit on the size of files")
+@pytest.mark.parametrize("write", [write_archive, lambda _, path: write_text("text" * 100, path)])
+def test_what_does_not_fit_is_told_with_its_file_and_leaves_nothing(
+    tmp_path: Path, write: Callable[[dict[str, bytes], Path], None]
+) -> None:
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50, hard))
+    try:
+        with pytest.raises(OSError, match=r"File too large: '.*/of_a_run'"):
+            write(FILES, tmp_path / "of_a_run")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_is_no_regular_file_is_not_replaced(tmp_path: Path) -> None:

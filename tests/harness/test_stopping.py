@@ -99,3 +99,21 @@ def test_a_full_device_is_named_in_one_line() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:
         done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (done.returncode, done.stderr) == (1, "driveline design: [Errno 28] No space left on device\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")
+@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
+def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
+    program = """
+from harness.cli import main
+from harness.many import run_many
+main(["design", "--quiet", "--output", "gains.toml"])
+with open("answers", "w") as file:
+    assert file.fileno() > 2
+    file.write(str(run_many(abs, [-1, -2], workers=2)))
+"""
+    shell = ["sh", "-c", f'exec "$0" -c "$1" {closed}', sys.executable, program]
+    done = subprocess.run(shell, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    assert done.returncode == 0
+    assert (tmp_path / "answers").read_text(encoding="utf-8") == "[1, 2]"
+    assert (tmp_path / "gains.toml").is_file()
