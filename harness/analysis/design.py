@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from math import sqrt
 from typing import Any
 
+from fmus.description.variables import Variable
+
 from .kalman import DesignError, estimator_gains
 from .weights import CAN, MOTOR, PARAMETERS, PLANT, WEIGHTS, Can, DriveTrain, Motor, Plant, Weights, drive_train
 
@@ -81,12 +83,16 @@ def landing_torque(plant: Plant, motor: Motor, train: DriveTrain, weights: Weigh
     return min(soft, bearable) ** 2
 
 
-def gains_file(parameters: Mapping[str, float], comment: str) -> str:
-    """Designed parameters as TOML, to six significant digits, each with its unit and meaning, under a comment."""
+def gains_file(parameters: Mapping[str, float], comment: str, declared: Mapping[str, Variable] = PARAMETERS) -> str:
+    """Designed parameters as TOML, to six significant digits, each with its unit and meaning, under a comment.
+
+    Args:
+        declared: the parameters of the controller.
+    """
     entries = [f"{name} = {float(f'{value:.6g}')!r}" for name, value in parameters.items()]
     width = max(map(len, entries))
     lines = [f"# {line}" for line in comment.splitlines()] + [""]
     for name, entry in zip(parameters, entries, strict=True):
-        declaration: Any = PARAMETERS[name].declaration
+        declaration: Any = declared[name].declaration
         lines.append(f"{entry:{width}}  # {declaration.unit}, {declaration.description}")
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""`driveline design`: computes the gains of the controller for a car."""
+"""`driveline design`: computes the gains of the controller for a car, or searches them."""
 
 import argparse
 from importlib.metadata import version
@@ -9,11 +9,18 @@ from fmus.options import file
 from ..errors import DrivelineError
 from .options import add_printing, add_replace
 from .printing import Printer
+from .searching import add_search, require_search, run_search, write_gains
 
 DESCRIPTION = """\
 Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its
 unit and meaning, or writes them to a file that the other commands take as --parameters. What the vehicle
 file does not name is that of the default car. docs/control.md says how the gains come about.
+
+With --search the parameters of the law are searched instead, for this or another controller: by a cost over all
+manoeuvres on both plants and at corners of the parameter box, see docs/tuning.md. The folder gets all candidates
+(evaluations.csv), what made them (search.json), the gains of the one that is chosen (gains.toml) and the front between
+comfort and response (front.png and .pdf). A search that was stopped goes on there with the same command, and another
+--character chooses from the same candidates.
 """
 
 EXAMPLES = """\
@@ -21,6 +28,9 @@ examples:
   driveline design --vehicle examples/cars/van.toml --output van_gains.toml
   driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
   driveline design                                          the gains for the default car, only printed
+  driveline design --search results/design                  searched, in some minutes
+  driveline design --search results/design --character 0.8  softer, from the same candidates
+  driveline design --search results/washout --controller SpeedWashout
 """
 
 COMMENT = """\
@@ -32,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for option, meaning in (("--vehicle", "the car (default: that of all blocks)"), ("--output", "for the gains")):
         action = parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
         action.complete = "file"  # type: ignore[attr-defined]
+    add_search(parser)
     add_replace(parser)
     add_printing(parser)
 
@@ -40,10 +51,10 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from fmus.errors import ParameterFileError
 
-    from ..provenance import require_same_text
-    from ..reports.files import write_text
-
     try:
+        if args.search is not None:
+            return run_search(args)
+        require_search(args)
         text = designed(args.vehicle)
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
@@ -51,9 +62,7 @@ def run(args: argparse.Namespace) -> int:
     if args.output is None:
         out.say(text.rstrip())
     else:
-        if not args.replace:
-            require_same_text(text, args.output)
-        write_text(text, args.output)
+        write_gains(text, args.output, args.replace)
         out.say(f"gains: {args.output}")
     return 0
 

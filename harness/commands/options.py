@@ -85,7 +85,7 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
     add_limits(parser)
 
 
-def add_fmus(parser: argparse.ArgumentParser) -> None:
+def add_fmus(parser: argparse._ActionsContainer) -> None:
     action = parser.add_argument(
         "--fmus",
         type=folder,

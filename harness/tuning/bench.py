@@ -10,13 +10,15 @@ with bench.opened() as costs_of:
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..analysis.box import deviating
 from ..analysis.design import design
 from ..analysis.weights import records
-from ..control_loop import BUILD, PLACES
+from ..control_loop import BUILD, PLACES, loop
+from ..cosimulation.system import System
 from ..many import many
 from ..metrics.evaluate import evaluate
 from ..metrics.record import Metrics
@@ -54,7 +56,11 @@ class Bench:
     car: Mapping[str, Any] = field(default_factory=dict)
     folder: Path = BUILD
     build: str | None = None
-    runs: Sequence[Run] = RUNS
+    runs: Sequence[Run] = field(default_factory=lambda: RUNS)
+
+    def system(self, plant: str, controller: str) -> System:
+        """The loop with a plant and a controller."""
+        return loop(plant, self.folder, self.build, controller=controller)
 
     def measured(self, trial: Trial) -> Metrics:
         """The metrics of one run."""
@@ -92,10 +98,12 @@ class Bench:
                 for _ in candidates:
                     yield [next(found) for _ in self.runs]
 
-            reference = next(metrics(REFERENCE, [self.reference()]))
+            @cache
+            def reference() -> list[Metrics]:
+                return next(metrics(REFERENCE, [self.reference()]))
 
             def costs_of(candidates: Sequence[Mapping[str, float]]) -> Iterator[Costs]:
                 for found in metrics(self.controller, candidates):
-                    yield costs(self.runs, found, reference)
+                    yield costs(self.runs, found, reference())
 
             yield costs_of

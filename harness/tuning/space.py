@@ -67,6 +67,11 @@ class Space(NamedTuple):
         return {**self.computed, **{each.name: value for each, value in zip(self.searched, values, strict=True)}}
 
 
+def declared_parameters(controller: str) -> dict[str, Variable]:
+    """The parameters of a controller by name, as they are declared."""
+    return {each.name: each for each in interface(EVERY[controller].block) if each.causality == "parameter"}
+
+
 def space(controller: str, car: Mapping[str, Any]) -> Space:
     """What is searched of a controller for a car.
 
@@ -81,7 +86,7 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
         DrivelineError: the controller has nothing to search.
         DesignError: see `harness.analysis.design.design`.
     """
-    declared = {each.name: each for each in interface(EVERY[controller].block) if each.causality == "parameter"}
+    declared = declared_parameters(controller)
     usual, here = _usual(), design(*records(car))
     own = [name for name in usual if name in declared and isclose(declared[name].start, usual[name], rel_tol=SAME)]
     searched = [
