@@ -54,7 +54,7 @@ def build_fmus(
             cannot be built.
     """
     from .catalogue import EVERY, FMUS
-    from .parameter_files import read_files
+    from .parameter_files import read_files, require_taken
 
     fmus = [_named(name) for name in dict.fromkeys(names or FMUS)]
     own = [fmu for fmu in fmus if fmu not in EVERY.values()]
@@ -67,6 +67,7 @@ def build_fmus(
     files = [Path(name) for name in names if name.endswith(".py")]
     of_own = [_guarded(builder, files) for builder in builders("native", platform)] if own else []
     start_values = read_files(vehicle, parameters, own)
+    require_taken(parameters, {name for fmu in fmus for name in fmu.block.Parameters._fields}, " or ".join(built))
     for fmu in fmus:
         for build in of_own if fmu in own else of_the_project:
             yield build(fmu.started_with(start_values), folder)

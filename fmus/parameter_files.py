@@ -76,6 +76,20 @@ def read_parameters(path: Path) -> dict[str, Any]:
     return _read(path, of_controller, (), of_car | OF_A_RUN)
 
 
+def require_taken(parameters: Path | None, taken: Collection[str], by: str) -> None:
+    """Refuses a file with parameters of a controller that is not there, which would change nothing.
+
+    Args:
+        taken: the names of the parameters of all that the file is for.
+        by: what that is.
+
+    Raises:
+        ParameterFileError: names the entries that nothing takes.
+    """
+    if parameters and (lacking := [name for name in read_parameters(parameters) if name not in taken]):
+        raise ParameterFileError(f"{parameters}: {by} has no parameter {', '.join(lacking)}")
+
+
 def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[str]]) -> dict[str, Any]:
     """Entries of a file as parameters of a loop, `instance.name` -> value, for every instance that has the name.
 

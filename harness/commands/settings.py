@@ -119,7 +119,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     if args.vehicle is None and args.parameters is None:
         return {}
     from fmus.errors import ParameterFileError
-    from fmus.parameter_files import for_instances, of_plants, read_files, units
+    from fmus.parameter_files import for_instances, of_plants, read_files, require_taken, units
 
     from ..cosimulation.wiring import fit, require
 
@@ -128,8 +128,10 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
         instance: {variable.name for variable in interface.of_causality("parameter")}
         for instance, interface in interfaces.items()
     }
+    every = set().union(*names.values())
     try:
-        values = read_files(args.vehicle, args.parameters, others=set().union(*names.values()))
+        values = read_files(args.vehicle, args.parameters, others=every)
+        require_taken(args.parameters, every, system.instances["controller"].name)
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}

@@ -60,6 +60,23 @@ def test_a_refused_file_is_answered_with_its_line(given, gains):
         given("--vehicle", gains)
 
 
+def test_a_file_for_another_controller_is_refused(given, gains, tmp_path):
+    assert main(["build", "NoDamping", "--build", "python", "--output", str(tmp_path), "--quiet"]) == 0
+    controller = ("--controller", str(tmp_path / "NoDamping.fmu"))
+    with pytest.raises(DrivelineError, match=r"gains\.toml: NoDamping\.fmu has no parameter k_d$"):
+        given("--parameters", gains, *controller)
+    path = tmp_path / "of_both.toml"
+    path.write_text("T_take_max = 80\n", encoding="utf-8")
+    assert given("--parameters", str(path), *controller) == {"controller.T_take_max": 80.0}
+
+
+def test_a_file_for_a_controller_that_is_not_built_is_refused(capsys, gains, tmp_path):
+    options = ("--parameters", gains, "--build", "python", "--output", str(tmp_path / "made"))
+    assert main(["build", "WheelSpeedCan", "NoDamping", *options]) == 2
+    assert capsys.readouterr().err == f"driveline build: {gains}: WheelSpeedCan or NoDamping has no parameter k_d\n"
+    assert not (tmp_path / "made").exists()
+
+
 def test_somebody_elses_plant_may_have_parameters_of_its_own(given, tmp_path):
     plant = build_car(tmp_path / "car", m=("mass", "kg", 1.0))
     (tmp_path / "car.toml").write_text("mass = 2200\nJ_1 = 0.09\n", encoding="utf-8")
