@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 
 from mutants import mutants_of
-from page import reasons, record
+from page import gone, reasons, record
 from workers import survivors
 
 LEAST_SCORE = 0.95
@@ -74,7 +74,12 @@ def main() -> None:
     score = 1.0 - len(found) / len(mutants)
     print(f"{len(mutants)} faults, {len(found)} not found: {score:.1%} found")
     alive = {mutant.known_as for mutant in found}
-    for some, what in ((alive - known, "is not explained"), (known - alive, "is explained, but found")):
+    sentences = {
+        "is not explained": alive - known,
+        "is explained, but found": known - alive,
+        "is explained, but there is no such fault": gone(files),
+    }
+    for what, some in sentences.items():
         for name in sorted(some):
             print(f"{' | '.join(name)}: {what}")
     if alive != known or score < LEAST_SCORE:

@@ -3,10 +3,10 @@
 import json
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from hashlib import sha256
 
-from mutants import ROOT, Mutant
+from mutants import ROOT, Mutant, mutants_of
 
 PATH = ROOT / "docs" / "mutation.md"
 KNOWN = ROOT / "tests" / "mutation" / "survivors.toml"
@@ -32,6 +32,12 @@ def reasons() -> dict[tuple[str, str, str], str]:
         for each in survivors
         for fault in each["faults"]
     }
+
+
+def gone(files: Collection[str]) -> set[tuple[str, str, str]]:
+    """What is explained of these files, but can no longer be: the line has changed."""
+    possible = {mutant.known_as for file in files for mutant in mutants_of(file)}
+    return {name for name in reasons() if name[0] in files} - possible
 
 
 def digest(file: str) -> str:
@@ -64,6 +70,9 @@ def page(score: dict[str, dict[str, str | int]]) -> str:
     if changed := [f"`{file}`" for file, each in score.items() if each["digest"] != digest(file)]:
         lines += ["", f"Changed since they were run: {', '.join(changed)}."]
     lines += ["", "## Why some are not found"]
-    for (file, line, fault), why in reasons().items():
+    explained = reasons()
+    for name in gone({file for file, _, _ in explained}):
+        del explained[name]
+    for (file, line, fault), why in explained.items():
         lines += ["", f"`{file}`: `{line}`", "", f"`{fault}`", "", f"- {why}"]
     return "\n".join(lines) + "\n"
