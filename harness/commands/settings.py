@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from shlex import quote
 from typing import Any
 
-from ..control_loop import BUILD, PLACES, PLANTS
+from ..control_loop import BUILD, PLACES
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
 from ..errors import DrivelineError
@@ -138,7 +138,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     if args.vehicle is not None and args.parameters is None:
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
     plant = system.instances["plant"]
-    if plant.stem not in PLANTS and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
+    if "plant" not in system.own and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
         LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
     require(
         problem

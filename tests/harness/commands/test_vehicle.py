@@ -41,11 +41,12 @@ def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_m
 def test_what_a_vehicle_file_does_not_reach_is_said(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Somebody else's plant without J_1 keeps its own, while the controller's model takes that of the file."""
+    """Somebody else's plant without J_1, whatever its name, keeps its own, while the controller's model takes that of
+    the file."""
     car, gains = tmp_path / "car.toml", tmp_path / "gains.toml"
     car.write_text("J_1 = 0.06\n")
     gains.write_text("k_d = 2.0\n")
-    theirs = build_car(tmp_path / "theirs", m=("m", "kg", 1.0))
+    theirs = build_car(tmp_path / "theirs", m=("m", "kg", 1.0)).rename(tmp_path / "TwoMassDriveline.fmu")
     options = ["simulate", "--vehicle", str(car), "--fmus", str(built), "--quiet", "--output", str(tmp_path)]
     assert main([*options, "--plant", str(theirs)]) == 0
     assert "has no parameter J_1: the file reaches the other blocks alone" in caplog.text
