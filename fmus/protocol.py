@@ -48,6 +48,7 @@ BAD_START_TIME = "startTime = {time!r} s is refused; allowed is any finite numbe
 BAD_STOP_TIME = "stopTime = {time!r} s is refused; allowed is the startTime = {start!r} s and later"
 BAD_STEP_SIZE = "communicationStepSize = {size!r} s is refused; allowed is above 0 to {longest:g} s"
 BAD_TIME = "currentCommunicationPoint = {time!r} s is refused; {model} has been computed up to {reached!r} s"
+STEP_LOST = "communicationStepSize = {size!r} s is refused; added to the time {time!r} s it leaves it as it is"
 PAST_STOP_TIME = "a step to {end!r} s is refused; the run was said to stop at {stop!r} s"
 
 UNKNOWN_REFERENCE = "value reference {reference:d} is unknown; {model} has 0 to {last:d}"

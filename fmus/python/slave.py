@@ -173,7 +173,9 @@ class BlockSlave:
             raise Refused(protocol.BAD_STEP_SIZE, size=step_size, longest=protocol.LONGEST_COMMUNICATION_STEP)
         if not abs(current_time - self.time) <= protocol.TIME_TOLERANCE:
             raise Refused(protocol.BAD_TIME, time=current_time, model=self.block.name, reached=self.time)
-        if (end := current_time + step_size) > self.stop_time + protocol.TIME_TOLERANCE:
+        if not (end := current_time + step_size) > current_time:
+            raise Refused(protocol.STEP_LOST, size=step_size, time=current_time)
+        if end > self.stop_time + protocol.TIME_TOLERANCE:
             raise Refused(protocol.PAST_STOP_TIME, end=end, stop=self.stop_time)
 
     @fmi_call

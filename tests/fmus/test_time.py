@@ -205,6 +205,17 @@ def test_the_shortest_and_the_longest_step_are_allowed(built, tmp_path, step_siz
         assert "currentCommunicationPoint = 7.0 s" in host.refuses(host.step, 7.0, step_size)
 
 
+def test_a_step_that_does_not_move_time_is_refused(built, tmp_path):
+    """Else a sampled block would stand still while all its steps are answered with OK."""
+    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
+        host.initialize(start_time=1e17)
+        message = "communicationStepSize = 0.001 s is refused; added to the time 1e+17 s it leaves it as it is"
+        assert host.refuses(host.step, 1e17, 0.001) == message
+        host.fmu.reset()
+        host.initialize(start_time=1.0)
+        host.step(1.0, math.ulp(1.0))
+
+
 @pytest.mark.parametrize("time", [0.0, 0.0011, 0.001 - 1.01e-6, 0.001 + 1.01e-6, math.nan])
 def test_a_step_from_another_time_is_refused(built, tmp_path, time):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:

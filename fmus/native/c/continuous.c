@@ -77,6 +77,23 @@ Status set_input_rates(Instance *instance, const Reference references[], size_t 
     return OK;
 }
 
+/* Gives out rates or changes of outputs if all are numbers; else they are refused. */
+static Status give_out(
+    const Instance *instance, const Reference references[], size_t count, Values *changes, double results[])
+{
+    for (size_t k = 0; k < count; k++) {
+        const Variable *variable = &variables[references[k]];
+        const double change = *place_of(changes, variable);
+        char text[NUMBER_LENGTH];
+        if (!(fabs(change) <= DBL_MAX))
+            return refuse(
+                instance, "the derivative of %s is refused; it would be %s", variable->name, write_number(text, change));
+    }
+    for (size_t k = 0; k < count; k++)
+        results[k] = *place_of(changes, &variables[references[k]]);
+    return OK;
+}
+
 Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[])
 {
     const Memory *memory = &instance->memory;
@@ -92,9 +109,7 @@ Status get_output_rates(const Instance *instance, const Reference references[], 
     }
     derivative(&memory->x, &values->u, &values->p, &dx);
     output_rate(&memory->x, &values->u, &values->p, &dx, &memory->du, &changes.y);
-    for (size_t k = 0; k < count; k++)
-        rates[k] = *place_of(&changes, &variables[references[k]]);
-    return OK;
+    return give_out(instance, references, count, &changes, rates);
 }
 
 /* Whether a variable can take part in a directional derivative as unknown (an output) or as known (an input, and
@@ -128,15 +143,22 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
         if (!is_differentiable(instance, direction->unknown[k], 1))
             return ERROR;
     for (size_t k = 0; k < direction->knowns; k++) {
+        const double change = direction->change[k];
+        char text[NUMBER_LENGTH];
         if (!is_differentiable(instance, direction->known[k], 0))
             return ERROR;
-        *place_of(&changes, &variables[direction->known[k]]) += direction->change[k];
+        const Variable *known = &variables[direction->known[k]];
+        if (!(fabs(change) <= DBL_MAX))
+            return refuse(
+                instance,
+                "%s is refused as change of %s; allowed is any finite number",
+                write_number(text, change),
+                known->name);
+        *place_of(&changes, known) += change;
     }
     if (memory->mode == INITIALIZATION)
         start_rate(&values->u, &values->p, &changes.u, &changes.p, &changes.y);
     else
         output_rate(&memory->x, &values->u, &values->p, &at_rest, &changes.u, &changes.y);
-    for (size_t k = 0; k < direction->unknowns; k++)
-        result[k] = *place_of(&changes, &variables[direction->unknown[k]]);
-    return OK;
+    return give_out(instance, direction->unknown, direction->unknowns, &changes, result);
 }

@@ -63,6 +63,8 @@ static Status check_step(Instance *instance, double time, double step_size)
         return discard(instance, BAD_STEP_SIZE(write_number(text, step_size), LONGEST_COMMUNICATION_STEP));
     if (!(fabs(time - reached) <= TIME_TOLERANCE))
         return refuse(instance, BAD_TIME(write_number(text, time), model_name, write_number(other, reached)));
+    if (!(end > time))
+        return refuse(instance, STEP_LOST(write_number(text, step_size), write_number(other, time)));
     if (end > stop + TIME_TOLERANCE)
         return refuse(instance, PAST_STOP_TIME(write_number(text, end), write_number(other, stop)));
     return check_moving_inputs(instance, step_size);

@@ -151,6 +151,28 @@ def test_directional_derivatives_are_differences(native, tmp_path, name, initial
                 assert derivative(host, unknown, known) == pytest.approx(difference, rel=1e-3, abs=1e-4)
 
 
+@pytest.mark.parametrize("initializing", [True, False])
+def test_a_derivative_that_is_no_number_is_refused_and_not_given_out(native, tmp_path, initializing):
+    with opened(native / "TwoMassDriveline.fmu", tmp_path) as host:
+        host.fmu.enterInitializationMode() if initializing else host.initialize()
+        along = host.fmu.getDirectionalDerivative
+        unknown, known = references(host, "omega_1", "a_body"), references(host, "slope")
+        for change in (math.nan, math.inf):
+            message = f"{change!r} is refused as change of slope; allowed is any finite number"
+            assert host.refuses(along, unknown, known, [change]) == message
+        largest = sys.float_info.max
+        assert host.refuses(along, unknown, known, [largest]) == "the derivative of a_body is refused; it would be -inf"
+        assert along(unknown[:1], known, [largest]) == [0.0]
+
+
+def test_a_rate_of_an_output_that_is_no_number_is_refused(native, tmp_path):
+    with opened(native / "TwoMassDriveline.fmu", tmp_path) as host:
+        host.initialize()
+        ramp(host, slope=sys.float_info.max)
+        message = "the derivative of a_body is refused; it would be -inf"
+        assert host.refuses(rates_of, host, "omega_1", "a_body") == message
+
+
 def test_after_initialization_only_inputs_can_be_known(native, tmp_path):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize()

@@ -118,6 +118,7 @@ REFUSALS = [
     ),
     *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size))) for size in (0.0, -0.0, math.nan, math.inf)),
     *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size)), status=DISCARD) for size in (1000.0000000000001, 1e300)),
+    *(Refusal("STEP_LOST", initialized(step(1.0, size))) for size in (5e-324, 1.1e-16)),
     Refusal("PAST_STOP_TIME", stopping(step(1.0, 0.002))),
     *(Refusal("BAD_TIME", initialized(step(time, 1e-3))) for time in (0.1 + 0.2, -math.inf)),
     *bad_content("MotorTorqueLoop"),
