@@ -1,6 +1,6 @@
-"""A recorded drive, driven by the simulated vehicle without and with damping."""
+"""A recorded drive, driven by the simulated vehicle without damping and with each of several controllers."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
+from .errors import DrivelineError
+from .manoeuvres.follower import drive, lacking_force, needed_force
 from .manoeuvres.manoeuvre import Manoeuvre
-from .manoeuvres.recording import Recording
+from .manoeuvres.road import RoadLoad, Track
 from .many import run_many
 from .metrics.damage import damage, require_counting
 from .metrics.declaration import given, measured
@@ -37,77 +39,141 @@ KEPT = [
 CSV_STRIDE = 5
 """Every so many samples of the controller go to the CSV file: 10 ms."""
 
+CLOSE = 0.1
+"""Speed error in m/s, rms, of a car without control from which on the force along the road is good enough."""
+
+MOST_DRIVES = 6
+"""Of the car without control, each with the force that the one before has lacked."""
+
+UNDAMPED = "without damping"
+"""The ride with which the others are compared, as tables name it."""
+
+Settings = Mapping[str, Any]
+"""Further arguments of `harness.simulate.simulate`."""
+
 
 @dataclass(frozen=True, eq=False)
 class Ride:
-    """A recorded drive that was simulated; the signals are the columns KEPT at the samples of the controller."""
+    """A recorded drive that was simulated; the signals are the columns KEPT at the samples of the controller.
 
-    control: bool
+    Attributes:
+        controller: its name, or UNDAMPED.
+    """
+
+    controller: str
     metrics: RideMetrics
     signals: np.ndarray
 
+    @property
+    def control(self) -> bool:
+        return self.controller != UNDAMPED
 
-def ride(manoeuvre: Manoeuvre, recording: Recording, plant: str, control: bool, **settings: Any) -> Ride:
-    """Simulates the manoeuvre of a recording and evaluates it against the recording."""
-    results = simulate(manoeuvre, plant=plant, control=control, **settings)
-    signals = repack_fields(at_samples(results)[KEPT])
+    @property
+    def suffix(self) -> str:
+        """Of the file of its signals."""
+        return self.controller if self.control else "off"
+
+
+def signals_of(manoeuvre: Manoeuvre, plant: str, control: bool, settings: Settings) -> np.ndarray:
+    """The columns KEPT of a run, at the samples of the controller."""
+    return repack_fields(at_samples(simulate(manoeuvre, plant=plant, control=control, **settings))[KEPT])
+
+
+def speed_error(signals: np.ndarray, track: Track) -> float:
+    """Rms of the simulated less the recorded speed in m/s."""
+    return float(np.sqrt(np.mean((signals["plant.v"] - np.interp(signals["time"], track.t, track.v)) ** 2)))
+
+
+def ride_of(controller: str, signals: np.ndarray, manoeuvre: Manoeuvre, track: Track) -> Ride:
+    """What a run of the manoeuvre of a track is worth."""
     metrics = evaluate(signals, manoeuvre)
-    recorded = np.interp(signals["time"], recording.time - recording.time[0], recording.v)
     computed = {
         "gear_torque_rms": lambda: given(metrics, "gear_torque_rms"),
         "gear_damage": lambda: damage(signals["plant.T_gear"]),
         "jerk_rms": lambda: given(metrics, "jerk_rms"),
-        "speed_error_rms": lambda: float(np.sqrt(np.mean((signals["plant.v"] - recorded) ** 2))),
+        "speed_error_rms": lambda: speed_error(signals, track),
     }
-    worth = RideMetrics(**measured(computed))
-    return Ride(control, worth, signals)
+    return Ride(controller, RideMetrics(**measured(computed)), signals)
 
 
-def replay(manoeuvre: Manoeuvre, recording: Recording, plant: str, **settings: Any) -> tuple[Ride, Ride]:
-    """The rides without and with damping, at the same time on two cores.
+def followed(
+    track: Track, load: RoadLoad, plant: str, settings: Settings, held: float | None = None
+) -> tuple[Manoeuvre, np.ndarray]:
+    """The manoeuvre in which the car without control keeps the recorded speed, and the signals of that run."""
+    F, lacking = needed_force(track, load), 0.0
+    for _ in range(MOST_DRIVES):
+        F = F + lacking
+        manoeuvre = drive(track, load, F, held)
+        signals = signals_of(manoeuvre, plant, False, settings)
+        if speed_error(signals, track) <= CLOSE:
+            break
+        lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
+    return manoeuvre, signals
+
+
+def replay(
+    track: Track, load: RoadLoad, plant: str, controllers: Mapping[str, Settings], held: float | None = None
+) -> list[Ride]:
+    """The ride without damping, then that with each controller, on the same road.
 
     Args:
-        settings: of both, further arguments of `harness.simulate.simulate`.
+        load: of the plant.
+        controllers: their names, and the settings of the loop with each; the first is the one that is switched off.
+        held: see `harness.manoeuvres.follower.drive`.
 
     Raises:
         MissingExtra: the package that counts load cycles is not installed.
     """
     require_counting()
-    one = partial(_of_words, manoeuvre, recording, plant, **settings)
-    undamped, damped = run_many(one, (WITHOUT, WITH), workers=2, label=recording.name)
-    return undamped, damped
+    first = next(iter(controllers.values()))
+    manoeuvre, undamped = followed(track, load, plant, first, held)
+    one = partial(_damped, manoeuvre, track, plant, controllers)
+    damped = run_many(one, controllers, workers=2, label=track.name)
+    return [ride_of(UNDAMPED, undamped, manoeuvre, track), *damped]
 
 
-WITHOUT, WITH = "without damping", "with damping"
-"""The cases, as messages name them."""
+def _damped(
+    manoeuvre: Manoeuvre, track: Track, plant: str, controllers: Mapping[str, Settings], controller: str
+) -> Ride:
+    return ride_of(controller, signals_of(manoeuvre, plant, True, controllers[controller]), manoeuvre, track)
 
 
-def _of_words(manoeuvre: Manoeuvre, recording: Recording, plant: str, words: str, **settings: Any) -> Ride:
-    return ride(manoeuvre, recording, plant, words == WITH, **settings)
+def by_name(controllers: Sequence[str]) -> dict[str, str]:
+    """The controllers (names or files), each once, by the names that tables and files give them.
+
+    Raises:
+        DrivelineError: two have the same name.
+    """
+    named: dict[str, str] = {}
+    for controller in controllers:
+        if named.setdefault(Path(controller).stem, controller) != controller:
+            raise DrivelineError(f"two controllers are called {Path(controller).stem}; rename the file of one")
+    return named
 
 
-def records(rides: Sequence[Ride], recording: Recording, plant: str) -> list[dict[str, Any]]:
+def records(rides: Sequence[Ride], track: Track, plant: str) -> list[dict[str, Any]]:
     """The rides for files: what they were, and all metrics by their keys."""
     return [
-        {"plant": plant, "recording": recording.name, "control": result.control, **values(result.metrics)}
-        for result in rides
+        {
+            "plant": plant,
+            "recording": track.name,
+            "control": ride.control,
+            "controller": ride.controller,
+            **values(ride.metrics),
+        }
+        for ride in rides
     ]
 
 
-def write(rides: Sequence[Ride], recording: Recording, plant: str, folder: Path, caption: str = "") -> list[Path]:
+def write(rides: Sequence[Ride], track: Track, plant: str, folder: Path, caption: str = "") -> list[Path]:
     """Writes metrics, signals (every 10 ms) and the figure of a replay, with its caption; returns the files."""
-    from .reports.figures import plot_replay  # not for the workers, which draw nothing
+    from .reports.replay_figure import plot_replay  # not for the workers, which draw nothing
 
-    files = [folder / f"{recording.name}_metrics.csv"]
-    write_metrics(records(rides, recording, plant), files[0])
-    for result in rides:
-        files.append(folder / f"{recording.name}_{'on' if result.control else 'off'}.csv")
-        write_csv(result.signals[::CSV_STRIDE], files[-1])
-    recorded = (recording.time - recording.time[0], recording.v)
-    return files + plot_replay(
-        [result.signals for result in rides],
-        recorded,
-        f"{plant} on the recorded drive {recording.name}",
-        folder / recording.name,
-        caption,
-    )
+    files = [folder / f"{track.name}_metrics.csv"]
+    write_metrics(records(rides, track, plant), files[0])
+    for ride in rides:
+        files.append(folder / f"{track.name}_{ride.suffix}.csv")
+        write_csv(ride.signals[::CSV_STRIDE], files[-1])
+    drawn = {ride.controller: ride.signals for ride in rides}
+    title = f"{plant} on the recorded drive {track.name}"
+    return files + plot_replay(drawn, (track.t, track.v), title, folder / track.name, caption)

@@ -1,7 +1,7 @@
 """The options that several commands have, each with its check; `harness.commands.settings` says what they mean."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import isfinite
 from typing import Any
 
@@ -51,8 +51,12 @@ def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def add_loop(parser: argparse.ArgumentParser) -> None:
-    """What every run of the loop can be given beside the plant; `harness.commands.settings` reads it."""
+def add_loop(parser: argparse.ArgumentParser, several: Collection[str] = ()) -> None:
+    """What every run of the loop can be given beside the plant; `harness.commands.settings` reads it.
+
+    Args:
+        several: the places for which several blocks can be given.
+    """
     parser.add_argument(
         "--set",
         action="append",
@@ -68,8 +72,10 @@ def add_loop(parser: argparse.ArgumentParser) -> None:
         action = parser.add_argument(
             f"--{place}",
             metavar="NAME|FILE",
-            default=names[0],
-            help=f"{meaning}: {', '.join(names)} or an FMU (default: %(default)s)",
+            action="append" if place in several else "store",
+            default=None if place in several else names[0],
+            help=f"{meaning}: {', '.join(names)} or an FMU "
+            f"({'repeatable; ' if place in several else ''}default: {names[0]})",
         )
         action.complete = _names_or_fmus(names)  # type: ignore[attr-defined]
     parser.add_argument(

@@ -1,10 +1,11 @@
-"""`driveline replay`: a recorded drive through the simulated vehicle, without and with damping."""
+"""`driveline replay`: a recorded drive through the simulated vehicle, without damping and with controllers."""
 
 import argparse
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
-from ..control_loop import PLANTS
+from ..control_loop import PLACES, PLANTS
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
@@ -20,20 +21,21 @@ Reads a recorded drive, a CSV file with the columns
 
   {", ".join(column.example for column in COLUMNS.values())}
 
-in any order (others are ignored), and drives the vehicle with its torque demand and its road, once
-without and once with damping. Friction brakes are seldom recorded: they get what the balance of
-forces along the road leaves over, and they hold the car where the recorded one stands. The table
-shows
+in any order (others are ignored), and drives the vehicle with its torque demand, once without damping
+and once with each controller. Brake and grade keep the simulated car at the recorded speed. They are
+found by driving without damping and are then the same for all; nothing in them is as fast as 1 Hz
+(docs/replay.md). The table shows
 
 {LEGEND}
 
-and goes to RECORDING_metrics.csv in the output folder, the signals to RECORDING_on.csv and
-RECORDING_off.csv, the figure to RECORDING.png and RECORDING.pdf.
+in brackets over that without damping, and goes to RECORDING_metrics.csv in the output folder, the signals
+to RECORDING_off.csv and RECORDING_CONTROLLER.csv, the figure to RECORDING.png and RECORDING.pdf.
 """
 
 EXAMPLES = """\
 examples:
   driveline replay harness/manoeuvres/data/town_drive.csv
+  driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
   driveline replay my_trip.csv --set plant.m=1900
 """
@@ -49,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
     )
-    add_loop(parser)
+    add_loop(parser, several=["controller"])
     add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
     add_printing(parser, table=True)
 
@@ -58,35 +60,47 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.wiring import fit
     from ..manoeuvres.recording import read_recording
-    from ..manoeuvres.road import RoadLoad, road, torque_limit
+    from ..manoeuvres.road import RoadLoad, Track, torque_limit
     from ..provenance import recorded
-    from ..replay import records, replay, write
+    from ..replay import by_name, records, replay, write
     from ..reports.terminal import print_table, rides_reasons, rides_table
     from ..simulate import looped
 
     out = Printer(args)
     recording = read_recording(args.recording)
-    build = built(args.plant, args.fmus, args.build, **blocks(args))
-    given, plant = settings(args, args.plant, build), Path(args.plant).stem
-    system = looped(args.plant, given)
-    interfaces, parameters = fit(system).interfaces, given["parameters"]
+    controllers = by_name(args.controller or PLACES["controller"][:1])
+    plant = Path(args.plant).stem
+    given = {name: _settings_with(args, controller) for name, controller in controllers.items()}
+    systems = {name: looped(args.plant, settings) for name, settings in given.items()}
+    first = next(iter(given))
+    interfaces, parameters = fit(systems[first]).interfaces, given[first]["parameters"]
     load = RoadLoad.of_plant(interfaces["plant"], parameters)
-    manoeuvre = road(recording, load, args.held, torque_limit(interfaces["motor"], parameters))
+    track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
-    same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held}
-    same |= distinguishing(given, system, manoeuvre)
+    same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
+    same |= {f"with {name}": distinguishing(given[name], system, None) for name, system in systems.items()}
     read = [args.recording, args.vehicle, args.parameters]
-    with recorded(record, same, {plant: system}, read, [metrics], args.replace) as made:
-        out.say(f"{recording.name}: {manoeuvre.duration:.0f} s on {plant}, {build} FMUs, without and with damping")
-        rides = replay(manoeuvre, recording, args.plant, **given)
+    with recorded(record, same, systems, read, [metrics], args.replace) as made:
+        out.say(
+            f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {given[first]['build']} FMUs, without damping and "
+            f"with {', '.join(given)}"
+        )
+        rides = replay(track, load, args.plant, given, args.held)
+        shown = {ride.controller: ride.metrics for ride in rides}
         if not out.silent:
-            print_table(rides_table(rides[0].metrics, rides[1].metrics, f"{plant} on {recording.name}"))
-        for reason in rides_reasons(rides[0].metrics, rides[1].metrics):
+            print_table(rides_table(shown, f"{plant} on {recording.name}"))
+        for reason in rides_reasons(shown):
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
-        made.files += write(rides, recording, plant, args.output, caption(args))
+        made.files += write(rides, track, plant, args.output, caption(args))
     for file in (*made.files, record):
         out.say(f"written: {file}")
-    out.document({"runs": records(rides, recording, plant), "files": made.files})
+    out.document({"runs": records(rides, track, plant), "files": made.files})
     return 0
+
+
+def _settings_with(args: argparse.Namespace, controller: str) -> dict[str, Any]:
+    """The settings of the loop with a controller, whose FMUs are there then."""
+    one = argparse.Namespace(**{**vars(args), "controller": controller})
+    return settings(one, args.plant, built(args.plant, args.fmus, args.build, **blocks(one)))

@@ -72,11 +72,17 @@ def caption(args: argparse.Namespace) -> str:
 def _set(args: argparse.Namespace) -> list[tuple[str, Any]]:
     """The options for blocks and parameters."""
     return [
-        *((place, block) for place, block in blocks(args).items() if block != PLACES[place][0]),
+        *((place, block) for place, given in blocks(args).items() for block in _other_than(PLACES[place][0], given)),
         *(("set", f"{name}={value!r}") for name, value in args.assignments),
         *(("map", text) for text in args.map),
         *((name, getattr(args, name)) for name in ("vehicle", "parameters")),
     ]
+
+
+def _other_than(usual: str, given: str | list[str] | None) -> list[str]:
+    """The blocks of a place, if they are not the usual one alone."""
+    blocks = given if isinstance(given, list) else [given or usual]
+    return [] if blocks == [usual] else blocks
 
 
 def _joined(options: Iterable[tuple[str, Any]]) -> str:

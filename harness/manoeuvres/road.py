@@ -1,10 +1,4 @@
-"""A recorded drive as a manoeuvre: the driver's torque demand and the road, brakes filled in.
-
-Friction brakes are not recorded. They get what the motor's force leaves over from the balance of
-forces along the road, less 300 N that its uncertainties deserve; where the recorded car stands and the
-driver does not drive, they hold the simulated one. The simulated speed is free: it follows
-the recorded one as far as the vehicle resembles the recorded car.
-"""
+"""A recorded drive on even samples, and what the balance of forces along the road knows of a vehicle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -17,20 +11,12 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..cosimulation.interface import Interface
 from ..errors import WiringError
-from .manoeuvre import Manoeuvre
 from .recording import Recording
-from .signals import Held, Lines
 
 ROTATING_MASS = 1.09
 """Mass including the rotating parts, over the mass."""
-F_UNCERTAIN = 300.0
-"""Force in N that the balance of forces cannot tell from an error."""
-F_BRAKE_MAX = 4000.0
-"""Largest brake force in N, and the one that holds a standing car."""
 SLOPE_LIMIT = 0.08
-"""Steepest road in rad."""
-HELD_MIN = 1e-3
-"""Shortest time in s for which a demand is held, the communication step."""
+"""Steepest recorded road in rad."""
 SPEED_MIN = 3.0
 """Speed in m/s below which the climb over the distance says nothing of the slope."""
 
@@ -71,19 +57,23 @@ class RoadLoad:
             )
         return cls(*(starts[name] for name in names))
 
-    def surplus(
-        self,
-        T_mot: np.ndarray,
-        v: np.ndarray,
-        a: np.ndarray,
-        slope: np.ndarray,
-    ) -> np.ndarray:
-        """Force in N by which the motor pushes more than the motion takes.
+    @property
+    def inertia(self) -> float:
+        """Mass in kg that is accelerated, with what rotates."""
+        return ROTATING_MASS * self.m
 
-        F = i T_mot/r - m g (c_rr + sin(slope)) - c_wa v^2 - 1.09 m a
+    def motor_force(self, T_mot: np.ndarray) -> np.ndarray:
+        """Force in N with which the motor pushes: i T/r."""
+        return self.i * T_mot / self.r
+
+    def motion(self, v: np.ndarray, interval: float) -> np.ndarray:
+        """Force in N that a motion takes on a level road: 1.09 m dv/dt + m g c_rr sign(v) + c_wa v |v|.
+
+        Args:
+            v: speed in m/s, `interval` seconds apart.
         """
-        grade = self.m * self.g * (self.c_rr + np.sin(slope))
-        return self.i * T_mot / self.r - grade - self.c_wa * v**2 - ROTATING_MASS * self.m * a
+        resistance = self.m * self.g * self.c_rr * np.sign(v) + self.c_wa * v * np.abs(v)
+        return self.inertia * np.gradient(v, interval) + resistance
 
 
 def torque_limit(motor: Interface, parameters: Mapping[str, float] | None = None) -> float:
@@ -93,38 +83,38 @@ def torque_limit(motor: Interface, parameters: Mapping[str, float] | None = None
     return (parameters or {}).get("motor.T_max", start)
 
 
-def road(recording: Recording, load: RoadLoad, held: float | None = None, T_max: float = inf) -> Manoeuvre:
-    """The manoeuvre of a whole recorded trip, from its start (time 0) to its last sample.
+@dataclass(frozen=True, eq=False)
+class Track:
+    """A recording from its start (time 0) to its last sample, resampled to its median interval.
 
-    Args:
-        recording: the drive; resampled to its median interval.
-        load: of the vehicle that will drive it.
-        held: if given, the demand is sampled and held for so many seconds: a rougher foot.
-        T_max: largest torque of the motor in N.m, to which the demand is limited.
-
-    Raises:
-        WiringError: it is held for less than HELD_MIN.
+    Attributes:
+        name: of the recording.
+        interval: between the samples in s.
+        t: in s.
+        v: speed in m/s.
+        T_driver: motor torque in N.m within the limits of the motor: the driver's demand.
+        slope: of the road in rad.
     """
-    if held is not None and not held >= HELD_MIN:
-        raise WiringError(f"a demand that is held for {held:g} s: it must be {HELD_MIN:g} s or more")
-    interval = round(float(np.median(np.diff(recording.time))), 9)
-    t = np.arange(int((recording.time[-1] - recording.time[0]) / interval + 1e-6) + 1) * interval
-    v, elevation, T_mot = (
-        np.interp(t, recording.time - recording.time[0], signal)
-        for signal in (recording.v, recording.elevation, recording.T_mot)
-    )
-    T_driver = np.clip(T_mot, -T_max, T_max)
-    slope = road_slope(v, elevation, interval)
-    demand = Lines(t, T_driver)
-    return Manoeuvre(
-        name=recording.name,
-        description=f"recorded drive of {t[-1]:.0f} s",
-        duration=float(t[-1]),
-        v_0=float(v[0]),
-        T_driver=demand if held is None else Held(held, demand(np.arange(0.0, t[-1] + held, held))),
-        T_brake=Lines(t, brake_torque(T_driver, v, slope, interval, load)),
-        slope=Lines(t, slope),
-    )
+
+    name: str
+    interval: float
+    t: np.ndarray
+    v: np.ndarray
+    T_driver: np.ndarray
+    slope: np.ndarray
+
+    @classmethod
+    def of(cls, recording: Recording, T_max: float = inf) -> Self:
+        """
+        Args:
+            T_max: largest torque of the motor in N.m.
+        """
+        time = recording.time - recording.time[0]
+        interval = round(float(np.median(np.diff(time))), 9)
+        t = np.arange(int(time[-1] / interval + 1e-6) + 1) * interval
+        v, elevation, T_mot = (np.interp(t, time, x) for x in (recording.v, recording.elevation, recording.T_mot))
+        slope = road_slope(v, elevation, interval)
+        return cls(recording.name, interval, t, v, np.clip(T_mot, -T_max, T_max), slope)
 
 
 def road_slope(v: np.ndarray, elevation: np.ndarray, interval: float) -> np.ndarray:
@@ -136,18 +126,3 @@ def road_slope(v: np.ndarray, elevation: np.ndarray, interval: float) -> np.ndar
     climb = np.gradient(gaussian_filter1d(elevation, 8.0 / interval), interval)
     advance = np.maximum(np.gradient(distance, interval), SPEED_MIN)
     return np.clip(gaussian_filter1d(climb / advance, 2.0 / interval), -SLOPE_LIMIT, SLOPE_LIMIT)
-
-
-def brake_torque(
-    T_driver: np.ndarray,
-    v: np.ndarray,
-    slope: np.ndarray,
-    interval: float,
-    load: RoadLoad,
-) -> np.ndarray:
-    """Torque of the brakes in N.m, wheel side; acceleration is smoothed over 0.5 s."""
-    a = gaussian_filter1d(np.gradient(v, interval), 0.5 / interval)
-    F = np.clip(load.surplus(T_driver, v, a, slope) - F_UNCERTAIN, 0.0, F_BRAKE_MAX)
-    # the recorded speed stays zero for a moment after the driver has begun to pull away
-    holding = (v == 0.0) & (load.i * T_driver / load.r <= F_UNCERTAIN)
-    return load.r * np.where(holding, F_BRAKE_MAX, F)

@@ -16,7 +16,6 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 from ..manoeuvres.manoeuvre import Manoeuvre
-from ..metrics.oscillation import amplitude
 from .files import complete
 
 STYLE = {
@@ -139,54 +138,6 @@ def plot_step(
     """
     window = (manoeuvre.t_0 - 0.1, manoeuvre.t_0 + 1.4)
     return _compare(runs, STEP_PANELS, window, f"{plant}, {manoeuvre.description}", stem, caption)
-
-
-def plot_replay(
-    runs: Sequence[np.ndarray], recorded: tuple[np.ndarray, np.ndarray], title: str, stem: Path, caption: str = ""
-) -> list[Path]:
-    """A recorded drive: speed against the recorded one, gear torque without and with damping, a close-up.
-
-    Args:
-        runs: results without and with damping, with `time`, `plant.v`, `plant.T_gear` and
-            `controller.T_driver`.
-        recorded: time in s and speed in m/s of the recording.
-        title: of the figure.
-        stem: path of the files without their ending.
-        caption: what was set, in small below.
-
-    Returns:
-        The files written.
-    """
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 7.4), layout=ConstrainedLayoutEngine(h_pad=0.11))
-        speed, torque, close = figure.subplots(3, 1)
-        t = runs[0]["time"]
-        speed.plot(*recorded, color=BLACK, label="recorded")
-        speed.plot(t, runs[1]["plant.v"], color=BLUE, label="simulated, with damping", rasterized=True)
-        titled(figure, title, caption)
-        speed.set(ylabel="speed in m/s", xlim=(t[0], t[-1]))
-        for axes, window in ((torque, (t[0], t[-1])), (close, _roughest(runs[0]))):
-            shown = (t >= window[0]) & (t <= window[1])
-            for run, color, label in zip(runs, (VERMILION, BLUE), ("without damping", "with damping"), strict=True):
-                axes.plot(t[shown], run["plant.T_gear"][shown], color=color, label=label, rasterized=True)
-            axes.set(ylabel="gear torque in N·m", xlim=window)
-        shown = (t >= close.get_xlim()[0]) & (t <= close.get_xlim()[1])
-        close.plot(t[shown], runs[0]["controller.T_driver"][shown], color=BLACK, ls="--", lw=0.8, label="demand")
-        close.set_xlabel("time in s")
-        for axes in (speed, torque, close):
-            legend(axes)
-        return save(figure, stem)
-
-
-def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:
-    """The window of `span` seconds with the largest mean swing of the gear torque about the demand."""
-    t = run["time"]
-    T_s = float(t[1] - t[0])
-    swing = amplitude(run["plant.T_gear"] - run["controller.T_driver"], T_s)
-    length = min(round(span / T_s), len(swing))
-    total = np.concatenate(([0.0], np.cumsum(swing)))
-    first = int(np.argmax(total[length:] - total[:-length]))
-    return float(t[first]), float(t[min(first + length, len(t) - 1)])
 
 
 def _compare(

@@ -1,6 +1,6 @@
 """Tables and verdicts on the terminal."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isnan
 
 from rich.box import SIMPLE_HEAD
@@ -53,27 +53,31 @@ def runs_table(rows: Sequence[Row]) -> Table:
     return table
 
 
-def rides_table(undamped: RideMetrics, damped: RideMetrics, title: str) -> Table:
-    """Both rides side by side, and their ratio."""
+def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:
+    """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
+    shown = [(metric, metric.column) for metric in declared(RideMetrics) if metric.column]
     table.add_column("", no_wrap=True)
-    table.add_column("unit")
-    for heading in ("without damping", "with damping", "with/without"):
-        table.add_column(heading, justify="right")
-    for metric in declared(RideMetrics):
-        off, on = metric.of(undamped), metric.of(damped)
-        if metric.column:
-            shown = ("-" if isnan(value) else f"{value:.3g}" for value in (off, on))
-            ratio = f"{on / off:.3f}" if off and not isnan(on / off) else "-"
-            table.add_row(metric.column.plain_heading, metric.column.unit, *shown, ratio)
+    for _, column in shown:
+        table.add_column(f"{column.heading}\n{column.unit}", justify="right", no_wrap=True)
+    undamped = next(iter(rides.values()))
+    for name, ride in rides.items():
+        table.add_row(name, *(_compared(metric.of(ride), metric.of(undamped)) for metric, _ in shown))
     return table
 
 
-def rides_reasons(undamped: RideMetrics, damped: RideMetrics) -> list[str]:
-    """Why the table of both rides has dashes."""
+def _compared(value: float, other: float) -> str:
+    """A value, and in brackets its ratio to another one."""
+    if isnan(value):
+        return "-"
+    return f"{value:.3g} ({value / other:.3f})" if other and not isnan(other) else f"{value:.3g} (-)"
+
+
+def rides_reasons(rides: Mapping[str, RideMetrics]) -> list[str]:
+    """Why the table of the rides has dashes."""
     return [
-        f"- {metric.column.plain_heading} {label} damping: {ride.absent[metric.name]}"
+        f"- {metric.column.plain_heading} {name}: {ride.absent[metric.name]}"
         for metric in declared(RideMetrics)
-        for label, ride in (("without", undamped), ("with", damped))
+        for name, ride in rides.items()
         if metric.column and metric.name in ride.absent
     ]

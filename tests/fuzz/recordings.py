@@ -8,8 +8,9 @@ from random import Random
 import numpy as np
 
 from harness.errors import DrivelineError
+from harness.manoeuvres.follower import drive, needed_force
 from harness.manoeuvres.recording import read_recording
-from harness.manoeuvres.road import RoadLoad, road
+from harness.manoeuvres.road import RoadLoad, Track
 
 from .damage import ODD, spoiled_bytes, spoiled_text
 from .target import Attempt, Target, Unclean
@@ -39,7 +40,8 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         path = folder / "drive.csv"
         path.write_bytes(damaged(random))
         try:
-            manoeuvre = road(read_recording(path), CAR, held=random.choice((None, 0.5)))
+            track = Track.of(read_recording(path))
+            manoeuvre = drive(track, CAR, needed_force(track, CAR), held=random.choice((None, 0.5)))
         except DrivelineError as refusal:
             if "\n" in str(refusal):
                 raise Unclean(f"{path.read_bytes()!r}: {refusal}") from refusal

@@ -4,21 +4,33 @@ import csv
 import json
 import sys
 from dataclasses import replace
+from functools import cache
 from itertools import islice
+from shutil import copyfile
 
 import numpy as np
 import pytest
 
 from harness.cli import main
 from harness.cosimulation.interface import Interface
-from harness.errors import MissingExtra, WiringError
+from harness.errors import WiringError
+from harness.manoeuvres.follower import HELD_MIN, drive, needed_force
+from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.recording import read_recording
-from harness.manoeuvres.road import HELD_MIN, RoadLoad, road
+from harness.manoeuvres.road import RoadLoad, Track
+from harness.manoeuvres.signals import Lines
 from harness.manoeuvres.town_drive import PATH
-from harness.replay import replay, ride, write
+from harness.metrics.damage import MissingExtra
+from harness.metrics.evaluate import T_S
+from harness.metrics.spectrum import band_rms
+from harness.replay import CLOSE, followed, replay, signals_of, speed_error, write
 from tests import ROOT
 
-TRIP = ROOT.parent / "shared" / "data" / "bmw_i3_trip_a01.csv"
+DATA = ROOT.parent / "shared" / "data"
+TRIPS = {"bmw_i3_trip_a01": (150.0, 275.0), "bmw_i3_trip_a11": (1000.0, 1135.0)}
+"""Recorded drives, and stretches of them in s with stops and hills."""
+
+PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
 
 @pytest.fixture(scope="module")
@@ -31,68 +43,176 @@ def short_drive(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def replayed(built, short_drive, tmp_path_factory):
-    """Folder of a replay of the short drive."""
+def settings(native):
+    return {"folder": native.parent, "build": "native"}
+
+
+@pytest.fixture(scope="module")
+def load(native):
+    return RoadLoad.of_plant(Interface(native / "ValidationVehicle.fmu"))
+
+
+@pytest.fixture(scope="module")
+def replayed(settings, load, short_drive, tmp_path_factory):
+    """Rides of the short drive, two with the same controller, and the folder with their files."""
     folder = tmp_path_factory.mktemp("replay")
-    recording = read_recording(short_drive)
-    manoeuvre = road(recording, RoadLoad.of_plant(Interface(built / "ValidationVehicle.fmu")), held=0.5)
-    rides = replay(manoeuvre, recording, "ValidationVehicle", folder=built)
-    write(rides, recording, "ValidationVehicle", folder)
-    return folder
+    track = Track.of(read_recording(short_drive))
+    controllers = {"DampingController": settings, "Again": settings}
+    rides = replay(track, load, "ValidationVehicle", controllers, held=0.5)
+    write(rides, track, "ValidationVehicle", folder)
+    return rides, folder
 
 
-def test_a_demand_is_not_held_for_less_than_a_step(built, short_drive):
-    recording, load = read_recording(short_drive), RoadLoad.of_plant(Interface(built / "ValidationVehicle.fmu"))
-    assert road(recording, load, held=HELD_MIN).duration == road(recording, load).duration
+def town():
+    return Track.of(read_recording(PATH), T_max=180.0)
+
+
+def hilly():
+    """The town drive by another car on another road: its torques and climbs do not fit its speeds."""
+    flat = town()
+    return replace(flat, T_driver=0.8 * flat.T_driver - 4.0 * (flat.v > 1.0), slope=0.06 * np.cos(flat.t / 9.0))
+
+
+def stretch(name):
+    """Part of a real drive."""
+    path = DATA / f"{name}.csv"
+    if not path.exists():
+        pytest.skip(f"recorded drive {path} is not on this machine")
+    recording, (begin, end) = read_recording(path), TRIPS[name]
+    part = (recording.time - recording.time[0] >= begin) & (recording.time - recording.time[0] <= end)
+    names = ("time", "v", "elevation", "T_mot")
+    return Track.of(replace(recording, **{name: getattr(recording, name)[part] for name in names}), T_max=180.0)
+
+
+DRIVES = {"town": town, "hilly": hilly, **{name: lambda name=name: stretch(name) for name in TRIPS}}
+
+
+@pytest.fixture(scope="module")
+def runs(settings, load):
+    """Of a drive by name on a plant: its track, and the signals without and with damping."""
+
+    @cache
+    def run(name, plant):
+        track = DRIVES[name]()
+        manoeuvre, undamped = followed(track, load, plant, settings)
+        return track, undamped, signals_of(manoeuvre, plant, True, settings)
+
+    return run
+
+
+def rolled_back(signals):
+    """Farthest in m that a car was behind where it had been."""
+    x = np.cumsum(signals["plant.v"]) * T_S
+    return (np.maximum.accumulate(x) - x).max()
+
+
+def standing(track, signals):
+    """When the recorded car has stood for a second, and will for another half."""
+    at = np.interp(signals["time"], track.t, track.v == 0.0) == 1.0
+    steps = round(1.0 / T_S), round(0.5 / T_S)
+    counted = np.concatenate(([0], np.cumsum(~at)))
+    k = np.arange(len(at))
+    begin, end = np.maximum(k - steps[0], 0), np.minimum(k + steps[1], len(at))
+    return counted[end] == counted[begin]
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize("name", DRIVES)
+def test_the_car_keeps_the_recorded_speed_stands_where_it_stood_and_never_rolls_back(runs, name, plant):
+    track, *both = runs(name, plant)
+    for signals in both:
+        assert speed_error(signals, track) < 1.5 * CLOSE
+        assert rolled_back(signals) < 0.05  # tyres and mounts give way as far as that
+        still = standing(track, signals)
+        assert np.count_nonzero(still) * T_S > 1.0
+        assert np.abs(signals["plant.v"][still]).max() < 0.05
+
+
+def test_from_the_recording_alone_a_car_of_other_inertia_does_not_keep_the_speed(runs, settings, load):
+    """Why the force along the road is found by driving."""
+    track = runs("town", "TwoMassDriveline")[0]
+    signals = signals_of(drive(track, load, needed_force(track, load)), "TwoMassDriveline", False, settings)
+    assert speed_error(signals, track) > 5.0 * CLOSE
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize(("begin", "end"), [(3.0, 18.0), (34.0, 50.0)])
+def test_what_damping_is_worth_is_the_same_as_on_a_level_road_without_it(settings, load, plant, begin, end):
+    whole = town()
+    part = (whole.t >= begin) & (whole.t <= end)
+    t = whole.t[part] - whole.t[part][0]
+    track = replace(whole, t=t, v=whole.v[part], T_driver=whole.T_driver[part], slope=whole.slope[part])
+    level = Manoeuvre("level", "", float(t[-1]), float(track.v[0]), Lines(t, track.T_driver))
+    manoeuvre, undamped = followed(track, load, plant, settings)
+    pairs = (
+        (undamped, signals_of(manoeuvre, plant, True, settings)),
+        tuple(signals_of(level, plant, control, settings) for control in (False, True)),
+    )
+    for signal, derivative in (("plant.T_gear", False), ("plant.a_body", True)):
+        with_it, without_it = (
+            band_rms(on[signal], T_S, derivative=derivative) / band_rms(off[signal], T_S, derivative=derivative)
+            for off, on in pairs
+        )
+        assert with_it == pytest.approx(without_it, rel=0.07)
+
+
+def test_all_drive_on_the_same_road(replayed):
+    undamped, *damped = replayed[0]
+    for ride in damped:
+        for signal in ("time", "plant.T_brake", "plant.slope", "controller.T_driver"):
+            np.testing.assert_array_equal(ride.signals[signal], undamped.signals[signal])
+
+
+def test_a_demand_is_not_held_for_less_than_a_step(load, short_drive):
+    track = Track.of(read_recording(short_drive))
+    F = needed_force(track, load)
+    assert drive(track, load, F, held=HELD_MIN).duration == drive(track, load, F).duration
     for held in (0.999 * HELD_MIN, 1e-300, float("nan")):
         with pytest.raises(WiringError, match=r"it must be 0\.001 s or more"):
-            road(recording, load, held)
+            drive(track, load, F, held)
 
 
 def test_damping_lowers_oscillation_and_damage(replayed):
-    with (replayed / "short_metrics.csv").open(newline="", encoding="utf-8") as file:
-        off, on = csv.DictReader(file)
-    assert (off["recording"], off["control"], on["control"]) == ("short", "0", "1")
+    with (replayed[1] / "short_metrics.csv").open(newline="", encoding="utf-8") as file:
+        off, on, again = csv.DictReader(file)
+    assert (off["recording"], off["control"], off["controller"]) == ("short", "0", "without damping")
+    assert [(run["control"], run["controller"]) for run in (on, again)] == [("1", "DampingController"), ("1", "Again")]
     for quantity in ("gear_torque_rms_N_m", "gear_damage_N5_m5", "jerk_rms_m_per_s3"):
         assert float(on[quantity]) < 0.9 * float(off[quantity])
-
-
-def test_as_a_document_it_has_both_rides(built, short_drive, tmp_path, capsys):
-    given = ["--fmus", str(built), "--output", str(tmp_path), "--set", "plant.m=1900"]
-    assert main(["replay", str(short_drive), *given, "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert [run["control"] for run in document["runs"]] == [False, True]
-    assert all(run["gear_torque_rms_N_m"] > 0.0 for run in document["runs"])
-    assert str(tmp_path / "short_metrics.csv") in document["files"]
+        assert on[quantity] == again[quantity]
 
 
 def test_figure_and_signals_every_10_ms_are_written(replayed):
-    assert {path.name for path in replayed.iterdir()} == {
-        "short_metrics.csv", "short_off.csv", "short_on.csv", "short.png", "short.pdf"
+    folder = replayed[1]
+    assert {path.name for path in folder.iterdir()} == {
+        "short_metrics.csv", "short_off.csv", "short_DampingController.csv", "short_Again.csv", "short.png", "short.pdf"
     }  # fmt: skip
-    with (replayed / "short_on.csv").open(encoding="utf-8") as file:
+    with (folder / "short_Again.csv").open(encoding="utf-8") as file:
         times = [float(row["time"]) for row in csv.DictReader(file)]
     assert times == pytest.approx(np.arange(801) * 0.01)
 
 
-def test_the_vehicle_follows_a_drive_that_suits_it_and_stands_where_it_stands(built):
-    recording = read_recording(PATH)
-    manoeuvre = road(recording, RoadLoad.of_plant(Interface(built / "TwoMassDriveline.fmu")))
-    result = ride(manoeuvre, recording, "TwoMassDriveline", control=False, folder=built)
-    # the brakes leave out 300 N, so the car stops a little later than the recorded one
-    assert result.metrics.speed_error_rms < 0.25 * np.sqrt(np.mean(recording.v**2))
-    at_the_light = (result.signals["time"] > 29.0) & (result.signals["time"] < 32.5)
-    assert np.abs(result.signals["plant.v"][at_the_light]).max() < 1e-3
+def test_as_a_document_it_has_the_rides_of_all_controllers(native, short_drive, tmp_path, capsys):
+    mine = tmp_path / "Mine.fmu"
+    copyfile(native / "DampingController.fmu", mine)
+    given = ["--fmus", str(native.parent), "--output", str(tmp_path), "--set", "plant.m=1900"]
+    both = ["--controller", "DampingController", "--controller", str(mine), "--controller", "DampingController"]
+    assert main(["replay", str(short_drive), *given, *both, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    controllers = [run["controller"] for run in document["runs"]]
+    assert controllers == ["without damping", "DampingController", "Mine"]
+    assert [run["control"] for run in document["runs"]] == [False, True, True]
+    assert all(run["gear_torque_rms_N_m"] > 0.0 for run in document["runs"])
+    assert document["runs"][1]["jerk_rms_m_per_s3"] == document["runs"][2]["jerk_rms_m_per_s3"]
+    assert {str(tmp_path / "short_metrics.csv"), str(tmp_path / "short_Mine.csv")} <= set(document["files"])
+    assert main(["replay", str(short_drive), *given, "--quiet"]) == 2
+    assert "is of another run (controllers: ['DampingController', 'Mine'] there" in capsys.readouterr().err
 
 
-@pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")
-def test_a_real_car_pulls_away_in_simulation_too(built):
-    recording = read_recording(TRIP)
-    load = RoadLoad.of_plant(Interface(built / "ValidationVehicle.fmu"))
-    manoeuvre = replace(road(recording, load), duration=10.0)
-    signals = ride(manoeuvre, recording, "ValidationVehicle", control=False, folder=built).signals
-    assert np.abs(signals["plant.v"][signals["time"] < 2.0]).max() < 1e-3
-    assert signals["plant.v"][-1] > 1.0
+def test_two_controllers_of_one_name_are_refused(native, short_drive, tmp_path, capsys):
+    given = ["--controller", "DampingController", "--controller", str(native / "DampingController.fmu")]
+    assert main(["replay", str(short_drive), *given, "--output", str(tmp_path)]) == 2
+    assert "two controllers are called DampingController" in capsys.readouterr().err
 
 
 def test_a_missing_recording_is_named(capsys):
@@ -102,7 +222,6 @@ def test_a_missing_recording_is_named(capsys):
 
 def test_without_the_counting_package_the_extra_is_named_before_the_run(short_drive, monkeypatch):
     monkeypatch.setitem(sys.modules, "rainflow", None)
-    recording = read_recording(short_drive)
     load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
     with pytest.raises(MissingExtra, match="extra `replay`"):
-        replay(road(recording, load), recording, "ValidationVehicle")
+        replay(Track.of(read_recording(short_drive)), load, "ValidationVehicle", {"DampingController": {}})

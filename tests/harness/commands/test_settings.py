@@ -27,6 +27,14 @@ def test_a_figure_says_what_was_set(command, options: str, said: str) -> None:
     assert caption(parser.parse_args([*COMMANDS[command], *options.split()])) == said
 
 
+def test_a_figure_says_which_controllers_were_asked_for() -> None:
+    parser = ArgumentParser()
+    replay.add_arguments(parser)
+    both = ["--controller", "DampingController", "--controller", "mine.fmu"]
+    assert caption(parser.parse_args(["trip.csv", *both])) == " ".join(both)
+    assert caption(parser.parse_args(["trip.csv", *both[:2]])) == ""
+
+
 def test_a_figure_says_how_a_run_was_made() -> None:
     parser = ArgumentParser()
     simulate.add_arguments(parser)

@@ -17,8 +17,9 @@ from rich.console import Console
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics, RideMetrics
-from harness.reports.figures import plot_drive, plot_replay, plot_step, titled
+from harness.reports.figures import plot_drive, plot_step, titled
 from harness.reports.files import complete, remove, write_text
+from harness.reports.replay_figure import plot_replay
 from harness.reports.table import SHOWN, Row, cells, legend, reasons, values, write_markdown, write_metrics
 from harness.reports.terminal import rides_reasons, rides_table, runs_table
 
@@ -71,11 +72,13 @@ def test_below_a_table_stands_why_it_has_dashes(tmp_path):
 
 def test_a_ride_without_damage_has_a_dash_and_no_ratio():
     off, on = RideMetrics(2.0, math.nan, 4.0, 0.0, {"gear_damage": "not finite"}), RideMetrics(1.0, 1.0, 3.0, 0.5)
-    lines = printed(rides_table(off, on, "a drive")).splitlines()
-    assert [line.split()[-3:] for line in lines if "damage" in line or "error" in line] == [
-        ["-", "1", "-"], ["0", "0.5", "-"]
-    ]  # fmt: skip
-    assert rides_reasons(off, on) == ["- gear damage without damping: not finite"]
+    rides = {"without damping": off, "mine": on}
+    lines = [line.split() for line in printed(rides_table(rides, "a drive")).splitlines()]
+    assert [line for line in lines if "mine" in line or "without" in line] == [
+        ["without", "damping", "2", "(1.000)", "-", "4", "(1.000)", "0", "(-)"],
+        ["mine", "1", "(0.500)", "1", "(-)", "3", "(0.750)", "0.5", "(-)"],
+    ]
+    assert rides_reasons(rides) == ["- gear damage without damping: not finite"]
 
 
 def test_the_terminal_table_names_plant_units_and_runs():
@@ -83,11 +86,13 @@ def test_the_terminal_table_names_plant_units_and_runs():
     assert all(part in text for part in ("Plant", "tipin15", "ms", "N.m", "1758", "114"))
 
 
-def test_two_rides_stand_side_by_side_with_their_ratio():
-    off, on = RideMetrics(2.0, 32.0, 4.0, 0.5), RideMetrics(1.0, 1.0, 3.0, 0.5)
-    lines = printed(rides_table(off, on, "a drive")).splitlines()
+def test_rides_stand_one_below_the_other_with_their_ratio_to_the_first():
+    rides = {"none": RideMetrics(2.0, 32.0, 4.0, 0.5)} | dict.fromkeys("ab", RideMetrics(1.0, 1.0, 3.0, 0.5))
+    lines = printed(rides_table(rides, "a drive")).splitlines()
     assert lines[0].strip() == "a drive"
-    assert [line.split()[-3:] for line in lines if "N.m" in line] == [["2", "1", "0.500"], ["32", "1", "0.031"]]
+    assert [line.split()[1:5] for line in lines if line.startswith(("  a ", "  b "))] == [
+        ["1", "(0.500)", "1", "(0.031)"]
+    ] * 2
 
 
 @pytest.mark.parametrize("record", [Metrics, RideMetrics])
@@ -223,8 +228,8 @@ def test_titles_and_captions_are_not_cut(size):
 
 
 def test_a_replay_shorter_than_the_close_up_is_drawn(results, tmp_path):
-    recorded = (np.array([0.0, 2.0]), np.array([1.0, 2.0]))
-    assert all(file.exists() for file in plot_replay([results, results], recorded, "drive", tmp_path / "run"))
+    recorded, rides = (np.array([0.0, 2.0]), np.array([1.0, 2.0])), {"none": results, "a": results, "b": results}
+    assert all(file.exists() for file in plot_replay(rides, recorded, "drive", tmp_path / "run"))
 
 
 def test_a_folder_is_not_written_to_as_a_file(tmp_path):
