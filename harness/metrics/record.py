@@ -114,7 +114,7 @@ class RideMetrics:
         float,
         Metric(
             "m/s",
-            "rms of simulated less recorded speed; the speed is not forced on the car",
+            "rms of simulated less recorded speed",
             Column("speed\nerror", "m/s", 1.0, 2),
         ),
     ]
