@@ -27,7 +27,7 @@ from harness.replay import CLOSE, followed, replay, signals_of, speed_error, wri
 from tests import ROOT
 
 DATA = ROOT.parent / "shared" / "data"
-TRIPS = {"bmw_i3_trip_a01": (150.0, 275.0), "bmw_i3_trip_a11": (1000.0, 1135.0)}
+TRIPS = {"bmw_i3_trip_a01": (165.0, 260.0), "bmw_i3_trip_a11": (1005.0, 1060.0)}
 """Recorded drives, and stretches of them in s with stops and hills."""
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
