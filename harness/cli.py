@@ -27,6 +27,7 @@ COMMANDS = {
     "faults": "put faults on the controller's signals and judge what it makes of them",
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
+    "analyse": "margins, poles and sensitivities of the loop",
     "coupling": "measure coupling error and dead time of the master",
     "back-to-back": "compare both builds of each block with its functions",
 }

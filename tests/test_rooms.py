@@ -27,7 +27,7 @@ ROOMS = {
     "harness.metrics": {"harness", "harness.manoeuvres"},
     "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
-    "harness.linear": {"harness", "harness.metrics", "models", "models.block", "models.controller"},
+    "harness.linear": {"harness", "harness.metrics", "harness.reports", "models", "models.block", "models.controller"},
     "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports"},
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}

@@ -66,7 +66,25 @@ def linear_controller(point: Point, drive: Driven) -> LinearController:
     Raises:
         NotLinear: it is not linear there.
     """
+    return differentiated(point, [settled(point, drive)])[0]
+
+
+def controller_in_contact_and_gap(point: Point, drive: Driven) -> tuple[LinearController, LinearController]:
+    """The same, and with the twist that it knows in the middle of the gap, over the same states."""
     x, u, p = settled(point, drive)
+    values = [0.0 if name.endswith("estimate.phi") else value for name, value in zip(names(x), numbers(x), strict=True)]
+    known = {name: 0.0 for name in ("phi", "T_gear") if name in u._fields}
+    contact, gap = differentiated(point, [(x, u, p), (like(x, values), u._replace(**known), p)])
+    return contact, gap
+
+
+def differentiated(point: Point, places: Sequence[tuple[Any, Any, Any]]) -> list[LinearController]:
+    """The controller at some places, each a state, input and parameters, over the same states.
+
+    Raises:
+        NotLinear: it has a kink in one of them.
+    """
+    x, u, p = places[0]
     n, fields = len(numbers(x)), u._fields
     signals = tuple(name for name in fields if name not in NOT_MEASURED)
     inputs = [n + fields.index(name) for name in signals]
@@ -75,10 +93,10 @@ def linear_controller(point: Point, drive: Driven) -> LinearController:
         given = u._make(values[n:])._replace(counter=u.counter + new)
         return numbers(point.controller.update(like(x, values[:n]), given, p))
 
-    at = [*numbers(x), *u]
     kinds = [lambda values, new=new: update(values, new) for new in ((0, 1) if point.hears_wheels else (0,))]
-    reached = _reached(kinds, at, inputs, n)
-    found = [rates(kind, at, [*reached, *inputs]) for kind in kinds]
+    at = [(kind, [*numbers(x), *u]) for x, u, _ in places for kind in kinds]
+    reached = _reached(at, inputs)
+    found = [rates(kind, here, [*reached, *inputs]) for kind, here in at]
     T_ref = names(x).index("T_ref")
     kept = _acting([_moves(each) for each in found], reached, T_ref)
     columns = [k for k, index in enumerate([*reached, *inputs]) if index in kept or index in inputs]
@@ -87,8 +105,9 @@ def linear_controller(point: Point, drive: Driven) -> LinearController:
         _require_straight(each, kept, columns, [labels[k] for k in (*reached, *inputs)], labels, point)
     matrices = [each.mean[np.ix_(kept, columns)] for each in found]
     samples = [Sample(matrix[:, : len(kept)], matrix[:, len(kept) :]) for matrix in matrices]
-    C = np.array([float(k == T_ref) for k in kept])
-    return LinearController(samples[0], samples[-1], C, signals, tuple(labels[k] for k in kept))
+    C, states = np.array([float(k == T_ref) for k in kept]), tuple(labels[k] for k in kept)
+    each = [samples[k * len(kinds) : (k + 1) * len(kinds)] for k in range(len(places))]
+    return [LinearController(kinds[0], kinds[-1], C, signals, states) for kinds in each]
 
 
 def settled(point: Point, drive: Driven) -> tuple[Any, Any, Any]:
@@ -122,12 +141,12 @@ def _moves(found: Rates) -> np.ndarray:
     return (found.forward != 0.0) | (found.backward != 0.0)
 
 
-def _reached(kinds: Sequence[Any], at: Sequence[Any], inputs: Sequence[int], n: int) -> list[int]:
+def _reached(at: Sequence[tuple[Any, Sequence[Any]]], inputs: Sequence[int]) -> list[int]:
     """The numbers of the state that signals change, be it over others of them."""
     found: set[int] = set()
     new = list(inputs)
     while new:
-        moving = chain.from_iterable(np.flatnonzero(_moves(rates(kind, at, new)).any(axis=1)) for kind in kinds)
+        moving = chain.from_iterable(np.flatnonzero(_moves(rates(kind, here, new)).any(axis=1)) for kind, here in at)
         new = sorted({int(k) for k in moving} - found)
         found |= set(new)
     return sorted(found)

@@ -19,6 +19,9 @@ NOISELESS = {"sigma_T": 0.0, "sigma_omega": 0.0, "q_omega": 0.0}
 NO_RIPPLE = {"r_6a": 0.0, "r_6b": 0.0, "r_12a": 0.0, "r_12b": 0.0}
 """The ripple is a disturbance far above the drive train, no stiffness over the angle of the rotor."""
 
+TWISTS = ("phi", "gamma")
+"""What the twist of the teeth is called in the plants."""
+
 MESSAGE = "omega_2_can"
 """Of the outputs, the speed whose mean over a cycle is in the messages."""
 
@@ -80,6 +83,11 @@ class Driven(NamedTuple):
 
 def driven(point: Point) -> Driven:
     """Motor and plant at a point; the vehicle, which speeds up there, is taken as if it kept its speed."""
+    return in_contact_and_gap(point)[0]
+
+
+def in_contact_and_gap(point: Point) -> tuple[Driven, Driven]:
+    """The same, and with the teeth in the middle of the gap, over the same states."""
     block = motor_and_plant(point.plant)
     ripple = {name: value for name, value in NO_RIPPLE.items() if name in point.plant.Parameters._fields}
     given = point.with_parameters(motor=NOISELESS, plant={"v_0": point.v, "T_0": point.T, **ripple})
@@ -87,7 +95,7 @@ def driven(point: Point) -> Driven:
     u = point.plant.Input(T_mot=point.T)
     start = block.start(u, p)
     motor, plant = block.output(start, u, p)
-    x, outputs = numbers(start), (*motor._fields, *plant._fields, MESSAGE)
+    outputs = (*motor._fields, *plant._fields, MESSAGE)
 
     def derivative(values: Sequence[Any]) -> list[Any]:
         return numbers(block.derivative(like(start, values[:-1]), u._replace(T_mot=values[-1]), p))
@@ -97,12 +105,19 @@ def driven(point: Point) -> Driven:
         wheels = 0.5 * (plant.omega_wheel_L + plant.omega_wheel_R)
         return [*motor, *plant, can.g_w2 * can.i * wheels]
 
-    n = len(x)
-    AB, C = rates(derivative, [*x, u.T_mot], range(n + 1)).mean, rates(output, x, range(n)).mean
-    dx = np.array(derivative([*x, u.T_mot]))
-    kept = _coupled(AB, C)
-    A, B = AB[np.ix_(kept, kept)], AB[kept, n]
-    return Driven(A, B, C[:, kept], outputs, np.array(output(x)), C @ dx)
+    n = len(numbers(start))
+    places = [numbers(x) for x in (start, start._replace(**{twist: 0.0 for twist in TWISTS if twist in start._fields}))]
+    AB = [rates(derivative, [*x, u.T_mot], range(n + 1)).mean for x in places]
+    C = [rates(output, x, range(n)).mean for x in places]
+    dx = np.array(derivative([*places[0], u.T_mot]))
+    kept = _coupled(abs(AB[0]) + abs(AB[1]), abs(C[0]) + abs(C[1]))
+    contact, gap = (
+        Driven(
+            AB[k][np.ix_(kept, kept)], AB[k][kept, n], C[k][:, kept], outputs, np.array(output(places[k])), C[k] @ dx
+        )
+        for k in range(2)
+    )
+    return contact, gap
 
 
 def _coupled(AB: np.ndarray, C: np.ndarray) -> np.ndarray:

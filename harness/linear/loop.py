@@ -11,7 +11,7 @@ wheel speed is not used, and its mean over a cycle where it is. The closed loop,
 poles over a cycle are, which is exact in either case.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import floor
 from typing import NamedTuple
@@ -76,6 +76,12 @@ class LinearLoop:
         """(n, n), the closed loop over a cycle, with what the controller adds times a gain."""
         back = gain * np.outer(self.B, self.C)
         return np.linalg.matrix_power(self.quiet + back, self.cycle - 1) @ (self.message + back)
+
+    @property
+    def mean(self) -> "LinearLoop":
+        """The loop with the mean of its samples, which repeats itself from sample to sample."""
+        A = self.quiet + (self.message - self.quiet) / self.cycle
+        return replace(self, quiet=A, message=A, cycle=1)
 
     def gain(self, f: np.ndarray) -> np.ndarray:
         """L at frequencies in Hz."""

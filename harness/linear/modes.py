@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import pi
+from math import nan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,22 @@ class Mode(NamedTuple):
 
     frequency: float
     damping_ratio: float
+
+
+DRIVE_TRAIN = (2.0, 16.0)
+"""In Hz; below are the pitching of the body and the speed of the car, above mounts and bushings."""
+
+
+def is_stable(loop: LinearLoop) -> bool:
+    """Whether the closed loop is stable."""
+    return bool(np.abs(np.linalg.eigvals(loop.closed())).max() < 1.0)
+
+
+def drive_train_mode(loop: LinearLoop) -> Mode:
+    """The least damped mode of DRIVE_TRAIN; without one, NaN Hz and a damping ratio of 1."""
+    low, high = DRIVE_TRAIN
+    own = (mode for mode in modes(loop) if low < mode.frequency < high)
+    return min(own, key=lambda mode: mode.damping_ratio, default=Mode(nan, 1.0))
 
 
 def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:

@@ -1,0 +1,71 @@
+"""`driveline analyse` says what is wrong in one line, and writes a page that stands beside its figures."""
+
+import json
+import re
+from math import inf, nan
+from pathlib import Path
+
+import pytest
+
+from harness.analysis.analysis_report import write
+from harness.analysis.estimate import EstimateMetrics
+from harness.analysis.loop_analysis import Analysis, Part, linear_part
+from harness.analysis.sensitivity import SHOWN, Sensitivity
+from harness.cli import main
+from harness.commands.analyse import finite
+from harness.linear.backlash import LimitCycle, Swing
+from harness.linear.sweeps import SWEEPS, Swept
+
+PLANT = "TwoMassDriveline"
+
+
+@pytest.fixture(scope="module")
+def found() -> Analysis:
+    """Of one plant at one speed; the loop is the same for all values and amplitudes."""
+    at = linear_part(Part(PLANT, "15"), "SpeedWashout", {PLANT: {"plant.C": 100.0}})
+    same = Swept(1.0, at.loop.closed().diagonal() + 0.5j, at.mode, at.margins)
+    return Analysis(
+        "SpeedWashout",
+        [at],
+        {PLANT: {sweep.name: [same, same._replace(margins=None)] for sweep in SWEEPS}},
+        {PLANT: [Swing(1.2, 0.08, False, None), Swing(inf, 1.0, True, at.margins)]},
+        {PLANT: [LimitCycle(1.5, 0.22, 2.5, True)]},
+        {(PLANT, "tipin15"): EstimateMetrics(nan, nan, nan, nan, {"bias": "the controller estimates no twist"})},
+        [Sensitivity(PLANT, "tipin15", "plant.C", dict.fromkeys(SHOWN, 0.5) | {"overshoot": nan})],
+    )
+
+
+def test_the_page_shows_the_figures_that_are_written(found: Analysis, tmp_path: Path) -> None:
+    files = write(found, " --controller SpeedWashout", tmp_path)
+    assert all(file.is_file() for file in files)
+    page = (tmp_path / "analysis.md").read_text(encoding="utf-8")
+    shown = {tmp_path / name for name in re.findall(r"\]\((.*?)\)", page)}
+    assert shown == {file for file in files if file.suffix == ".png"}
+    assert "`driveline analyse --output FOLDER --controller SpeedWashout`" in page
+    assert "one that lasts, 1.50 φ_B at 2.5 Hz (N = 0.22)" in page
+    assert "{" not in page
+
+
+def test_the_document_has_nothing_that_json_does_not_know(found: Analysis) -> None:
+    document = json.loads(json.dumps(finite(found.record), allow_nan=False))
+    assert document["margins"][0]["speed_km_per_h"] == 15.0
+    assert document["backlash"][1]["amplitude"] is None
+    assert document["estimates"][0]["bias"] is None
+
+
+def test_an_unknown_controller_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["analyse", "--controller", "SpeedWashOut"])
+    assert stop.value.code == 2
+    assert "SpeedWashOut is unknown; did you mean SpeedWashout?" in capsys.readouterr().err
+
+
+def test_a_vehicle_file_that_is_wrong_is_answered_with_its_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    car = tmp_path / "car.toml"
+    car.write_text("C = -3.0\n", encoding="utf-8")
+    assert main(["analyse", "--vehicle", str(car), "--output", str(tmp_path / "results")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(r"car\.toml, line 1: C = -3: .* takes 1 to 100000 N\.m/rad", line)
+    assert not (tmp_path / "results").exists()

@@ -1,0 +1,39 @@
+"""Rates of change by differences: exact on straight pieces, and kinks are seen."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from harness.linear.rates import like, names, numbers, rates
+from models.block.operators import clip
+
+
+class Inner(NamedTuple):
+    a: float
+    b: tuple[float, ...]
+
+
+class Outer(NamedTuple):
+    inner: Inner
+    c: float
+
+
+RECORD = Outer(Inner(1.0, (2.0, 3.0)), 4.0)
+
+
+def test_a_record_is_its_numbers_with_their_names() -> None:
+    assert names(RECORD) == ["inner.a", "inner.b.0", "inner.b.1", "c"]
+    assert numbers(RECORD) == [1.0, 2.0, 3.0, 4.0]
+    assert like(RECORD, [5.0, 6.0, 7.0, 8.0]) == Outer(Inner(5.0, (6.0, 7.0)), 8.0)
+
+
+def test_the_rates_of_a_straight_function_are_its_factors() -> None:
+    found = rates(lambda x: [3.0 * x[0] - x[1], 0.5 * x[1]], [130.0, -20.0], [0, 1])
+    np.testing.assert_allclose(found.mean, [[3.0, -1.0], [0.0, 0.5]], atol=1e-8)
+    assert not found.bent.any()
+
+
+@pytest.mark.parametrize(("limit", "bent"), [(1.0, True), (1.0 + 2e-4, False)])
+def test_a_kink_is_seen_at_its_place_and_not_beside_it(limit: float, bent: bool) -> None:
+    assert bool(rates(lambda x: [clip(x[0], -limit, limit)], [1.0], [0]).bent.any()) is bent
