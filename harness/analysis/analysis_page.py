@@ -65,7 +65,7 @@ poles and margins of its own. Where a pole is on the stability limit there is a 
 {excluded}
 
 A swing that hardly leaves the gap (just above 1 φ_B) is the teeth floating from flank to flank without load; in the gap
-no signal tells the twist. Any mean torque ends it.
+no signal tells the twist. It takes a mean torque of zero.
 
 ![margins over the amplitude](figures/analysis_backlash.png)
 
