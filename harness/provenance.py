@@ -5,8 +5,8 @@ import json
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -16,7 +16,7 @@ from .cosimulation.interface import unit_of
 from .cosimulation.system import System
 from .cosimulation.wiring import Fit, fit
 from .errors import DrivelineError
-from .reports.files import remove, replaceable, write_text
+from .reports.files import alone, remove, replaceable, write_text
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -28,10 +28,19 @@ class Results:
         files: that it has written.
     """
 
-    def __init__(self, record: Path, systems: Mapping[str, System]) -> None:
+    def __init__(
+        self, record: Path, systems: Mapping[str, System], require: Callable[[], None], kept: ExitStack
+    ) -> None:
+        """Args:
+        require: refuses if there are results of another run.
+        kept: what lasts until the record is written.
+        """
         self.files: list[Path] = []
         self._record = record
         self._systems = systems
+        self._require = require
+        self._kept = kept
+        self._begun = False
 
     @cached_property
     def fits(self) -> dict[str, Fit]:
@@ -41,9 +50,18 @@ class Results:
     def begin(self, *others: Path) -> None:
         """From now on files are replaced, so their records go: a run that stops leaves none that is not theirs.
 
+        Other runs into the folder wait until the record is written.
+
         Args:
             others: records of parts of the results.
+
+        Raises:
+            DrivelineError: another run has written its results in the meantime.
         """
+        if not self._begun:
+            self._kept.enter_context(alone(self._record.parent))
+            self._require()
+            self._begun = True
         for record in (self._record, *others):
             remove(record)
 
@@ -70,11 +88,16 @@ def recorded(
     Raises:
         DrivelineError: there are results of another run; nothing has been run.
     """
-    if not replace:
-        require_same_run(record, run, results)
-    made = Results(record, systems)
-    yield made
-    write_record(record, run, made.fits, made.files, inputs)
+
+    def require() -> None:
+        if not replace:
+            require_same_run(record, run, results)
+
+    require()
+    with ExitStack() as kept:
+        made = Results(record, systems, require, kept)
+        yield made
+        write_record(record, run, made.fits, made.files, inputs)
 
 
 def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Path]) -> None:

@@ -1,10 +1,18 @@
 """Files that are complete or absent."""
 
+import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from errno import ELOOP
+from errno import ELOOP, ENOLCK, ENOTSUP
 from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
+LOG = logging.getLogger(__name__)
 
 DEVICES = (Path("/dev"), Path("/dev/fd"), Path("/proc/self/fd"))
 
@@ -48,6 +56,31 @@ def _naming(path: Path) -> Iterator[None]:
         if error.errno is None or error.filename is not None:
             raise
         raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Within it no other process is in such a block for the folder, which is made if absent; nothing of it stays.
+
+    Windows and some file systems of networks lock no folders, and nobody waits there.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    if fcntl is None:
+        yield
+        return
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            LOG.warning("another run writes to %s; this one waits for it", folder)
+            fcntl.flock(number, fcntl.LOCK_EX)
+        except OSError as error:
+            if error.errno not in (ENOLCK, ENOTSUP):
+                raise
+        yield
+    finally:
+        os.close(number)
 
 
 def replaceable(path: Path) -> bool:

@@ -2,6 +2,9 @@
 
 import hashlib
 import json
+import os
+import threading
+import time
 from pathlib import Path
 from shutil import copytree
 from typing import Any
@@ -19,6 +22,7 @@ from harness.cosimulation.interface import Interface
 from harness.cosimulation.system import System
 from harness.errors import DrivelineError
 from harness.provenance import require_same_run
+from harness.reports.files import alone
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 NAME = "TwoMassDriveline_prbs15_on"
@@ -114,6 +118,42 @@ def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(
     monkeypatch.setattr(simulate, "run", stopped)
     assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(made)]) != 0
     assert {path: path.read_bytes() for path in made.iterdir()} == before
+
+
+def test_of_two_runs_into_one_folder_at_once_the_later_is_refused(
+    made: Path, both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run_while_another_ends(*arguments: Any) -> Any:
+        copytree(made, tmp_path, dirs_exist_ok=True)
+        return run(*arguments)
+
+    run = simulate.run
+    monkeypatch.setattr(simulate, "run", run_while_another_ends)
+    assert main([*RUN, "--seed", "6", "--fmus", str(both_built), "--output", str(tmp_path)]) == 2
+    assert f"{NAME}.csv is of another run" in capsys.readouterr().err
+    for path in made.iterdir():
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="folders of Windows cannot be locked")
+def test_runs_write_into_a_folder_one_after_the_other(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    done: list[str] = []
+
+    def second() -> None:
+        with alone(tmp_path):
+            done.append("second")
+
+    waiting = threading.Thread(target=second)
+    with alone(tmp_path):
+        waiting.start()
+        deadline = time.monotonic() + 60.0
+        while not caplog.messages and time.monotonic() < deadline:
+            time.sleep(0.01)
+        done.append("first")
+    waiting.join()
+    assert done == ["first", "second"]
+    assert caplog.messages == [f"another run writes to {tmp_path}; this one waits for it"]
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_record_that_is_a_link_stays_one(both_built: Path, tmp_path: Path) -> None:
