@@ -106,9 +106,17 @@ def computed_by_operators(tmp_path, expression):
     return float.fromhex(subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout)
 
 
-@pytest.mark.parametrize(("x", "y"), [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0)])
+@pytest.mark.parametrize(
+    ("x", "y"),
+    [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0), (5.5, 2.25), (7.75, 3.5)],
+)
 def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
     assert computed_by_operators(tmp_path, f"modulo({x!r}, {y!r})") == x % y
+
+
+@pytest.mark.parametrize("x", [0.0, 3.0, 3.5])
+def test_there_is_no_remainder_of_a_division_by_zero(native_builder, tmp_path, x):
+    assert math.isnan(computed_by_operators(tmp_path, f"modulo({x!r}, 0.0)"))
 
 
 @pytest.mark.parametrize(("x", "sign"), [(-2.5, -1.0), (-0.0, 0.0), (0.0, 0.0), (5e-324, 1.0), (2.5, 1.0)])
