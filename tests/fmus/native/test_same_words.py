@@ -163,6 +163,20 @@ def test_one_tick_more_or_less_is_allowed_in_a_state(request, unpacked, build, t
         host.step(1.01, 0.01)
 
 
+@pytest.mark.parametrize(("ticks", "allowed"), [(10**15, True), (10**15 + 1, False)])
+@pytest.mark.parametrize("build", ["python", "native"])
+def test_a_state_can_have_made_1e15_ticks(request, unpacked, build, ticks, allowed):
+    folder = request.getfixturevalue({"python": "built", "native": "native"}[build])
+    late = restored(lambda saved: forged(forged(saved, "time", 1.0 + 1e-3 * ticks), "ticks", ticks))
+    with opened(folder / "WheelSpeedCan.fmu", unpacked[build] / "WheelSpeedCan") as host:
+        host.initialize(1.0)
+        host.step(1.0, 0.01)
+        if allowed:
+            late(host)
+        else:
+            assert "ticks = 1000000000000001" in host.refuses(late, host)
+
+
 def test_every_sentence_is_said():
     sentences = {
         name for name, text in vars(protocol).items() if isinstance(text, str) and " " in text and name.isupper()
