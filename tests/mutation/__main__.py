@@ -48,8 +48,8 @@ TESTS = {
         for name in CONTROLLER
     },
     "models/block/runner.py": ("tests/models/block/test_runner.py",),
-    "models/block/integrator.py": ("tests/models/block/test_integrator.py",),
-    "fmus/protocol.py": ("tests/fmus/test_time.py",),
+    "models/block/integrator.py": ("tests/models/block/test_integrator.py", "tests/fmus/native/test_integrator.py"),
+    "fmus/protocol.py": ("tests/fmus/test_time.py", "tests/fmus/native/test_same_words.py"),
     "fmus/native/c/sampled.c": ("tests/fmus/native/test_runner.py", *CALLS),
     "fmus/native/c/integrator.c": (*INTEGRATOR, "tests/fmus/native/test_rates.py"),
     "fmus/native/c/implicit.c": INTEGRATOR,

@@ -324,6 +324,16 @@ def test_a_flat_crossing_is_located_in_bounded_work(integrator: MakeIntegrator, 
     assert count < (20 if power == 1 else 150) * 12
 
 
+@pytest.mark.parametrize(("beyond", "crossed"), [(1e-12, False), (1.01e-12, True)])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_less_than_the_resolution_behind_a_zero_is_no_crossing(
+    integrator: MakeIntegrator, side: float, beyond: float, crossed: bool
+) -> None:
+    stepping = block(lambda x, u, p: Body(1.0, 0.0, 0.0), lambda x: side * (1.0 if x.x < 0.03 else -beyond))
+    _, count = evaluations(integrator, stepping, Body(0.0, 0.0, 0.0), 0.1)
+    assert (count > 20 * 12) is crossed
+
+
 @pytest.mark.parametrize("side", [-1e-17, 0.0, 1e-17])
 def test_lying_on_a_zero_costs_no_more_than_crossing_it(integrator: MakeIntegrator, side: float) -> None:
     resting = block(lambda x, u, p: Body(x.v, 0.0, 0.0), lambda x: x.x, lambda x: -x.x)
