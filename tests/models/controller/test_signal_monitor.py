@@ -128,6 +128,13 @@ def test_a_motor_speed_may_go_on_as_it_was_going(side: float) -> None:
     assert (more.bad, more.omega_1, more.omega_1_change) == (T_S, 0.0, 0.0)
 
 
+@each_side
+def test_a_motor_speed_that_was_going_elsewhere_may_stay(side: float) -> None:
+    going = last(0.0)._replace(omega_1_change=side * 60.0)
+    for jump, bad in ((40.0, 0.0), (above(40.0), T_S)):
+        assert after([U._replace(omega_1_meas=-side * jump)], going, increment=side * 500.0).bad == bad
+
+
 @pytest.mark.parametrize(
     ("omega_1", "omega_1_hat", "pushed", "against", "backing"),
     [

@@ -393,3 +393,12 @@ def test_a_lost_motor_speed_is_answered_within_a_fifth_of_a_period_of_the_drive_
     statuses = [x.status for x in run(block, lost)][100:]
     assert statuses[round(0.012 / T_S)] != FALLBACK
     assert statuses[round(0.022 / T_S)] == FALLBACK
+
+
+@pytest.mark.parametrize(("bad", "apart", "doubtful"), [(0.0, 0.0, False), (T_S, 0.0, True), (0.0, T_S, True)])
+def test_motor_signals_are_doubtful_from_the_first_bad_or_contradicted_sample_on(
+    bad: float, apart: float, doubtful: bool
+) -> None:
+    x = OTHER.start(Input(), P)
+    signals, heard = x.monitor._replace(bad=bad), x.wheels._replace(apart=apart)
+    assert supervision.is_doubtful(signals, heard) is doubtful

@@ -6,7 +6,7 @@ import pytest
 
 from models.controller import swings
 from models.controller.supervision import Parameters
-from models.controller.swings import AHEAD, CALM, EXCUSE, GROWS, MOST, SWING, T_FORGET, SwingState
+from models.controller.swings import AHEAD, EXCUSE, GROWS, MOST, SWING, T_FORGET, SwingState
 
 P = Parameters(T_max=100.0)
 T_S = T_FORGET / 8.0
@@ -40,8 +40,8 @@ def test_a_half_swing_that_is_far_smaller_than_the_one_before_is_not_counted(sid
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_small_damping_torque_is_calm(side: float) -> None:
-    assert swings.is_calm(side * CALM * P.T_max, P)
-    assert not swings.is_calm(side * math.nextafter(CALM * P.T_max, math.inf), P)
+    assert swings.is_calm(side * 15.0, P)
+    assert not swings.is_calm(side * math.nextafter(15.0, math.inf), P)
 
 
 def test_every_change_of_side_is_one() -> None:

@@ -81,6 +81,12 @@ def test_who_is_caught_again_needs_twice_the_time() -> None:
     assert not trust.is_trusted(after(127, x, confirmed=True))
 
 
+def test_that_limit_is_a_number_of_proofs() -> None:
+    most = LONGEST * 2.0
+    x = trust.update(LOST._replace(needed=most), **(GOOD | {"feeding": True}), T_s=T_S, p=P._replace(t_proof=2.0))
+    assert x.needed == most
+
+
 @pytest.mark.parametrize("caught", [True, False])
 def test_rest_clears_who_was_caught(caught: bool) -> None:
     x = CAUGHT._replace(caught=caught, needed=8.0)
