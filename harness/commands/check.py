@@ -62,12 +62,13 @@ def run(args: argparse.Namespace) -> int:
 
     style = "json" if args.json else args.format
     failing = {severity.value for severity in Severity} if args.strict else {Severity.ERROR.value}
+    checks = {path: check(path, limits(args), args.quick, args.ignore) for path in args.fmus}
     found = {}
-    for path in dict.fromkeys(args.fmus):
+    for path, answers in checks.items():
         if style == "text" and not args.quiet:
             print(path)
         found[str(path)] = verdicts = []
-        for verdict in check(path, limits(args), args.quick, args.ignore):
+        for verdict in answers:
             verdicts.append(verdict)
             if style == "text" and not args.quiet:
                 print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule, verdict.tried)

@@ -36,7 +36,10 @@ def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Coll
     """
     if not path.is_file():
         raise DrivelineError(f"there is no FMU {path}")
+    return _verdicts(path, limits, quick, ignored)
 
+
+def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str]) -> Iterator[Verdict]:
     def kept(rules: Iterable[Rule]) -> Iterator[Rule]:
         return (rule for rule in rules if rule.name not in ignored)
 

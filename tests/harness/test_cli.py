@@ -247,6 +247,12 @@ def test_compare_as_a_document_has_every_metric_of_every_run(capsys, built, tmp_
     assert 0.0 < on["added_torque_rms_N_m"] < 20.0
 
 
+def test_check_looks_at_no_fmu_where_one_is_missing(capsys, tmp_path):
+    faulty = tmp_path / "faulty.fmu"
+    faulty.write_text("no archive")
+    assert answer(capsys, "check", str(faulty), "nothing.fmu")[:2] == (2, "")
+
+
 def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
     assert answer(capsys, "check", str(built / "MotorTorqueLoop.fmu"))[0] == 0
     faulty = tmp_path / "faulty.fmu"
