@@ -80,8 +80,8 @@ class DriveTrain(NamedTuple):
     Attributes:
         M: inertia of the vehicle, m r^2/i^2.
         lambda_v: share of the gear torque that the vehicle takes, 1 - wheel_share J_2/(J_2 + M).
-        omega_0: own frequency of the drive train, sqrt(C/J_1 + (1 - lambda_v) C/J_2).
-        omega_v: own frequency of vehicle and wheels on the drive train with the motor held, sqrt(C/(M + J_2)).
+        omega_0: natural frequency of the drive train, sqrt(C/J_1 + (1 - lambda_v) C/J_2).
+        omega_v: natural frequency of vehicle and wheels on the drive train with the motor held, sqrt(C/(M + J_2)).
         T_dead: computation and hold of the controller, lag of the motor.
         T_age: mean age of a wheel-speed message.
     """

@@ -46,7 +46,8 @@ the gear torque differed from the run without the fault in the 0.2 s before. Bes
 
 ## Single faults
 
-Cells count the runs that are not clean.
+Cells count the runs that are not clean. In the figures the colour is their share of the runs of a cell, from light blue
+(none) over orange to red (all); a white cell had no run.
 
 ![single faults](figures/faults.png)
 
