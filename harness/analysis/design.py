@@ -31,6 +31,13 @@ def design(plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: 
     return possible({"lambda_v": train.lambda_v, **gains, **of_messages, **law})
 
 
+def literal_observer(
+    plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS
+) -> dict[str, float]:
+    """The gains of the paper's observer taken literally, by name; args and errors as of `design`."""
+    return possible(estimator_gains(plant, motor, can, drive_train(plant, motor, can, weights), weights, literal=True))
+
+
 def possible(parameters: dict[str, float]) -> dict[str, float]:
     """The parameters, if the controller can be set to them.
 

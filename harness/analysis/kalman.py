@@ -23,16 +23,24 @@ class DesignError(DrivelineError):
     """There is no controller for this car; the text says why."""
 
 
-def estimator_gains(plant: Plant, motor: Motor, can: Can, train: DriveTrain, weights: Weights) -> dict[str, float]:
-    """Gains on the motor speed without and with the wheel speed, and on a wheel-speed message."""
-    A, Q = transition(plant, train.lambda_v), process_noise(plant, motor, train, weights)
+def estimator_gains(
+    plant: Plant, motor: Motor, can: Can, train: DriveTrain, weights: Weights, literal: bool = False
+) -> dict[str, float]:
+    """Gains on the motor speed without and with the wheel speed, and on a wheel-speed message.
+
+    Args:
+        literal: of the paper's observer as it stands, where the vehicle takes no share of the gear torque and there is
+            no load; of the noise it knows the same.
+    """
+    states = Estimate._fields[:3] if literal else Estimate._fields
+    own = slice(len(states))
+    A = transition(plant, 0.0 if literal else train.lambda_v)[own, own]
+    Q = process_noise(plant, motor, train, weights)[own, own]
     R_1, R_2 = speed_noise(motor), message_noise(plant, motor, can, train, weights)
     Lw, L_can = both_speed_gains(A, Q, R_1, R_2, round(train.T_age / T_S), round(can.T_cyc / T_S))
     rows = {"L": motor_speed_gains(A, Q, R_1), "Lw": Lw, "L_can": L_can}
     return {
-        f"{name}_{state}": float(gain)
-        for name, row in rows.items()
-        for state, gain in zip(Estimate._fields, row, strict=True)
+        f"{name}_{state}": float(gain) for name, row in rows.items() for state, gain in zip(states, row, strict=True)
     }
 
 
@@ -75,12 +83,12 @@ def message_noise(plant: Plant, motor: Motor, can: Can, train: DriveTrain, weigh
 
 
 def motor_speed_gains(A: np.ndarray, Q: np.ndarray, R_1: float) -> np.ndarray:
-    """Stationary Kalman gains (4,) with the motor speed alone, whose variance is R_1.
+    """Stationary Kalman gains (n,) with the motor speed alone, the first state, whose variance is R_1.
 
     Raises:
         DesignError: there are none; shows the matrices.
     """
-    H = np.eye(4)[:1]
+    H = np.eye(len(A))[:1]
     try:
         P = solve_discrete_are(A.T, H.T, Q, np.array([[R_1]]))
     except np.linalg.LinAlgError as error:
@@ -91,7 +99,7 @@ def motor_speed_gains(A: np.ndarray, Q: np.ndarray, R_1: float) -> np.ndarray:
 def both_speed_gains(
     A: np.ndarray, Q: np.ndarray, R_1: float, R_2: float, delay: int, cycle: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Gains (4,) on the motor speed (mean over a cycle) and on a message, in the periodic optimum.
+    """Gains (n,) on the motor speed (mean over a cycle) and on a message, in the periodic optimum.
 
     The state is augmented by the past values of omega_2, so that a message measures the last of them.
 
@@ -99,20 +107,21 @@ def both_speed_gains(
         R_1, R_2: variances of the motor speed and of a message.
         delay, cycle: of the messages, in samples.
     """
-    size = 4 + delay
+    n = len(A)
+    size = n + delay
     F, noise = np.zeros((size, size)), np.zeros((size, size))
-    F[:4, :4], noise[:4, :4] = A, Q
-    F[4, 1] = 1.0
-    F[5:, 4:-1] = np.eye(delay - 1)
+    F[:n, :n], noise[:n, :n] = A, Q
+    F[n, 1] = 1.0
+    F[n + 1 :, n:-1] = np.eye(delay - 1)
     H_1, H_2 = np.eye(size)[0], np.eye(size)[-1]
     P, gains, L_2 = np.eye(size), [], np.zeros(size)
     for k in range(SAMPLES):
         P = F @ P @ F.T + noise
         P, L_1 = _measured(P, H_1, R_1)
-        gains = [*gains[1 - cycle :], L_1[:4]]
+        gains = [*gains[1 - cycle :], L_1[:n]]
         if k % cycle == 0:
             P, L_2 = _measured(P, H_2, R_2)
-    return np.mean(gains, axis=0), L_2[:4]
+    return np.mean(gains, axis=0), L_2[:n]
 
 
 def _measured(P: np.ndarray, H: np.ndarray, R: float) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from fmus.catalogue import EVERY
 from fmus.description.variables import Variable, interface
 
-from ..analysis.design import design
+from ..analysis.design import design, literal_observer
 from ..analysis.weights import records
 from ..errors import DrivelineError
 
@@ -75,8 +75,8 @@ def declared_parameters(controller: str) -> dict[str, Variable]:
 def space(controller: str, car: Mapping[str, Any]) -> Space:
     """What is searched of a controller for a car.
 
-    What is computed for our controller is used of another one where it starts with the same for the default car. A
-    range is that of the default car, times what the formulas make of the start here and there.
+    A parameter is computed where what is computed for the default car, for our controller or the paper's observer, is
+    its start value. A range is that of the default car, times what the formulas make of the start here and there.
 
     Args:
         controller: by name.
@@ -87,23 +87,29 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
         DesignError: see `harness.analysis.design.design`.
     """
     declared = declared_parameters(controller)
-    usual, here = _usual(), design(*records(car))
-    own = [name for name in usual if name in declared and isclose(declared[name].start, usual[name], rel_tol=SAME)]
+    here, scale = {}, {}
+    for computed, usual in zip(_computed(car), _usual(), strict=True):
+        for name in usual:
+            if name in declared and isclose(declared[name].start, usual[name], rel_tol=SAME):
+                here[name], scale[name] = computed[name], computed[name] / usual[name]
     searched = [
-        _searched(variable, here[name] / usual[name] if name in own else 1.0)
+        _searched(variable, scale.get(name, 1.0))
         for name, variable in declared.items()
         if getattr(variable.declaration, "search", None)
     ]
     if not searched:
         raise DrivelineError(f"{controller} has no parameter that is searched")
     found = {each.name for each in searched}
-    return Space(tuple(searched), {name: rounded(here[name]) for name in own if name not in found})
+    return Space(tuple(searched), {name: rounded(value) for name, value in here.items() if name not in found})
+
+
+def _computed(car: Mapping[str, Any]) -> tuple[dict[str, float], ...]:
+    return design(*records(car)), literal_observer(*records(car))
 
 
 @cache
-def _usual() -> dict[str, float]:
-    """What is computed for the default car."""
-    return design()
+def _usual() -> tuple[dict[str, float], ...]:
+    return _computed({})
 
 
 def _searched(variable: Variable, scale: float) -> Searched:

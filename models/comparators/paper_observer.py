@@ -14,17 +14,17 @@ from ..controller.supervised import supervised
 from .fixed import fixed
 
 GAINS = {
-    "L_omega_1": 0.2997,
-    "L_omega_2": 0.1313,
-    "L_phi": -0.0069,
+    "L_omega_1": 0.299725,
+    "L_omega_2": 0.131277,
+    "L_phi": -0.00690267,
     "Lw_omega_1": 0.2996,
-    "Lw_omega_2": 0.1308,
-    "Lw_phi": -0.0069,
-    "L_can_omega_1": 0.000865,
-    "L_can_omega_2": 0.00368,
-    "L_can_phi": -7.63e-05,
+    "Lw_omega_2": 0.130838,
+    "Lw_phi": -0.00689257,
+    "L_can_omega_1": 0.000864739,
+    "L_can_omega_2": 0.00368111,
+    "L_can_phi": -7.63251e-05,
 }
-"""Of the Riccati equations that ours come from, for this model."""
+"""Of the Riccati equations that ours come from, for this model (harness.analysis.design, literal_observer)."""
 
 BLOCK = supervised(
     name="PaperObserver",

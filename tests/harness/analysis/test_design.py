@@ -6,8 +6,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from harness.analysis.design import design, landing_torque
-from harness.analysis.kalman import DesignError, motor_speed_gains, process_noise, transition
+from harness.analysis.design import design, landing_torque, literal_observer
+from harness.analysis.kalman import DesignError, motor_speed_gains, process_noise, speed_noise, transition
 from harness.analysis.weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
 from harness.commands.design import designed
 from harness.linear.modes import swing
@@ -24,6 +24,20 @@ SECOND_CAR = {"J_1": 0.09, "J_2": 0.45, "C": 210.0, "phi_B": 0.06, "i": 10.5, "m
 def test_the_stored_gains_are_those_of_the_design() -> None:
     stored = ROOT / "models" / "controller" / "gains.toml"
     assert stored.read_text(encoding="utf-8") == designed(), f"driveline design --output {stored}"
+
+
+def test_the_gains_of_the_paper_s_observer_are_stationary_for_its_model() -> None:
+    """The covariance that they leave does not change over a sample, in which the third state feels no load."""
+    gains = literal_observer()
+    L = np.array([gains[f"L_{state}"] for state in ("omega_1", "omega_2", "phi")])
+    train = drive_train(PLANT, MOTOR, CAN)
+    A, Q = transition(PLANT, 0.0)[:3, :3], process_noise(PLANT, MOTOR, train, WEIGHTS)[:3, :3]
+    P = np.eye(3)
+    for _ in range(4000):
+        P = A @ P @ A.T + Q
+        K = P[:, 0] / (P[0, 0] + speed_noise(MOTOR))
+        P = P - np.outer(K, P[0])
+    assert pytest.approx(L, rel=1e-6) == K
 
 
 def test_the_controller_takes_its_defaults_from_the_design() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from fmus.catalogue import EVERY
 from fmus.parameter_files import of_plants, read_vehicle
-from harness.analysis.design import design
+from harness.analysis.design import design, literal_observer
 from harness.analysis.weights import records
 from harness.control_loop import PLACES
 from harness.errors import DrivelineError
@@ -67,6 +67,15 @@ def test_others_take_what_they_have_in_common_with_ours() -> None:
     washout = space("SpeedWashout", VAN)
     assert [each.name for each in washout.searched] == ["k_v", "omega_v"]
     assert washout.computed == {}
+
+
+def test_the_paper_s_observer_gets_the_gains_of_its_own_model() -> None:
+    usual, of_van = space("PaperObserver", {}), space("PaperObserver", VAN)
+    estimator = {name for name in declared("PaperObserver") if name.startswith("L")}
+    assert usual.computed == {name: declared("PaperObserver")[name].start for name in (*estimator, "T_age")}
+    assert of_van.computed.keys() == usual.computed.keys()
+    assert of_van.computed["L_phi"] == pytest.approx(literal_observer(*records(VAN))["L_phi"], rel=1e-5)
+    assert of_van.computed["L_phi"] != pytest.approx(usual.computed["L_phi"], rel=0.01)
 
 
 def test_what_has_nothing_to_search_is_refused() -> None:
