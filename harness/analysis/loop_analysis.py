@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 from fmus.catalogue import EVERY
 
+from ..errors import DrivelineError
 from ..linear.backlash import LimitCycle, Swing, limit_cycles, swings
 from ..linear.loop import LinearLoop, linear_loop
 from ..linear.margins import Margins, margins
-from ..linear.modes import Mode, drive_train_mode
+from ..linear.modes import Mode, drive_train_mode, is_stable
 from ..linear.point import Point
 from ..linear.sweeps import SWEEPS, Swept, swept
 from ..manoeuvres.catalogue import MANOEUVRES
@@ -128,7 +129,12 @@ def point_of(plant: str, controller: str, parameters: Mapping[str, Any]) -> Poin
 
 
 def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[str, Any]]) -> Any:
-    """A piece of the linear analysis; parameters by plant."""
+    """A piece of the linear analysis; parameters by plant.
+
+    Raises:
+        NotLinear: the controller is not linear in contact.
+        DrivelineError: the loop is not stable in contact.
+    """
     point = point_of(part.plant, controller, parameters[part.plant])
     if part.what == "backlash":
         found = swings(point)
@@ -137,6 +143,10 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
         return list(swept(point, BY_NAME[part.what]))
     speed = float(part.what)
     loop = linear_loop(replace(point, v=speed / 3.6))
+    if not is_stable(loop):
+        raise DrivelineError(
+            f"the loop with {controller} is not stable in contact at {speed:g} km/h: it has no margins"
+        )
     return At(part.plant, speed, loop, drive_train_mode(loop.mean), margins(loop))
 
 
@@ -158,7 +168,7 @@ def analyse(plants: Sequence[str], controller: str, settings: Mapping[str, Mappi
         settings: by plant, arguments of `harness.simulate.simulate`, parameters among them.
 
     Raises:
-        NotLinear: the controller is not linear in contact.
+        NotLinear, DrivelineError: see `linear_part`.
     """
     parameters = {plant: settings[plant]["parameters"] for plant in plants}
     pieces = [*(f"{speed:g}" for speed in SPEEDS), *BY_NAME, "backlash"]

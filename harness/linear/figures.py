@@ -72,8 +72,8 @@ def plot_nyquist(
         for axes in (whole, near):
             axes.plot(np.real(turn), np.imag(turn), color=GREY, lw=0.8, label="|L| = 1")
             axes.plot(-1.0, 0.0, "+", color=BLACK, ms=8)
-            axes.set(xlabel="real part of L", aspect="equal", adjustable="datalim")
-        whole.set_ylabel("imaginary part of L")
+            axes.set(xlabel="real part of L", aspect="equal")
+        whole.set(ylabel="imaginary part of L", adjustable="datalim")
         near.set(xlim=(-2.2, 1.4), ylim=(-1.8, 1.8))
         figure.legend(*near.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         titled(figure, title, caption)

@@ -13,6 +13,7 @@ from harness.analysis.loop_analysis import Analysis, Part, linear_part
 from harness.analysis.sensitivity import SHOWN, Sensitivity
 from harness.cli import main
 from harness.commands.analyse import finite
+from harness.errors import DrivelineError
 from harness.linear.backlash import LimitCycle, Swing
 from harness.linear.sweeps import SWEEPS, Swept
 
@@ -51,6 +52,12 @@ def test_the_document_has_nothing_that_json_does_not_know(found: Analysis) -> No
     assert document["margins"][0]["speed_km_per_h"] == 15.0
     assert document["backlash"][1]["amplitude"] is None
     assert document["estimates"][0]["bias"] is None
+
+
+def test_a_loop_that_is_not_stable_has_no_margins() -> None:
+    assert linear_part(Part(PLANT, "15"), "SpeedWashout", {PLANT: {"controller.k_v": 12.0}}).margins.gain_margin > 1.0
+    with pytest.raises(DrivelineError, match=r"SpeedWashout is not stable in contact at 15 km/h: it has no margins"):
+        linear_part(Part(PLANT, "15"), "SpeedWashout", {PLANT: {"controller.k_v": 13.0}})
 
 
 def test_an_unknown_controller_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
