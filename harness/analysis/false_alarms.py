@@ -1,9 +1,10 @@
-"""Healthy drives that are taken for faults, and the same with a little more or less: the share of them in fallback.
+"""Healthy drives that come nearest to a fault, and are taken for one or nearly: the share of them in fallback.
 
     python -m harness.analysis.false_alarms
 
-The car rolls back on a grade of 20 % until the driver pushes, too little at first or late; or it cruises at 15 m/s
-with the torque that keeps this speed, and the speed of the motor is measured with little noise or coarsely.
+The car rolls back on a grade of 20 % until the driver pushes, too little or late, or though he does; or it cruises
+at 15 m/s with the torque that keeps this speed, or speeds up from there, and the speed of the motor is measured with
+little noise or coarsely.
 """
 
 import argparse
@@ -56,12 +57,15 @@ def rolling_back(T_driver: float, after: float) -> Drive:
 
 def cruising(T_driver: float, **sensor: float) -> Drive:
     """With these parameters of the sensor."""
-    name = f"cruising with {T_driver:g} N.m, {', '.join(f'{name} {value:g}' for name, value in sensor.items())}"
+    name = f"from 15 m/s with {T_driver:g} N.m, {', '.join(f'{name} {value:g}' for name, value in sensor.items())}"
     parameters = {f"motor.{name}": value for name, value in sensor.items()}
     return Drive(Manoeuvre(name, "", 10.0, 15.0, lines((0.0, T_driver))), parameters)
 
 
 DRIVES = (
+    rolling_back(60.0, -1.0),
+    rolling_back(60.0, 0.1),
+    rolling_back(60.0, 0.2),
     rolling_back(40.0, 0.5),
     rolling_back(60.0, 0.5),
     rolling_back(150.0, 0.5),
@@ -70,6 +74,9 @@ DRIVES = (
     cruising(8.56, sigma_omega=0.0),
     cruising(8.56, q_omega=0.5),
     cruising(8.56, q_omega=1.0),
+    cruising(8.56, sigma_omega=0.0, q_omega=1.0),
+    cruising(40.0, sigma_omega=0.0),
+    cruising(40.0, sigma_omega=0.0, q_omega=1.0),
 )
 
 

@@ -145,7 +145,7 @@ def contradiction(rows: np.ndarray) -> float:
     inputs = [Input(**dict(zip(SIGNALS, row, strict=True))) for row in zip(*columns, strict=True)]
     x, most = wheel_monitor.start(inputs[0], inputs[0].omega_1_meas, inputs[0].T_mot_est, P), 0.0
     for u, omega_2_hat in zip(inputs, rows["controller.omega_2_hat"].tolist(), strict=True):
-        x = wheel_monitor.update(x, u, u.omega_1_meas, u.T_mot_est, omega_2_hat, T_S, P)
+        x = wheel_monitor.update(x, u, u.omega_1_meas, u.T_mot_est, 0.0, omega_2_hat, T_S, P)
         most = max(most, x.apart)
     return most
 

@@ -2,9 +2,11 @@
 
 A motor speed is bad when it is not finite, out of range, jumping (far from the speed of the last sample,
 from where that was going, and from what the model expects), frozen (unchanged for t_frozen while the motor
-turns) or backing (after rest, away from the demand and from what the model expects); a motor torque when it is not
-finite, out of range, or far from what the motor should have (torque_loop). A speed that is bad for longer
-than t_bad is followed wherever it is plausible, so that it can prove itself (trust).
+turns, although noise has moved it before or the model expects it to move by more than its resolution, the
+smallest change that was seen; and from then on until it changes) or backing (after rest, away from the demand
+and from what the model expects); a motor torque when it is not finite, out of range, or far from what the
+motor should have (torque_loop). A speed that is bad for longer than t_bad is followed wherever it is
+plausible, so that it can prove itself (trust).
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -23,6 +25,24 @@ PUSH = 0.25
 BACKING = 1.5
 """Speed in rad/s by which the motor turns faster backwards than expected, which noise does not explain."""
 
+COARSE = 1.0
+"""Resolution in rad/s that a motor speed has until a finer one was seen."""
+
+DRIFT = 0.3
+"""Movement in rad/s that the noise of the torque makes the model expect."""
+
+T_MOVE = 0.1
+"""Time in s for which a movement is remembered that the model has expected."""
+
+NOISY = 1.5
+"""Change over the resolution, to and fro from one sample to the next, that only noise makes."""
+
+OFTEN = 0.02
+"""Share of the samples with such changes from which on a speed is noisy, and never stays the same for long."""
+
+T_NOISE = 0.5
+"""Time in s over which that share is taken."""
+
 
 class MonitorState(NamedTuple):
     """State of the signal monitor."""
@@ -32,6 +52,11 @@ class MonitorState(NamedTuple):
     T_mot: Annotated[float, Real("N.m", "torque estimate used last")]
     omega_1_last: Annotated[float, Real("rad/s", "motor speed received last")]
     omega_1_unchanged: Annotated[float, Real("s", "time since that speed changed")]
+    change: Annotated[float, Real("rad/s", "by which it had changed then")]
+    noise: Annotated[float, Real("1", "share of the samples in which noise has moved it by more than its resolution")]
+    resolution: Annotated[float, Real("rad/s", "smallest change of that speed that was seen")]
+    movement: Annotated[float, Real("rad/s", "movement that the model has expected since that speed changed")]
+    frozen: Annotated[bool, Boolean("that speed has not moved where it should have")]
     loop: LoopState
     bad: Annotated[float, Real("s", "time since the motor signals were good")]
     against: Annotated[bool, Boolean("the motor turns backwards while the demand pushes forwards")]
@@ -46,6 +71,11 @@ def start(u: Any, p: Any) -> MonitorState:
         T_mot=T_mot,
         omega_1_last=omega_1,
         omega_1_unchanged=0.0,
+        change=0.0,
+        noise=0.0,
+        resolution=COARSE,
+        movement=0.0,
+        frozen=False,
         loop=torque_loop.start(T_mot),
         bad=0.0,
         against=False,
@@ -78,6 +108,13 @@ def is_near(x: MonitorState, omega_1: Any, expected: Any, p: Any) -> Any:
     return minimum(minimum(going, last), abs(omega_1 - expected)) <= p.e_jump
 
 
+def noise_share(x: MonitorState, change: Any, T_s: Any) -> Any:
+    """Share of the samples in which noise moves the motor speed, after one with this change (rad/s)."""
+    turned, least = change * x.change < 0.0, minimum(abs(change), abs(x.change))
+    noisy = where(logical_and(turned, least > NOISY * x.resolution), 1.0, 0.0)
+    return x.noise + minimum(T_s / T_NOISE, 1.0) * (noisy - x.noise)
+
+
 def update(
     x: MonitorState,
     u: Any,
@@ -104,8 +141,14 @@ def update(
     near = is_near(x, omega_1, expected, p)
     against = logical_and(pushed, omega_1 < -p.omega_still)
     backing = logical_and(logical_and(against, launching), omega_1 - omega_1_hat < -BACKING)
+    received = where(is_finite(u.omega_1_meas), u.omega_1_meas, 0.0)
+    change = received - x.omega_1_last
+    unchanged = change == 0.0
     omega_1_unchanged = where(u.omega_1_meas == x.omega_1_last, x.omega_1_unchanged + T_s, 0.0)
-    frozen = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
+    movement = where(unchanged, x.movement * (1.0 - minimum(T_s / T_MOVE, 1.0)) + increment, 0.0)
+    should_move = logical_or(x.noise > OFTEN, abs(movement) > x.resolution + DRIFT)
+    stays = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
+    frozen = logical_and(stays, logical_or(x.frozen, should_move))
     possible = logical_and(plausible(u.omega_1_meas, p.omega_max), is_torque(u.T_mot_est, x.loop, p))
     good = logical_and(logical_and(possible, near), logical_not(logical_or(frozen, backing)))
     bad = where(good, 0.0, minimum(x.bad + T_s, p.t_bad + T_s))
@@ -114,8 +157,13 @@ def update(
         omega_1=used,
         omega_1_change=used - x.omega_1,
         T_mot=T_mot,
-        omega_1_last=where(is_finite(u.omega_1_meas), u.omega_1_meas, 0.0),
+        omega_1_last=received,
         omega_1_unchanged=minimum(omega_1_unchanged, p.t_frozen),
+        change=change,
+        noise=where(unchanged, x.noise, noise_share(x, change, T_s)),
+        resolution=where(unchanged, x.resolution, minimum(abs(change), x.resolution)),
+        movement=movement,
+        frozen=frozen,
         loop=torque_loop.update(x.loop, T_ref, T_s, p),
         bad=bad,
         against=against,

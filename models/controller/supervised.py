@@ -113,7 +113,7 @@ class Supervised:
         signals = monitor.update(x.monitor, u, pushed, launching, omega_1_hat, increment, x.T_ref, T_S, p)
         e = self.estimator.take_motor_speed(e, signals.omega_1, p)
         omega_2_hat = self.estimator.motion(e, p).omega_2
-        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, omega_2_hat, T_S, p)
+        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, signals.bad, omega_2_hat, T_S, p)
         corrected = branch(heard.usable, lambda: self.estimator.take_wheel_speed(e, heard.omega_2, T_S, p), lambda: e)
         return corrected, signals, heard
 

@@ -6,13 +6,14 @@ speed that is far from it, unless it is the messages that have leapt from one to
 speed has not: then they are doubted, until one is near the motor speed again.
 
 The teeth of a wheel do not tell its direction. It is taken from the motor while the messages are silent or
-doubted, and kept otherwise: a car that turns round passes the speeds at which they say nothing.
+doubted, and kept otherwise: a car that turns round passes the speeds at which they say nothing. A motor that
+turns backwards while it pushes hard has the wrong sign, unless the car was seen to roll back before it pushed.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Real
-from ..block.operators import is_finite, logical_and, logical_not, logical_or, minimum, where
+from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
 from .signal_monitor import PUSH, plausible
 
 LATE = 0.025
@@ -24,6 +25,9 @@ SHARE = 0.06
 LEAP = 20.0
 """Change in rad/s from one message to the next that the motor speed has to follow."""
 
+ROLLING = 0.1
+"""Time in s for which a motor that does not push turns backwards when the car rolls back; it crosses the gap sooner."""
+
 
 class WheelState(NamedTuple):
     """State of the wheel monitor."""
@@ -31,6 +35,7 @@ class WheelState(NamedTuple):
     counter: Annotated[float, Real("1", "counter of the message received last")]
     omega_2: Annotated[float, Real("rad/s", "speed received last, with its direction")]
     direction: Annotated[float, Real("1", "1 forwards, -1 backwards")]
+    rolling: Annotated[float, Real("s", "time for which the car was seen to roll back, up to twice what is needed")]
     usable: Annotated[bool, Boolean("a message has come that corrects the estimate")]
     unused: Annotated[float, Real("s", "time since such a message")]
     silence: Annotated[float, Real("s", "time since a message that says a speed")]
@@ -43,11 +48,12 @@ class WheelState(NamedTuple):
 
 def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
     known = has_wheel_speed(u, p)
-    direction = direction_of(omega_1, T_mot, p)
+    direction = direction_of(omega_1, T_mot, 0.0, p)
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=direction * message(u),
         direction=direction,
+        rolling=0.0,
         usable=False,
         unused=where(known, 0.0, p.t_stale),
         silence=where(known, 0.0, p.t_stale),
@@ -70,22 +76,44 @@ def message(u: Any) -> Any:
     return where(is_finite(u.omega_2_can), abs(u.omega_2_can), 0.0)
 
 
-def direction_of(omega_1: Any, T_mot: Any, p: Any) -> Any:
-    """Of a car whose motor turns with omega_1 (rad/s) under the torque T_mot (N.m)."""
-    return where(logical_and(omega_1 < -p.omega_still, T_mot < PUSH * p.T_max), -1.0, 1.0)
+def is_backwards(omega_1: Any, p: Any) -> Any:
+    return omega_1 < -p.omega_still
 
 
-def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_s: Any, p: Any) -> WheelState:
+def is_pushing(T_mot: Any, p: Any) -> Any:
+    """Whether the motor pushes so hard that no car begins to roll back on usual slopes."""
+    return T_mot >= PUSH * p.T_max
+
+
+def direction_of(omega_1: Any, T_mot: Any, rolling: Any, p: Any) -> Any:
+    """Of a car whose motor turns with omega_1 (rad/s) under T_mot (N.m), and that was seen to roll back for so long."""
+    possible = logical_or(logical_not(is_pushing(T_mot, p)), rolling >= ROLLING)
+    return where(logical_and(is_backwards(omega_1, p), possible), -1.0, 1.0)
+
+
+def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, bad: Any, T_s: Any, p: Any) -> Any:
+    """Time in s for which the car was seen to roll back, one sample later.
+
+    It counts while the motor does not push, stays while it does, and is taken back while the motor does not turn
+    backwards; a bad motor speed has seen nothing.
+    """
+    step = where(is_backwards(omega_1, p), where(is_pushing(T_mot, p), 0.0, T_s), -T_s)
+    return where(bad > 0.0, 0.0, clip(rolling + step, 0.0, 2.0 * ROLLING))
+
+
+def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, bad: Any, omega_2_hat: Any, T_s: Any, p: Any) -> WheelState:
     """The state after one sample.
 
     Args:
         u: input with omega_2_can, valid, counter.
         omega_1, T_mot: motor speed and torque in use, rad/s and N.m.
+        bad: time in s since the motor signals were good.
         omega_2_hat: estimate before the message, rad/s.
     """
     known = has_wheel_speed(u, p)
     believed = logical_and(x.silence < p.t_stale, logical_not(x.doubted))
-    direction = where(believed, x.direction, direction_of(omega_1, T_mot, p))
+    rolling = rolling_time(x.rolling, omega_1, T_mot, bad, T_s, p)
+    direction = where(believed, x.direction, direction_of(omega_1, T_mot, rolling, p))
     new = logical_and(u.counter != x.counter, known)
     omega_2 = where(new, direction * message(u), x.omega_2)
     late = x.late + minimum(T_s / LATE, 1.0) * (omega_1 - x.late)
@@ -100,6 +128,7 @@ def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, omega_2_hat: Any, T_
         counter=1.0 * u.counter,
         omega_2=omega_2,
         direction=direction,
+        rolling=rolling,
         usable=usable,
         unused=where(usable, 0.0, minimum(x.unused + T_s, p.t_stale)),
         silence=silence,

@@ -7,7 +7,7 @@ import pytest
 
 from models.controller import signal_monitor as monitor
 from models.controller import torque_loop
-from models.controller.signal_monitor import MonitorState
+from models.controller.signal_monitor import COARSE, DRIFT, OFTEN, T_MOVE, T_NOISE, MonitorState
 from models.controller.supervision import Input, Parameters
 from models.controller.torque_loop import LoopState
 
@@ -174,23 +174,81 @@ def test_what_was_received_last_is_finite_whatever_came() -> None:
         assert (x.omega_1, x.T_mot) == (150.0, 50.0)
 
 
+MOVING = COARSE + DRIFT + 1e-9
+"""Change in rad/s of the model's motor speed in a sample, with which the motor must move."""
+
+
 @each_side
 def test_a_motor_speed_unchanged_for_t_frozen_is_frozen_above_one_radian_per_second(side: float) -> None:
     for speed, frozen in ((side * 1.0, False), (side * above(1.0), True)):
         torques = [U._replace(omega_1_meas=speed, T_mot_est=u.T_mot_est) for u in changing(6)]
-        x = after(torques[:4], last(speed))
+        seen = last(speed)._replace(omega_1_last=torques[0].omega_1_meas + 0.5)
+        x = after(torques[:4], seen, increment=side * MOVING)
         assert (x.omega_1_unchanged, x.bad) == (0.75, 0.0)
-        x = after(torques[:5], last(speed))
-        assert (x.omega_1_unchanged, x.bad) == (1.0, T_S if frozen else 0.0)
-        x = after(torques, last(speed))
+        x = after(torques[:5], seen, increment=side * MOVING)
+        assert (x.omega_1_unchanged, x.bad, x.frozen) == (1.0, T_S if frozen else 0.0, frozen)
+        x = after(torques, seen, increment=side * MOVING)
         assert (x.omega_1_unchanged, x.bad) == (1.0, 2.0 * T_S if frozen else 0.0), "counted no further"
 
 
-def test_a_motor_speed_that_changes_is_no_longer_frozen() -> None:
-    frozen = after([U._replace(T_mot_est=u.T_mot_est) for u in changing(6)])
-    assert frozen.bad > 0.0
-    x = after([U._replace(omega_1_meas=above(150.0), T_mot_est=60.0)], frozen)
-    assert (x.omega_1_unchanged, x.bad) == (0.0, 0.0)
+@each_side
+@pytest.mark.parametrize("resolution", [0.125, COARSE])
+def test_a_motor_speed_is_frozen_that_should_have_moved_by_more_than_its_resolution(
+    side: float, resolution: float
+) -> None:
+    """A car that cruises need not move, and a speed without noise then does not change."""
+    x = last(150.0)._replace(omega_1_unchanged=P.t_frozen, resolution=resolution)
+    for movement, frozen in ((resolution + DRIFT - 1e-9, False), (resolution + DRIFT + 1e-9, True)):
+        y = after([U], x, increment=side * movement)
+        assert (y.movement, y.frozen, y.bad > 0.0) == (side * movement, frozen, frozen)
+
+
+def test_a_motor_speed_that_noise_was_moving_is_frozen_whatever_the_model_expects() -> None:
+    x = last(150.0)._replace(omega_1_unchanged=P.t_frozen)
+    for noise, frozen in ((OFTEN, False), (above(OFTEN), True)):
+        y = after([U], x._replace(noise=noise))
+        assert (y.noise, y.frozen) == (noise, frozen), "and remembered while nothing changes"
+
+
+@each_side
+def test_only_noise_moves_a_speed_to_and_fro_by_more_than_a_step_of_its_resolution(side: float) -> None:
+    """From one sample to the next; what is so coarse that noise makes it flicker from step to step may stay on one."""
+    for change, before, noise in (
+        (1.51, -1.51, 0.75),
+        (1.49, -1.51, 0.25),
+        (1.51, -1.49, 0.25),
+        (1.51, 1.51, 0.25),
+        (1.51, 0.0, 0.25),
+    ):
+        x = last(150.0)._replace(noise=0.5, resolution=1.0, change=side * before)
+        assert monitor.noise_share(x, side * change, 0.5 * T_NOISE) == noise
+    y = after([U._replace(omega_1_meas=152.0), U], last(150.0))
+    assert (y.change, y.noise) == (-2.0, T_S / T_NOISE)
+
+
+def test_a_movement_that_the_model_expects_is_forgotten_in_T_MOVE() -> None:
+    """Or when the speed changes."""
+    x = last(150.0)._replace(movement=1.0)
+    y = monitor.update(x, U, False, False, 0.0, 0.25, 50.0, 0.25 * T_MOVE, P)
+    assert y.movement == 1.0
+    assert after([U], x, increment=0.25).movement == 0.25, "with samples that are longer than that"
+    assert after([U._replace(omega_1_meas=above(150.0))], x, increment=0.25).movement == 0.0
+
+
+def test_a_frozen_motor_speed_stays_so_until_it_changes() -> None:
+    """In fallback the model follows it, and expects no movement."""
+    frozen = last(150.0)._replace(omega_1_unchanged=P.t_frozen, frozen=True)
+    assert after([U] * 4, frozen).bad == 4 * T_S
+    x = after([U._replace(omega_1_meas=above(150.0))], frozen)
+    assert (x.omega_1_unchanged, x.frozen, x.bad) == (0.0, False, 0.0)
+
+
+def test_the_resolution_of_the_motor_speed_is_its_smallest_change() -> None:
+    x, seen = last(150.0), []
+    for speed in (152.0, 152.5, 152.5, 151.5, 151.625, math.nan, math.inf):
+        x = after([U._replace(omega_1_meas=speed)], x)
+        seen.append(x.resolution)
+    assert seen == [COARSE, 0.5, 0.5, 0.5, 0.125, 0.125, 0.125]
 
 
 def test_both_motor_signals_must_be_good() -> None:
@@ -212,6 +270,11 @@ def test_at_the_start_all_that_is_plausible_is_believed() -> None:
         T_mot=50.0,
         omega_1_last=150.0,
         omega_1_unchanged=0.0,
+        change=0.0,
+        noise=0.0,
+        resolution=COARSE,
+        movement=0.0,
+        frozen=False,
         loop=LoopState(50.0, 0.0),
         bad=0.0,
         against=False,

@@ -7,7 +7,7 @@ import pytest
 
 from models.controller import wheel_monitor as wheels
 from models.controller.supervision import Input, Parameters
-from models.controller.wheel_monitor import LATE, LEAP, SHARE, WheelState
+from models.controller.wheel_monitor import LATE, LEAP, ROLLING, SHARE, WheelState
 
 P = Parameters(omega_max=500.0, omega_still=3.0, e_max=40.0, e_wheel=16.0, t_stale=1.0, t_apart=1.0)
 T_S = 0.25
@@ -21,10 +21,12 @@ def above(limit: float) -> float:
     return math.nextafter(limit, math.inf)
 
 
-def heard(u: Input, x: WheelState | None = None, omega_1: float = 150.0, omega_2_hat: float = 150.0) -> WheelState:
+def heard(
+    u: Input, x: WheelState | None = None, omega_1: float = 150.0, omega_2_hat: float = 150.0, T_mot: float = 0.0
+) -> WheelState:
     """The state after a sample."""
     x = wheels.start(U, 150.0, 0.0, P) if x is None else x
-    return wheels.update(x, u, omega_1, 0.0, omega_2_hat, T_S, P)
+    return wheels.update(x, u, omega_1, T_mot, 0.0, omega_2_hat, T_S, P)
 
 
 def new(omega_2_can: float = 150.0, **signals: Any) -> Input:
@@ -139,7 +141,7 @@ def test_no_message_no_leap() -> None:
 
 
 def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
-    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 150.0, 0.25 * LATE, P)
+    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 0.0, 150.0, 0.25 * LATE, P)
     assert x.late == 175.0
     assert heard(U, omega_1=250.0).late == 250.0, "with samples that are longer than that"
 
@@ -167,7 +169,7 @@ def test_the_direction_is_that_of_the_motor_when_the_speed_becomes_known(sent: f
         silent = x._replace(silence=silence)
         assert heard(new(sent, counter=9), silent, omega_1=60.0).omega_2 == speed
     for omega_1, direction in ((-3.0, 1.0), (-above(3.0), -1.0)):
-        assert wheels.direction_of(omega_1, 0.0, P) == direction
+        assert wheels.direction_of(omega_1, 0.0, 0.0, P) == direction
 
 
 def test_messages_in_doubt_take_their_direction_from_the_motor_again() -> None:
@@ -180,11 +182,47 @@ def test_messages_in_doubt_take_their_direction_from_the_motor_again() -> None:
 
 def test_no_car_rolls_backwards_against_a_quarter_of_the_torque() -> None:
     p = P._replace(T_max=100.0)
-    assert wheels.direction_of(-60.0, 25.0, p) == 1.0
-    assert wheels.direction_of(-60.0, math.nextafter(25.0, 0.0), p) == -1.0
+    assert wheels.direction_of(-60.0, 25.0, 0.0, p) == 1.0
+    assert wheels.direction_of(-60.0, math.nextafter(25.0, 0.0), 0.0, p) == -1.0
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    assert wheels.update(x, new(60.0), -60.0, 180.0, -60.0, T_S, P).omega_2 == 60.0
+    assert heard(new(60.0), x, omega_1=-60.0, T_mot=180.0).omega_2 == 60.0
     assert wheels.start(U, -60.0, 180.0, P).direction == 1.0
+
+
+def test_a_car_that_was_seen_to_roll_back_does_so_under_any_torque() -> None:
+    """Not one whose motor has only crossed the gap."""
+    x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
+    for rolling, direction in ((math.nextafter(ROLLING, 0.0), 1.0), (ROLLING, -1.0)):
+        assert wheels.direction_of(-60.0, 180.0, rolling, P) == direction
+        y = heard(new(60.0), x._replace(rolling=rolling), omega_1=-60.0, T_mot=180.0, omega_2_hat=-60.0)
+        assert (y.direction, y.omega_2, y.rolling) == (direction, direction * 60.0, rolling)
+    assert wheels.direction_of(-3.0, 180.0, ROLLING, P) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("omega_1", "T_mot", "bad", "rolling"),
+    [
+        (-above(3.0), math.nextafter(45.0, 0.0), 0.0, 0.125),
+        (-above(3.0), 45.0, 0.0, 0.0625),
+        (-3.0, 0.0, 0.0, 0.0),
+        (-3.0, 180.0, 0.0, 0.0),
+        (-60.0, 0.0, T_S, 0.0),
+    ],
+)
+def test_a_car_is_seen_to_roll_back_while_its_motor_turns_backwards_and_does_not_push(
+    omega_1: float, T_mot: float, bad: float, rolling: float
+) -> None:
+    """And no more after as long a time in which it does not turn backwards, or with a bad motor speed."""
+    assert wheels.rolling_time(0.0625, omega_1, T_mot, bad, 0.0625, P) == rolling
+
+
+def test_the_time_of_rolling_back_is_counted_up_to_twice_what_is_needed() -> None:
+    """A swing of the motor past standstill does not take it back."""
+    x, times = wheels.start(U._replace(valid=False), 0.0, 0.0, P).rolling, []
+    for _ in range(5):
+        x = wheels.rolling_time(x, -60.0, 0.0, 0.0, 0.0625, P)
+        times.append(x)
+    assert times == [0.0625, 0.125, 0.1875, 2.0 * ROLLING, 2.0 * ROLLING]
 
 
 def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
@@ -205,7 +243,7 @@ def test_only_a_witness_contradicts() -> None:
 def test_at_the_start_all_that_is_plausible_is_believed() -> None:
     x = wheels.start(U, 140.0, 0.0, P)
     assert x == WheelState(
-        counter=7.0, omega_2=150.0, direction=1.0, usable=False, unused=0.0, silence=0.0,
+        counter=7.0, omega_2=150.0, direction=1.0, rolling=0.0, usable=False, unused=0.0, silence=0.0,
         doubted=False, witness=True, late=140.0, late_then=140.0, apart=0.0,
     )  # fmt: skip
     assert type(x.counter) is type(heard(U).counter) is float, "as it is declared"
