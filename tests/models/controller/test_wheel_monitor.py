@@ -7,7 +7,7 @@ import pytest
 
 from models.controller import wheel_monitor as wheels
 from models.controller.supervision import Input, Parameters
-from models.controller.wheel_monitor import LATE, LEAP, ROLLING, SHARE, WheelState
+from models.controller.wheel_monitor import LEAP, ROLLING, SHARE, WheelState
 
 P = Parameters(omega_max=500.0, omega_still=3.0, e_max=40.0, e_wheel=16.0, t_stale=1.0, t_apart=1.0)
 T_S = 0.25
@@ -141,7 +141,7 @@ def test_no_message_no_leap() -> None:
 
 
 def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
-    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 0.0, 150.0, 0.25 * LATE, P)
+    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 0.0, 150.0, 0.00625, P)
     assert x.late == 175.0
     assert heard(U, omega_1=250.0).late == 250.0, "with samples that are longer than that"
 
