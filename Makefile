@@ -53,7 +53,7 @@ bench: $(READY) ## cost per communication step, side by side and in other hosts,
 	$(BIN)/python -m benchmarks.hosts
 	$(BIN)/python -m benchmarks.many_runs
 
-docs: $(READY) ## the pages of the documentation that are computed
+docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs
 	$(BIN)/driveline back-to-back --output docs

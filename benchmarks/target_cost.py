@@ -14,7 +14,7 @@ import numpy as np
 
 from fmus.builds import NATIVE_FOLDER
 from fmus.damping_controller import FMU
-from fmus.native.compiler import CompilerError, zig_compiler
+from fmus.native.compiler import zig_compiler
 from fmus.native.target import PRECISIONS
 from fmus.native.trace import leaves
 from harness.control_loop import BUILD
@@ -144,10 +144,7 @@ def costs(precision: str, folder: Path, inputs: np.ndarray) -> str:
     path = program(precision, folder)
     counted = f"{instructions(path, inputs):.0f}" if shutil.which("valgrind") else "not counted"
     rows = row("x86-64", precision, compiled(precision, folder), (f"{stack(folder)}", counted))
-    try:
-        return rows + row("Cortex-M4F", precision, on_arm(folder), ("-", "-"))
-    except CompilerError:
-        return rows
+    return rows + row("Cortex-M4F", precision, on_arm(folder), ("-", "-"))
 
 
 def distances(single: Path, double: Path, fmus: Path) -> str:
