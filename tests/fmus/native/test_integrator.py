@@ -215,25 +215,39 @@ def end_of(make: MakeIntegrator, moved: ContinuousBlock) -> Body | str:
         return str(refusal)
 
 
+Rates = Callable[[Body, float], Body]
+Zero = Callable[[Body, float], float]
+
+
+def watched(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], list[float]]:
+    """A block with one number as its input, where its derivative is asked for, and what its indicator answered."""
+    asked: list[Body] = []
+    zeros: list[float] = []
+
+    def watch(x: Body, u: float, _p: Any) -> Body:
+        asked.append(x)
+        return derivative(x, u)
+
+    def indicators(x: Body, u: float, _p: Any) -> tuple[float]:
+        zeros.append(zero(x, u))
+        return (zeros[-1],)
+
+    return replace(block(watch), event_indicators=indicators), asked, zeros
+
+
 @pytest.mark.parametrize("which", ["x", "v", "beyond"])
 def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, which: str) -> None:
     """The state that changes fastest is named."""
 
-    def pushed(x: Body) -> Body:
+    def pushed(x: Body, _u: float) -> Body:
         return Body(0.0, 0.0, 0.0)._replace(**{which: -1.0 if getattr(x, which) > 0.0 else 0.5})
 
     asked: list[set[Body]] = []
     for make in (integrator, Integrator):
-        asked.append(set())
-
-        def watch(x: Body, _u: Any, _p: Any) -> Body:
-            asked[-1].add(x)
-            return pushed(x)
-
+        chattering, looks_at = watched(pushed, lambda x, _u: getattr(x, which))[:2]
         with pytest.raises(NotIntegrable, match=which):
-            make(block(watch, lambda x: getattr(x, which))).advance(
-                Body(0.0, 0.0, 0.0)._replace(**{which: 0.03}), Nothing(), Nothing(), 0.1
-            )
+            make(chattering).advance(Body(0.0, 0.0, 0.0)._replace(**{which: 0.03}), 0.0, Nothing(), 0.1)
+        asked.append(set(looks_at))
     assert asked[0] == asked[1]
 
 
@@ -282,26 +296,6 @@ def test_a_block_of_any_stiffness_is_integrated_as_in_python(
     stiff = block(lambda s, u, p: Body(s.v, -rate * (s.v + coupling * s.x), math.tanh(rate * s.x)), lambda s: 1.0)
     ends = (make(stiff).advance(Body(x, v, 0.0), Nothing(), Nothing(), 0.1) for make in (integrator, Integrator))
     assert next(ends) == next(ends)
-
-
-Rates = Callable[[Body, float], Body]
-Zero = Callable[[Body, float], float]
-
-
-def watched(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], list[float]]:
-    """A block with one number as its input, where its derivative is asked for, and what its indicator answered."""
-    asked: list[Body] = []
-    zeros: list[float] = []
-
-    def watch(x: Body, u: float, _p: Any) -> Body:
-        asked.append(x)
-        return derivative(x, u)
-
-    def indicators(x: Body, u: float, _p: Any) -> tuple[float]:
-        zeros.append(zero(x, u))
-        return (zeros[-1],)
-
-    return replace(block(watch), event_indicators=indicators), asked, zeros
 
 
 def ends_with_moving_input(
