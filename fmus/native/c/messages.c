@@ -60,7 +60,7 @@ static int shortest_digits(char *digits, double value)
 char *write_number(char text[NUMBER_LENGTH], double value)
 {
     char digits[DIGITS + 1];
-    const char *sign = signbit(value) ? "-" : "";
+    const char *sign = copysign(1.0, value) < 0.0 ? "-" : "";
     if (value != value)
         return strcpy(text, "nan");
     if (fabs(value) > DBL_MAX) {
