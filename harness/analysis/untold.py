@@ -15,7 +15,7 @@ from rich.table import Table
 
 from models.controller.supervision import FALLBACK
 
-from ..manoeuvres.catalogue import MANOEUVRES
+from ..manoeuvres.catalogue import MANOEUVRES, step
 from ..many import run_many
 from ..metrics.spectrum import band_rms
 from ..reports.terminal import print_table
@@ -35,7 +35,18 @@ FAULTS: dict[str, Callable[[float], float]] = {
 }
 """What is received of the motor speed, beside a late one."""
 
-CASES = (*(("launch", fault) for fault in FAULTS), ("launch", "late"), ("tipin15", "late"))
+SLOW = {
+    f"launch in {rise} s": step(f"launch in {rise} s", f"pull away within {rise} s", 0.0, 0.0, 120.0, rise)
+    for rise in (0.5, 1.0)
+}
+"""Launches that give the wrong sign more time before the motor turns against a demand."""
+
+CASES = (
+    *(("launch", fault) for fault in FAULTS),
+    *((slow, "wrong sign") for slow in SLOW),
+    ("launch", "late"),
+    ("tipin15", "late"),
+)
 
 
 def received(fault: str) -> Callable[[float, Any], Any]:
@@ -55,7 +66,7 @@ def received(fault: str) -> Callable[[float, Any], Any]:
 
 def swing(plant: str, manoeuvre: str, fault: str | None) -> tuple[float, float]:
     """Rms of the gear torque in N.m, and the share in fallback; without control if there is no fault."""
-    driven = MANOEUVRES[manoeuvre]
+    driven = (MANOEUVRES | SLOW)[manoeuvre]
 
     def signals(k: int) -> tuple[float, float, float]:
         t = k * monolithic.INTERVAL
