@@ -7,7 +7,7 @@ import pytest
 
 from models.controller import signal_monitor as monitor
 from models.controller import torque_loop
-from models.controller.signal_monitor import COARSE, DRIFT, OFTEN, T_MOVE, T_NOISE, MonitorState
+from models.controller.signal_monitor import MonitorState
 from models.controller.supervision import Input, Parameters
 from models.controller.torque_loop import LoopState
 
@@ -15,6 +15,8 @@ P = Parameters(T_max=100.0, omega_max=500.0, e_jump=40.0, t_bad=1.0, t_frozen=1.
 T_S = 0.25
 U = Input(T_driver=50.0, omega_1_meas=150.0, T_mot_est=50.0, omega_2_can=150.0, valid=True, counter=7)
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
+COARSE, DRIFT, OFTEN, T_MOVE, T_NOISE = 1.0, 0.3, 0.02, 0.1, 0.5
+"""Of the signal monitor, by their numbers: a test has to fail when one changes."""
 
 each_side = pytest.mark.parametrize("side", [1.0, -1.0])
 

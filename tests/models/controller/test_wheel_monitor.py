@@ -7,10 +7,12 @@ import pytest
 
 from models.controller import wheel_monitor as wheels
 from models.controller.supervision import Input, Parameters
-from models.controller.wheel_monitor import LEAP, ROLLING, SHARE, WheelState
+from models.controller.wheel_monitor import LEAP, SHARE, WheelState
 
 P = Parameters(omega_max=500.0, omega_still=3.0, e_max=40.0, e_wheel=16.0, t_stale=1.0, t_apart=1.0)
 T_S = 0.25
+ROLLING = 0.1
+"""Of the wheel monitor, by its number: a test has to fail when it changes."""
 U = Input(omega_1_meas=150.0, omega_2_can=150.0, valid=True, counter=7)
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
 
