@@ -41,9 +41,13 @@ def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
 
     Over a cycle of more than one sample frequencies are known but for multiples of that of the cycle.
     """
+    return [Mode(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s))) for s in swinging_poles(loop, gain)]
+
+
+def swinging_poles(loop: LinearLoop, gain: float = 1.0) -> np.ndarray:
+    """The poles of the closed loop that swing, in 1/s, as of `modes`."""
     poles = np.linalg.eigvals(loop.closed(gain))
-    rates = np.log([pole for pole in poles if pole.imag > 0.0 and abs(pole) > 1e-6]) / (loop.cycle * T_S)
-    return [Mode(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s))) for s in rates]
+    return np.log(poles[(poles.imag > 0.0) & (np.abs(poles) > 1e-6)]) / (loop.cycle * T_S)
 
 
 def swing(plant: Any, motor: Any, gains: Mapping[str, float]) -> tuple[Mode, Mode]:

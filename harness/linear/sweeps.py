@@ -6,11 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.controller.supervision import T_S
-
 from .loop import linear_loop
 from .margins import Margins, margins
-from .modes import Mode, drive_train_mode, is_stable
+from .modes import Mode, drive_train_mode, is_stable, swinging_poles
 from .point import Point
 
 
@@ -78,6 +76,4 @@ def swept(point: Point, sweep: Sweep) -> Iterator[Swept]:
     """The loop of a point with every value of a sweep, with the mean of its samples."""
     for value in sweep.values:
         loop = linear_loop(sweep.point(point, value)).mean
-        poles = np.linalg.eigvals(loop.closed())
-        rates = np.log(poles[(poles.imag > 0.0) & (np.abs(poles) > 1e-6)]) / T_S
-        yield Swept(value, rates, drive_train_mode(loop), margins(loop) if is_stable(loop) else None)
+        yield Swept(value, swinging_poles(loop), drive_train_mode(loop), margins(loop) if is_stable(loop) else None)
