@@ -10,7 +10,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..metrics.declaration import declared
 from ..metrics.record import Metrics
-from ..reports.figures import STYLE, save, titled
+from ..reports.figures import STYLE, matrix_axes, save, titled
 from .sensitivity import SHOWN, Sensitivity
 
 MOST = 24
@@ -47,13 +47,7 @@ def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path, capti
                     axes.text(
                         column + 0.5, row + 0.5, f"{value:.1f}", ha="center", va="center", fontsize=6, color=colour
                     )
-            axes.set_xticks(np.arange(len(SHOWN)) + 0.5, columns, rotation=90)
-            axes.set_yticks(np.arange(len(rows)) + 0.5, rows)
-            axes.set_ylim(len(rows), 0)
-            axes.tick_params(length=0)
-            axes.grid(False)
-            axes.spines[:].set_visible(False)
-            axes.set_title(f"{plant}\n{manoeuvre}")
+            matrix_axes(axes, columns, rows, f"{plant}\n{manoeuvre}")
         figure.colorbar(shown, ax=list(grid), label="change of the metric in % for 1 % of the parameter", shrink=0.7)
         titled(figure, title, caption)
         return save(figure, stem)

@@ -10,7 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
+from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, matrix_axes, save, titled
 from .bench import Runs
 from .campaign import Outcome, count
 from .cases import SITUATIONS, Case
@@ -74,13 +74,7 @@ def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence
     axes.pcolormesh(shares, cmap=SHARES, vmin=0.0, vmax=1.0, edgecolors="white", linewidth=0.8)
     for row, column in zip(*np.nonzero(failed), strict=True):
         axes.text(column + 0.5, row + 0.5, f"{failed[row, column]:.0f}", ha="center", va="center", fontsize=6.5)
-    axes.set_xticks(np.arange(len(columns)) + 0.5, columns, rotation=90)
-    axes.set_yticks(np.arange(len(rows)) + 0.5, rows)
-    axes.set_ylim(len(rows), 0)
-    axes.tick_params(length=0)
-    axes.grid(False)
-    axes.spines[:].set_visible(False)
-    axes.set_title(heading)
+    matrix_axes(axes, columns, rows, heading)
 
 
 def plot_case(case: Case, runs: Runs, verdict: str, stem: Path, caption: str = "") -> list[Path]:

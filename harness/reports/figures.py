@@ -206,6 +206,17 @@ def _lines(figure: Figure, text: str, size: float) -> str:
     return "\n".join(fill(line, width) for line in text.replace("$", r"\$").splitlines())
 
 
+def matrix_axes(axes: Axes, columns: Sequence[str], rows: Sequence[str], title: str) -> None:
+    """Axes of cells of size 1, the first row on top."""
+    axes.set_xticks(np.arange(len(columns)) + 0.5, columns, rotation=90)
+    axes.set_yticks(np.arange(len(rows)) + 0.5, rows)
+    axes.set_ylim(len(rows), 0)
+    axes.tick_params(length=0)
+    axes.grid(False)
+    axes.spines[:].set_visible(False)
+    axes.set_title(title)
+
+
 def legend(axes: Axes) -> None:
     """A legend above the axes, where it covers no curve."""
     made = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0)
