@@ -19,7 +19,7 @@ class NoLaw:
 
     Parameters: type[Any] = Nothing
 
-    def start(self, motion: Motion, p: Any) -> Nothing:
+    def start(self, motion: Motion, T_driver: Any, p: Any) -> Nothing:
         return Nothing()
 
     def update(

@@ -35,7 +35,7 @@ class Difference:
 
     Parameters: type[Any] = DifferenceParameters
 
-    def start(self, motion: Motion, p: Any) -> DifferenceState:
+    def start(self, motion: Motion, T_driver: Any, p: Any) -> DifferenceState:
         return DifferenceState(slow=0.0)
 
     def update(

@@ -28,7 +28,7 @@ class Washout:
 
     Parameters: type[Any] = WashoutParameters
 
-    def start(self, motion: Motion, p: Any) -> WashoutState:
+    def start(self, motion: Motion, T_driver: Any, p: Any) -> WashoutState:
         return WashoutState(motion.omega_1)
 
     def update(

@@ -43,7 +43,7 @@ class LawState(NamedTuple):
     landing: Annotated[float, Real("s", "time spent in the gap")]
 
 
-def start(motion: Motion, p: Any) -> LawState:
+def start(motion: Motion, T_driver: Any, p: Any) -> LawState:
     return LawState(washout=fed_back(motion, p), landing=0.0)
 
 

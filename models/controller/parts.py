@@ -60,7 +60,7 @@ class Estimator(Protocol):
         ...
 
     def motion_after(self, x: Any, T_mot: Any, h: Any, p: Any) -> Motion:
-        """The estimate h seconds later under a motor torque that stays."""
+        """The estimate h seconds later under a motor torque (N.m), its mean over that time."""
         ...
 
 
@@ -69,8 +69,8 @@ class Law(Protocol):
 
     Parameters: type[Any]
 
-    def start(self, motion: Motion, p: Any) -> Any:
-        """State in which the motion of the start is taken for stationary."""
+    def start(self, motion: Motion, T_driver: Any, p: Any) -> Any:
+        """State in which motion and demand (N.m) of the start are taken for stationary."""
         ...
 
     def update(self, x: Any, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[Any, Addition]:
@@ -78,7 +78,7 @@ class Law(Protocol):
 
         Args:
             motion: of this sample.
-            later: gives the motion so many seconds later, under the present motor torque.
+            later: gives the motion so many seconds later, under the torque that the motor will have by then.
             T_driver: demand in N.m.
         """
         ...

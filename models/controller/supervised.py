@@ -6,7 +6,7 @@ from typing import Any
 from ..block.declaration import merged
 from ..block.operators import branch, clip, logical_and, logical_not, logical_or, where
 from ..block.types import SampledBlock
-from . import rest, swings, trust
+from . import rest, swings, torque_loop, trust
 from . import signal_monitor as monitor
 from . import wheel_monitor as wheels
 from .fading import toward
@@ -46,7 +46,7 @@ class Supervised:
         motion = self.estimator.motion(e, p)
         return State(
             estimator=e,
-            law=self.law.start(motion, p),
+            law=self.law.start(motion, T_driver, p),
             monitor=signals,
             wheels=wheels.start(u, signals.omega_1, signals.T_mot, p),
             swings=swings.start(T_driver),
@@ -76,7 +76,7 @@ class Supervised:
         doubtful = logical_or(is_doubtful(signals, heard), is_doubtful(x.monitor, x.wheels))
         afresh = logical_and(doubtful, logical_not(trusted))
         e = self.restarted(e, signals, afresh, resting >= 1.0, p)
-        acting, adding = self.acting(x.law, e, signals.T_mot, T_driver, afresh, p)
+        acting, adding = self.acting(x, e, signals.T_mot, T_driver, afresh, p)
 
         added = branch(trusted, lambda: damping_limited(adding, p), lambda: x.added)
         level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
@@ -122,14 +122,18 @@ class Supervised:
         followed = branch(afresh, lambda: self.estimator.restart(e, signals.omega_1, signals.T_mot, p), lambda: e)
         return branch(resting, lambda: self.estimator.restart(followed, 0.0, 0.0, p), lambda: followed)
 
-    def acting(self, x: Any, e: Any, T_mot: Any, T_driver: Any, afresh: Any, p: Any) -> tuple[Any, Addition]:
-        """The state of the law, started afresh with the estimator, and what it would add to the demand."""
+    def acting(self, x: State, e: Any, T_mot: Any, T_driver: Any, afresh: Any, p: Any) -> tuple[Any, Addition]:
+        """The state of the law, started afresh with the estimator, and what it would add to the demand.
+
+        Args:
+            x: of the whole controller, of the last sample.
+        """
 
         def later(h: Any) -> Motion:
-            return self.estimator.motion_after(e, T_mot, h, p)
+            return self.estimator.motion_after(e, T_mot + torque_loop.change(x.monitor.loop, x.T_ref, h, p), h, p)
 
         motion = self.estimator.motion(e, p)
-        before = branch(afresh, lambda: self.law.start(motion, p), lambda: x)
+        before = branch(afresh, lambda: self.law.start(motion, T_driver, p), lambda: x.law)
         return self.law.update(before, motion, later, T_driver, T_S, p)
 
 

@@ -37,6 +37,11 @@ def update(x: LoopState, T_ref: Any, T_s: Any, p: Any) -> LoopState:
     return LoopState(x.T_mot + 2.0 * h * r, 2.0 * r - x.r)
 
 
+def change(x: LoopState, T_ref: Any, h: Any, p: Any) -> Any:
+    """Mean change of the torque (N.m) over the next h seconds with the demand T_ref (N.m)."""
+    return 0.5 * (update(x, T_ref, h, p).T_mot - x.T_mot)
+
+
 def agrees(x: LoopState, T_mot_est: Any, p: Any) -> Any:
     """Whether an estimate (N.m) can be that of this torque; one that is no number cannot."""
     return abs(T_mot_est - x.T_mot) <= FAR * p.T_max + SHARE * abs(x.T_mot)

@@ -140,7 +140,7 @@ def test_in_the_gap_the_demand_is_limited_to_60_newton_metres_for_a_tenth_of_a_s
     """Coasting with the teeth between the flanks; the damping is too slow to matter."""
     afloat = ROLLING._replace(T_driver=100.0, T_mot_est=0.0)
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(100)]
-    states = run(BLOCK, inputs, t_frozen=10.0, T_max=2000.0)
+    states = run(BLOCK, inputs, t_frozen=10.0, T_max=2000.0, T_pred=0.0)
     limited = [k for k, x in enumerate(states) if x.T_ref == pytest.approx(60.0, abs=1e-3)]
     assert len(limited) * T_S == pytest.approx(0.1, abs=1.5 * T_S)
     assert states[-1].T_ref == pytest.approx(100.0, abs=1e-3)

@@ -41,12 +41,12 @@ def just_above(limit: float) -> float:
 )
 def test_a_motion_that_stays_is_not_opposed(omega: float, phi: float, T_gear: float, T: float) -> None:
     motion = Motion(omega, omega, phi, T_gear)
-    assert added(motion, law.start(motion, P), T) == 0.0
+    assert added(motion, law.start(motion, T, P), T) == 0.0
 
 
 def test_speed_difference_and_gear_torque_are_opposed() -> None:
     """By k_d a rad/s and k_T a N.m."""
-    x = law.start(STILL, P)
+    x = law.start(STILL, 50.0, P)
     assert added(STILL._replace(omega_1=103.0), x) == -2.0 * 3.0
     assert added(STILL._replace(omega_2=103.0), x) == 2.0 * 3.0
     assert added(STILL._replace(T_gear=56.0), x) == -0.125 * 16.0
@@ -56,8 +56,8 @@ def test_speed_difference_and_gear_torque_are_opposed() -> None:
 def test_the_speed_difference_counts_by_k_gap_between_the_flanks(side: float) -> None:
     """At half the backlash the teeth touch."""
     turning = AFLOAT._replace(omega_1=103.0, phi=side * 0.25)
-    assert added(turning, law.start(AFLOAT, P)) == -2.0 * 3.0
-    assert added(turning._replace(phi=side * math.nextafter(0.25, 0.0)), law.start(AFLOAT, P)) == -0.5 * 2.0 * 3.0
+    assert added(turning, law.start(AFLOAT, 50.0, P)) == -2.0 * 3.0
+    assert added(turning._replace(phi=side * math.nextafter(0.25, 0.0)), law.start(AFLOAT, 50.0, P)) == -0.5 * 2.0 * 3.0
 
 
 def test_what_will_be_when_the_torque_acts_is_opposed() -> None:
@@ -67,7 +67,7 @@ def test_what_will_be_when_the_torque_acts_is_opposed() -> None:
         asked.append(h)
         return STILL._replace(omega_1=104.0)
 
-    x, torque = law.update(law.start(STILL, P), STILL, later, 50.0, T_S, P)
+    x, torque = law.update(law.start(STILL, 50.0, P), STILL, later, 50.0, T_S, P)
     assert asked == [P.T_pred]
     assert torque == (-2.0 * 4.0, 0.0)
     assert x.washout == 5.0 + 0.5 * 8.0
@@ -75,7 +75,7 @@ def test_what_will_be_when_the_torque_acts_is_opposed() -> None:
 
 def test_the_washout_forgets_what_stays() -> None:
     """Each sample by the share omega_w T_s of what is left."""
-    x, torques = law.start(STILL, P), []
+    x, torques = law.start(STILL, 50.0, P), []
     for _ in range(4):
         turning = STILL._replace(omega_1=108.0)
         x, torque = law.update(x, turning, staying(turning), 50.0, T_S, P)
@@ -90,15 +90,15 @@ def test_a_washout_faster_than_the_samples_takes_one(omega_w: float, share: floa
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_between_the_flanks_the_demand_is_limited(side: float) -> None:
-    x = law.start(AFLOAT, P)
+    x = law.start(AFLOAT, 50.0, P)
     assert added(AFLOAT, x, side * 60.0) == 0.0
     assert added(AFLOAT, x, side * 64.0) == -side * 4.0
-    assert added(STILL, law.start(STILL, P), side * 64.0) == 0.0
+    assert added(STILL, law.start(STILL, 50.0, P), side * 64.0) == 0.0
 
 
 def landing(motions: list[Motion], p: Any = P) -> list[bool]:
     """Whether the demand is limited in each sample."""
-    x, limited = law.start(motions[0], p), []
+    x, limited = law.start(motions[0], 50.0, p), []
     for motion in motions:
         x, torque = law.update(x, motion, staying(motion), 100.0, T_S, p)
         limited.append(torque.landing != 0.0)
@@ -118,7 +118,7 @@ def test_teeth_that_touched_may_land_again() -> None:
 
 
 def test_the_time_afloat_is_counted_no_further_than_needed() -> None:
-    x = law.start(AFLOAT, P)
+    x = law.start(AFLOAT, 50.0, P)
     for _ in range(20):
         x, _ = law.update(x, AFLOAT, staying(AFLOAT), 0.0, T_S, P)
     assert x.landing == P.t_land + T_S
@@ -126,7 +126,7 @@ def test_the_time_afloat_is_counted_no_further_than_needed() -> None:
 
 def test_the_limit_of_landing_comes_beside_the_damping_torque() -> None:
     motion = AFLOAT._replace(omega_1=104.0)
-    _, torque = law.update(law.start(AFLOAT, P), motion, staying(motion), 100.0, T_S, P)
+    _, torque = law.update(law.start(AFLOAT, 50.0, P), motion, staying(motion), 100.0, T_S, P)
     assert torque == Addition(damping=-0.5 * 2.0 * 4.0, landing=-40.0)
 
 

@@ -30,6 +30,12 @@ def test_a_torque_that_is_demanded_stays() -> None:
     assert torque_loop.update(torque_loop.start(50.0), 50.0, T_S, P) == (50.0, 0.0)
 
 
+def test_the_mean_change_is_half_of_that_to_the_end() -> None:
+    x = LoopState(20.0, 30.0)
+    assert torque_loop.change(x, 100.0, T_S, P) == 0.5 * (torque_loop.update(x, 100.0, T_S, P).T_mot - 20.0) > 1.0
+    assert torque_loop.change(x, 100.0, 0.0, P) == 0.0
+
+
 @each_side
 @pytest.mark.parametrize(("T_mot", "most"), [(0.0, 9.0), (100.0, 44.0), (-100.0, 44.0)])
 def test_an_estimate_may_differ_by_a_twentieth_of_T_max_and_a_third_of_the_torque(
