@@ -59,35 +59,24 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
 
     In contact k_d damps the drive train with the ratio k_d/(2 J_1 omega_0). Above the resonance, where J_1 alone
     is left, the loop crosses over at k_d/J_1, and there the dead time takes the phase T_dead k_d/J_1. After a step
-    dT of the torque the twist has changed by dT/C; the washout of k_d times its rate gives omega_w k_d/C of the
-    step back, that of k_T takes its impulse away for k_T/omega_w.
+    of the torque the washout of k_T takes its impulse away for k_T/omega_w.
     """
     k_d = plant.J_1 * max(2.0 * weights.damping_ratio * train.omega_0, weights.phase / train.T_dead)
-    omega_w = weights.washout * plant.C / k_d
+    omega_w = weights.washout * train.omega_0
     return {
-        "T_pred": sqrt(2.0) * motor.tau,
+        "T_pred": weights.look_ahead * sqrt(2.0) * motor.tau,
         "k_d": k_d,
         "k_T": omega_w * weights.withheld / train.omega_v,
-        "k_gap": weights.k_gap,
         "omega_w": omega_w,
-        "T_gap": landing_torque(plant, motor, train, weights),
+        "k_gap": weights.k_gap,
+        "T_gap": weights.landing * motor.T_max,
+        "bounce": weights.bounce,
+        "brake": weights.brake,
+        "haste": weights.haste,
+        "omega_slow": weights.recent * train.omega_v,
+        "t_return": weights.comeback / train.omega_0,
         "t_land": weights.longest_landing / train.omega_v,
     }
-
-
-def landing_torque(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights) -> float:
-    """T_gap in N.m: as low as the withheld impulse allows, or lower where the impact would be too hard.
-
-    The torque T takes the motor across the gap of 2 phi_B in t = sqrt(4 phi_B J_1/T) and lets it arrive with the
-    speed sqrt(4 phi_B T/J_1); of the demand T_d it withholds the time (1 - T/T_d) t. The spring turns the
-    impact into a torque of 2 sqrt(C phi_B T), on top of T. Both conditions are quadratic in s = sqrt(T).
-    """
-    T_d, delay = weights.demand * motor.T_max, weights.landing / train.omega_v
-    travel = sqrt(4.0 * plant.phi_B * plant.J_1)
-    soft = 2.0 * travel / (delay + sqrt(delay**2 + 4.0 * travel**2 / T_d))
-    bounce = plant.C * plant.phi_B
-    bearable = sqrt(bounce + weights.impact * motor.T_max) - sqrt(bounce)
-    return min(soft, bearable) ** 2
 
 
 def gains_file(parameters: Mapping[str, float], comment: str, declared: Mapping[str, Variable] = PARAMETERS) -> str:

@@ -45,13 +45,15 @@ class Weights:
         damping_ratio: of the drive train with the feedback of the speed difference alone, at the least.
         phase: that the dead time may take where the loop crosses over, rad; a drive train that is damped well with
             less is damped more.
+        look_ahead: time that the estimate is taken ahead, over the lag of the motor, sqrt(2) tau.
         k_gap: factor on the damping inside the gap.
-        washout: what the washout gives back of a step of the torque.
+        washout: its corner frequency, over omega_0.
         withheld: time by which the feedback of the gear torque delays the driver's impulse, times omega_v.
-        demand: step that the landing is made for, over T_max.
-        landing: time by which a landing may delay the impulse of that step, times omega_v.
-        impact: largest peak of the gear torque at the end of a landing, over T_max.
-        longest_landing: how long the demand may be limited, times omega_v.
+        landing: largest demand that a landing is made for, over T_max.
+        bounce, brake, haste: see the damping law.
+        recent: corner frequency that tells which change of the demand is recent, over omega_v.
+        comeback: time constant with which the torque that a landing withheld comes back, times omega_0.
+        longest_landing: how long a landing may last, times omega_v.
     """
 
     wheel_share: float = 0.5235932
@@ -60,15 +62,19 @@ class Weights:
     slow_load_error: float = 0.01 / 180.0
     twist_error: float = 6.52222e-4
     message_error: float = 0.4698217
-    damping_ratio: float = 0.483596
-    phase: float = 0.326211
-    k_gap: float = 0.665
-    washout: float = 0.0896779
-    withheld: float = 0.0483824
-    demand: float = 0.6
-    landing: float = 0.0859882
-    impact: float = 0.702836
-    longest_landing: float = 0.806373
+    damping_ratio: float = 0.4880434
+    phase: float = 0.31
+    look_ahead: float = 0.1885618
+    k_gap: float = 0.72
+    washout: float = 0.06442173
+    withheld: float = 0.01075164
+    landing: float = 0.5
+    bounce: float = 0.2
+    brake: float = 0.5
+    haste: float = 1.0
+    recent: float = 1.240121
+    comeback: float = 0.2095566
+    longest_landing: float = 0.8063731
 
 
 WEIGHTS = Weights()

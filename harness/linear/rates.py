@@ -1,4 +1,4 @@
-"""Rates of change of a function of records, by differences: where it is made of straight pieces, they are exact."""
+"""Rates of change of a function of records, by differences: exact on straight pieces, to the second order elsewhere."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -11,7 +11,7 @@ STEP = 1e-4
 """By which every quantity is moved to either side, in its unit; small beside all that is not a rounding error."""
 
 BENT = 1e-5
-"""Difference of the rates to both sides, over the larger one or 1, from which on a function has a kink there."""
+"""Jump of the rate, over the rate or 1, from which on a function has a kink there."""
 
 
 class NotLinear(DrivelineError):
@@ -23,10 +23,12 @@ class Rates(NamedTuple):
 
     Attributes:
         forward, backward: matrices (rows, columns).
+        jump: what remains of their difference as the step goes to 0; of a bend without a kink nothing does.
     """
 
     forward: np.ndarray
     backward: np.ndarray
+    jump: np.ndarray
 
     @property
     def mean(self) -> np.ndarray:
@@ -36,7 +38,7 @@ class Rates(NamedTuple):
     def bent(self) -> np.ndarray:
         """Where there is a kink."""
         larger = np.maximum(np.abs(self.forward), np.abs(self.backward))
-        return np.abs(self.forward - self.backward) > BENT * np.maximum(larger, 1.0)
+        return np.abs(self.jump) > BENT * np.maximum(larger, 1.0)
 
 
 def names(record: Any, prefix: str = "") -> list[str]:
@@ -74,6 +76,14 @@ def rates(function: Callable[[Sequence[Any]], Sequence[Any]], at: Sequence[Any],
         there[k] += step
         return (np.array(function(there), dtype=float) - here) / step
 
-    empty = np.zeros((len(here), 0))
-    forward, backward = (np.column_stack([empty, *(moved(k, h) for k in columns)]) for h in (STEP, -STEP))
-    return Rates(forward, backward)
+    def sides(step: float) -> tuple[np.ndarray, np.ndarray]:
+        empty = np.zeros((len(here), 0))
+        forward, backward = (np.column_stack([empty, *(moved(k, h) for k in columns)]) for h in (step, -step))
+        return forward, backward
+
+    forward, backward = sides(STEP)
+    found = Rates(forward, backward, jump=forward - backward)
+    if not found.bent.any():
+        return found
+    half_forward, half_backward = sides(0.5 * STEP)
+    return found._replace(jump=2.0 * (half_forward - half_backward) - found.jump)

@@ -1,9 +1,7 @@
-"""State feedback with perfect signals: what knowing the plant's own motion would be worth. A mark, and no product.
+"""Our law with perfect signals: what knowing the plant's own motion would be worth. A mark, and no product.
 
-    T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear]
-
-with the motion T_pred ahead by the estimator's model, from the plant's true motion now. The supervision
-has the measured signals, as ever.
+The law is told the plant's true motion, and T_pred ahead what the estimator's model makes of that. The
+supervision has the measured signals, as ever.
 """
 
 from dataclasses import replace
@@ -11,12 +9,11 @@ from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, is_finite
-from ..controller import supervision, torque_estimator
+from ..controller import damping_law, supervision, torque_estimator
 from ..controller.signal_monitor import MonitorState
 from ..controller.supervised import Supervised, supervised
 from ..controller.torque_estimator import Estimate, EstimatorState, bounded
 from ..controller.wheel_monitor import WheelState
-from . import state_feedback
 from .fixed import fixed
 
 NO_GAINS = {name: 0.0 for name in torque_estimator.Parameters._fields if name.startswith("L")}
@@ -53,15 +50,15 @@ def told(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
     return expected._replace(estimate=branch(known, lambda: true, lambda: expected.estimate))
 
 
-_CONTROLLER = Informed(MODEL, state_feedback.LAW)
+_CONTROLLER = Informed(MODEL, damping_law)
 
 BLOCK = replace(
     supervised(
         name="PerfectState",
-        description="Mark: damping by state feedback of the plant's true motion",
+        description="Mark: our damping law, told the plant's true motion",
         module=__name__,
         estimator=MODEL,
-        law=state_feedback.LAW,
+        law=damping_law,
     ),
     Input=merged("Input", supervision.Input, Truth),
     start=_CONTROLLER.start,

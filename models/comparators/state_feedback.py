@@ -8,4 +8,6 @@ with the motion T_pred ahead. Without a gap there is nothing to land in.
 from ..controller import damping_law
 from .fixed import fixed
 
-LAW = fixed(damping_law, phi_B=0.0, k_gap=1.0, T_gap=0.0, t_land=0.0)
+NO_LANDING = dict.fromkeys(("T_gap", "bounce", "brake", "haste", "omega_slow", "t_return", "t_land"), 0.0)
+
+LAW = fixed(damping_law, phi_B=0.0, k_gap=1.0, **NO_LANDING)

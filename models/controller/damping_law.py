@@ -1,57 +1,98 @@
 """Damping law: what is added to the driver's demand, given the estimated motion of the drive train.
 
-    T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear],   k_d times k_gap in the gap
+Where the teeth touch, the changing part of the twisting motion is opposed,
 
-with the motion T_pred ahead, when the torque will act. While the estimated twist is in the gap, but for at
-most t_land, the demand is limited to T_gap, so that the teeth land softly.
+    T_damp = -s/(s + omega_w) [k_d omega + k_T T_gear]          omega = omega_1 - omega_2
+
+Between the flanks the motor is alone with its inertia. It is led to the flank that the demand will push against, which
+is d away, with the speed from which a share of that demand would still brake it to what the teeth may land with,
+
+    T_ref = k_gap k_d (omega_land - omega)                       no more than T_next
+    omega_land^2 = (bounce T/sqrt(C J_1))^2 + 2 brake T d/J_1    T: T_next, at most T_gap
+    T_next = T_driver + haste s/(s + omega_slow) T_driver
+
+with T_ref, omega and T counted towards that flank. An impact with bounce T/sqrt(C J_1) alone twists the drive train to
+the torque bounce T. What the landing has withheld comes back with the time constant t_return. A landing lasts t_land at
+most, and a demand that is next to nothing has none. All that with the motion T_pred ahead, when the torque will act.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import clip, logical_and, minimum, where
-from ..vehicle import CAR, HalfGap
+from ..block.operators import clip, logical_and, maximum, minimum, sqrt, where
+from ..vehicle import CAR, HalfGap, MotorInertia, Stiffness
 from .gains import GAINS
 from .parts import Addition, Motion
 
 
 class Parameters(NamedTuple):
+    J_1: MotorInertia = CAR.J_1
+    C: Stiffness = CAR.C
     phi_B: HalfGap = CAR.phi_B
-    T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02, search=(0.0, 0.012))] = (
+    T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02, search=(0.0, 0.006))] = (
         GAINS["T_pred"]
     )
     k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0, search=(0.3, 10.0))] = (
         GAINS["k_d"]
     )
-    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0, search=(0.1, 2.0))] = GAINS["k_gap"]
-    k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0, search=(0.003, 5.0))] = GAINS["k_T"]
+    k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0, search=(0.001, 5.0))] = GAINS["k_T"]
     omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(0.5, 300.0))] = (
         GAINS["omega_w"]
     )
-    T_gap: Annotated[float, Real("N.m", "limit of the demand inside the gap", 0.0, 2000.0, search=(10.0, 150.0))] = (
-        GAINS["T_gap"]
-    )
-    t_land: Annotated[float, Real("s", "longest duration of that limit", 0.0, 1.0, search=(0.02, 0.3))] = GAINS[
-        "t_land"
-    ]
+    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0, search=(0.1, 2.0))] = GAINS["k_gap"]
+    T_gap: Annotated[
+        float, Real("N.m", "largest demand that a landing is made for", 0.0, 2000.0, search=(20.0, 180.0))
+    ] = GAINS["T_gap"]
+    bounce: Annotated[
+        float, Real("1", "twist that an impact alone may make, over that of the demand", 0.0, 5.0, search=(0.0, 1.5))
+    ] = GAINS["bounce"]
+    brake: Annotated[
+        float, Real("1", "torque that can brake before an impact, over the demand", 0.0, 5.0, search=(0.0, 1.5))
+    ] = GAINS["brake"]
+    haste: Annotated[
+        float, Real("1", "expected further change of the demand, over the recent one", 0.0, 5.0, search=(0.0, 2.0))
+    ] = GAINS["haste"]
+    omega_slow: Annotated[
+        float, Real("rad/s", "corner frequency that tells what is recent", 0.0, 400.0, search=(3.0, 60.0))
+    ] = GAINS["omega_slow"]
+    t_return: Annotated[
+        float,
+        Real("s", "time within which the torque that a landing withheld comes back", 0.0, 1.0, search=(0.0, 0.03)),
+    ] = GAINS["t_return"]
+    t_land: Annotated[float, Real("s", "longest duration of a landing", 0.0, 1.0)] = GAINS["t_land"]
 
 
 class LawState(NamedTuple):
     """State of the damping law."""
 
     washout: Annotated[float, Real("N.m", "stationary part of what is fed back")]
-    landing: Annotated[float, Real("s", "time spent in the gap")]
+    slow: Annotated[float, Real("N.m", "demand as it was, behind a lag")]
+    afloat: Annotated[float, Real("s", "time spent in the gap under a demand")]
+    withheld: Annotated[float, Real("N.m", "torque that the landing withholds")]
 
 
 def start(motion: Motion, T_driver: Any, p: Any) -> LawState:
-    return LawState(washout=fed_back(motion, p), landing=0.0)
+    return LawState(washout=fed_back(motion, p), slow=T_driver, afloat=0.0, withheld=0.0)
 
 
 def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[LawState, Addition]:
-    changing = fed_back(later(p.T_pred), p)
-    landing = where(in_gap(motion, p), minimum(x.landing + T_s, p.t_land + T_s), 0.0)
-    added = Addition(damping=x.washout - changing, landing=soft_landing(T_driver, landing, p) - T_driver)
-    return LawState(washed_out(x.washout, changing, p.omega_w, T_s), landing), added
+    ahead = later(p.T_pred)
+    changing = fed_back(ahead, p)
+    damping = clip(x.washout - changing, -p.T_add_max, p.T_add_max)
+    T_next = T_driver + p.haste * (T_driver - x.slow)
+
+    floating = logical_and(in_gap(motion, p), abs(T_next) > p.T_still)
+    afloat = where(floating, minimum(x.afloat + T_s, p.t_land + T_s), 0.0)
+    landing = logical_and(afloat > 0.0, afloat <= p.t_land)
+    withheld = where(landing, T_driver + damping - landing_torque(ahead, T_next, p), x.withheld)
+    left = where(landing, 1.0, 1.0 - minimum(T_s / maximum(p.t_return, T_s), 1.0))
+    x = LawState(
+        washout=washed_out(x.washout, changing, p.omega_w, T_s),
+        slow=washed_out(x.slow, T_driver, p.omega_slow, T_s),
+        afloat=afloat,
+        withheld=left * withheld,
+    )
+    return x, Addition(damping=damping, landing=-withheld)
 
 
 def in_gap(motion: Motion, p: Any) -> Any:
@@ -69,7 +110,12 @@ def washed_out(stationary: Any, value: Any, corner: Any, T_s: Any) -> Any:
     return stationary + minimum(corner * T_s, 1.0) * (value - stationary)
 
 
-def soft_landing(T_driver: Any, landing: Any, p: Any) -> Any:
-    """The demand, limited while the teeth are between the flanks, `landing` s after they left one."""
-    soft = logical_and(landing > 0.0, landing <= p.t_land)
-    return where(soft, clip(T_driver, -p.T_gap, p.T_gap), T_driver)
+def landing_torque(motion: Motion, T_next: Any, p: Any) -> Any:
+    """T_ref in N.m that leads the teeth to the flank which the demand T_next (N.m) pushes against."""
+    side = where(T_next > 0.0, 1.0, -1.0)
+    omega, d = side * (motion.omega_1 - motion.omega_2), maximum(p.phi_B - side * motion.phi, 0.0)
+    T = minimum(abs(T_next), p.T_gap)
+    touching = p.bounce * T / sqrt(p.C * p.J_1)
+    omega_land = sqrt(touching * touching + 2.0 * p.brake * T * d / p.J_1)
+    k = p.k_gap * p.k_d
+    return side * minimum(k * (omega_land - omega), maximum(abs(T_next), -k * omega))

@@ -14,13 +14,14 @@ from models.comparators import (
     paper_observer,
     perfect_state,
     speed_difference,
+    state_feedback,
 )
 from models.controller import supervision
 from models.controller.supervision import T_S, Input, State
 from tests.models.controller.controllers import OURS, driven, run, shaken
 
 LITERAL = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0, "t_land": 0.0}
-LINEAR = {"phi_B": 0.0, "k_gap": 0.3, "t_land": 0.1, "T_gap": 10.0}
+LINEAR = {"phi_B": 0.0, "k_gap": 0.3, **dict.fromkeys(state_feedback.NO_LANDING, 0.1)}
 
 
 def torques(states: list[State]) -> list[float]:
@@ -89,9 +90,9 @@ def test_the_linear_observer_is_ours_without_a_gap() -> None:
 @pytest.mark.parametrize(
     ("block", "names"),
     [
-        (paper_observer.BLOCK, [*LITERAL, "k_gap", "T_gap"]),
+        (paper_observer.BLOCK, [*LITERAL, "k_gap", *state_feedback.NO_LANDING]),
         (linear_observer.BLOCK, LINEAR),
-        (perfect_state.BLOCK, ["k_gap", "t_land", "T_gap", "L_phi"]),
+        (perfect_state.BLOCK, ["L_phi", "Lw_phi", "T_age"]),
     ],
     ids=lambda value: getattr(value, "name", ""),
 )

@@ -15,10 +15,6 @@ CARS = {path.stem: path for path in sorted((ROOT / "examples" / "cars").glob("*.
 MANOEUVRES = ("tipin15", "tipin50")
 MEASURES = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "jerk_rms_to_50_Hz")
 
-NO_BETTER = {("small", "gear_torque_rms"): 1.04, ("small", "jerk_rms"): 1.04}
-"""On this car the default gains have the same k_d, which the dead time limits, and cost less torque: its own settle
-sooner and overshoot half as much, for up to 4 % more of these. Under Gauss-Seidel, T_mot 0.5 ms early, they won."""
-
 TRIALS = [
     Trial(path, PLANTS[0], manoeuvre, gains)
     for path in CARS.values()
@@ -38,8 +34,7 @@ def found(both_built: Path) -> dict[Trial, Metrics]:
 def test_its_own_gains_beat_those_of_the_default_car(car: str, manoeuvre: str, found: dict[Trial, Metrics]) -> None:
     own, default = (found[Trial(CARS[car], PLANTS[0], manoeuvre, gains)] for gains in (Gains.OWN, Gains.DEFAULT))
     for measure in MEASURES:
-        share = NO_BETTER.get((car, measure), 1.0)
-        assert getattr(own, measure) < share * getattr(default, measure), measure
+        assert getattr(own, measure) < getattr(default, measure), measure
     assert own.response_delay < 1.2 * default.response_delay, "and not by being slow"
     assert own.withheld_time < 0.020, "nor by keeping the torque from the driver"
 
@@ -53,4 +48,4 @@ def test_the_true_car_is_told_to_plant_and_controller_with_either_gains() -> Non
         assert given["motor.T_max"] == given["controller.T_max"] == 250.0
         assert given["plant.k_s"] == 58600.0
     assert "controller.k_d" not in default
-    assert own["controller.k_d"] == pytest.approx(3.604, abs=0.001)
+    assert own["controller.k_d"] == pytest.approx(3.424, abs=0.001)

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from fmus.catalogue import EVERY
+from harness.linear.controller import settled
+from harness.linear.driven import in_contact_and_gap
 from harness.linear.loop import linear_loop
 from harness.linear.margins import FREQUENCIES, margins
 from harness.linear.point import Point
@@ -93,7 +95,8 @@ def test_a_delay_between_samples_is_between_its_neighbours() -> None:
 
 
 def test_a_controller_at_its_limit_is_not_linear() -> None:
-    point = Point().with_parameters(controller={"T_max": 40.0})
+    damping = settled(Point(), in_contact_and_gap(Point())[0])[0].added.damping
+    point = Point().with_parameters(controller={"T_add_max": abs(damping)})
     with pytest.raises(NotLinear, match=r"DampingController is not linear in contact at 4\.16667 m/s and 40 N\.m: "):
         linear_loop(point)
 

@@ -1,5 +1,6 @@
 """Rates of change by differences: exact on straight pieces, and kinks are seen."""
 
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -37,3 +38,9 @@ def test_the_rates_of_a_straight_function_are_its_factors() -> None:
 @pytest.mark.parametrize(("limit", "bent"), [(1.0, True), (1.0 + 2e-4, False)])
 def test_a_kink_is_seen_at_its_place_and_not_beside_it(limit: float, bent: bool) -> None:
     assert bool(rates(lambda x: [clip(x[0], -limit, limit)], [1.0], [0]).bent.any()) is bent
+
+
+def test_a_bend_is_no_kink() -> None:
+    found = rates(lambda x: [sqrt(x[0]), abs(x[0] - 0.25)], [0.25], [0])
+    assert found.mean.tolist() == [[pytest.approx(1.0, rel=1e-6)], [pytest.approx(0.0, abs=1e-9)]]
+    assert found.bent.tolist() == [[False], [True]]

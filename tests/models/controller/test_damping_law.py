@@ -14,8 +14,9 @@ from models.controller.damping_law import LawState
 from models.controller.parts import Addition, Motion
 
 P = damping_controller.BLOCK.Parameters(
-    phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, T_gap=60.0, t_land=1.0
-)
+    phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, t_land=1.0, t_return=0.5
+)._replace(J_1=0.25, C=4.0, T_gap=16.0, bounce=0.5, brake=1.125, haste=0.0, omega_slow=2.0)
+"""In the middle of the gap 16 N.m make omega_land 10 rad/s: the teeth may land with 8 rad/s."""
 T_S = 0.25
 STILL = Motion(omega_1=100.0, omega_2=100.0, phi=0.75, T_gear=40.0)
 """In contact, nothing twists."""
@@ -32,6 +33,15 @@ def added(motion: Motion, x: LawState, T_driver: float = 50.0, p: Any = P) -> fl
     return sum(law.update(x, motion, staying(motion), T_driver, T_S, p)[1])
 
 
+def demanded(motions: list[Motion], T_driver: float, p: Any = P) -> list[float]:
+    """T_ref in N.m of each sample under a demand that stays."""
+    x, torques = law.start(motions[0], T_driver, p), []
+    for motion in motions:
+        x, torque = law.update(x, motion, staying(motion), T_driver, T_S, p)
+        torques.append(T_driver + sum(torque))
+    return torques
+
+
 def just_above(limit: float) -> float:
     return math.nextafter(limit, math.inf)
 
@@ -41,7 +51,7 @@ def just_above(limit: float) -> float:
 )
 def test_a_motion_that_stays_is_not_opposed(omega: float, phi: float, T_gear: float, T: float) -> None:
     motion = Motion(omega, omega, phi, T_gear)
-    assert added(motion, law.start(motion, T, P), T) == 0.0
+    assert added(motion, law.start(motion, T, P), T, P._replace(t_land=0.0)) == 0.0
 
 
 def test_speed_difference_and_gear_torque_are_opposed() -> None:
@@ -54,10 +64,11 @@ def test_speed_difference_and_gear_torque_are_opposed() -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_speed_difference_counts_by_k_gap_between_the_flanks(side: float) -> None:
-    """At half the backlash the teeth touch."""
+    """At half the backlash the teeth touch. Without a demand there is no landing."""
     turning = AFLOAT._replace(omega_1=103.0, phi=side * 0.25)
-    assert added(turning, law.start(AFLOAT, 50.0, P)) == -2.0 * 3.0
-    assert added(turning._replace(phi=side * math.nextafter(0.25, 0.0)), law.start(AFLOAT, 50.0, P)) == -0.5 * 2.0 * 3.0
+    assert added(turning, law.start(AFLOAT, 2.0, P), 2.0) == -2.0 * 3.0
+    between = turning._replace(phi=side * math.nextafter(0.25, 0.0))
+    assert added(between, law.start(AFLOAT, 2.0, P), 2.0) == -0.5 * 2.0 * 3.0
 
 
 def test_what_will_be_when_the_torque_acts_is_opposed() -> None:
@@ -88,48 +99,93 @@ def test_a_washout_faster_than_the_samples_takes_one(omega_w: float, share: floa
     assert law.washed_out(10.0, 26.0, omega_w, T_S) == 10.0 + share * 16.0
 
 
+@pytest.mark.parametrize("omega", [-8.0, 0.0, 3.0, 12.0])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_between_the_flanks_the_demand_is_limited(side: float) -> None:
-    x = law.start(AFLOAT, 50.0, P)
-    assert added(AFLOAT, x, side * 60.0) == 0.0
-    assert added(AFLOAT, x, side * 64.0) == -side * 4.0
-    assert added(STILL, law.start(STILL, 50.0, P), side * 64.0) == 0.0
+def test_between_the_flanks_the_motor_is_led_to_that_of_the_demand(side: float, omega: float) -> None:
+    """With k_gap k_d a rad/s; the largest demand that counts is T_gap."""
+    motion = AFLOAT._replace(omega_1=100.0 + side * omega)
+    for T in (16.0, 64.0):
+        assert demanded([motion], side * T) == [pytest.approx(side * min(10.0 - omega, max(T, -omega)))]
 
 
-def landing(motions: list[Motion], p: Any = P) -> list[bool]:
-    """Whether the demand is limited in each sample."""
-    x, limited = law.start(motions[0], 50.0, p), []
-    for motion in motions:
-        x, torque = law.update(x, motion, staying(motion), 100.0, T_S, p)
-        limited.append(torque.landing != 0.0)
-    return limited
+def test_the_nearer_the_flank_the_slower() -> None:
+    """At the flank bounce T/sqrt(C J_1) is left, before it what brake T brakes to that."""
+    for d in (0.0, 0.1, 0.4):
+        motion = AFLOAT._replace(phi=0.25 - max(d, 1e-12))
+        assert demanded([motion], 16.0) == [pytest.approx(math.sqrt(64.0 + 2.0 * 18.0 * d / 0.25), rel=1e-9)]
+        assert demanded([motion._replace(phi=-motion.phi)], -16.0) == [-demanded([motion], 16.0)[0]]
+
+
+def test_the_motor_is_not_driven_towards_the_flank_with_more_than_the_demand() -> None:
+    """Unless it goes the other way: then with what brakes it."""
+    assert demanded([AFLOAT._replace(omega_1=97.0)], 4.0) == [4.0]
+    assert demanded([AFLOAT._replace(omega_1=93.0)], 4.0) == [7.0]
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_demand_that_rises_will_rise_further(side: float) -> None:
+    """By haste times what it has risen of late, which is forgotten with omega_slow."""
+    p, x = P._replace(haste=2.0), law.start(AFLOAT, -side * 2.0, P)
+    torques = []
+    for _ in range(3):
+        x, torque = law.update(x, AFLOAT, staying(AFLOAT), side * 2.5, T_S, p)
+        torques.append(side * (side * 2.5 + sum(torque)))
+    expected = [min(math.sqrt((0.5 * T) ** 2 + 9.0 * T / 4.0), T) for T in (2.5 + 9.0, 2.5 + 4.5, 2.5 + 2.25)]
+    assert torques == pytest.approx(expected)
+
+
+def test_a_demand_that_turns_has_the_teeth_land_on_the_other_flank() -> None:
+    x = law.start(AFLOAT, 40.0, P)
+    assert added(AFLOAT, x, 4.0, P._replace(haste=1.0)) < -4.0
+
+
+@pytest.mark.parametrize("T_driver", [0.0, 2.0, -2.0])
+def test_without_a_demand_there_is_no_landing(T_driver: float) -> None:
+    """T_still is none; a car that stands in its gap waits for the demand of its launch, however long."""
+    x = law.start(AFLOAT, T_driver, P)
+    for _ in range(20):
+        x, torque = law.update(x, AFLOAT, staying(AFLOAT), T_driver, T_S, P)
+        assert torque == (0.0, 0.0)
+    assert x.afloat == 0.0
+    assert law.update(x, AFLOAT, staying(AFLOAT), just_above(2.0), T_S, P)[0].afloat == T_S
+    assert added(AFLOAT, x, -16.0) == -10.0 + 16.0
 
 
 def test_the_teeth_have_t_land_to_land() -> None:
-    assert landing([AFLOAT] * 8) == [True] * 4 + [False] * 4
-    assert landing([AFLOAT] * 8, P._replace(t_land=just_above(1.0))) == [True] * 4 + [False] * 4
-    assert landing([AFLOAT] * 8, P._replace(t_land=math.nextafter(1.0, 0.0))) == [True] * 3 + [False] * 5
-    assert landing([AFLOAT] * 2, P._replace(t_land=0.0)) == [False] * 2
+    """Then what was withheld comes back: half of it in a sample."""
+    for t_land in (1.0, just_above(1.0)):
+        assert demanded([AFLOAT] * 7, 16.0, P._replace(t_land=t_land)) == pytest.approx([10.0] * 5 + [13.0, 14.5])
+    short = P._replace(t_land=math.nextafter(1.0, 0.0))
+    assert demanded([AFLOAT] * 6, 16.0, short) == pytest.approx([10.0] * 4 + [13.0, 14.5])
+    assert demanded([AFLOAT] * 2, 16.0, P._replace(t_land=0.0)) == [16.0] * 2
+
+
+def test_what_was_withheld_comes_back_after_contact() -> None:
+    """With a time constant below the sample time in one."""
+    touching = [AFLOAT] * 2 + [STILL._replace(T_gear=0.0)] * 3
+    assert demanded(touching, 16.0) == pytest.approx([10.0, 10.0, 10.0, 13.0, 14.5])
+    for t_return in (0.0, 0.125, 0.25):
+        assert demanded(touching, 16.0, P._replace(t_return=t_return)) == pytest.approx([10.0] * 3 + [16.0] * 2)
 
 
 def test_teeth_that_touched_may_land_again() -> None:
-    still = STILL._replace(T_gear=0.0)
-    assert landing([AFLOAT] * 6 + [still] + [AFLOAT] * 5) == [True] * 4 + [False] * 3 + [True] * 4 + [False]
+    touching = STILL._replace(T_gear=0.0)
+    torques = demanded([AFLOAT] * 9 + [touching] + [AFLOAT] * 5, 16.0, P._replace(t_return=0.0))
+    assert torques == pytest.approx([10.0] * 5 + [16.0] * 5 + [10.0] * 5)
 
 
 def test_the_time_afloat_is_counted_no_further_than_needed() -> None:
-    x = law.start(AFLOAT, 50.0, P)
+    x = law.start(AFLOAT, 16.0, P)
     for _ in range(20):
-        x, _ = law.update(x, AFLOAT, staying(AFLOAT), 0.0, T_S, P)
-    assert x.landing == P.t_land + T_S
+        x, _ = law.update(x, AFLOAT, staying(AFLOAT), 16.0, T_S, P)
+    assert x.afloat == P.t_land + T_S
 
 
-def test_the_limit_of_landing_comes_beside_the_damping_torque() -> None:
-    motion = AFLOAT._replace(omega_1=104.0)
-    _, torque = law.update(law.start(AFLOAT, 50.0, P), motion, staying(motion), 100.0, T_S, P)
-    assert torque == Addition(damping=-0.5 * 2.0 * 4.0, landing=-40.0)
-
-
-def test_nothing_is_softened_while_the_teeth_touch() -> None:
-    assert law.soft_landing(100.0, 0.0, P) == 100.0
-    assert law.soft_landing(100.0, 0.25, P) == 60.0
+def test_the_landing_stands_for_the_damping_too() -> None:
+    """And is right about a damping that is limited."""
+    for omega in (4.0, 100.0):
+        motion = AFLOAT._replace(omega_1=100.0 + omega)
+        _, torque = law.update(law.start(AFLOAT, 16.0, P), motion, staying(motion), 16.0, T_S, P)
+        assert torque == pytest.approx(
+            Addition(damping=-min(omega, P.T_add_max), landing=-6.0 - max(0.0, omega - 60.0))
+        )
