@@ -25,6 +25,7 @@ COMMANDS = {
     "compare": "run the manoeuvres without and with damping and compare",
     "replay": "drive a recorded torque demand and road without and with damping",
     "faults": "put faults on the controller's signals and judge what it makes of them",
+    "robustness": "drive cars and sensors by lot with every controller",
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
     "analyse": "margins, poles and sensitivities of the loop",

@@ -17,6 +17,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 from pickle import loads
 from tempfile import TemporaryDirectory
@@ -24,7 +25,7 @@ from textwrap import shorten
 from typing import Any, NoReturn, TypeVar
 
 from .cosimulation.runs import kept_loaded
-from .errors import DrivelineError, SimulationError
+from .errors import DrivelineError, MissingExtra, SimulationError
 from .progress import progress
 from .reports.files import note_unfinished, remove_unfinished
 from .stopping import uninterrupted_children
@@ -61,15 +62,22 @@ def run_many(
 
 @contextmanager
 def many(
-    function: Callable[[Case], Answer], workers: int | None = None
+    function: Callable[[Case], Answer], workers: int | None = None, scheduler: str | None = None
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     """What gives the answers for cases, in their order, and can be asked again: processes and FMUs stay loaded.
 
     Args and errors as of `run_many`.
+
+    Args:
+        scheduler: address of that of a Dask cluster, whose workers share the cases then.
     """
     require_workers(workers)
     count = workers or _cores()
-    with _here(function) if count == 1 else _in_workers(function, count) as answered:
+    if scheduler is not None:
+        where = _on_cluster(function, scheduler)
+    else:
+        where = _here(function) if count == 1 else _in_workers(function, count)
+    with where as answered:
         yield answered
 
 
@@ -120,16 +128,7 @@ def _in_workers(
             todo = list(cases)
             with uninterrupted_children():
                 futures = [pool.submit(_answer, case) for case in todo]
-            for case, future in zip(todo, futures, strict=True):
-                try:
-                    answer, warnings = future.result()
-                except BrokenProcessPool as error:
-                    raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
-                except (Exception, SystemExit) as error:
-                    _raise(error, case)
-                for text in warnings:
-                    warn_once(text)
-                yield answer
+            yield from _told(todo, (future.result for future in futures), BrokenProcessPool)
 
         unfinished = True
         try:
@@ -138,6 +137,47 @@ def _in_workers(
         finally:
             pool.shutdown(kill_workers=unfinished)
             remove_unfinished(Path(folder))
+
+
+@contextmanager
+def _on_cluster(
+    function: Callable[[Case], Answer], scheduler: str
+) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
+    try:
+        from .cluster import Lost, on_cluster
+    except ImportError as error:
+        raise MissingExtra(
+            "a Dask cluster needs the package distributed: "
+            "install the extra `cluster`, as in pip install 'driveline-damping[cluster]'"
+        ) from error
+    with on_cluster(partial(answered_by, function), scheduler) as results:
+
+        def answered(cases: Iterable[Case]) -> Iterator[Answer]:
+            todo = list(cases)
+            yield from _told(todo, results(todo), Lost)
+
+        yield answered
+
+
+def _told(
+    cases: Iterable[Case], results: Iterable[Callable[[], tuple[Answer, list[str]]]], crash: type[Exception]
+) -> Iterator[Answer]:
+    """The answers of workers, whose warnings are told here.
+
+    Args:
+        results: of the cases, each as `answered_by` gives it, or raises what it raised.
+        crash: is raised where a worker crashed.
+    """
+    for case, result in zip(cases, results, strict=True):
+        try:
+            answer, warnings = result()
+        except crash as error:
+            raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
+        except (Exception, SystemExit) as error:
+            _raise(error, case)
+        for text in warnings:
+            warn_once(text)
+        yield answer
 
 
 _function: Callable[[Any], Any]
@@ -149,9 +189,7 @@ def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
     global _function
     _function = function
     note_unfinished(folder)
-    log = logging.getLogger(__package__)
-    log.addHandler(_collected)
-    log.propagate = False
+    collect_warnings().propagate = False
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
     kept = ExitStack()
     kept.enter_context(kept_loaded(folder))
@@ -159,14 +197,25 @@ def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
     gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
 
 
+def collect_warnings() -> logging.Logger:
+    """In a worker: from now on warnings go with the answers."""
+    log = logging.getLogger(__package__)
+    log.addHandler(_collected)
+    return log
+
+
 def _answer(case: Any) -> tuple[Any, list[str]]:
+    return answered_by(_function, case)
+
+
+def answered_by(function: Callable[[Any], Any], case: Any) -> tuple[Any, list[str]]:
     """In a worker: the answer and what was warned of; what cannot be sent to the process that waits is told in
     words."""
     from cloudpickle import dumps
 
     _collected.texts.clear()
     try:
-        return _function(case), list(_collected.texts)
+        return function(case), list(_collected.texts)
     except SystemExit:
         raise
     except BaseException as error:

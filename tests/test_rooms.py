@@ -29,17 +29,20 @@ ROOMS = {
     "harness.compliance": COSIMULATION,
     "harness.linear": {"harness", "harness.metrics", "harness.reports", "models", "models.block", "models.controller"},
     "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports"},
+    "harness.robustness": COSIMULATION
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis"},
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
     | {"harness.linear", "models", "models.block", "models.controller"},
     "harness.tuning": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"},
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
+    | {"harness.robustness"},
     "harness": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
-    | {"harness.faults", "harness.linear", "harness.tuning"},
+    | {"harness.faults", "harness.linear", "harness.tuning", "harness.robustness"},
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
 the analysis and its linear loop know the models."""

@@ -45,6 +45,9 @@ BOX: Mapping[str, tuple[float, float]] = {
 }
 """The least and the most of each deviation."""
 
+DOUBLINGS = ("J_2", "C")
+"""The factors that are as often between 1/2 and 1 as between 1 and 2: their logarithm is uniform in the box."""
+
 LOSS = 0.1
 """In all of the box."""
 
@@ -84,13 +87,24 @@ def deviating(values: Mapping[str, Any], plant: str, controller: str, deviation:
         values: entries of parameter files, which reach every block that has the name.
         deviation: of all blocks but the controller.
     """
-    given = loop_parameters(values, plant, controller)
-    for place, record in loop_records(plant, controller).items():
-        if place != "controller":
-            start = record()._asdict()
-            start |= {name: value for name, value in values.items() if name in start}
-            given |= {f"{place}.{name}": value for name, value in _changed(start, deviation).items()}
-    return given
+    blocks = {place: record()._asdict() for place, record in loop_records(plant, controller).items()}
+    for start in blocks.values():
+        start |= {name: value for name, value in values.items() if name in start}
+    return loop_parameters(values, plant, controller) | changed(blocks, deviation)
+
+
+def changed(blocks: Mapping[str, Mapping[str, Any]], deviation: Deviation) -> dict[str, float]:
+    """The parameters of a loop, `instance.name` -> value, that a deviation changes: of all blocks but the controller.
+
+    Args:
+        blocks: the parameters of each block without the deviation, by its place.
+    """
+    return {
+        f"{place}.{name}": value
+        for place, start in blocks.items()
+        if place != "controller"
+        for name, value in _changed(start, deviation).items()
+    }
 
 
 def _changed(start: Mapping[str, Any], deviation: Deviation) -> dict[str, float]:

@@ -1,7 +1,7 @@
 """The options that several commands have, each with its check; `harness.commands.settings` says what they mean."""
 
 import argparse
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -51,12 +51,13 @@ def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def add_loop(parser: argparse.ArgumentParser, several: Collection[str] = ()) -> None:
+def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None = None) -> None:
     """What every run of the loop can be given beside the plant; `harness.commands.settings` reads it.
 
     Args:
-        several: the places for which several blocks can be given.
+        several: the places for which several blocks can be given, and what stands there if none is, in words.
     """
+    several = several or {}
     parser.add_argument(
         "--set",
         action="append",
@@ -75,7 +76,7 @@ def add_loop(parser: argparse.ArgumentParser, several: Collection[str] = ()) -> 
             action="append" if place in several else "store",
             default=None if place in several else names[0],
             help=f"{meaning}: {', '.join(names)} or an FMU "
-            f"({'repeatable; ' if place in several else ''}default: {names[0]})",
+            f"({'repeatable; ' if place in several else ''}default: {several.get(place, names[0])})",
         )
         action.complete = _names_or_fmus(names)  # type: ignore[attr-defined]
     parser.add_argument(

@@ -3,16 +3,14 @@
 import argparse
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 from ..control_loop import PLACES, PLANTS
 from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
 from ..reports.table import legend
-from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
-from .settings import blocks, caption, distinguishing, settings
+from .settings import caption, distinguishing, settings_of_each
 
 LEGEND = legend(RideMetrics)
 
@@ -51,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
     )
-    add_loop(parser, several=["controller"])
+    add_loop(parser, several={"controller": PLACES["controller"][0]})
     add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
     add_printing(parser, table=True)
 
@@ -70,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     recording = read_recording(args.recording)
     controllers = by_name(args.controller or PLACES["controller"][:1])
     plant = Path(args.plant).stem
-    given = {name: _settings_with(args, controller) for name, controller in controllers.items()}
+    given = settings_of_each(args, args.plant, controllers)
     systems = {name: looped(args.plant, settings) for name, settings in given.items()}
     first = next(iter(given))
     interfaces, parameters = fit(systems[first]).interfaces, given[first]["parameters"]
@@ -98,9 +96,3 @@ def run(args: argparse.Namespace) -> int:
         out.say(f"written: {file}")
     out.document({"runs": records(rides, track, plant), "files": made.files})
     return 0
-
-
-def _settings_with(args: argparse.Namespace, controller: str) -> dict[str, Any]:
-    """The settings of the loop with a controller, whose FMUs are there then."""
-    one = argparse.Namespace(**{**vars(args), "controller": controller})
-    return settings(one, args.plant, built(args.plant, args.fmus, args.build, **blocks(one)))

@@ -11,6 +11,7 @@ from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
+from .built import built
 from .options import OTHERS
 
 LOG = logging.getLogger(__name__)
@@ -49,6 +50,33 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     parameters = _from_files(args, system) | dict(args.assignments)
     fit(system, parameters=parameters)
     return given | {"parameters": parameters}
+
+
+def settings_of_each(args: argparse.Namespace, plant: str, controllers: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+    """What the options say for each of several controllers (names or files, by the names that tables give them), whose
+    FMUs are there then.
+
+    Of several the file of parameters is for those that have all that it names; the others keep theirs.
+
+    Raises:
+        WiringError, DrivelineError: as of `settings`, or the file is for none of them.
+    """
+    found, refusals = {}, []
+    for name, controller in controllers.items():
+        one = argparse.Namespace(**{**vars(args), "controller": controller})
+        build = built(plant, args.fmus, args.build, **blocks(one))
+        try:
+            found[name] = settings(one, plant, build)
+        except NotTaken as refusal:
+            refusals.append(refusal)
+            found[name] = settings(argparse.Namespace(**{**vars(one), "parameters": None}), plant, build)
+    if len(refusals) == len(controllers):
+        raise refusals[0]
+    return found
+
+
+class NotTaken(DrivelineError):
+    """A file of parameters names some that a controller does not have."""
 
 
 def as_given(args: argparse.Namespace) -> str:
@@ -137,9 +165,12 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     every = set().union(*names.values())
     try:
         values = read_files(args.vehicle, args.parameters, others=every)
-        require_taken(args.parameters, every, system.instances["controller"].name)
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
+    try:
+        require_taken(args.parameters, every, system.instances["controller"].name)
+    except ParameterFileError as refusal:
+        raise NotTaken(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}
     if args.vehicle is not None and args.parameters is None:
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")

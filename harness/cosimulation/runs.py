@@ -42,13 +42,22 @@ def kept_loaded(folder: Path | None = None) -> Iterator[None]:
     Args:
         folder: in which the FMUs are unpacked; None: that for temporary files.
     """
-    outer, kept = _here.kept, KeptLoops(folder)
-    _here.kept = kept
+    kept = KeptLoops(folder)
+    try:
+        with kept_by(kept):
+            yield
+    finally:
+        kept.close()
+
+
+@contextmanager
+def kept_by(loops: "KeptLoops") -> Iterator[None]:
+    """Within it the systems that are run in this thread are kept loaded there."""
+    outer, _here.kept = _here.kept, loops
     try:
         yield
     finally:
         _here.kept = outer
-        kept.close()
 
 
 class KeptLoops:
@@ -78,8 +87,8 @@ class KeptLoops:
     def close(self) -> None:
         """Unloads them all."""
         with ExitStack() as stack:
-            for unloading, _ in self._loops.values():
-                stack.callback(unloading.close)
+            while self._loops:
+                stack.callback(self._loops.popitem()[1][0].close)
 
 
 class _Thread(local):

@@ -12,6 +12,9 @@ from .oscillation import amplitude, damping_ratio
 FITTED = 0.9
 """Length in s of the end of a run to which the line of the final value is fitted."""
 
+SETTLED = 0.05
+"""Share of the step of the demand by which a gear torque that has settled swings."""
+
 LEAST_WAY = 0.1
 """Of the step of the demand, that the gear torque must make for its response to mean something."""
 
@@ -38,12 +41,12 @@ def height_of_step(manoeuvre: Manoeuvre, t: np.ndarray) -> float:
 
 
 def settling_time(T_gear: np.ndarray, T_s: float, t_0: float, dT: float) -> float:
-    """Time in s from t_0 to the last sample at which the swing exceeds 5 % of dT, plus one sample.
+    """Time in s from t_0 to the last sample at which the swing exceeds SETTLED dT, plus one sample.
 
     Raises:
         Absent: it still does at the end.
     """
-    exceeding = amplitude(T_gear, T_s)[round(t_0 / T_s) :] > 0.05 * abs(dT)
+    exceeding = amplitude(T_gear, T_s)[round(t_0 / T_s) :] > SETTLED * abs(dT)
     if exceeding[-1]:
         raise Absent("the gear torque still swings when the run ends")
     last = np.flatnonzero(exceeding)

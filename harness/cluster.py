@@ -1,0 +1,169 @@
+"""Many runs on a Dask cluster in place of the cores of this machine.
+
+The answer to a case is fetched as soon as it is there: a worker that is lost after that takes nothing with it, and what
+it had not answered is run again by another one. Every worker needs this package and the files that the cases read, at
+the same paths.
+"""
+
+import asyncio
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from pathlib import Path
+from pickle import loads
+from threading import Lock, local
+from typing import Any
+from uuid import uuid4
+
+from cloudpickle import dumps
+from distributed import Client, Future, KilledWorker, Worker, WorkerPlugin, as_completed, get_worker
+from distributed.comm.core import connect
+
+from .cosimulation.runs import KeptLoops, kept_by
+from .errors import DrivelineError, SimulationError
+from .told import warn_once
+
+Lost = KilledWorker
+"""Is raised where worker after worker ended while it ran a case."""
+
+TIMEOUT = 10.0
+"""Seconds in which the scheduler must answer."""
+
+Result = Callable[[], Any]
+
+
+@contextmanager
+def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[list[Any]], Iterator[Result]]]:
+    """What gives the results for cases, in their order, each as a function that returns it or raises what was raised.
+
+    Args:
+        function: of a case; its systems of FMUs stay loaded on the workers.
+        address: of the scheduler.
+
+    Raises:
+        DrivelineError: no scheduler answers there, or a worker has another version of the package.
+    """
+    with _connected(address) as client:
+        name = f"driveline-{uuid4().hex}"
+        try:
+            client.register_plugin(Runner(function, version("driveline-damping")), name=name)
+        except Exception as refusal:
+            raise DrivelineError(f"a worker of {address} cannot be used: {refusal}") from refusal
+        try:
+            yield lambda cases: _results(client, name, address, cases)
+        finally:
+            client.unregister_worker_plugin(name)
+
+
+@contextmanager
+def _connected(address: str) -> Iterator[Client]:
+    try:
+        asyncio.run(_knock(address))  # a client that gets no answer complains long after
+    except (OSError, ValueError) as reason:
+        raise DrivelineError(f"no Dask scheduler answers at {address!r}: {reason}") from reason
+    with Client(address, timeout=TIMEOUT, set_as_default=False) as client:
+        if not client.scheduler_info()["workers"]:
+            warn_once(f"the scheduler at {address} has no workers yet; the cases wait for them")
+        yield client
+
+
+async def _knock(address: str) -> None:
+    await (await connect(address, timeout=TIMEOUT)).close()
+
+
+def _results(client: Client, name: str, address: str, cases: Iterable[Any]) -> Iterator[Result]:
+    futures = client.map(_run, [dumps(case) for case in cases], runner=name, pure=False)
+    numbers = {future.key: k for k, future in enumerate(futures)}
+    completed = as_completed(futures, loop=client.loop)
+    del futures  # what is no longer asked for is not computed again when a worker is lost
+    results: dict[int, Result] = {}
+    turn = 0
+    for batch in completed.batches():
+        finished = [future for future in batch if future.status == "finished"]
+        answers: Any = client.gather(finished)
+        for future, answer in zip(finished, answers, strict=True):
+            results[numbers[future.key]] = _returning(answer)
+        for future in batch:
+            if future.status != "finished":
+                results[numbers[future.key]] = _raising(_failure(future, address))
+            future.release()
+        del finished
+        while turn in results:
+            yield results.pop(turn)
+            turn += 1
+
+
+def _failure(future: Future, address: str) -> BaseException:
+    error: Any = future.exception() if future.status == "error" else None
+    return error or SimulationError(f"the Dask scheduler at {address} has gone")
+
+
+def _returning(answer: Any) -> Result:
+    return lambda: answer
+
+
+def _raising(error: BaseException) -> Result:
+    def fail() -> Any:
+        raise error
+
+    return fail
+
+
+def _run(case: bytes, runner: str) -> Any:
+    """On a worker: what its plugin of that name makes of a case."""
+    plugin: Any = get_worker().plugins[runner]
+    return plugin.answer(loads(case))
+
+
+class Runner(WorkerPlugin):
+    """On a worker: answers cases; each thread keeps its systems of FMUs loaded.
+
+    Args:
+        function: of a case.
+        wanted: the version of the package.
+    """
+
+    def __init__(self, function: Callable[[Any], Any], wanted: str) -> None:
+        self._function = dumps(function)
+        self._wanted = wanted
+
+    def setup(self, worker: Worker) -> None:
+        from .many import collect_warnings
+
+        if (here := version("driveline-damping")) != self._wanted:
+            raise DrivelineError(f"it has driveline-damping {here}, and {self._wanted} is needed")
+        collect_warnings()
+        self._answer = loads(self._function)
+        self._folder = Path(worker.local_directory)
+        self._threads: list[Thread] = []
+        self._here = local()
+        self._ended = False
+
+    def answer(self, case: Any) -> Any:
+        """In one of the threads of the worker."""
+        if not hasattr(self._here, "thread"):
+            self._here.thread = Thread(self._folder)
+            self._threads.append(self._here.thread)
+        thread: Thread = self._here.thread
+        with thread.busy:
+            with kept_by(thread.loops):
+                answer = self._answer(case)
+            if self._ended:
+                thread.loops.close()
+            return answer
+
+    def teardown(self, worker: Worker) -> None:
+        """Unloads what no thread uses; what is used is unloaded when its case has been answered."""
+        self._ended = True
+        for thread in self._threads:
+            if thread.busy.acquire(blocking=False):
+                thread.loops.close()
+                thread.busy.release()
+
+
+class Thread:
+    """What a thread of a worker has: its loops, and a lock that it holds while it uses them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.loops = KeptLoops(folder)
+        self.busy = Lock()

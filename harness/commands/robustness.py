@@ -1,0 +1,140 @@
+"""`driveline robustness`: the Monte-Carlo of cars and sensors, the same draws for every controller."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..control_loop import PLACES, PLANTS
+from ..errors import DrivelineError
+from .options import add_loop, add_output, add_plant, add_printing, count
+from .printing import Printer
+from .settings import as_given, caption, distinguishing, settings_of_each
+
+if TYPE_CHECKING:
+    from ..robustness.bench import Bench, Given
+
+DESCRIPTION = """\
+Draws cars with their sensors from the box of parameters (docs/robustness.md), of which no controller is told, and
+drives each through a tip-in, a tip-out and a launch with every controller, with the same noise. A table for each plant
+tells which share of the runs is bounded and quiet, which is good, and what half and 95 % of the runs do not exceed.
+
+The output folder gets runs.csv (every run with all metrics), draws.csv, summary.csv, the page robustness.md,
+robustness.json (what made them) and, in its folder figures, the distributions and the worst draws of the first
+controller. The same command goes on where it was stopped. --case runs one draw again, and writes its signals and draws
+them.
+"""
+
+EXAMPLES = """\
+examples:
+  driveline robustness                                       300 draws, both plants, all controllers
+  driveline robustness --cases 1000 --plant ValidationVehicle
+  driveline robustness --controller DampingController --parameters my_gains.toml --output results/mine
+  driveline robustness --case 17                             one of them, drawn
+  driveline robustness --scheduler tcp://10.0.0.1:8786       on a Dask cluster
+"""
+
+MOST_CASES = 100_000
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--cases", type=_number, default=300, metavar="COUNT", help="how many (default: %(default)s)")
+    parser.add_argument("--case", type=_number, metavar="NUMBER", help="only the draw of this number, with figures")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the cases")
+    add_plant(parser, several=True)
+    add_loop(parser, several={"controller": "all of these"})
+    add_output(parser, "results/robustness", "the runs, the page and the figures", of_a_run=True)
+    add_printing(parser, table=True)
+
+
+def _number(text: str) -> int:
+    return count(text, 1, MOST_CASES)
+
+
+def run(args: argparse.Namespace) -> int:
+    # here and not above: mistakes and help are answered without them
+    from ..names import require_different
+    from ..replay import by_name
+    from ..robustness.bench import Bench
+
+    plants = list(dict.fromkeys(args.plant or PLANTS))
+    require_different(plants)
+    controllers = by_name(args.controller or PLACES["controller"])
+    given = {
+        (Path(plant).stem, name): (plant, of_each)
+        for plant in plants
+        for name, of_each in settings_of_each(args, plant, controllers).items()
+    }
+    bench = Bench(given, args.seed)
+    return _one(args, bench, given) if args.case is not None else _all(args, bench, given)
+
+
+def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
+    from ..cosimulation.wiring import fit
+    from ..provenance import require_same_run, write_record
+    from ..reports.files import alone, remove
+    from ..robustness.archive import Archive
+    from ..robustness.campaign import campaign, cases
+    from ..robustness.report import announce, write
+    from ..robustness.summary import summaries
+
+    out, same, systems = Printer(args), _distinguishing(bench, given), _systems(given)
+    record, runs, read = args.output / "robustness.json", args.output / "runs.csv", [args.vehicle, args.parameters]
+    with alone(args.output):
+        try:
+            require_same_run(record, same, [runs])
+        except DrivelineError:
+            if not args.replace:
+                raise
+            remove(runs)
+        archive, fits = Archive(runs), {name: fit(system) for name, system in systems.items()}
+        write_record(record, same, fits, [runs], read)
+        archive.begin()
+        outcomes = campaign(bench, range(1, args.cases + 1), archive, scheduler=args.scheduler)
+        known = cases(bench.loops, range(1, max(case.number for case in archive) + 1))
+        archive.write([archive[case] for case in known if case in archive])
+        files = [runs, *write(outcomes, bench, f" {as_given(args)}".rstrip(), caption(args), args.output)]
+        write_record(record, same, fits, files, read)
+    if not out.silent:
+        announce(outcomes)
+    for file in (*files, record):
+        out.say(f"written: {file}")
+    out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": files})
+    return 0
+
+
+def _one(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
+    """One draw again."""
+    from ..provenance import recorded
+    from ..robustness.campaign import campaign
+    from ..robustness.draws import draw
+    from ..robustness.report import announce, write_draw
+    from ..robustness.summary import summaries
+
+    out, name = Printer(args), f"draw_{args.case}"
+    record, same = args.output / f"{name}.json", _distinguishing(bench, given) | {"case": args.case}
+    with recorded(record, same, _systems(given), [args.vehicle, args.parameters], [], args.replace) as made:
+        out.say(f"draw {draw(args.case, args.seed)}")
+        outcomes = campaign(bench, [args.case], scheduler=args.scheduler)
+        made.begin()
+        made.files += write_draw(outcomes, bench, caption(args), args.output)
+    if not out.silent:
+        announce(outcomes)
+    for file in (*made.files, record):
+        out.say(f"written: {file}")
+    out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": made.files})
+    return 0
+
+
+def _systems(given: "Given") -> dict[str, Any]:
+    """The systems that run, by the names of plant and controller."""
+    from ..simulate import looped
+
+    return {" with ".join(key): looped(*loop) for key, loop in given.items()}
+
+
+def _distinguishing(bench: "Bench", given: "Given") -> dict[str, Any]:
+    from ..robustness.campaign import distinguishing as of_the_draws
+
+    systems = _systems(given)
+    loops = {" with ".join(key): loop for key, (_, loop) in given.items()}
+    return of_the_draws(bench) | {name: distinguishing(loops[name], system, None) for name, system in systems.items()}

@@ -1,0 +1,117 @@
+"""The loop of a case: a plant and a controller, with car and sensors as they were drawn."""
+
+from collections.abc import Mapping
+from functools import cache
+from math import nan
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..analysis.box import changed
+from ..control_loop import PLACES
+from ..cosimulation.wiring import Fit, fit
+from ..errors import DrivelineError, SimulationError
+from ..manoeuvres.catalogue import MANOEUVRES
+from ..metrics.evaluate import evaluate
+from ..plain import plain
+from ..provenance import digest
+from ..simulate import looped, simulate
+from .draws import draw
+from .outcome import METRICS, PEAK, Case, Outcome
+
+Settings = Mapping[str, Any]
+"""Arguments of `harness.simulate.simulate` for a loop."""
+
+Given = Mapping[tuple[str, str], tuple[str, Settings]]
+"""By the names of plant and controller the plant (name or file) and the settings of the loop."""
+
+
+class Loop(NamedTuple):
+    """A plant with a controller.
+
+    Attributes:
+        plant: its name or file.
+        settings: of its runs, with absolute paths, so that any process can make them.
+        blocks: the parameters of each block by its place, as they are without a deviation.
+        digests: of the FMUs.
+    """
+
+    plant: str
+    settings: Settings
+    blocks: Mapping[str, Mapping[str, float]]
+    digests: Mapping[Path, str]
+
+
+class Bench:
+    """Runs cases.
+
+    Args:
+        given: the loops.
+        seed: of the draws.
+    """
+
+    def __init__(self, given: Given, seed: int) -> None:
+        self.seed = seed
+        self.loops = {key: _loop(*loop) for key, loop in given.items()}
+
+    def results(self, case: Case, control: bool = True) -> np.ndarray:
+        """The signals of a case.
+
+        Args:
+            control: whether the damping control is enabled.
+
+        Raises:
+            DrivelineError: an FMU is not the one that it is where the campaign was begun.
+            SimulationError: see `harness.simulate.simulate`.
+        """
+        loop, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
+        for path, wanted in loop.digests.items():
+            _require(path, wanted)
+        settings = {**loop.settings, "parameters": loop.settings["parameters"] | changed(loop.blocks, drawn.deviation)}
+        return simulate(MANOEUVRES[case.manoeuvre], loop.plant, control, **{**settings, "seed": drawn.noise})
+
+    def outcome(self, case: Case) -> Outcome:
+        """What came of a case; one that an FMU ends has no metrics."""
+        try:
+            results = self.results(case)
+        except SimulationError as reason:
+            return Outcome(case, {metric.name: nan for metric in METRICS}, plain(reason))
+        metrics = evaluate(results, MANOEUVRES[case.manoeuvre])
+        peak = float(np.abs(results["plant.T_gear"]).max()) / self.T_max(case)
+        return Outcome(case, {m.name: peak if m is PEAK else m.of(metrics) for m in METRICS})
+
+    def T_max(self, case: Case) -> float:
+        """The largest torque of the motor in N.m; without limit where its FMU does not say."""
+        return self.loops[case.plant, case.controller].blocks["motor"].get("T_max", np.inf)
+
+
+def _loop(plant: str, settings: Settings) -> Loop:
+    system = looped(plant, settings)
+    places = {place: _absolute(str(settings[place])) for place in PLACES if settings.get(place)}
+    given = {**settings, **places, "folder": Path(settings["folder"]).absolute()}
+    digests = {path.absolute(): digest(path) for path in system.instances.values()}
+    return Loop(_absolute(plant), given, blocks_of(fit(system), settings["parameters"]), digests)
+
+
+def _absolute(block: str) -> str:
+    """A block by its name, or the whole path of an FMU."""
+    return str(Path(block).absolute()) if Path(block).suffix == ".fmu" else block
+
+
+def blocks_of(fitted: Fit, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """The parameters of each FMU by its place: those that are given, and where others start."""
+    found: dict[str, dict[str, float]] = {}
+    for place, interface in fitted.interfaces.items():
+        reals = [v for v in interface.of_causality("parameter") if v.type == "Real"]
+        starts = {v.name: float(v.start) * interface.factors.get(v.name, 1.0) for v in reals if v.start is not None}
+        found[place] = {name: given.get(f"{place}.{name}", start) for name, start in starts.items()}
+    return found
+
+
+@cache
+def _require(path: Path, wanted: str) -> None:
+    if not path.is_file():
+        raise DrivelineError(f"there is no FMU {path}; all that run cases need it at this path")
+    if digest(path) != wanted:
+        raise DrivelineError(f"{path} is not the one that the campaign was begun with")
