@@ -6,8 +6,10 @@ the same paths.
 """
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from pickle import loads
@@ -16,7 +18,7 @@ from typing import Any
 from uuid import uuid4
 
 from cloudpickle import dumps
-from distributed import Client, Future, KilledWorker, Worker, WorkerPlugin, as_completed, get_worker
+from distributed import Client, KilledWorker, Worker, WorkerPlugin, get_worker
 from distributed.comm.core import connect
 
 from .cosimulation.runs import KeptLoops, kept_by
@@ -29,12 +31,13 @@ Lost = KilledWorker
 TIMEOUT = 10.0
 """Seconds in which the scheduler must answer."""
 
-Result = Callable[[], Any]
+MOST_UNDER_WAY = 64
+"""Cases that are sent at a time, unless the cluster has more than half as many threads."""
 
 
 @contextmanager
-def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[list[Any]], Iterator[Result]]]:
-    """What gives the results for cases, in their order, each as a function that returns it or raises what was raised.
+def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[Any], Future]]:
+    """What submits a case and gives its future.
 
     Args:
         function: of a case; its systems of FMUs stay loaded on the workers.
@@ -49,9 +52,11 @@ def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callabl
             client.register_plugin(Runner(function, version("driveline-damping")), name=name)
         except Exception as refusal:
             raise DrivelineError(f"a worker of {address} cannot be used: {refusal}") from refusal
+        pool = ThreadPoolExecutor(max(MOST_UNDER_WAY, 2 * sum(client.nthreads().values())))
         try:
-            yield lambda cases: _results(client, name, address, cases)
+            yield partial(pool.submit, _result, client, name, address)
         finally:
+            pool.shutdown(wait=False, cancel_futures=True)
             client.unregister_worker_plugin(name)
 
 
@@ -71,42 +76,12 @@ async def _knock(address: str) -> None:
     await (await connect(address, timeout=TIMEOUT)).close()
 
 
-def _results(client: Client, name: str, address: str, cases: Iterable[Any]) -> Iterator[Result]:
-    futures = client.map(_run, [dumps(case) for case in cases], runner=name, pure=False)
-    numbers = {future.key: k for k, future in enumerate(futures)}
-    completed = as_completed(futures, loop=client.loop)
-    del futures  # what is no longer asked for is not computed again when a worker is lost
-    results: dict[int, Result] = {}
-    turn = 0
-    for batch in completed.batches():
-        finished = [future for future in batch if future.status == "finished"]
-        answers: Any = client.gather(finished)
-        for future, answer in zip(finished, answers, strict=True):
-            results[numbers[future.key]] = _returning(answer)
-        for future in batch:
-            if future.status != "finished":
-                results[numbers[future.key]] = _raising(_failure(future, address))
-            future.release()
-        del finished
-        while turn in results:
-            yield results.pop(turn)
-            turn += 1
-
-
-def _failure(future: Future, address: str) -> BaseException:
-    error: Any = future.exception() if future.status == "error" else None
-    return error or SimulationError(f"the Dask scheduler at {address} has gone")
-
-
-def _returning(answer: Any) -> Result:
-    return lambda: answer
-
-
-def _raising(error: BaseException) -> Result:
-    def fail() -> Any:
-        raise error
-
-    return fail
+def _result(client: Client, name: str, address: str, case: Any) -> Any:
+    """Of one case. The thread that waits for it fetches it at once, before its worker can be lost."""
+    try:
+        return client.submit(_run, dumps(case), runner=name, pure=False).result()
+    except CancelledError as reason:
+        raise SimulationError(f"the Dask scheduler at {address} has gone") from reason
 
 
 def _run(case: bytes, runner: str) -> Any:

@@ -16,6 +16,7 @@ import logging
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -128,7 +129,7 @@ def _in_workers(
             todo = list(cases)
             with uninterrupted_children():
                 futures = [pool.submit(_answer, case) for case in todo]
-            yield from _told(todo, (future.result for future in futures), BrokenProcessPool)
+            yield from _told(todo, futures, BrokenProcessPool)
 
         unfinished = True
         try:
@@ -150,27 +151,27 @@ def _on_cluster(
             "a Dask cluster needs the package distributed: "
             "install the extra `cluster`, as in pip install 'driveline-damping[cluster]'"
         ) from error
-    with on_cluster(partial(answered_by, function), scheduler) as results:
+    with on_cluster(partial(answered_by, function), scheduler) as submit:
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
             todo = list(cases)
-            yield from _told(todo, results(todo), Lost)
+            yield from _told(todo, [submit(case) for case in todo], Lost)
 
         yield answered
 
 
 def _told(
-    cases: Iterable[Case], results: Iterable[Callable[[], tuple[Answer, list[str]]]], crash: type[Exception]
+    cases: Iterable[Case], futures: Iterable["Future[tuple[Answer, list[str]]]"], crash: type[Exception]
 ) -> Iterator[Answer]:
     """The answers of workers, whose warnings are told here.
 
     Args:
-        results: of the cases, each as `answered_by` gives it, or raises what it raised.
+        futures: of what `answered_by` gives for the cases.
         crash: is raised where a worker crashed.
     """
-    for case, result in zip(cases, results, strict=True):
+    for case, future in zip(cases, futures, strict=True):
         try:
-            answer, warnings = result()
+            answer, warnings = future.result()
         except crash as error:
             raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
         except (Exception, SystemExit) as error:

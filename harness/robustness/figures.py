@@ -22,9 +22,9 @@ COLORS = (BLACK, GREY, BLUE, "#E69F00", VERMILION, GREEN, "#CC79A7")
 
 DRAWN = {
     "settling_time": (0.05, 5.0),
-    "overshoot": (0.01, 3.0),
-    "jerk_rms_to_50_Hz": (1.0, 100.0),
-    "response_delay": (0.02, 0.5),
+    "overshoot": (0.02, 3.0),
+    "jerk_rms_to_50_Hz": (2.0, 60.0),
+    "response_delay": (0.025, 0.4),
 }
 """The metrics of the figure, and from where to where in SI units."""
 
@@ -45,7 +45,7 @@ def plot_distributions(summaries: Sequence[Summary], plant: str, caption: str, s
         for manoeuvre, axes in zip(manoeuvres, grid[0], strict=True):
             axes.set_title(manoeuvre)
         lines, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(lines, labels, loc="outside lower center", ncols=4)
+        figure.legend(lines[::-1], labels[::-1], loc="outside lower center", ncols=4)
         return save(figure, stem)
 
 
@@ -65,7 +65,7 @@ def _distribution(axes: Axes, summaries: Sequence[Summary], metric: str, bounds:
         )
     axes.axhline(95.0, color="0.5", lw=0.6, ls="--")
     axes.set(xscale="log", xlim=(low, high), ylim=(0.0, 101.0), xlabel=f"{column.plain_heading} in {column.unit}")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
 

@@ -1,0 +1,150 @@
+"""`driveline robustness`: one command from the draws to the page, resumed in its folder."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from shutil import copytree
+from typing import Any
+
+import pytest
+
+from fmus.catalogue import EVERY
+from harness import many
+from harness.cli import main
+from harness.robustness import report
+
+
+@pytest.fixture(scope="module")
+def fmus(native_builder: Any, native: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with the native FMUs of the loop and of one comparator."""
+    folder = tmp_path_factory.mktemp("comparator")
+    copytree(native, folder / "native")
+    native_builder(EVERY["SpeedWashout"], folder)
+    return folder
+
+
+@pytest.fixture
+def robustness(
+    fmus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> Callable[..., int]:
+    """Runs the command in this process, on the design model, into the folder `results`."""
+    monkeypatch.setattr(many, "_cores", lambda: 1)
+    if "page" not in request.node.name:  # figures take seconds
+        for plot in ("plot_distributions", "plot_draw"):
+            monkeypatch.setattr(report, plot, lambda *args: [])
+    given = ["robustness", "--fmus", str(fmus), "--build", "native", "--plant", "TwoMassDriveline"]
+    given += ["--output", str(tmp_path / "results")]
+    return lambda *more: main([*given, *more])
+
+
+OURS, ALL = ("--controller", "DampingController"), ("--controller", "DampingController", "--controller", "SpeedWashout")
+
+
+def test_the_folder_gets_the_runs_the_page_and_the_figures(
+    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert robustness("--cases", "2", *ALL) == 0
+    folder, said = tmp_path / "results", capsys.readouterr().out
+    names = {"runs.csv", "draws.csv", "summary.csv", "robustness.md", "robustness.json", "figures"}
+    assert {path.name for path in folder.iterdir()} == names
+    page = (folder / "robustness.md").read_text()
+    pictures = {line.partition("(")[2].rstrip(")") for line in page.splitlines() if line.startswith("![")}
+    pictures |= {"figures/robustness_TwoMassDriveline.png"}
+    assert all((folder / picture).is_file() for picture in pictures)
+    assert len(pictures) == 4
+    assert (folder / "runs.csv").read_text().count("\n") == 1 + 2 * 2 * 3
+    assert (folder / "draws.csv").read_text().splitlines()[
+        0
+    ] == "number,noise,J_2,C,phi_B,tau,m,delay,g_T,o_T,g_w2,loss"
+    goal = next(line for line in said.splitlines() if line.startswith("TwoMassDriveline, DampingController: bounded"))
+    assert goal.rpartition(": ")[2] in page
+    record = json.loads((folder / "robustness.json").read_text())
+    assert record["files"][:4] == ["runs.csv", "draws.csv", "summary.csv", "robustness.md"]
+
+
+def test_more_cases_go_on_where_fewer_ended_with_the_same_bytes(
+    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs = tmp_path / "results" / "runs.csv"
+    assert robustness("--cases", "2", *ALL, "--json") == 0
+    at_once, document = runs.read_bytes(), json.loads(capsys.readouterr().out)
+    assert [each["runs"] for each in document["summaries"]] == 6 * [2]
+    assert robustness("--cases", "1", *ALL, "--quiet") == 0
+    assert runs.read_bytes() == at_once  # what is known is kept
+    runs.unlink()
+    assert robustness("--cases", "1", *ALL, "--quiet") == 0
+    assert robustness("--cases", "2", *ALL, "--quiet") == 0
+    assert runs.read_bytes() == at_once
+
+
+def test_runs_of_other_settings_are_not_mixed(
+    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runs = tmp_path / "results" / "runs.csv"
+    assert robustness("--cases", "1", *OURS, "--quiet") == 0
+    first = runs.read_bytes()
+    for other in (("--seed", "2"), ("--set", "controller.k_d=1"), ("--controller", "SpeedWashout")):
+        assert robustness("--cases", "1", *OURS, *other) == 2
+        assert "runs.csv is of another run" in capsys.readouterr().err
+    assert runs.read_bytes() == first
+    assert robustness("--cases", "1", *OURS, "--seed", "2", "--replace", "--quiet") == 0
+    assert runs.read_bytes().count(b"\n") == first.count(b"\n")
+    assert runs.read_bytes() != first
+
+
+def test_one_draw_again_is_the_one_of_the_campaign(
+    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert robustness("--case", "2", *OURS, "--json") == 0
+    alone = json.loads(capsys.readouterr().out)
+    names = {Path(file).name for file in alone["files"]}
+    assert names == {f"draw_2_TwoMassDriveline_{manoeuvre}.csv" for manoeuvre in ("tipin15", "tipout", "launch")}
+    assert robustness("--cases", "2", *OURS, "--quiet") == 0
+    rows = [line.split(",") for line in (tmp_path / "results" / "runs.csv").read_text().splitlines()]
+    for summary in alone["summaries"]:
+        row = next(row for row in rows if row[2:4] == ["2", summary["manoeuvre"]])
+        assert float(row[rows[0].index("settling_time_s")]) == summary["settling_time_s_50_percent"]
+
+
+def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
+    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def settling(*more: str) -> dict[str, float]:
+        assert robustness("--case", "1", *ALL, "--json", "--replace", *more) == 0
+        found = json.loads(capsys.readouterr().out)["summaries"]
+        return {each["controller"]: each["gear_torque_rms_N_m_50_percent"] for each in found[:2]}
+
+    gains = tmp_path / "gains.toml"
+    gains.write_text("k_v = 0.5\n")
+    before, after = settling(), settling("--parameters", str(gains))
+    assert before["DampingController"] == after["DampingController"]
+    assert before["SpeedWashout"] != after["SpeedWashout"]
+    gains.write_text("k_v = 0.5\nk_d = 2.0\n")
+    assert robustness("--case", "1", *ALL, "--parameters", str(gains)) == 2
+    assert "DampingController.fmu has no parameter k_v" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--cases", "0"], "'0' is not a whole number from 1 to 100000"),
+        (["--case", "1.5"], "'1.5' is not a whole number"),
+        (["--seed", "-1"], "is not a whole number from 0 to 1000000"),
+    ],
+)
+def test_what_no_campaign_can_use_is_refused(
+    robustness: Callable[..., int], options: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        robustness(*options)
+    assert end.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_scheduler_that_is_not_there_is_one_line(
+    robustness: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert robustness("--cases", "1", *OURS, "--scheduler", "nowhere") == 2
+    assert capsys.readouterr().err == (
+        "driveline robustness: no Dask scheduler answers at 'nowhere': missing port number in address 'nowhere'\n"
+    )

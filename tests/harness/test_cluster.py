@@ -1,0 +1,129 @@
+"""Many runs on a Dask cluster: the same answers as here, and a worker that is lost takes no answer with it."""
+
+import os
+import signal
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from harness.cosimulation.runs import KeptLoops
+from harness.errors import DrivelineError, MissingExtra, SimulationError
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.many import many
+from harness.simulate import simulate
+
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed")
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """Two workers on this machine, each a process; one that ends is begun again."""
+    folder = str(tmp_path_factory.mktemp("workers"))
+    given = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": folder}
+    patience = {"distributed.deploy.lost-worker-timeout": "10 minutes"}  # else what is lost twice is given up
+    with dask.config.set(patience), distributed.LocalCluster(**given) as made:
+        yield made
+
+
+def answers(function, cases, cluster):
+    with many(function, scheduler=cluster.scheduler_address) as answered:
+        return list(answered(cases))
+
+
+def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
+    from harness.cluster import MOST_UNDER_WAY
+
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write(f"{os.getpid()} ")
+        time.sleep(0.01)
+        return case, os.getpid()
+
+    def times(case):
+        return len((tmp_path / f"{case}").read_text().split())
+
+    with many(run, scheduler=cluster.scheduler_address) as answered:
+        found = answered(range(300))
+        first = [next(found) for _ in range(60)]
+        time.sleep(0.5)  # until the scheduler has heard that they were fetched
+        os.kill(first[-1][1], signal.SIGKILL)
+        rest = list(found)
+    assert [case for case, _ in first + rest] == list(range(300))
+    assert {times(case) for case, _ in first} == {1}
+    again = sum(times(case) for case, _ in rest) - len(rest)
+    assert again <= MOST_UNDER_WAY  # nothing but what was under way
+
+
+def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
+    brief = replace(MANOEUVRES["tipin15"], duration=1.1)
+
+    def end(k_d):
+        settings = {"folder": native.parent, "build": "native"}
+        return simulate(brief, parameters={"controller.k_d": k_d}, **settings)[-1].tolist()
+
+    cases = [0.0, 1.0, 2.0, 3.0]
+    assert answers(end, cases, cluster) == [end(case) for case in cases]
+
+
+def test_what_goes_wrong_on_a_worker_names_its_case(cluster):
+    def fails(case):
+        if case >= 2:
+            raise DrivelineError(f"no {case}")
+        return case
+
+    with many(fails, scheduler=cluster.scheduler_address) as answered:
+        found = answered(range(5))
+        assert [next(found), next(found)] == [0, 1]
+        with pytest.raises(DrivelineError, match="case 2: no 2"):
+            next(found)
+
+
+def test_what_is_warned_of_on_a_worker_is_told_here(cluster, caplog):
+    def warns(case):
+        import logging
+
+        logging.getLogger("harness.somewhere").warning("case %s is odd", case)
+
+    answers(warns, ["of the cluster"], cluster)
+    told = [record.getMessage() for record in caplog.records if record.name == "harness"]
+    assert told == ["case of the cluster is odd"]
+
+
+def test_a_case_that_ends_its_workers_is_named(cluster, monkeypatch):
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
+
+    def ends(case):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    with pytest.raises(SimulationError, match="a process crashed in case 'a bad one'"):
+        answers(ends, ["'a bad one'"], cluster)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "foo://here:80", ""])
+def test_no_scheduler_is_one_line(address, monkeypatch):
+    monkeypatch.setattr("harness.cluster.TIMEOUT", 0.3)
+    with pytest.raises(DrivelineError, match=f"^no Dask scheduler answers at '{address}': "):
+        many(abs, scheduler=address).__enter__()
+
+
+def test_without_the_package_the_extra_is_named(monkeypatch):
+    monkeypatch.delitem(sys.modules, "harness.cluster", raising=False)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(MissingExtra, match=r"the extra `cluster`.*driveline-damping\[cluster\]"):
+        many(abs, scheduler="tcp://127.0.0.1:1").__enter__()
+
+
+def test_loops_that_are_closed_are_loaded_again(native, tmp_path):
+    from harness.control_loop import loop
+
+    loops, system = KeptLoops(tmp_path), loop(folder=native.parent, build="native")
+    first = loops.loop(system, (), ())
+    assert loops.loop(system, (), ()) is first
+    loops.close()
+    assert not any(Path(tmp_path).iterdir())
+    assert loops.loop(system, (), ()) is not first
+    loops.close()
