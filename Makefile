@@ -64,6 +64,10 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline faults --cases 10000 --replace --quiet || test $$? = 1
 	cp results/faults/faults.md docs/
 	cp results/faults/figures/faults.png results/faults/figures/fault_pairs.png docs/figures/
+	rm -rf results/robustness
+	$(BIN)/driveline robustness --cases 300 --quiet
+	cp results/robustness/robustness.md docs/
+	cp results/robustness/figures/*.png docs/figures/
 	$(BIN)/driveline compare --replace
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
 		cat results/compare/table.md; } > docs/results.md
