@@ -7,9 +7,8 @@ the same paths.
 
 import asyncio
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from pickle import loads
@@ -36,7 +35,7 @@ MOST_UNDER_WAY = 64
 
 
 @contextmanager
-def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[Any], Future]]:
+def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[Any], Any]]:
     """What submits a case and gives its future.
 
     Args:
@@ -52,9 +51,10 @@ def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callabl
             client.register_plugin(Runner(function, version("driveline-damping")), name=name)
         except Exception as refusal:
             raise DrivelineError(f"a worker of {address} cannot be used: {refusal}") from refusal
-        pool = ThreadPoolExecutor(max(MOST_UNDER_WAY, 2 * sum(client.nthreads().values())))
+        threads: Any = client.nthreads()
+        pool = ThreadPoolExecutor(max(MOST_UNDER_WAY, 2 * sum(threads.values())))
         try:
-            yield partial(pool.submit, _result, client, name, address)
+            yield lambda case: pool.submit(_result, client, name, address, case)
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
             client.unregister_worker_plugin(name)

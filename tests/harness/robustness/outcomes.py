@@ -1,10 +1,14 @@
 """Outcomes that no run has made."""
 
+from typing import Any
+
 from harness.robustness.outcome import METRICS, Case, Outcome
 
 GOOD = {metric.name: 0.0 for metric in METRICS}
 
 
-def outcome(number: int = 1, controller: str = "DampingController", manoeuvre: str = "tipin15", **measured) -> Outcome:
+def outcome(
+    number: Any = 1, controller: Any = "DampingController", manoeuvre: Any = "tipin15", **measured: Any
+) -> Outcome:
     """A good run, but for what was measured."""
     return Outcome(Case("TwoMassDriveline", controller, number, manoeuvre), GOOD | measured)

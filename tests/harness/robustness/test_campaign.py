@@ -1,5 +1,7 @@
 """A campaign: all draws with every controller, resumed where it was stopped, the same runs on one process or more."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -19,12 +21,11 @@ from tests.harness.robustness.outcomes import outcome
 LOOPS = [("TwoMassDriveline", "DampingController"), ("TwoMassDriveline", "NoDamping")]
 
 
-class Pretended:
+class Pretended(Bench):
     """A bench that makes up its runs, and fails at one."""
 
-    loops = dict.fromkeys(LOOPS)
-
-    def __init__(self, fails_at=None):
+    def __init__(self, fails_at: int | None = None) -> None:
+        self.loops: Any = dict.fromkeys(LOOPS)
         self.asked = []
         self._fails_at = fails_at
 
@@ -73,8 +74,14 @@ def controllers(native_builder, native, tmp_path_factory):
     return folder
 
 
-def bench(folder, plant="ValidationVehicle", controller="DampingController", **parameters):
-    settings = {"parameters": parameters, "folder": folder, "build": "native", "controller": controller, "seed": 1}
+def bench(folder, plant="ValidationVehicle", controller="DampingController", parameters=()):
+    settings = {
+        "parameters": dict(parameters),
+        "folder": folder,
+        "build": "native",
+        "controller": controller,
+        "seed": 1,
+    }
     return Bench({(plant, controller): (plant, settings)}, seed=1)
 
 
@@ -93,7 +100,7 @@ def test_a_case_is_the_drawn_car_with_the_drawn_noise(controllers, plant, contro
 
 
 def test_a_factor_is_on_what_was_set(controllers):
-    made = bench(controllers, **{"plant.m": 1000.0, "motor.tau": 0.004})
+    made = bench(controllers, parameters={"plant.m": 1000.0, "motor.tau": 0.004})
     blocks = made.loops["ValidationVehicle", "DampingController"].blocks
     found = changed(blocks, Deviation(m=1.2, tau=0.5, J_2=2.0))
     assert (found["plant.m"], found["motor.tau"], found["plant.J_w"]) == (1200.0, 0.002, 2.0 * 1.8)
@@ -101,7 +108,7 @@ def test_a_factor_is_on_what_was_set(controllers):
 
 def test_an_fmu_that_refuses_the_run_is_a_run_without_metrics(controllers):
     case = Case("ValidationVehicle", "DampingController", 1, "tipout")
-    found = bench(controllers, **{"plant.r": 99.0}).outcome(case)
+    found = bench(controllers, parameters={"plant.r": 99.0}).outcome(case)
     assert not found.bounded
     assert "plant" in found.reason
     assert "99" in found.reason
