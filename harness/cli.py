@@ -29,6 +29,7 @@ COMMANDS = {
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
     "analyse": "margins, poles and sensitivities of the loop",
+    "bound": "compute what no controller can beat, beside what ours reaches",
     "coupling": "measure coupling error and dead time of the master",
     "back-to-back": "compare both builds of each block with its functions",
 }

@@ -34,6 +34,8 @@ ROOMS = {
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
     | {"harness.linear", "models", "models.block", "models.controller"},
+    "harness.bound": {"harness", "harness.manoeuvres", "harness.metrics", "harness.reports", "harness.linear"}
+    | {"models", "models.controller"},
     "harness.tuning": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
     | {"harness.robustness"},
@@ -42,10 +44,10 @@ ROOMS = {
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
-    | {"harness.faults", "harness.linear", "harness.tuning", "harness.robustness"},
+    | {"harness.bound", "harness.faults", "harness.linear", "harness.tuning", "harness.robustness"},
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
-the analysis and its linear loop know the models."""
+the analysis, its linear loop and the bound know the models."""
 
 
 def modules() -> Iterator[str]:

@@ -12,7 +12,7 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
 from .oscillation import amplitude
 from .record import Metrics
-from .spectrum import band_rms
+from .spectrum import TO_50_HZ, band_rms
 from .step_response import Response, height_of_step, response, settling_time
 
 T_S = 0.002
@@ -21,6 +21,12 @@ T_S = 0.002
 STATIONARY, FADED = 0.6, 0.9
 """Length in s of the end of a run that counts as stationary, and of the time before it in which what the control adds
 after a change of the demand fades."""
+
+WINDOW = (-0.2, 4.0)
+"""From and to when in s, after a step, its rms and peak values are taken."""
+
+WITHHELD = 2.0
+"""Time in s after a step, in which what is withheld from the driver counts."""
 
 COLUMNS = (
     "time",
@@ -58,7 +64,7 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         return response(t, T_gear, t_0, dT())
 
     def windowed(signal: np.ndarray) -> np.ndarray:
-        return signal if manoeuvre.dT is None else _piece(signal, t, t_0 - 0.2, t_0 + 4.0)
+        return signal if manoeuvre.dT is None else _piece(signal, t, t_0 + WINDOW[0], t_0 + WINDOW[1])
 
     computed = {
         "settling_time": lambda: settling_time(T_gear, T_s, t_0, dT()),
@@ -68,9 +74,9 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, derivative=True),
         "impact_speed": lambda: impact_speed(results, t_0),
         "response_delay": lambda: step().delay,
-        "withheld_time": lambda: withheld_time(_piece(e, t, t_0, t_0 + 2.0), T_s, dT()),
+        "withheld_time": lambda: withheld_time(_piece(e, t, t_0, t_0 + WITHHELD), T_s, dT()),
         "stationary_torque_change": lambda: stationary_change(T_driver, e, T_s),
-        "jerk_rms_to_50_Hz": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, (0.0, 50.0), derivative=True),
+        "jerk_rms_to_50_Hz": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, TO_50_HZ, derivative=True),
         "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e) ** 2))),
         "added_torque_peak": lambda: float(np.abs(windowed(e)).max()),
         "end_swing": lambda: float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),

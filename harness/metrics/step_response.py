@@ -15,6 +15,9 @@ FITTED = 0.9
 SETTLED = 0.05
 """Share of the step of the demand by which a gear torque that has settled swings."""
 
+REACHED = 0.9
+"""Share of its way that the response is measured to."""
+
 LEAST_WAY = 0.1
 """Of the step of the demand, that the gear torque must make for its response to mean something."""
 
@@ -81,7 +84,7 @@ class Response:
         Raises:
             Absent: they never are.
         """
-        reached = np.flatnonzero(self.z >= 0.9)
+        reached = np.flatnonzero(self.z >= REACHED)
         if not len(reached):
             raise Absent("the gear torque never makes 90 % of its way")
         return float(reached[0] * self.T_s)
@@ -102,12 +105,22 @@ def response(t: np.ndarray, T_gear: np.ndarray, t_0: float, dT: float) -> Respon
         Absent: the torque hardly moves.
     """
     T_s = float(t[1] - t[0])
-    last = t > t[-1] - FITTED + T_s / 2
+    last = fitted(t)
     final = Polynomial.fit(t[last], T_gear[last], 1)
     first = round(t_0 / T_s)
-    before = T_gear[max(first - 1, 0)]
-    initial = before if abs(before) >= 0.1 else 0.0
+    initial = initial_value(T_gear, first)
     way = final(t[first]) - initial
     if not abs(way) >= LEAST_WAY * abs(dT):
         raise Absent("the gear torque hardly follows the step of the demand")
     return Response((T_gear[first:] - initial) / way, (T_gear - final(t)) / way, first, T_s)
+
+
+def fitted(t: np.ndarray) -> np.ndarray:
+    """Which instants the line of the final value is fitted to."""
+    return t > t[-1] - FITTED + (t[1] - t[0]) / 2
+
+
+def initial_value(T_gear: np.ndarray, first: int) -> float:
+    """T_gear in N.m before a step at sample `first`; 0 if it was small."""
+    before = float(T_gear[max(first - 1, 0)])
+    return before if abs(before) >= 0.1 else 0.0

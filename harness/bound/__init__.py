@@ -1,0 +1,1 @@
+"""What no controller can beat: optimal torques on the design model with full knowledge."""
