@@ -48,14 +48,12 @@ def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
 
     with many(run, scheduler=cluster.scheduler_address) as answered:
         found = answered(range(300))
-        first = [next(found) for _ in range(60)]
-        time.sleep(0.5)  # until the scheduler has heard that they were fetched
+        first = [next(found) for _ in range(200)]
         os.kill(first[-1][1], signal.SIGKILL)
         rest = list(found)
     assert [case for case, _ in first + rest] == list(range(300))
-    assert {times(case) for case, _ in first} == {1}
-    again = sum(times(case) for case, _ in rest) - len(rest)
-    assert again <= MOST_UNDER_WAY  # nothing but what was under way
+    again = sum(times(case) for case in range(300)) - 300
+    assert again <= MOST_UNDER_WAY  # and not the hundred that the lost one had answered
 
 
 def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):

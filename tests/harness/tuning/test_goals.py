@@ -1,14 +1,17 @@
 """What the controller is to reach: the runs that tell, and what the table makes of them."""
 
+import re
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from harness import many
 from harness.analysis.box import NOMINAL
 from harness.control_loop import PLANTS
 from harness.metrics.record import Metrics
-from harness.tuning.goals import GOALS, UNITS, Goal, reached, runs, title
+from harness.tuning.goals import GOALS, MONTE_CARLO, UNITS, Goal, monte_carlo, reached, runs, title
 from harness.tuning.runs import HELD_OUT_SEEDS, SLOW_MOTOR
 
 STEP = Goal("tipin15", "response_delay", (18, 27), over_none=True)
@@ -58,3 +61,12 @@ def test_what_control_adds_is_the_difference_to_none() -> None:
         with_control._replace(control=False): metrics(response_delay=0.044),
     }
     assert reached(STEP, PLANTS[0], found) == pytest.approx(16.0)  # ms
+
+
+def test_the_monte_carlo_is_told_for_both_plants(native: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(many, "_cores", lambda: 1)
+    fmus = native.parent, "native"
+    told = monte_carlo(1, {}, *fmus)
+    assert len(told) == len(MONTE_CARLO) == len(PLANTS)
+    assert all(re.fullmatch(r"100 %; 0\.\d\d / 0\.\d\d s", text) for text in told)
+    assert monte_carlo(1, {"k_d": 0.2}, *fmus) != told
