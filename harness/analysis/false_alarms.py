@@ -63,7 +63,10 @@ def cruising(T_driver: float, **sensor: float) -> Drive:
 
 
 DRIVES = (
+    rolling_back(10.0, -1.0),
     rolling_back(60.0, -1.0),
+    rolling_back(20.0, 0.0),
+    rolling_back(60.0, 0.0),
     rolling_back(60.0, 0.1),
     rolling_back(60.0, 0.2),
     rolling_back(40.0, 0.5),

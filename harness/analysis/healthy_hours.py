@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from rich.table import Table
 
-from models.controller import swings, torque_loop, wheel_monitor
+from models.controller import departure, swings, torque_loop, wheel_monitor
 from models.controller.signal_monitor import STILL
 from models.controller.supervision import FALLBACK, T_S, Input
 from models.damping_controller import BLOCK
@@ -145,7 +145,7 @@ def contradiction(rows: np.ndarray) -> float:
     inputs = [Input(**dict(zip(SIGNALS, row, strict=True))) for row in zip(*columns, strict=True)]
     x, most = wheel_monitor.start(inputs[0], inputs[0].omega_1_meas, inputs[0].T_mot_est, P), 0.0
     for u, omega_2_hat in zip(inputs, rows["controller.omega_2_hat"].tolist(), strict=True):
-        x = wheel_monitor.update(x, u, u.omega_1_meas, u.T_mot_est, 0.0, omega_2_hat, T_S, P)
+        x = wheel_monitor.update(x, u, u.omega_1_meas, u.T_mot_est, 0.0, departure.start(), omega_2_hat, T_S, P)
         most = max(most, x.apart)
     return most
 

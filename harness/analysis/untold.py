@@ -37,7 +37,7 @@ FAULTS: dict[str, Callable[[float], float]] = {
 
 SLOW = {
     f"launch in {rise} s": step(f"launch in {rise} s", f"pull away within {rise} s", 0.0, 0.0, 120.0, rise)
-    for rise in (0.5, 1.0)
+    for rise in (0.5, 1.0, 2.0, 4.0)
 }
 """Launches that give the wrong sign more time before the motor turns against a demand."""
 

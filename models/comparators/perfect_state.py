@@ -10,6 +10,7 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, is_finite
 from ..controller import damping_law, supervision, torque_estimator
+from ..controller.departure import DepartureState
 from ..controller.signal_monitor import MonitorState
 from ..controller.supervised import Supervised, supervised
 from ..controller.torque_estimator import Estimate, EstimatorState, bounded
@@ -34,9 +35,9 @@ class Truth(NamedTuple):
 class Informed(Supervised):
     """A controller that is told the truth."""
 
-    def measured(self, x: Any, u: Any, p: Any) -> tuple[Any, MonitorState, WheelState]:
-        expected, signals, heard = super().measured(x, u, p)
-        return told(expected, u, p), signals, heard
+    def measured(self, x: Any, u: Any, p: Any) -> tuple[Any, MonitorState, WheelState, DepartureState]:
+        expected, signals, heard, leaving = super().measured(x, u, p)
+        return told(expected, u, p), signals, heard, leaving
 
 
 def told(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:

@@ -3,10 +3,9 @@
 A motor speed is bad when it is not finite, out of range, jumping (far from the speed of the last sample,
 from where that was going, and from what the model expects), frozen (unchanged for t_frozen while the motor
 turns, although noise has moved it before or the model expects it to move by more than its resolution, the
-smallest change that was seen; and from then on until it changes) or backing (after rest, away from the demand
-and from what the model expects); a motor torque when it is not finite, out of range, or far from what the
-motor should have (torque_loop). A speed that is bad for longer than t_bad is followed wherever it is
-plausible, so that it can prove itself (trust).
+smallest change that was seen; and from then on until it changes); a motor torque when it is not finite, out
+of range, or far from what the motor should have (torque_loop). A speed that is bad for longer than t_bad is
+followed wherever it is plausible, so that it can prove itself (trust).
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -18,12 +17,6 @@ from .torque_loop import LoopState
 
 STILL = 1.0
 """Motor speed in rad/s below which an unchanging speed is taken for standstill."""
-
-PUSH = 0.25
-"""Torque over T_max with which no car begins to roll backwards."""
-
-BACKING = 1.5
-"""Speed in rad/s by which the motor turns faster backwards than expected, which noise does not explain."""
 
 COARSE = 1.0
 """Resolution in rad/s that a motor speed has until a finer one was seen."""
@@ -59,7 +52,6 @@ class MonitorState(NamedTuple):
     frozen: Annotated[bool, Boolean("that speed has not moved where it should have")]
     loop: LoopState
     bad: Annotated[float, Real("s", "time since the motor signals were good")]
-    against: Annotated[bool, Boolean("the motor turns backwards while the demand pushes forwards")]
 
 
 def start(u: Any, p: Any) -> MonitorState:
@@ -78,7 +70,6 @@ def start(u: Any, p: Any) -> MonitorState:
         frozen=False,
         loop=torque_loop.start(T_mot),
         bad=0.0,
-        against=False,
     )
 
 
@@ -115,32 +106,17 @@ def noise_share(x: MonitorState, change: Any, T_s: Any) -> Any:
     return x.noise + minimum(T_s / T_NOISE, 1.0) * (noisy - x.noise)
 
 
-def update(
-    x: MonitorState,
-    u: Any,
-    pushed: Any,
-    launching: Any,
-    omega_1_hat: Any,
-    increment: Any,
-    T_ref: Any,
-    T_s: Any,
-    p: Any,
-) -> MonitorState:
+def update(x: MonitorState, u: Any, increment: Any, T_ref: Any, T_s: Any, p: Any) -> MonitorState:
     """The state after the signals of one sample.
 
     Args:
         u: input with omega_1_meas, T_mot_est.
-        pushed: whether the demand pushes the car forwards, and no wheel speed tells how it rolls.
-        launching: whether the car was at rest a moment ago.
-        omega_1_hat: the model's motor speed of this sample, rad/s.
-        increment: by which it has changed since the last sample, rad/s.
+        increment: change of the model's motor speed since the last sample, rad/s.
         T_ref: demand that the motor has, N.m.
     """
     expected = clip(x.omega_1 + increment, -p.omega_max, p.omega_max)
     omega_1, T_mot = speed(u.omega_1_meas, expected, p), torque(u.T_mot_est, x.loop, p)
     near = is_near(x, omega_1, expected, p)
-    against = logical_and(pushed, omega_1 < -p.omega_still)
-    backing = logical_and(logical_and(against, launching), omega_1 - omega_1_hat < -BACKING)
     received = where(is_finite(u.omega_1_meas), u.omega_1_meas, 0.0)
     change = received - x.omega_1_last
     unchanged = change == 0.0
@@ -150,7 +126,7 @@ def update(
     stays = logical_and(omega_1_unchanged >= p.t_frozen, abs(omega_1) > STILL)
     frozen = logical_and(stays, logical_or(x.frozen, should_move))
     possible = logical_and(plausible(u.omega_1_meas, p.omega_max), is_torque(u.T_mot_est, x.loop, p))
-    good = logical_and(logical_and(possible, near), logical_not(logical_or(frozen, backing)))
+    good = logical_and(logical_and(possible, near), logical_not(frozen))
     bad = where(good, 0.0, minimum(x.bad + T_s, p.t_bad + T_s))
     used = where(logical_or(near, bad > p.t_bad), omega_1, expected)
     return MonitorState(
@@ -166,5 +142,4 @@ def update(
         frozen=frozen,
         loop=torque_loop.update(x.loop, T_ref, T_s, p),
         bad=bad,
-        against=against,
     )

@@ -6,9 +6,10 @@ from typing import Any
 from ..block.declaration import merged
 from ..block.operators import branch, clip, logical_and, logical_not, logical_or, where
 from ..block.types import SampledBlock
-from . import rest, swings, torque_loop, trust
+from . import departure, rest, swings, torque_loop, trust
 from . import signal_monitor as monitor
 from . import wheel_monitor as wheels
+from .departure import DepartureState
 from .fading import toward
 from .parts import Addition, Estimator, Law, Motion
 from .signal_monitor import MonitorState
@@ -22,7 +23,6 @@ from .supervision import (
     demand,
     is_doubtful,
     is_launching,
-    is_pushed,
     limited,
     output,
     status,
@@ -49,6 +49,7 @@ class Supervised:
             law=self.law.start(motion, T_driver, p),
             monitor=signals,
             wheels=wheels.start(u, signals.omega_1, signals.T_mot, p),
+            departure=departure.start(),
             swings=swings.start(T_driver),
             trust=trust.start(p),
             level=where(u.enable, 1.0, 0.0),
@@ -65,11 +66,11 @@ class Supervised:
 
     def update(self, x: State, u: Input, p: Any) -> State:
         """What was measured, whether it is trusted, and what is added to the demand."""
-        e, signals, heard = self.measured(x, u, p)
+        e, signals, heard, leaving = self.measured(x, u, p)
         T_driver = demand(u, p)
         quiet = rest.quiet_time(x.quiet, rest.is_still(T_driver, signals.omega_1, p), T_S, p)
         resting = rest.share(quiet, p)
-        trusting = trust_after(x, signals, heard, resting >= 1.0, p)
+        trusting = trust_after(x, signals, heard, leaving, resting >= 1.0, p)
         trusted = trust.is_trusted(trusting)
         wheel = logical_and(wheels.hears_wheels(heard, u, p), trusted)
 
@@ -89,6 +90,7 @@ class Supervised:
             law=acting,
             monitor=signals,
             wheels=heard,
+            departure=leaving,
             swings=swings.update(x.swings, T_damping, T_driver, trusted, T_S, p),
             trust=trusting,
             level=level,
@@ -103,19 +105,27 @@ class Supervised:
             status=status(u.enable, trusted, wheel),
         )
 
-    def measured(self, x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState]:
+    def measured(self, x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState, DepartureState]:
         """The states of the estimator and of the monitors with the signals of this sample."""
         T_mot = monitor.torque(u.T_mot_est, x.monitor.loop, p)
         e = self.estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
-        omega_1_hat = self.estimator.motion(e, p).omega_1
-        increment = omega_1_hat - self.estimator.motion(x.estimator, p).omega_1
-        pushed, launching = is_pushed(x, u, p), is_launching(x)
-        signals = monitor.update(x.monitor, u, pushed, launching, omega_1_hat, increment, x.T_ref, T_S, p)
+        increment = self.estimator.motion(e, p).omega_1 - self.estimator.motion(x.estimator, p).omega_1
+        signals = monitor.update(x.monitor, u, increment, x.T_ref, T_S, p)
+        leaving = departure.update(
+            x.departure,
+            demand(u, p),
+            signals.loop.T_mot,
+            signals.omega_1_change,
+            x.since_rest <= 0.0,
+            is_launching(x),
+            T_S,
+            p,
+        )
         e = self.estimator.take_motor_speed(e, signals.omega_1, p)
         omega_2_hat = self.estimator.motion(e, p).omega_2
-        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, signals.bad, omega_2_hat, T_S, p)
+        heard = wheels.update(x.wheels, u, signals.omega_1, signals.T_mot, signals.bad, leaving, omega_2_hat, T_S, p)
         corrected = branch(heard.usable, lambda: self.estimator.take_wheel_speed(e, heard.omega_2, T_S, p), lambda: e)
-        return corrected, signals, heard
+        return corrected, signals, heard, leaving
 
     def restarted(self, e: Any, signals: MonitorState, afresh: Any, resting: Any, p: Any) -> Any:
         """The estimator, started afresh where the signals are to be doubted, and held at rest."""

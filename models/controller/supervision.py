@@ -12,10 +12,10 @@ what the damping alone may take.
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Enumeration, Integer, Real
-from ..block.operators import clip, is_finite, logical_and, logical_or, where
-from ..vehicle import CAR, MotorLag
-from . import rest, swings, trust
-from . import signal_monitor as monitor
+from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, where
+from ..vehicle import CAR, MotorInertia, MotorLag
+from . import departure, rest, swings, trust
+from .departure import DepartureState
 from .parts import Addition, Motion
 from .signal_monitor import MonitorState
 from .swings import SwingState
@@ -33,6 +33,7 @@ class Parameters(NamedTuple):
 
     T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
     tau: MotorLag = CAR.tau
+    J_1: MotorInertia = CAR.J_1
     T_take_max: Annotated[
         float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0)
     ] = 100.0
@@ -71,6 +72,7 @@ class State(NamedTuple):
     law: Any
     monitor: MonitorState
     wheels: WheelState
+    departure: DepartureState
     swings: SwingState
     trust: TrustState
     level: Annotated[float, Real("1", "share of the damping that acts")]
@@ -134,21 +136,19 @@ def is_doubtful(signals: MonitorState, heard: WheelState) -> Any:
     return logical_or(signals.bad > 0.0, heard.apart > 0.0)
 
 
-def is_pushed(x: State, u: Input, p: Any) -> Any:
-    """Whether the demand pushes the car forwards, and no wheel speed tells how it rolls."""
-    return logical_and(demand(u, p) > monitor.PUSH * p.T_max, x.wheels.silence >= p.t_stale)
-
-
 def is_launching(x: State) -> Any:
     """Whether the car was at rest a moment ago."""
     return x.since_rest < rest.LAUNCH
 
 
-def trust_after(x: State, signals: MonitorState, heard: WheelState, resting: Any, p: Any) -> TrustState:
+def trust_after(
+    x: State, signals: MonitorState, heard: WheelState, leaving: DepartureState, resting: Any, p: Any
+) -> TrustState:
     """The trust in the motor signals with those of this sample; `resting`: the car is at rest."""
+    departs_wrongly = logical_and(departure.is_against(leaving), logical_not(departure.is_against(x.departure)))
     confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
-    feeding = swings.feeds(x.swings)
-    return trust.update(x.trust, signals.bad, heard.apart, feeding, confirmed, signals.against, resting, T_S, p)
+    lying = logical_or(swings.feeds(x.swings), departs_wrongly)
+    return trust.update(x.trust, signals.bad, heard.apart, lying, confirmed, resting, T_S, p)
 
 
 def damping_limited(added: Addition, p: Any) -> Addition:

@@ -7,14 +7,20 @@ speed has not: then they are doubted, until one is near the motor speed again.
 
 The teeth of a wheel do not tell its direction. It is taken from the motor while the messages are silent or
 doubted, and kept otherwise: a car that turns round passes the speeds at which they say nothing. A motor that
-turns backwards while it pushes hard has the wrong sign, unless the car was seen to roll back before it pushed.
+turns backwards while it pushes hard has the wrong sign, unless the car was seen to roll back before it pushed, or the
+motor to set off with its torque (departure). One that has set off against it goes where that torque pushes.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
-from .signal_monitor import PUSH, plausible
+from . import departure
+from .departure import DepartureState
+from .signal_monitor import plausible
+
+PUSH = 0.25
+"""Torque over T_max with which no car begins to roll backwards."""
 
 LATE = 0.025
 """Time in s by which the motor speed is held back to compare it with messages, about their age."""
@@ -48,7 +54,7 @@ class WheelState(NamedTuple):
 
 def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
     known = has_wheel_speed(u, p)
-    direction = direction_of(omega_1, T_mot, 0.0, p)
+    direction = direction_of(omega_1, T_mot, 0.0, departure.start(), p)
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=direction * message(u),
@@ -85,10 +91,12 @@ def is_pushing(T_mot: Any, p: Any) -> Any:
     return T_mot >= PUSH * p.T_max
 
 
-def direction_of(omega_1: Any, T_mot: Any, rolling: Any, p: Any) -> Any:
+def direction_of(omega_1: Any, T_mot: Any, rolling: Any, leaving: DepartureState, p: Any) -> Any:
     """Of a car whose motor turns with omega_1 (rad/s) under T_mot (N.m), and that was seen to roll back for so long."""
-    possible = logical_or(logical_not(is_pushing(T_mot, p)), rolling >= ROLLING)
-    return where(logical_and(is_backwards(omega_1, p), possible), -1.0, 1.0)
+    believed = logical_or(rolling >= ROLLING, departure.is_with(leaving))
+    possible = logical_or(logical_not(is_pushing(T_mot, p)), believed)
+    turning = where(logical_and(is_backwards(omega_1, p), possible), -1.0, 1.0)
+    return where(departure.is_against(leaving), departure.heading(leaving), turning)
 
 
 def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, bad: Any, T_s: Any, p: Any) -> Any:
@@ -101,19 +109,30 @@ def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, bad: Any, T_s: Any, p: 
     return where(bad > 0.0, 0.0, clip(rolling + step, 0.0, 2.0 * ROLLING))
 
 
-def update(x: WheelState, u: Any, omega_1: Any, T_mot: Any, bad: Any, omega_2_hat: Any, T_s: Any, p: Any) -> WheelState:
+def update(
+    x: WheelState,
+    u: Any,
+    omega_1: Any,
+    T_mot: Any,
+    bad: Any,
+    leaving: DepartureState,
+    omega_2_hat: Any,
+    T_s: Any,
+    p: Any,
+) -> WheelState:
     """The state after one sample.
 
     Args:
         u: input with omega_2_can, valid, counter.
         omega_1, T_mot: motor speed and torque in use, rad/s and N.m.
         bad: time in s since the motor signals were good.
+        leaving: how the motor has set off out of rest.
         omega_2_hat: estimate before the message, rad/s.
     """
     known = has_wheel_speed(u, p)
     believed = logical_and(x.silence < p.t_stale, logical_not(x.doubted))
     rolling = rolling_time(x.rolling, omega_1, T_mot, bad, T_s, p)
-    direction = where(believed, x.direction, direction_of(omega_1, T_mot, rolling, p))
+    direction = where(believed, x.direction, direction_of(omega_1, T_mot, rolling, leaving, p))
     new = logical_and(u.counter != x.counter, known)
     omega_2 = where(new, direction * message(u), x.omega_2)
     late = x.late + minimum(T_s / LATE, 1.0) * (omega_1 - x.late)

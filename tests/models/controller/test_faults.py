@@ -67,11 +67,11 @@ def test_a_wrong_speed_under_torque_does_not_shake_the_gear(plant: ContinuousBlo
     assert max(others) < 0.2
 
 
-def launched(plant: ContinuousBlock, enable: bool = True, wrong: bool = False) -> np.ndarray:
-    """From rest to 120 N.m within a tenth of a second, with the wrong sign of the motor speed from the first on."""
+def launched(plant: ContinuousBlock, rise: float, enable: bool = True, wrong: bool = False) -> np.ndarray:
+    """From rest to 120 N.m within so many seconds, with the wrong sign of the motor speed from the first on."""
 
     def signals(k: int) -> tuple[float, float, float]:
-        return 120.0 * min(max(k * monolithic.INTERVAL - 0.1, 0.0) / 0.1, 1.0), 0.0, 0.0
+        return 120.0 * min(max(k * monolithic.INTERVAL - 0.1, 0.0) / rise, 1.0), 0.0, 0.0
 
     def received(t: float, sent: Any) -> Any:
         return sent._replace(omega_1_meas=-sent.omega_1_meas) if wrong else sent
@@ -80,9 +80,12 @@ def launched(plant: ContinuousBlock, enable: bool = True, wrong: bool = False) -
 
 
 @both_plants
-def test_a_launch_with_a_motor_speed_of_the_wrong_sign_does_not_shake_the_gear(plant: ContinuousBlock) -> None:
-    """Below the least wheel speed no message contradicts; but the motor turns against the demand."""
-    y, alone = launched(plant, wrong=True), launched(plant, enable=False)
+@pytest.mark.parametrize("rise", [0.1, 1.0])
+def test_a_launch_with_a_motor_speed_of_the_wrong_sign_does_not_shake_the_gear(
+    plant: ContinuousBlock, rise: float
+) -> None:
+    """Below the least wheel speed no message contradicts; but the motor sets off against its torque."""
+    y, alone = launched(plant, rise, wrong=True), launched(plant, rise, enable=False)
     fallback = y["controller.status"] == FALLBACK
     assert all(fallback[(y["time"] > 0.2) & (y["time"] < 0.8)])
     shaken, usual = (band_rms(run["plant.T_gear"], monolithic.INTERVAL) for run in (y, alone))

@@ -286,21 +286,28 @@ def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> N
     assert set(statuses[back:]) == {WITH_WHEEL_SPEED}
 
 
-def test_a_motor_that_is_pushed_out_of_rest_backwards_is_not_believed() -> None:
-    """Below the least wheel speed; from t_bad on, and for as long as it turns the wrong way."""
+@every_controller
+def test_a_motor_that_sets_off_against_its_torque_is_not_believed(block: SampledBlock) -> None:
+    """Below the least wheel speed; until the car rests."""
     resting = [Input(T_driver=0.0, T_mot_est=1e-3 * (k % 2)) for k in range(round(0.5 / T_S))]
+    lag = T_S + 2.0**0.5 * P.tau
+    speeds = [-10.0 / P.J_1 * max(k * T_S - lag, 0.0) for k in range(100)]
     launch = [
-        Input(T_driver=100.0, T_mot_est=100.0 + 1e-3 * (k % 2), omega_1_meas=-2.0 * k, counter=k // 10)
-        for k in range(400)
+        Input(T_driver=10.0, T_mot_est=10.0 + 1e-3 * (k % 2), omega_1_meas=omega_1, counter=k // 10)
+        for k, omega_1 in enumerate(speeds)
     ]
-    wrong, right = (
-        run_with_motor(OTHER, resting + [u._replace(omega_1_meas=sign * u.omega_1_meas) for u in launch])[1:]
-        for sign in (1.0, -1.0)
-    )
+    standing = [Input(T_mot_est=1e-3 * (k % 2)) for k in range(400)]
+
+    def driven_with(sign: float) -> list[State]:
+        measured = [u._replace(omega_1_meas=sign * u.omega_1_meas) for u in launch]
+        return run_with_motor(block, [*resting, *measured, *standing])[1:]
+
+    wrong, right = driven_with(1.0), driven_with(-1.0)
     first = [x.status for x in wrong].index(FALLBACK)
-    assert (first - len(resting)) * T_S == pytest.approx(P.t_bad, abs=4.0 * T_S)
-    assert {x.status for x in wrong[first:]} == {FALLBACK}
-    assert {x.status for x in right} == {WITHOUT_WHEEL_SPEED}
+    assert (first - len(resting)) * T_S == pytest.approx(3.0 * P.J_1 / 10.0 + lag, abs=2.0 * T_S)
+    assert {x.status for x in wrong[first : len(resting) + len(launch)]} == {FALLBACK}
+    assert wrong[-1].status == WITHOUT_WHEEL_SPEED
+    assert {x.status for x in right[: len(resting) + len(launch)]} == {WITHOUT_WHEEL_SPEED}
 
 
 def test_damping_that_feeds_an_oscillation_lets_go_until_it_is_calm_and_confirmed() -> None:

@@ -10,7 +10,7 @@ from models.controller.trust import LONGEST, TrustState
 
 P = Parameters(t_bad=1.0, t_apart=2.0, t_proof=1.0)
 T_S = 0.25
-GOOD = {"bad": 0.0, "apart": 0.0, "feeding": False, "confirmed": False, "against": False, "resting": False}
+GOOD = {"bad": 0.0, "apart": 0.0, "lying": False, "confirmed": False, "resting": False}
 TRUSTED = trust.start(P)
 LOST = TrustState(proof=0.0, needed=1.0, caught=False)
 CAUGHT = TrustState(proof=0.0, needed=2.0, caught=True)
@@ -37,9 +37,9 @@ def test_signals_fail_that_were_contradicted_for_longer_than_t_apart() -> None:
     assert after(1, apart=2.01) == LOST
 
 
-def test_signals_fail_with_which_the_damping_feeds_the_oscillation() -> None:
-    assert after(1, feeding=True) == CAUGHT
-    assert after(1, feeding=True, resting=True) == LOST
+def test_signals_fail_that_were_seen_to_lie() -> None:
+    assert after(1, lying=True) == CAUGHT
+    assert after(1, lying=True, resting=True) == LOST
 
 
 def test_signals_prove_themselves_by_being_good_for_a_time() -> None:
@@ -49,14 +49,6 @@ def test_signals_prove_themselves_by_being_good_for_a_time() -> None:
 
 def test_one_bad_sample_is_enough_to_begin_anew() -> None:
     assert after(1, after(3, LOST), bad=T_S) == after(1, after(3, LOST), apart=T_S) == LOST
-
-
-def test_a_motor_that_turns_against_the_demand_takes_back_what_was_proved() -> None:
-    """Teeth that bounce turn it, too, but most of the time it goes where it is pushed."""
-    x = after(1, after(3, LOST), against=True)
-    assert x.proof == 0.5
-    assert after(5, x, against=True).proof == 0.0
-    assert trust.is_trusted(after(5, against=True)), "what is trusted stays so"
 
 
 def test_trusted_signals_are_not_lost_by_one_bad_sample() -> None:
@@ -74,7 +66,7 @@ def test_who_is_caught_again_needs_twice_the_time() -> None:
     """Up to a limit."""
     x, needed = TRUSTED, []
     for _ in range(7):
-        x = after(1, x._replace(proof=x.needed), feeding=True)
+        x = after(1, x._replace(proof=x.needed), lying=True)
         needed.append(x.needed)
     assert needed == [2.0, 4.0, 8.0, 16.0, LONGEST, LONGEST, LONGEST]
     assert trust.is_trusted(after(128, x, confirmed=True))
@@ -83,7 +75,7 @@ def test_who_is_caught_again_needs_twice_the_time() -> None:
 
 def test_that_limit_is_a_number_of_proofs() -> None:
     most = LONGEST * 2.0
-    x = trust.update(LOST._replace(needed=most), **(GOOD | {"feeding": True}), T_s=T_S, p=P._replace(t_proof=2.0))
+    x = trust.update(LOST._replace(needed=most), **(GOOD | {"lying": True}), T_s=T_S, p=P._replace(t_proof=2.0))
     assert x.needed == most
 
 

@@ -5,7 +5,9 @@ from typing import Any
 
 import pytest
 
+from models.controller import departure
 from models.controller import wheel_monitor as wheels
+from models.controller.departure import DepartureState
 from models.controller.supervision import Input, Parameters
 from models.controller.wheel_monitor import LEAP, SHARE, WheelState
 
@@ -14,6 +16,7 @@ T_S = 0.25
 ROLLING = 0.1
 """Of the wheel monitor, by its number: a test has to fail when it changes."""
 U = Input(omega_1_meas=150.0, omega_2_can=150.0, valid=True, counter=7)
+UNKNOWN = departure.start()
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
 
 each_side = pytest.mark.parametrize("side", [1.0, -1.0])
@@ -24,11 +27,16 @@ def above(limit: float) -> float:
 
 
 def heard(
-    u: Input, x: WheelState | None = None, omega_1: float = 150.0, omega_2_hat: float = 150.0, T_mot: float = 0.0
+    u: Input,
+    x: WheelState | None = None,
+    omega_1: float = 150.0,
+    omega_2_hat: float = 150.0,
+    T_mot: float = 0.0,
+    leaving: DepartureState = UNKNOWN,
 ) -> WheelState:
     """The state after a sample."""
     x = wheels.start(U, 150.0, 0.0, P) if x is None else x
-    return wheels.update(x, u, omega_1, T_mot, 0.0, omega_2_hat, T_S, P)
+    return wheels.update(x, u, omega_1, T_mot, 0.0, leaving, omega_2_hat, T_S, P)
 
 
 def new(omega_2_can: float = 150.0, **signals: Any) -> Input:
@@ -143,7 +151,7 @@ def test_no_message_no_leap() -> None:
 
 
 def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
-    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 0.0, 150.0, 0.00625, P)
+    x = wheels.update(wheels.start(U, 150.0, 0.0, P), U, 250.0, 0.0, 0.0, UNKNOWN, 150.0, 0.00625, P)
     assert x.late == 175.0
     assert heard(U, omega_1=250.0).late == 250.0, "with samples that are longer than that"
 
@@ -171,7 +179,7 @@ def test_the_direction_is_that_of_the_motor_when_the_speed_becomes_known(sent: f
         silent = x._replace(silence=silence)
         assert heard(new(sent, counter=9), silent, omega_1=60.0).omega_2 == speed
     for omega_1, direction in ((-3.0, 1.0), (-above(3.0), -1.0)):
-        assert wheels.direction_of(omega_1, 0.0, 0.0, P) == direction
+        assert wheels.direction_of(omega_1, 0.0, 0.0, UNKNOWN, P) == direction
 
 
 def test_messages_in_doubt_take_their_direction_from_the_motor_again() -> None:
@@ -184,8 +192,8 @@ def test_messages_in_doubt_take_their_direction_from_the_motor_again() -> None:
 
 def test_no_car_rolls_backwards_against_a_quarter_of_the_torque() -> None:
     p = P._replace(T_max=100.0)
-    assert wheels.direction_of(-60.0, 25.0, 0.0, p) == 1.0
-    assert wheels.direction_of(-60.0, math.nextafter(25.0, 0.0), 0.0, p) == -1.0
+    assert wheels.direction_of(-60.0, 25.0, 0.0, UNKNOWN, p) == 1.0
+    assert wheels.direction_of(-60.0, math.nextafter(25.0, 0.0), 0.0, UNKNOWN, p) == -1.0
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
     assert heard(new(60.0), x, omega_1=-60.0, T_mot=180.0).omega_2 == 60.0
     assert wheels.start(U, -60.0, 180.0, P).direction == 1.0
@@ -195,10 +203,27 @@ def test_a_car_that_was_seen_to_roll_back_does_so_under_any_torque() -> None:
     """Not one whose motor has only crossed the gap."""
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
     for rolling, direction in ((math.nextafter(ROLLING, 0.0), 1.0), (ROLLING, -1.0)):
-        assert wheels.direction_of(-60.0, 180.0, rolling, P) == direction
+        assert wheels.direction_of(-60.0, 180.0, rolling, UNKNOWN, P) == direction
         y = heard(new(60.0), x._replace(rolling=rolling), omega_1=-60.0, T_mot=180.0, omega_2_hat=-60.0)
         assert (y.direction, y.omega_2, y.rolling) == (direction, direction * 60.0, rolling)
-    assert wheels.direction_of(-3.0, 180.0, ROLLING, P) == 1.0
+    assert wheels.direction_of(-3.0, 180.0, ROLLING, UNKNOWN, P) == 1.0
+
+
+def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque() -> None:
+    """It was pushed too little to hold the car, which rolls back now."""
+    x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
+    right = DepartureState(pushed=True, free=2.0, turned=2.0, course=2.0, way=1.0)
+    assert heard(new(60.0), x, omega_1=-60.0, T_mot=180.0, leaving=right).omega_2 == -60.0
+    assert heard(new(60.0), x, omega_1=60.0, T_mot=180.0, leaving=right).omega_2 == 60.0
+
+
+@each_side
+def test_a_motor_that_has_set_off_against_its_torque_goes_where_that_pushed(side: float) -> None:
+    x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
+    wrong = DepartureState(pushed=True, free=side * 2.0, turned=-side * 2.0, course=-2.0, way=-1.0)
+    for T_mot in (0.0, 180.0):
+        y = heard(new(60.0), x, omega_1=-side * 60.0, T_mot=T_mot, omega_2_hat=-side * 60.0, leaving=wrong)
+        assert (y.omega_2, y.usable, y.apart) == (side * 60.0, False, T_S)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,81 @@
+"""Whether the motor sets off the way in which its torque pushes it.
+
+A demand that ends the rest meets nothing but the inertia of the motor until the teeth touch: J_1 domega_1/dt =
+T_mot, taken here from rest to FREE. A motor that was measured to turn like that, under more than T_still, has the
+right sign, one that has turned as far the other way all the while the wrong one. Whatever else it does tells
+nothing: on the flank of a tooth say, or thrown back by one. Nor does a car that rolls before it is pushed, or
+the damping torque, which always pushes against the motion.
+"""
+
+from typing import Annotated, Any, NamedTuple
+
+from ..block.declaration import Boolean, Real
+from ..block.operators import clip, logical_and, maximum, minimum, sign, where
+
+FREE = 3.0
+"""Speed in rad/s that the torque must give a free motor before it is looked at: sensor noise is far below."""
+
+LIKE = 0.5
+"""Share by which what was measured, in the mean over that speed, may differ from it."""
+
+
+class DepartureState(NamedTuple):
+    """State of the departure."""
+
+    pushed: Annotated[bool, Boolean("it was the demand that has ended the rest")]
+    free: Annotated[float, Real("rad/s", "speed that the demanded torque gives a free motor, until it is FREE")]
+    turned: Annotated[float, Real("rad/s", "measured change of the motor speed meanwhile")]
+    course: Annotated[float, Real("rad2/s2", "integral of that change over the speed of a free motor")]
+    way: Annotated[float, Real("1", "1 the motor has set off with its torque, -1 against it, 0 not known")]
+
+
+def start() -> DepartureState:
+    return DepartureState(pushed=False, free=0.0, turned=0.0, course=0.0, way=0.0)
+
+
+def update(
+    x: DepartureState, T_driver: Any, T_mot: Any, change: Any, resting: Any, launching: Any, T_s: Any, p: Any
+) -> DepartureState:
+    """The state after one sample.
+
+    Args:
+        T_driver: demand, N.m.
+        T_mot: torque that the motor should have, N.m.
+        change: of the motor speed in this sample, rad/s.
+        resting, launching: whether the car was at rest until now, and was so a moment ago.
+    """
+    pushed = where(resting, abs(T_driver) > p.T_still, x.pushed)
+    counting = logical_and(logical_and(x.pushed, launching), abs(x.free) < FREE)
+    demanded = clip(T_mot, minimum(T_driver, 0.0), maximum(T_driver, 0.0))
+    free = x.free + where(counting, T_s * demanded / p.J_1, 0.0)
+    turned = x.turned + where(counting, change, 0.0)
+    seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= p.T_still)
+    course = x.course + turned * (free - x.free)
+    way = where(seen, like(course, 0.5 * free * free), x.way)
+    return DepartureState(
+        pushed=pushed,
+        free=where(resting, 0.0, free),
+        turned=where(resting, 0.0, turned),
+        course=where(resting, 0.0, course),
+        way=where(resting, 0.0, way),
+    )
+
+
+def like(course: Any, free: Any) -> Any:
+    """1 for a course like that of a free motor, -1 for one as far the other way, else 0."""
+    return where(abs(abs(course) - free) <= LIKE * free, sign(course), 0.0)
+
+
+def is_against(x: DepartureState) -> Any:
+    """Whether it has set off against its torque: its speed has the wrong sign."""
+    return x.way < 0.0
+
+
+def is_with(x: DepartureState) -> Any:
+    """Whether it has set off with its torque: its speed has the right sign."""
+    return x.way > 0.0
+
+
+def heading(x: DepartureState) -> Any:
+    """Direction in which the torque has pushed the car out of rest: 1 forwards, -1 backwards, 0 not known."""
+    return sign(x.free)

@@ -1,0 +1,105 @@
+"""The departure: which way the motor sets off out of rest, under the torque that it should have."""
+
+import math
+
+import pytest
+
+from models.controller import departure
+from models.controller.departure import DepartureState
+from models.controller.supervision import Parameters
+
+P = Parameters(J_1=0.25, T_still=0.5)
+T_S = 0.25
+PUSHED = departure.start()._replace(pushed=True)
+FREE = 3.0
+"""Of the departure, by its number: a test has to fail when it changes."""
+
+each_side = pytest.mark.parametrize("side", [1.0, -1.0])
+
+
+def after(
+    samples: int,
+    x: DepartureState | None = None,
+    T_mot: float = 0.5,
+    T_driver: float | None = None,
+    change: float = 0.0,
+    resting: bool = False,
+    launching: bool = True,
+) -> DepartureState:
+    """The state after samples in which the torque gives a free motor T_mot rad/s each, and it turns by `change`."""
+    x = PUSHED if x is None else x
+    for _ in range(samples):
+        x = departure.update(x, T_mot if T_driver is None else T_driver, T_mot, change, resting, launching, T_S, P)
+    return x
+
+
+@each_side
+def test_it_is_looked_at_when_the_torque_has_given_a_free_motor_a_speed(side: float) -> None:
+    assert after(5, T_mot=side * 0.5, change=side * 0.5) == DepartureState(True, side * 2.5, side * 2.5, 3.75, 0.0)
+    assert after(6, T_mot=side * 0.5, change=side * 0.5) == DepartureState(True, side * FREE, side * FREE, 5.25, 1.0)
+    most = math.nextafter(FREE, 0.0)
+    assert after(1, T_mot=side * most, change=-side * 0.5 * most).way == 0.0
+    assert after(1, T_mot=side * FREE, change=-side * 0.5 * FREE).way == -1.0
+
+
+@each_side
+@pytest.mark.parametrize(
+    ("turned", "way"),
+    [
+        (2.26, 0.0), (2.25, 1.0), (0.75, 1.0), (0.74, 0.0), (0.0, 0.0), (-0.74, 0.0), (-0.75, -1.0), (-2.25, -1.0),
+        (-2.26, 0.0), (-20.0, 0.0),
+    ],
+)  # fmt: skip
+def test_it_has_turned_with_the_torque_or_against_it_by_half_to_one_and_a_half_of_that(
+    side: float, turned: float, way: float
+) -> None:
+    """In the mean; on the flank it hardly turns, and a car that rolls back turns it faster."""
+    x = after(1, T_mot=side * FREE, change=side * turned)
+    assert (x.way, departure.is_with(x), departure.is_against(x)) == (way, way > 0.0, way < 0.0)
+    assert departure.heading(x) == side
+
+
+@each_side
+def test_a_motor_that_is_thrown_back_by_a_flank_has_not_set_off_against_the_torque(side: float) -> None:
+    """It was on its way with the torque before: at the end it turns as a wrong sign would."""
+    x = after(4, T_mot=side * 0.5, change=side * 0.5)
+    x = after(2, x, T_mot=side * 0.5, change=-side * 2.5)
+    assert (x.turned, x.way) == (-side * FREE, 0.0)
+
+
+def test_it_is_looked_at_once_and_known_until_the_next_rest() -> None:
+    x = after(6, change=-0.5)
+    assert after(9, x, change=5.0) == x
+    assert after(1, x, change=5.0, launching=False) == x
+    assert after(1, x, T_driver=0.0, resting=True) == departure.start() == DepartureState(False, 0.0, 0.0, 0.0, 0.0)
+    assert departure.heading(departure.start()) == 0.0
+
+
+@each_side
+def test_it_is_the_demand_that_ends_the_rest(side: float) -> None:
+    """A car that rolls back is thrown about by its drive train, and the damping pushes against that."""
+    for T_driver, pushed in ((0.5, False), (math.nextafter(0.5, 1.0), True)):
+        x = after(1, departure.start(), T_driver=side * T_driver, resting=True)
+        assert x == departure.start()._replace(pushed=pushed)
+        assert (after(1, x, T_mot=side * FREE, change=-side * 0.5 * FREE).way < 0.0) == pushed
+    assert after(1, PUSHED, T_driver=side * 0.5, resting=True) == departure.start()
+    assert after(9, departure.start(), T_driver=side * 50.0, T_mot=side * 2.0, change=-side) == departure.start()
+
+
+@each_side
+def test_torque_beyond_the_demand_or_against_it_does_not_count(side: float) -> None:
+    assert after(1, T_driver=side * 0.25, T_mot=side * 2.0).free == side * 0.25
+    assert after(1, T_driver=side * 0.25, T_mot=-side * 2.0).free == 0.0
+
+
+@each_side
+def test_a_torque_that_may_be_an_offset_says_nothing(side: float) -> None:
+    x = PUSHED._replace(free=side * 2.75, turned=-side * 2.75, course=-3.75)
+    assert after(1, x, T_mot=side * 0.5, change=-side * 0.25).way == -1.0
+    assert after(9, x._replace(free=side * 2.9), T_mot=side * 0.49, change=-side * 0.25).way == 0.0
+
+
+def test_only_a_car_that_was_at_rest_a_moment_ago_departs() -> None:
+    x = after(2, change=-0.5)
+    assert after(9, x, change=-0.5, launching=False) == x
+    assert after(4, x, change=-0.5).way == -1.0
