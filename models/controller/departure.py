@@ -1,7 +1,7 @@
 """Whether the motor sets off the way in which its torque pushes it.
 
 A demand that ends the rest meets nothing but the inertia of the motor until the teeth touch: J_1 domega_1/dt =
-T_mot, taken here from rest to FREE. A motor that was measured to turn like that, under more than T_still, has the
+T_mot, taken here from rest to FREE. A motor that was measured to turn like that, under a firm torque, has the
 right sign, one that has turned as far the other way all the while the wrong one. Whatever else it does tells
 nothing: on the flank of a tooth say, or thrown back by one. Nor does a car that rolls before it is pushed, or
 the damping torque, which always pushes against the motion.
@@ -14,6 +14,9 @@ from ..block.operators import clip, logical_and, maximum, minimum, sign, where
 
 FREE = 3.0
 """Speed in rad/s that the torque must give a free motor before it is looked at: sensor noise is far below."""
+
+FIRM = 1.5
+"""Torque over T_still that must push it then: with less its offset decides, and the flanks throw it about."""
 
 LIKE = 0.5
 """Share by which what was measured, in the mean over that speed, may differ from it."""
@@ -49,7 +52,7 @@ def update(
     demanded = clip(T_mot, minimum(T_driver, 0.0), maximum(T_driver, 0.0))
     free = x.free + where(counting, T_s * demanded / p.J_1, 0.0)
     turned = x.turned + where(counting, change, 0.0)
-    seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= p.T_still)
+    seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= FIRM * p.T_still)
     course = x.course + turned * (free - x.free)
     way = where(seen, like(course, 0.5 * free * free), x.way)
     return DepartureState(

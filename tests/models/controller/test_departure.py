@@ -8,7 +8,7 @@ from models.controller import departure
 from models.controller.departure import DepartureState
 from models.controller.supervision import Parameters
 
-P = Parameters(J_1=0.25, T_still=0.5)
+P = Parameters(J_1=0.25, T_still=0.25)
 T_S = 0.25
 PUSHED = departure.start()._replace(pushed=True)
 FREE = 3.0
@@ -78,11 +78,11 @@ def test_it_is_looked_at_once_and_known_until_the_next_rest() -> None:
 @each_side
 def test_it_is_the_demand_that_ends_the_rest(side: float) -> None:
     """A car that rolls back is thrown about by its drive train, and the damping pushes against that."""
-    for T_driver, pushed in ((0.5, False), (math.nextafter(0.5, 1.0), True)):
+    for T_driver, pushed in ((0.25, False), (math.nextafter(0.25, 1.0), True)):
         x = after(1, departure.start(), T_driver=side * T_driver, resting=True)
         assert x == departure.start()._replace(pushed=pushed)
         assert (after(1, x, T_mot=side * FREE, change=-side * 0.5 * FREE).way < 0.0) == pushed
-    assert after(1, PUSHED, T_driver=side * 0.5, resting=True) == departure.start()
+    assert after(1, PUSHED, T_driver=side * 0.25, resting=True) == departure.start()
     assert after(9, departure.start(), T_driver=side * 50.0, T_mot=side * 2.0, change=-side) == departure.start()
 
 
@@ -95,8 +95,8 @@ def test_torque_beyond_the_demand_or_against_it_does_not_count(side: float) -> N
 @each_side
 def test_a_torque_that_may_be_an_offset_says_nothing(side: float) -> None:
     x = PUSHED._replace(free=side * 2.75, turned=-side * 2.75, course=-3.75)
-    assert after(1, x, T_mot=side * 0.5, change=-side * 0.25).way == -1.0
-    assert after(9, x._replace(free=side * 2.9), T_mot=side * 0.49, change=-side * 0.25).way == 0.0
+    assert after(1, x, T_mot=side * 0.375, change=-side * 0.25).way == -1.0
+    assert after(9, x._replace(free=side * 2.9), T_mot=side * 0.374, change=-side * 0.25).way == 0.0
 
 
 def test_only_a_car_that_was_at_rest_a_moment_ago_departs() -> None:
