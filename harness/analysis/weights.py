@@ -62,18 +62,18 @@ class Weights:
     slow_load_error: float = 0.01 / 180.0
     twist_error: float = 6.52222e-4
     message_error: float = 0.4698217
-    damping_ratio: float = 0.4880434
+    damping_ratio: float = 0.4978043
     phase: float = 0.31
-    look_ahead: float = 0.1885618
-    k_gap: float = 0.72
+    look_ahead: float = 0.2357023
+    k_gap: float = 0.69
     washout: float = 0.06442173
-    withheld: float = 0.01075164
-    landing: float = 0.5
+    withheld: float = 0.008063731
+    landing: float = 0.5833333
     bounce: float = 0.2
     brake: float = 0.5
-    haste: float = 1.0
-    recent: float = 1.240121
-    comeback: float = 0.2095566
+    haste: float = 1.1
+    recent: float = 1.612157
+    comeback: float = 0.1629885
     longest_landing: float = 0.8063731
 
 
