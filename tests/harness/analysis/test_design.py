@@ -126,7 +126,7 @@ def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
 @pytest.mark.parametrize(
     ("car", "said"),
     [
-        ({"tau": 0.1}, r"T_pred would be 0\.02\d+; the controller takes 0 to 0\.02 s"),
+        ({"tau": 0.1}, r"T_pred would be 0\.0333\d; the controller takes 0 to 0\.02 s"),
         ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.064 s"),
         ({"J_1": 2.0}, r"k_d would be .*; the controller takes 0 to 20 N\.m\.s/rad"),
         ({"sigma_omega": 0.0, "q_omega": 0.0}, "a motor speed without error leaves nothing to estimate"),
