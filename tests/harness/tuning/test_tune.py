@@ -86,7 +86,7 @@ def test_the_record_tells_what_the_costs_depend_on(bench: Bench, tmp_path: Path)
     assert run["controller"] == "DampingController"
     assert run["searched"]["k_d"] == [0.3, 2.55, 10.0]
     assert run["computed"]["lambda_v"] == 0.913
-    assert run["reference"]["k_T"] == 0.0255
+    assert run["reference"]["k_T"] == 0.003
     assert {"TwoMassDriveline", "ValidationVehicle", "DampingController"} <= run["fmus"].keys()
 
 
