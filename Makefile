@@ -68,6 +68,9 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline robustness --cases 300 --quiet
 	cp results/robustness/robustness.md docs/
 	cp results/robustness/figures/*.png docs/figures/
+	$(BIN)/driveline bound --replace --quiet
+	cp results/bound/bound.md docs/
+	cp results/bound/figures/bound.png docs/figures/
 	$(BIN)/driveline compare --replace
 	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
 		cat results/compare/table.md; } > docs/results.md

@@ -8,10 +8,11 @@ from ..metrics.record import Metrics
 from ..reports.markdown import markdown_table
 from ..reports.table import number
 from .bounded import Bounded
-from .constraints import RESERVE, SWING_RESERVE
+from .constraints import RESERVE
 from .contacts import PARTS, Contacts
 from .search import BORDER
 from .task import BOUNDED
+from .watched import SWING_RESERVE
 
 PAGE = """\
 # What is possible, and {controller} beside it
@@ -26,8 +27,9 @@ sample time and sample of delay. The controller is measured without the noise of
 
 {summary}
 
-- **controller / optimum**: the optimum makes the worst of the ratios of {metrics} to what the controller reaches as
-  small as it can be; this is its inverse. At 1 the controller could not be better in all of them.
+- **controller / optimum**: the optimum makes the worst of four ratios to what the controller reaches as small as it can
+  be: those of {metrics}. This is its inverse; at 1 the
+  controller could not be better in all of them.
 - **at most**: the same of the lower bound that is proven, see below.
 - **contacts**: when the teeth leave a flank and meet the other one, in ms after the step: of the controller, and in the
   optimum.
@@ -37,14 +39,14 @@ sample time and sample of delay. The controller is measured without the noise of
 ![optimal torques](figures/bound.png)
 
 The optimum kicks the teeth off their flank with all the torque that it may add, brakes before they land, and then
-swings between the limits at the pace of the drive train. It needs to know when the demand will change and where the
-teeth are to a tenth of a degree; a controller that feeds back what it measures late stays above it.
+chatters between the limits. It knows when the demand changes and where the teeth are; a controller that feeds back what
+it measures late stays above it.
 
 ## Metric by metric
 
 Evaluated on the nonlinear design model, by the definitions of all other pages. *Jointly* is the optimum above; the
-others make one metric alone as small as it can be, with the rest no worse than the controller's. Overshoot alone can be
-avoided altogether.
+others make one metric alone small, with the rest no worse than the controller's, and the gear torque within 5 % of the
+step about its final value once it has settled. Overshoot alone can be avoided altogether.
 
 {every}
 

@@ -4,30 +4,22 @@ Everything that the metrics say of the motion is linear in it once the contacts 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from ..metrics.evaluate import T_S
-from ..metrics.oscillation import SPAN
-from ..metrics.step_response import REACHED, SETTLED, fitted
+from ..metrics.step_response import REACHED, fitted
 from .contacts import GAP, Contacts
 from .prediction import Affine, Prediction
 from .programme import Cone, Programme, Rows, joined
 from .task import Task
+from .watched import DENSE, SPARSE, SWING_RESERVE, Watched, settled_swing
 
-DENSE, SPARSE = 150, 25
-"""Overshoot is looked at in so many samples from 90 % of the way on, and in every so manieth one later."""
+BAND = 3
+"""Where the gear torque has to be near its final value, it is looked at in every so manieth sample of those."""
 
 RESERVE = 2e-3
 """Torque in N.m by which 90 % of the way are exceeded: more than solver and linear car are off by."""
-
-SWING_RESERVE = 0.02
-"""The same of the swing, of which the runs are sometimes off by a little more."""
-
-TOLERATED = 5e-3
-"""Swing and overshoot in N.m that is not worth watching."""
 
 UNIT = {"torque": 1.0, "time": 1e-3}
 """Violations that count as much, in N.m or rad/s, and in s."""
@@ -39,7 +31,7 @@ def programme(
     contacts: Contacts,
     phi_B: float,
     metrics: Sequence[str],
-    watched: "Watched",
+    watched: Watched,
 ) -> Programme:
     """The smallest worst ratio of some metrics to those that are reached, with the others no worse.
 
@@ -49,9 +41,11 @@ def programme(
     """
     final = _final(task, p)
     rows = [*_contact(p, contacts, phi_B), _response(task, p, final), _withheld(task)]
+    if watched.settled:
+        rows += _within_band(task, p, final)
     if watched.swings:
         low, high = (p.T_gear(np.arange(len(task.times))).rows(np.array(k)) for k in zip(*watched.swings, strict=True))
-        rows.append(_kept(high.less(low), _settled(task) - SWING_RESERVE, UNIT["torque"]))
+        rows.append(_kept(high.less(low), settled_swing(task) - SWING_RESERVE, UNIT["torque"]))
     most = {"overshoot": task.reached.overshoot * abs(task.way), "impact_speed": task.reached.impact_speed}
     values = {
         "overshoot": lambda: _overshoot(task, p, final, np.array(watched.peaks)),
@@ -131,56 +125,10 @@ def _overshoot(task: Task, p: Prediction, final: Affine, samples: np.ndarray) ->
     return p.T_gear(samples).less(_line(final, task.times[samples])).times(task.sign)
 
 
-@dataclass
-class Watched:
-    """Samples at which constraints are kept that hold at all samples: where they were seen to be violated.
-
-    Leaving out the others makes no bound too high.
-
-    Attributes:
-        peaks: of the overshoot, which rise.
-        swings: pairs, from the lower to the higher.
-    """
-
-    peaks: list[int]
-    swings: list[tuple[int, int]] = field(default_factory=list)
-
-    @classmethod
-    def of(cls, task: Task) -> "Watched":
-        """To begin with."""
-        begin, end = task.sample(task.reached.response_delay), len(task.times)
-        return cls(sorted({*range(begin, min(begin + DENSE, end)), *range(begin, end, SPARSE)}))
-
-    def violated(self, task: Task, T_gear: np.ndarray) -> bool:
-        """Watches where a gear torque (samples,) in N.m overshoots and swings most; whether there was more to watch."""
-        peaks, swings = self._peaks(task, T_gear), _unsettled(task, T_gear)
-        self.peaks = sorted({*self.peaks, *peaks})
-        self.swings += swings
-        return bool(peaks or swings)
-
-    def _peaks(self, task: Task, T_gear: np.ndarray) -> list[int]:
-        last = fitted(task.times)
-        line = Polynomial.fit(task.times[last], T_gear[last], 1)
-        over = task.sign * (T_gear - line(task.times))
-        highest = over[self.peaks].max() + TOLERATED
-        inner = np.flatnonzero((over[1:-1] >= over[:-2]) & (over[1:-1] >= over[2:]) & (over[1:-1] > highest)) + 1
-        return [int(k) for k in inner]
-
-
-def _settled(task: Task) -> float:
-    """Peak to peak in N.m that counts as settled."""
-    return 2.0 * SETTLED * abs(task.dT)
-
-
-def _unsettled(task: Task, T_gear: np.ndarray) -> list[tuple[int, int]]:
-    """The largest swings that settle later than the controller; of pieces near each other the largest."""
-    begin, length = task.sample(task.reached.settling_time), round(SPAN / T_S)
-    pieces = np.lib.stride_tricks.sliding_window_view(T_gear[begin:], length)
-    excess = np.ptp(pieces, axis=1) - _settled(task) + SWING_RESERVE
-    found: list[tuple[int, int]] = []
-    while excess.max() > TOLERATED:
-        worst = int(excess.argmax())
-        low, high = (begin + worst + int(k) for k in (pieces[worst].argmin(), pieces[worst].argmax()))
-        found.append((low, high))
-        excess[max(worst - length // 4, 0) : worst + length // 4] = 0.0
-    return found
+def _within_band(task: Task, p: Prediction, final: Affine) -> Iterator[Rows]:
+    """Settled for certain: near the line of the final value."""
+    begin, end = task.sample(task.reached.settling_time), len(task.times)
+    samples = np.array(sorted({*range(begin, min(begin + DENSE, end), BAND), *range(begin, end, SPARSE)}))
+    off = p.T_gear(samples).less(_line(final, task.times[samples]))
+    for sign in (1.0, -1.0):
+        yield _kept(off.times(sign), 0.5 * settled_swing(task) - SWING_RESERVE, UNIT["torque"])

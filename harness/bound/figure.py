@@ -47,6 +47,8 @@ def plot_bounds(found: Sequence[Bounded], controller: str, title: str, stem: Pat
         for panel, (_, label) in zip(grid[:, 0], PANELS, strict=True):
             panel.set_ylabel(label)
         handles = dict(zip(*reversed(grid[0, 0].get_legend_handles_labels()), strict=True))
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+        figure.legend(
+            handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 2 * len(found))
+        )
         titled(figure, title)
         return save(figure, stem)

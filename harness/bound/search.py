@@ -6,12 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .constraints import Watched, programme
+from .constraints import programme
 from .contacts import PARTS, Contacts
 from .linear_car import LinearCar
 from .prediction import Predictor
 from .programme import Solution, solve
 from .task import Task
+from .watched import Watched
 
 STRIDES = (4, 2, 1)
 """Of the descent, in parts of a sample."""
@@ -40,11 +41,11 @@ class Found(NamedTuple):
 class Search:
     """Of the best switching times for some metrics, along a car that is linear for given ones."""
 
-    def __init__(self, task: Task, car: LinearCar, metrics: Sequence[str]) -> None:
-        """See `harness.bound.constraints.programme`."""
+    def __init__(self, task: Task, car: LinearCar, metrics: Sequence[str], settled: bool = False) -> None:
+        """See `harness.bound.constraints.programme` and `Watched`."""
         self.task, self.car, self.metrics = task, car, metrics
         self.predictor = Predictor(car, task.horizon, task.contacts.sides[-1])
-        self.watched = Watched.of(task)
+        self.watched = Watched.of(task, settled)
         self.solved: dict[tuple[Contacts, Holding], Solution] = {}
 
     def solve(self, contacts: Contacts, holding: Holding = COARSE) -> Solution:

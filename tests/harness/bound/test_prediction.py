@@ -8,7 +8,6 @@ import pytest
 from harness.bound.driven import driven
 from harness.bound.linear_car import linear_car
 from harness.bound.prediction import Predictor
-from harness.bound.search import FINE, holds
 from harness.bound.task import Task, task
 from harness.linear.driven import NOISELESS
 from harness.manoeuvres.catalogue import MANOEUVRES
@@ -79,8 +78,3 @@ def test_parts_of_a_band_are_linear_and_their_norm_is_the_rms() -> None:
         together = band_parts(x @ [1.0, 2.0, -3.0], T_S, band, derivative)
         assert parts @ [1.0, 2.0, -3.0] == pytest.approx(together, rel=1e-9, abs=1e-9 * np.abs(together).max())
         assert np.linalg.norm(parts[:, 0]) == pytest.approx(band_rms(x[:, 0], T_S, band, derivative), rel=1e-12)
-
-
-def test_a_torque_is_held_until_the_next_sample_that_has_one() -> None:
-    assert holds(((3, 1), (9, 3), (100, 5)), 14).tolist() == [0, 1, 2, 3, 6, 9]
-    assert holds(FINE, 1000)[-1] == 992
