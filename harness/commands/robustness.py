@@ -92,7 +92,7 @@ def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
         outcomes = campaign(bench, range(1, args.cases + 1), archive, scheduler=args.scheduler)
         known = cases(bench.loops, range(1, max(case.number for case in archive) + 1))
         archive.write([archive[case] for case in known if case in archive])
-        files = [runs, *write(outcomes, bench, f" {as_given(args)}".rstrip(), caption(args), args.output)]
+        files = [runs, *write(outcomes, bench, _as_given(args), caption(args), args.output)]
         write_record(record, same, fits, files, read)
     if not out.silent:
         announce(outcomes)
@@ -123,6 +123,13 @@ def _one(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
         out.say(f"written: {file}")
     out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": made.files})
     return 0
+
+
+def _as_given(args: argparse.Namespace) -> str:
+    """The options that make the runs what they are; here our controller alone is not what is usual."""
+    ours = PLACES["controller"][0]
+    alone = f" --controller {ours}" if args.controller == [ours] else ""
+    return f"{alone} {as_given(args)}".rstrip()
 
 
 def _systems(given: "Given") -> dict[str, Any]:

@@ -120,6 +120,7 @@ def test_an_fmu_that_was_changed_since_is_refused(controllers, tmp_path):
     copytree(controllers, tmp_path / "fmus")
     made = bench(tmp_path / "fmus")
     one = tmp_path / "fmus" / "native" / "WheelSpeedCan.fmu"
+    made.results(Case("ValidationVehicle", "DampingController", 1, "tipout"))
     one.write_bytes((tmp_path / "fmus" / "native" / "MotorTorqueLoop.fmu").read_bytes())
     with pytest.raises(DrivelineError, match=r"WheelSpeedCan\.fmu is not the one that the campaign was begun with"):
         made.results(Case("ValidationVehicle", "DampingController", 1, "tipout"))
