@@ -28,7 +28,7 @@ of a draw alone, so they are the same for every controller, both plants and any 
 {box}
 
 A message of the wheel speed takes from {spread:g} ms less to {spread:g} ms more than the drawn delay (or less, where
-that is less), and never less than {shortest:g} ms; {loss:.0%} of the messages are lost. In the blocks that have it, a
+that is less), and never less than {shortest:g} ms; {loss:g} % of the messages are lost. In the blocks that have it, a
 factor multiplies
 
 {scaled}
@@ -84,7 +84,7 @@ def page(summaries: Sequence[Summary], seed: int, arguments: str) -> str:
         box=markdown_table(["what", "least", "most", "spread evenly"], _box(), labels=1),
         spread=1e3 * SPREAD,
         shortest=1e3 * SHORTEST,
-        loss=LOSS,
+        loss=100.0 * LOSS,
         scaled="\n".join(f"- {name}: {', '.join(f'`{each}`' for each in names)}" for name, names in SCALED.items()),
         verdicts="\n".join(f"- *{name}*: {meaning}." for name, meaning in VERDICTS.items()),
         three=300.0 / count,
