@@ -21,8 +21,8 @@ BAND = 3
 RESERVE = 2e-3
 """Torque in N.m by which 90 % of the way are exceeded: more than solver and linear car are off by."""
 
-UNIT = {"torque": 1.0, "time": 1e-3}
-"""Violations that count as much, in N.m or rad/s, and in s."""
+UNIT = {"torque": 1.0, "time": 1e-3, "twist": 0.1}
+"""Violations that count as much, in N.m or rad/s, in s, and in phi_B."""
 
 
 def programme(
@@ -81,10 +81,10 @@ def _contact(p: Prediction, contacts: Contacts, phi_B: float) -> Iterator[Rows]:
     for side, begin, end in zip(contacts.sides, ends[:-1], ends[1:], strict=True):
         phi = p.phi.rows(slice(begin, end + 1))
         if side == GAP:
-            yield _kept(phi, phi_B, phi_B)
-            yield _kept(phi.times(-1.0), phi_B, phi_B)
+            yield _kept(phi, phi_B, UNIT["twist"] * phi_B)
+            yield _kept(phi.times(-1.0), phi_B, UNIT["twist"] * phi_B)
         else:
-            yield _kept(phi.times(-side), -phi_B, phi_B)
+            yield _kept(phi.times(-side), -phi_B, UNIT["twist"] * phi_B)
 
 
 def _final(task: Task, p: Prediction) -> Affine:

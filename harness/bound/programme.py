@@ -29,13 +29,13 @@ MOST = 2.0
 PENALTY = 20.0
 """Ratio that violating all constraints by their unit costs: so every programme has a solution, and a bound."""
 
-KEPT = 1e-4
+KEPT = 1e-3
 """Of its unit, by which a constraint may be violated numerically."""
 
 NEGLIGIBLE = 1e-5
 """Over the largest, of singular values of a cone that are left out; that makes the norm no larger."""
 
-SOLVER = {"tol_gap_abs": 1e-5, "tol_gap_rel": 1e-5, "tol_feas": 1e-7, "max_threads": 1}
+SOLVER = {"tol_gap_abs": 1e-5, "tol_gap_rel": 1e-5, "tol_feas": 1e-7, "max_threads": 1, "accept_unknown": True}
 """Settings of Clarabel. The bound holds however accurate the solution is."""
 
 
@@ -110,14 +110,28 @@ def solve(programme: Programme, holds: np.ndarray) -> Solution:
     ]
     problem = cp.Problem(cp.Minimize(rho + PENALTY * sigma), [below, cp.abs(w) <= 1.0, *within])
     with catch_warnings():
-        simplefilter("ignore")  # of inaccurate solutions: the bound tells how good they are
-        problem.solve(solver=cp.CLARABEL, **SOLVER)
+        simplefilter("ignore")  # of inaccurate solutions: ratio and bound are computed from what is found
+        try:
+            problem.solve(solver=cp.CLARABEL, **SOLVER)
+        except cp.SolverError as error:
+            raise SimulationError(f"the convex programme was not solved: {error}") from error
     counts = np.diff([*holds, len(lower)])
     u = middle + half * np.clip(np.repeat(_found(w.value), counts), -1.0, 1.0)
     y = np.maximum(units * _found(below.dual_value), 0.0)
     v = [-long @ np.ravel(_found(norm.dual_value)[1]) for norm, (_, long) in zip(within, norms, strict=True)]
-    ratio, violated = float(_found(rho.value)), float(_found(sigma.value))
-    return Solution(u, ratio if violated <= KEPT else np.inf, ratio + PENALTY * violated, bound(programme, y, v))
+    ratio, violated = reached(programme, u)
+    cost = ratio + PENALTY * max(violated, 0.0)
+    return Solution(u, ratio if violated <= KEPT else np.inf, cost, bound(programme, y, v))
+
+
+def reached(programme: Programme, u: np.ndarray) -> tuple[float, float]:
+    """The ratio that a torque reference reaches, and by how much in its unit it violates a constraint most."""
+    rows = programme.rows
+    value, counts = rows.value.value(u), rows.share > 0.0
+    norms = [(cone.counts, float(np.linalg.norm(cone.value.value(u)))) for cone in programme.cones]
+    ratios = [*(value[counts] / rows.share[counts]), *(norm for its, norm in norms if its)]
+    violations = [*(value[~counts] / rows.unit[~counts]), *(norm - 1.0 for its, norm in norms if not its)]
+    return float(max([0.0, *ratios])), float(max(violations))
 
 
 def bound(programme: Programme, y: np.ndarray, v: Sequence[np.ndarray]) -> float:
@@ -147,7 +161,7 @@ def _found(value: Any) -> Any:
         SimulationError: it has found nothing.
     """
     if value is None:
-        raise SimulationError("the solver of the convex programme gave up")
+        raise SimulationError("the convex programme was not solved")
     return value
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.bound.prediction import Affine
-from harness.bound.programme import Cone, Programme, Rows, bound, joined, solve
+from harness.bound.programme import Cone, Programme, Rows, bound, joined, reached, solve
 
 EACH = np.arange(3)
 """Every sample has a torque of its own."""
@@ -56,3 +56,11 @@ def test_the_bound_of_a_torque_that_is_held_holds_for_a_free_one() -> None:
 @given(st.lists(st.floats(0.0, 3.0), min_size=2, max_size=2), st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3))
 def test_no_multipliers_prove_too_much(y: list[float], v: list[float]) -> None:
     assert bound(programme(), np.array(y), [np.array(v)]) <= 1.0 + 1e-9
+
+
+def test_ratio_and_violation_are_those_of_the_torque_itself() -> None:
+    assert reached(programme(), np.array([1.0, 1.0, 1.0])) == pytest.approx((1.0, 0.0))
+    assert reached(programme(), np.array([0.0, 0.0, 1.5])) == pytest.approx((1.5, 1.5))
+    assert reached(programme(counts=False), np.array([2.0, 2.0, 0.5])) == pytest.approx(
+        (0.5, np.sqrt(8.25 / 3.0) - 1.0)
+    )
