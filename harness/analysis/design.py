@@ -69,7 +69,7 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
         "k_T": omega_w * weights.withheld / train.omega_v,
         "omega_w": omega_w,
         "k_gap": weights.k_gap,
-        "T_gap": weights.landing * motor.T_max,
+        "T_gap": largest_landing(plant, motor, weights),
         "bounce": weights.bounce,
         "brake": weights.brake,
         "haste": weights.haste,
@@ -77,6 +77,17 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
         "t_return": weights.comeback / train.omega_0,
         "t_land": weights.longest_landing / train.omega_v,
     }
+
+
+def largest_landing(plant: Plant, motor: Motor, weights: Weights) -> float:
+    """T_gap in N.m: a share of T_max, or less where the flight from flank to flank would begin too fast.
+
+    The motor may begin it with omega_land at d = 2 phi_B. Turned into twist by the spring, that is the torque T_peak
+    of (bounce T)^2 + 4 brake C phi_B T = T_peak^2.
+    """
+    T_peak, flight = weights.impact * motor.T_max, 2.0 * weights.brake * plant.C * plant.phi_B
+    bearable = T_peak**2 / (flight + sqrt(flight**2 + (weights.bounce * T_peak) ** 2))
+    return min(weights.landing * motor.T_max, bearable)
 
 
 def gains_file(parameters: Mapping[str, float], comment: str, declared: Mapping[str, Variable] = PARAMETERS) -> str:

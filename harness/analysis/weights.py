@@ -50,6 +50,7 @@ class Weights:
         washout: its corner frequency, over omega_0.
         withheld: time by which the feedback of the gear torque delays the driver's impulse, times omega_v.
         landing: largest demand that a landing is made for, over T_max.
+        impact: gear torque that the largest speed of a landing could make, over T_max.
         bounce, brake, haste: see the damping law.
         recent: corner frequency that tells which change of the demand is recent, over omega_v.
         comeback: time constant with which the torque that a landing withheld comes back, times omega_0.
@@ -65,11 +66,12 @@ class Weights:
     damping_ratio: float = 0.4978043
     phase: float = 0.31
     look_ahead: float = 0.2357023
-    k_gap: float = 0.69
+    k_gap: float = 0.6
     washout: float = 0.06442173
     withheld: float = 0.008063731
-    landing: float = 0.5833333
-    bounce: float = 0.2
+    landing: float = 0.6111111
+    impact: float = 0.4300085
+    bounce: float = 0.4
     brake: float = 0.5
     haste: float = 1.1
     recent: float = 1.612157

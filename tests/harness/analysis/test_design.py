@@ -100,9 +100,16 @@ def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
     assert stiff["t_land"] == pytest.approx(0.5 * default["t_land"], rel=STORED_DIGITS)
 
 
-def test_a_landing_is_made_for_a_share_of_what_the_motor_can() -> None:
-    assert design(motor=MOTOR._replace(T_max=90.0))["T_gap"] == pytest.approx(0.5 * design()["T_gap"])
-    assert design(PLANT._replace(phi_B=0.0))["T_gap"] == pytest.approx(design()["T_gap"]), "whatever the gap"
+def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_too_fast() -> None:
+    def begins(T: float, phi_B: float) -> float:
+        return sqrt((WEIGHTS.bounce * T) ** 2 + 4.0 * WEIGHTS.brake * PLANT.C * phi_B * T)
+
+    narrow, wide = 0.5 * PLANT.phi_B, 2.0 * PLANT.phi_B
+    soft, hard = (design(PLANT._replace(phi_B=gap))["T_gap"] for gap in (narrow, wide))
+    assert soft == pytest.approx(WEIGHTS.landing * MOTOR.T_max)
+    assert begins(soft, narrow) < WEIGHTS.impact * MOTOR.T_max
+    assert begins(hard, wide) == pytest.approx(WEIGHTS.impact * MOTOR.T_max)
+    assert hard < WEIGHTS.landing * MOTOR.T_max
 
 
 def test_an_older_message_corrects_less() -> None:
