@@ -198,6 +198,9 @@ def test_only_noise_moves_a_speed_to_and_fro_by_more_than_a_step_of_its_resoluti
     ):
         x = last(150.0)._replace(noise=0.5, resolution=1.0, change=side * before)
         assert monitor.noise_share(x, side * change, 0.5 * T_NOISE) == noise
+        assert monitor.noise_share(x, side * change, 1.1 * T_NOISE) == 2.0 * noise - 0.5, (
+            "not beyond that of this sample"
+        )
     y = after([U._replace(omega_1_meas=152.0), U], last(150.0))
     assert (y.change, y.noise) == (-2.0, T_S / T_NOISE)
 
