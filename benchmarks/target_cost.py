@@ -27,8 +27,8 @@ PAGE = Path(__file__).parent.parent / "docs" / "target.md"
 COUNTED = MANOEUVRES["tipin15"]
 """Manoeuvre over which instructions are counted."""
 
-ARM = ("-target", "thumb-linux-musleabihf", "-mcpu=cortex_m4+vfp4d16sp")
-"""A Cortex-M4 with its unit for single precision, as Zig names it."""
+ARM = ("-target", "thumb-linux-musleabihf", "-mcpu=cortex_m4+vfp4d16sp", "-fno-builtin-memset")
+"""A Cortex-M4 with its unit for single precision, as Zig names it; runs of zeros stay what they are."""
 
 BYTES = {"float": 4, "double": 8}
 
@@ -45,9 +45,9 @@ python -m fmus.native.target --output build/target --precision double
 python -m fmus.native.target --vehicle car.toml --parameters gains.toml    # for a car, see control.md
 ```
 
-writes `damping_controller.h` and `damping_controller.c`: C99 that needs no more of the library than `fabsf`, allocates
-nothing, has no global variable and no loop. It is the same traced arithmetic as in the FMU. A project calls it so, the
-last part every 2 ms:
+writes `damping_controller.h` and `damping_controller.c`: C99 that needs no more of the library than `fabsf` and `sqrtf`,
+allocates nothing, has no global variable and no loop. It is the same traced arithmetic as in the FMU. A project calls it
+so, the last part every 2 ms:
 
 ```c
 static DampingControllerState states[2], *x = &states[0], *next = &states[1];

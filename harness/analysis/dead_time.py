@@ -20,7 +20,12 @@ from .coupling import NOISELESS, T_S, cosimulated, reference, short
 
 PLANT = "TwoMassDriveline"
 
-OPEN = NOISELESS | {"controller.k_d": 0.0, "controller.k_T": 0.0, "controller.e_max": 1000.0}
+OPEN = NOISELESS | {
+    "controller.k_d": 0.0,
+    "controller.k_T": 0.0,
+    "controller.t_land": 0.0,
+    "controller.e_max": 1000.0,
+}
 """The estimator takes its signals however far off they are, and nothing is done with what it finds."""
 
 NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw") for state in Estimate._fields}

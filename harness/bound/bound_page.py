@@ -45,8 +45,8 @@ it measures late stays above it.
 ## Metric by metric
 
 Evaluated on the nonlinear design model, by the definitions of all other pages. *Jointly* is the optimum above; the
-others make one metric alone small, with the rest no worse than the controller's, and the gear torque within 5 % of the
-step about its final value once it has settled. Overshoot alone can be avoided altogether.
+others make one metric alone small, with the rest no worse than the controller's. Overshoot alone can be avoided
+altogether.
 
 {every}
 

@@ -55,8 +55,7 @@ class Bounded(NamedTuple):
         jointly: the smallest worst ratio of all metrics.
         bound: no torque reference has a smaller one for contacts that were looked at.
         neighbours: how many those are.
-        alone: by metric, how small it can be with the others no worse than those of the controller, and the gear torque
-            within 5 % of its final value when it has settled.
+        alone: by metric, how small it can be with the others no worse than those of the controller.
     """
 
     task: Task
@@ -103,7 +102,7 @@ def bounded(name: str, settings: Mapping[str, Any]) -> Bounded:
 
     alone = {}
     for metric in (name for name in ALONE if name in given.metrics):
-        search = Search(given, car, (metric,), settled=True)
+        search = Search(given, car, (metric,))
         contacts = search.descend(best.contacts)
         alone[metric] = _verified(search, contacts, search.solve(contacts, FINE), quiet)
     return Bounded(given, jointly, min(each.solution.bound for each in found), len(found), alone)

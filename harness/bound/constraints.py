@@ -13,10 +13,7 @@ from .contacts import GAP, Contacts
 from .prediction import Affine, Prediction
 from .programme import Cone, Programme, Rows, joined
 from .task import Task
-from .watched import DENSE, SPARSE, SWING_RESERVE, Watched, settled_swing
-
-BAND = 3
-"""Where the gear torque has to be near its final value, it is looked at in every so manieth sample of those."""
+from .watched import SWING_RESERVE, Watched, settled_swing
 
 RESERVE = 2e-3
 """Torque in N.m by which 90 % of the way are exceeded: more than solver and linear car are off by."""
@@ -41,8 +38,6 @@ def programme(
     """
     final = _final(task, p)
     rows = [*_contact(p, contacts, phi_B), _response(task, p, final), _withheld(task)]
-    if watched.settled:
-        rows += _within_band(task, p, final)
     if watched.swings:
         low, high = (p.T_gear(np.arange(len(task.times))).rows(np.array(k)) for k in zip(*watched.swings, strict=True))
         rows.append(_kept(high.less(low), settled_swing(task) - SWING_RESERVE, UNIT["torque"]))
@@ -123,12 +118,3 @@ def _closing(p: Prediction, contacts: Contacts) -> Affine:
 def _overshoot(task: Task, p: Prediction, final: Affine, samples: np.ndarray) -> Affine:
     """Over the line of the final value, in N.m."""
     return p.T_gear(samples).less(_line(final, task.times[samples])).times(task.sign)
-
-
-def _within_band(task: Task, p: Prediction, final: Affine) -> Iterator[Rows]:
-    """Settled for certain: near the line of the final value."""
-    begin, end = task.sample(task.reached.settling_time), len(task.times)
-    samples = np.array(sorted({*range(begin, min(begin + DENSE, end), BAND), *range(begin, end, SPARSE)}))
-    off = p.T_gear(samples).less(_line(final, task.times[samples]))
-    for sign in (1.0, -1.0):
-        yield _kept(off.times(sign), 0.5 * settled_swing(task) - SWING_RESERVE, UNIT["torque"])

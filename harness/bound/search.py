@@ -27,7 +27,7 @@ COARSE = ((80, 1), (160, 2), (300, 5), (500, 20), (1000, 100))
 FINE = ((60, 1), (160, 2), (480, 4), (1000, 8))
 """While searching, and for proofs."""
 
-ROUNDS = 12
+ROUNDS = 40
 """In each, more samples are watched: those where overshoot and swing are too large."""
 
 
@@ -41,11 +41,11 @@ class Found(NamedTuple):
 class Search:
     """Of the best switching times for some metrics, along a car that is linear for given ones."""
 
-    def __init__(self, task: Task, car: LinearCar, metrics: Sequence[str], settled: bool = False) -> None:
-        """See `harness.bound.constraints.programme` and `Watched`."""
+    def __init__(self, task: Task, car: LinearCar, metrics: Sequence[str]) -> None:
+        """See `harness.bound.constraints.programme`."""
         self.task, self.car, self.metrics = task, car, metrics
         self.predictor = Predictor(car, task.horizon, task.contacts.sides[-1])
-        self.watched = Watched.of(task, settled)
+        self.watched = Watched.of(task)
         self.solved: dict[tuple[Contacts, Holding], Solution] = {}
 
     def solve(self, contacts: Contacts, holding: Holding = COARSE) -> Solution:

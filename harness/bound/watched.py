@@ -29,22 +29,20 @@ class Watched:
     Attributes:
         peaks: of the overshoot, which rise.
         swings: pairs, from the lower to the higher, of what has to be settled.
-        settled: whether T_gear has to be within a band that makes sure of it, and no swings are watched.
     """
 
     peaks: list[int]
     swings: list[tuple[int, int]] = field(default_factory=list)
-    settled: bool = False
 
     @classmethod
-    def of(cls, task: Task, settled: bool) -> "Watched":
+    def of(cls, task: Task) -> "Watched":
         """To begin with."""
         begin, end = task.sample(task.reached.response_delay), len(task.times)
-        return cls(sorted({*range(begin, min(begin + DENSE, end)), *range(begin, end, SPARSE)}), settled=settled)
+        return cls(sorted({*range(begin, min(begin + DENSE, end)), *range(begin, end, SPARSE)}))
 
     def violated(self, task: Task, T_gear: np.ndarray) -> bool:
         """Watches where a gear torque (samples,) in N.m overshoots and swings most; whether there was more to watch."""
-        peaks, swings = self._peaks(task, T_gear), [] if self.settled else _unsettled(task, T_gear)
+        peaks, swings = self._peaks(task, T_gear), _unsettled(task, T_gear)
         self.peaks = sorted({*self.peaks, *peaks})
         self.swings += swings
         return bool(peaks or swings)

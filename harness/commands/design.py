@@ -77,11 +77,17 @@ def designed(vehicle: Path | None = None) -> str:
     from fmus.parameter_files import read_vehicle
 
     from ..analysis.design import design, gains_file
+    from ..analysis.kalman import DesignError
     from ..analysis.weights import records
     from ..linear.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
     gains = design(plant, motor, can)
     alone, damped = swing(plant, motor, gains)
+    if damped.damping_ratio <= alone.damping_ratio:
+        raise DesignError(
+            f"the motor is too slow for this car (tau = {motor.tau:g} s, drive train {alone.frequency:.2f} Hz): "
+            f"the damping ratio would be {damped.damping_ratio:.2f}, it is {alone.damping_ratio:.2f} without damping"
+        )
     car = vehicle.name if vehicle else "the default car"
     return gains_file(gains, COMMENT.format(car=car, version=version("driveline-damping"), alone=alone, damped=damped))

@@ -83,7 +83,7 @@ def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: 
 
     floating = logical_and(in_gap(motion, p), abs(T_next) > p.T_still)
     afloat = where(floating, minimum(x.afloat + T_s, p.t_land + T_s), 0.0)
-    landing = logical_and(afloat > 0.0, afloat <= p.t_land)
+    landing = logical_and(afloat > 0.0, afloat < p.t_land + 0.5 * T_s)
     withheld = where(landing, T_driver + damping - landing_torque(ahead, T_next, p), x.withheld)
     left = where(landing, 1.0, 1.0 - minimum(T_s / maximum(p.t_return, T_s), 1.0))
     x = LawState(

@@ -31,6 +31,8 @@ every_comparator = pytest.mark.parametrize("name", COMPARATORS)
 
 TIPIN = MANOEUVRES["tipin15"]
 
+OURS = {v.name: v.start for v in variables(EVERY["DampingController"].block.Parameters)}
+
 
 @pytest.fixture
 def folder(both_built: Path, tmp_path: Path) -> Path:
@@ -126,4 +128,8 @@ def test_the_page_shows_each_with_its_parameters() -> None:
         assert given == {parameter: declared[parameter] for parameter in given}
         of_all = {v.name for v in variables(supervision.Parameters)} | {"J_1", "J_2", "C", "phi_B", "T_age"}
         families = re.findall(r"`(L\w*_)\.\.\.`", cell)
-        assert not [n for n in declared.keys() - of_all - given.keys() if not n.startswith(tuple(families))]
+        left = {n for n in declared.keys() - of_all - given.keys() if not n.startswith(tuple(families))}
+        if "as ours" in cell:
+            assert {n: declared[n] for n in left} == {n: OURS[n] for n in left}
+        else:
+            assert not left

@@ -131,7 +131,7 @@ def test_the_command_takes_the_car_and_its_gains(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "fmus.native.target", "--output", str(tmp_path), "--parameters", str(gains)]
     subprocess.run([*command, "--vehicle", "examples/cars/van.toml"], check=True, cwd=ROOT)
     text = (tmp_path / "damping_controller.c").read_text(encoding="utf-8")
-    for line in (".k_d = 4.0f,", ".T_max = 250.0f,", ".phi_B = 0.314f,", ".omega_w = 4.25f,"):
+    for line in (".k_d = 4.0f,", ".T_max = 250.0f,", ".phi_B = 0.314f,", ".omega_w = 3.0f,"):
         assert line in text
     gains.write_text("J_1 = 0.05\n", encoding="utf-8")
     refused = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)

@@ -38,6 +38,7 @@ def test_one_metric_alone_can_be_smaller_than_all_jointly_and_the_others_are_kep
         assert getattr(optimum.metrics, name) <= 1.001 * getattr(found.jointly.metrics, name)
         for other in found.task.metrics:
             assert getattr(optimum.metrics, other) <= 1.005 * getattr(found.task.reached, other)
+        assert optimum.metrics.settling_time <= found.task.reached.settling_time
 
 
 def test_page_and_record_tell_the_same(found: Bounded, tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def search(native: Path) -> Search:
 
 
 def test_the_design_model_does_what_the_programme_promises(search: Search, native: Path) -> None:
-    of, contacts = search.task, search.task.contacts._replace(ends=(50,))
+    of, contacts = search.task, search.task.contacts._replace(ends=(48,))
     found = search.solve(contacts)
     run = driven(of.manoeuvre, of.reference(found.u), NATIVE | {"folder": native.parent})
     promised = search.predictor.predict(contacts).T_gear(np.arange(len(of.times))).value(found.u)
@@ -38,7 +38,7 @@ def test_the_design_model_does_what_the_programme_promises(search: Search, nativ
     assert metrics.response_delay == of.reached.response_delay
     assert (of.lower - 1e-9 <= found.u).all()
     assert (found.u <= of.upper + 1e-9).all()
-    gap = run["plant.T_gear"][(run["time"] > of.manoeuvre.t_0) & (run["time"] < of.manoeuvre.t_0 + 0.0265)]
+    gap = run["plant.T_gear"][(run["time"] > of.manoeuvre.t_0) & (run["time"] < of.manoeuvre.t_0 + 0.0255)]
     assert not gap.any()
 
 

@@ -21,7 +21,7 @@ def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.Ca
     assert lines[0].startswith(
         "# Gains of the DampingController for van.toml, by `driveline design` (driveline-damping"
     )
-    assert lines[1] == "# Drive train: 6.97 Hz; damped: 7.11 Hz, damping ratio 0.56."
+    assert lines[1] == "# Drive train: 6.97 Hz; damped: 8.12 Hz, damping ratio 0.60."
     expected = design(*records(read_vehicle(VAN)))
     assert tomllib.loads(text) == pytest.approx(expected, rel=1e-5)
     assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)
@@ -49,7 +49,11 @@ def test_nothing_depends_on_the_working_directory(
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("J1 = 0.09\n", "line 1: J1 is not known"), ("tau = 0.05\n", "T_pred would be 0.07071; the controller takes")],
+    [
+        ("J1 = 0.09\n", "line 1: J1 is not known"),
+        ("tau = 0.1\n", "T_pred would be 0.03333; the controller takes"),
+        ("tau = 0.05\n", "the motor is too slow for this car (tau = 0.05 s, drive train 7.46 Hz): the damping ratio"),
+    ],
 )
 def test_a_car_without_a_controller_is_answered_with_exit_code_2(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, said: str
