@@ -152,11 +152,10 @@ def test_without_a_demand_there_is_no_landing(T_driver: float) -> None:
 
 
 def test_the_teeth_have_t_land_to_land() -> None:
-    """Then what was withheld comes back: half of it in a sample."""
-    for t_land in (1.0, just_above(1.0)):
+    """To the nearest number of samples of 0.25 s. Then what was withheld comes back: half of it in a sample."""
+    for t_land in (just_above(just_above(0.875)), 1.0, 1.125):
         assert demanded([AFLOAT] * 7, 16.0, P._replace(t_land=t_land)) == pytest.approx([10.0] * 5 + [13.0, 14.5])
-    short = P._replace(t_land=math.nextafter(1.0, 0.0))
-    assert demanded([AFLOAT] * 6, 16.0, short) == pytest.approx([10.0] * 4 + [13.0, 14.5])
+    assert demanded([AFLOAT] * 6, 16.0, P._replace(t_land=0.875)) == pytest.approx([10.0] * 4 + [13.0, 14.5])
     assert demanded([AFLOAT] * 2, 16.0, P._replace(t_land=0.0)) == [16.0] * 2
 
 
