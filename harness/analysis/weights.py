@@ -49,7 +49,7 @@ class Weights:
         k_gap: factor on the damping inside the gap.
         washout: its corner frequency, over omega_0.
         withheld: time by which the feedback of the gear torque delays the driver's impulse, times omega_v.
-        landing: largest demand that a landing is made for, over T_max.
+        landing: largest torque that the speed of a landing is derived from, over T_max.
         impact: gear torque that the largest speed of a landing could make, over T_max.
         bounce, brake, haste: see the damping law.
         recent: corner frequency that tells which change of the demand is recent, over omega_v.

@@ -41,7 +41,8 @@ class Parameters(NamedTuple):
     )
     k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0, search=(0.1, 2.0))] = GAINS["k_gap"]
     T_gap: Annotated[
-        float, Real("N.m", "largest demand that a landing is made for", 0.0, 2000.0, search=(20.0, 180.0))
+        float,
+        Real("N.m", "largest torque that the speed of a landing is derived from", 0.0, 2000.0, search=(20.0, 180.0)),
     ] = GAINS["T_gap"]
     bounce: Annotated[
         float, Real("1", "twist that an impact alone may make, over that of the demand", 0.0, 5.0, search=(0.0, 1.5))
