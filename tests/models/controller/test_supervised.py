@@ -1,6 +1,7 @@
 """A second estimator and a second law: a file each, and one line that joins them (OTHER, in controllers.py)."""
 
 import math
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -8,11 +9,12 @@ from models.block.declaration import variables
 from models.block.runner import runner
 from models.comparators import measured_speeds
 from models.comparators.speed_washout import Washout
-from models.controller import damping_law, supervision, torque_estimator
-from models.controller.parts import Estimator, Law
+from models.controller import damping_law, rest, supervision, torque_estimator, torque_loop
+from models.controller.parts import Addition, Estimator, Law, Motion
 from models.controller.supervised import supervised
 from models.controller.supervision import T_S
-from tests.models.controller.controllers import OTHER, ROLLING, run, shaken
+from models.controller.trust import TrustState
+from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken
 
 
 def test_the_parameters_are_those_of_the_parts_and_of_the_supervision() -> None:
@@ -35,6 +37,52 @@ def test_it_damps_by_its_own_law() -> None:
         assert x.T_damp == pytest.approx(-p.k_v * (u.omega_1_meas - slow), abs=1e-9)
         slow += p.omega_v * T_S * (u.omega_1_meas - slow)
     assert max(abs(x.T_damp) for x in states) > 10.0
+
+
+class Ahead(NamedTuple):
+    """State of a law that adds nothing."""
+
+    change: float
+
+
+class Nothing(NamedTuple):
+    """No parameters."""
+
+
+class LooksAhead:
+    """How much faster (rad/s) the motor will be after 10 ms."""
+
+    Parameters = Nothing
+
+    def start(self, motion: Motion, T_driver: Any, p: Any) -> Ahead:
+        return Ahead(0.0)
+
+    def update(self, x: Ahead, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[Ahead, Addition]:
+        return Ahead(later(0.01).omega_1 - motion.omega_1), Addition(0.0, 0.0)
+
+
+def test_what_is_ahead_is_the_motion_under_the_torque_that_the_motor_will_have() -> None:
+    """In the gap the motor has its inertia alone, and half of what it is still to gain acts over the time."""
+    block = supervised("Ahead", "looks ahead", __name__, torque_estimator, LooksAhead())
+    floating = ROLLING._replace(T_driver=0.0, T_mot_est=0.0)
+    before, now = run(block, [floating, floating._replace(T_driver=50.0)])[1:]
+    assert (before.law.change, before.T_ref, now.T_ref) == (0.0, 0.0, 50.0)
+    after = block.update(now, floating._replace(T_driver=50.0), block.Parameters())
+    p = block.Parameters()
+    gained = torque_loop.update(now.monitor.loop, 50.0, 0.01, p).T_mot
+    assert after.law.change == pytest.approx(0.01 * 0.5 * gained / p.J_1, rel=0.02)
+    assert gained > 40.0
+
+
+def test_rest_clears_a_doubt_when_it_is_complete_and_no_sample_sooner() -> None:
+    """A motor speed that was caught to be wrong is asked for no further proof."""
+    p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
+    x = OURS.start(standing, p)._replace(quiet=0.0, trust=TrustState(proof=0.0, needed=32.0 * p.t_proof, caught=True))
+    samples = round(rest.longest(p) / T_S)
+    for k in range(1, samples + 2):
+        x = OURS.update(x, standing._replace(omega_1_meas=0.01 * (-1) ** k), p)
+        assert x.trust.caught == (rest.share(x.quiet, p) < 1.0)
+    assert x.trust.needed == p.t_proof
 
 
 def test_a_runner_takes_it_as_it_takes_any_block() -> None:

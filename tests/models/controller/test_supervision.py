@@ -1,6 +1,7 @@
 """The supervision: what holds for every controller, whatever its estimator and its law are."""
 
 import math
+import re
 from itertools import pairwise
 from typing import Any
 
@@ -12,6 +13,7 @@ from models.block.declaration import Enumeration, variables
 from models.block.types import SampledBlock
 from models.controller import supervision
 from models.controller.supervision import FALLBACK, OFF, T_S, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
+from tests import ROOT
 from tests.models.controller.controllers import (
     ABSURD,
     OTHER,
@@ -28,6 +30,16 @@ from tests.models.controller.controllers import (
 )
 
 P = OTHER.Parameters()
+
+TOLD = re.compile(r"`(T_take_max|T_add_max|[te]_[a-z]+)`,? \(?([0-9.]+) (ms|s|rad/s|N\.m)\b")
+"""A parameter with its default, as in "`e_jump`, 8 rad/s" or "`t_proof` (0.15 s)"."""
+
+
+def test_the_docs_tell_the_defaults() -> None:
+    page = (ROOT / "docs" / "control.md").read_text(encoding="utf-8")
+    told = {name: float(value) * (1e-3 if unit == "ms" else 1.0) for name, value, unit in TOLD.findall(page)}
+    assert told.keys() >= {"T_take_max", "T_add_max", "t_bad", "t_apart", "t_proof", "e_jump", "e_wheel"}
+    assert told == {name: getattr(P, name) for name in told}
 
 
 @every_controller
