@@ -6,10 +6,11 @@ import pytest
 
 from models.controller import swings
 from models.controller.supervision import Parameters
-from models.controller.swings import AHEAD, EXCUSE, GROWS, MOST, SWING, T_FORGET, SwingState
+from models.controller.swings import AHEAD, EXCUSE, GROWS, MOST, SWING, SwingState
 
 P = Parameters(T_max=100.0)
-T_S = T_FORGET / 8.0
+T_S = 0.0625
+"""An eighth of the time after which a half swing is forgotten."""
 PEAK = SWING * P.T_max
 
 
@@ -32,7 +33,7 @@ def test_a_half_swing_reaches_over_a_torque_on_both_sides(side: float) -> None:
 def test_half_swings_are_as_large_as_the_motor(side: float) -> None:
     small = P._replace(T_max=1.0)
     x = swings.start(0.5)
-    for torque in (0.2, -0.15, 0.2):
+    for torque in (0.2, -0.15, 0.12):
         x = swings.update(x, side * torque, 0.5, True, T_S, small)
     assert x.count == 2.0 - 1.0 / 8.0
 
@@ -74,7 +75,7 @@ def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_one_half_swing_may_follow_a_change_of_the_demand(side: float) -> None:
-    """However large the change, one and no more; and within T_FORGET."""
+    """However large the change, one and no more; and within half a second."""
     for change in (AHEAD * EXCUSE, 10.0 * EXCUSE):
         changed = 50.0 + side * change * P.T_max
         x = after([0.0, 20.0], [50.0, changed])
