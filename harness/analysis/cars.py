@@ -1,6 +1,6 @@
 """What a design is worth: a car without damping, with the gains of the default car, and with its own."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from functools import cache
 from pathlib import Path
@@ -86,6 +86,10 @@ def measured(
         )
         for seed in seeds
     ]
-    found = [evaluate(results, manoeuvre) for results in runs]
+    return mean([evaluate(results, manoeuvre) for results in runs])
+
+
+def mean(found: Sequence[Metrics]) -> Metrics:
+    """Each metric as the mean over runs; it has no value where one of them has none."""
     means = {metric.name: float(np.mean([metric.of(metrics) for metrics in found])) for metric in declared(Metrics)}
     return Metrics(**means, absent={name: why for metrics in found for name, why in metrics.absent.items()})
