@@ -58,6 +58,7 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline coupling --output docs
 	$(BIN)/driveline back-to-back --output docs
 	$(BIN)/python -m harness.analysis.design_page
+	$(BIN)/python -m harness.analysis.calibration_page
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m benchmarks.target_cost
 	rm -rf results/faults
