@@ -96,7 +96,7 @@ Figures not told / told, on the design model; on the validation vehicle:
   {factor:g} times the `k_d` that is designed takes that to {stiffer}.
 - With a motor that is twice as slow, and is known to be, the look-ahead counts on the torque that is under way. The
   torque of a tip-in is there sooner ({slow}), and lands harder (jerk {slow_jerk}).
-- `J_2` and the transport delay hardly matter: the estimate lives on the motor speed.
+- Whether `J_2` and the transport delay are known hardly matters: the estimate lives on the motor speed.
 
 ## Rattle at standstill
 
