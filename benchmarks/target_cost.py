@@ -45,9 +45,9 @@ python -m fmus.native.target --output build/target --precision double
 python -m fmus.native.target --vehicle car.toml --parameters gains.toml    # for a car, see control.md
 ```
 
-writes `damping_controller.h` and `damping_controller.c`: C99 that needs no more of the library than `fabsf` and `sqrtf`,
-allocates nothing, has no global variable and no loop. It is the same traced arithmetic as in the FMU. A project calls it
-so, the last part every 2 ms:
+writes `damping_controller.h` and `damping_controller.c`: C99 that needs `fabsf` and `sqrtf` of the library, allocates
+nothing, has no global variable and no loop. It is the same traced arithmetic as in the FMU. A project calls it so, the
+last part every 2 ms:
 
 ```c
 static DampingControllerState states[2], *x = &states[0], *next = &states[1];

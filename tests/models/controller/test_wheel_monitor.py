@@ -109,7 +109,7 @@ def test_messages_are_a_witness_while_they_keep_coming() -> None:
 def test_messages_that_leap_while_the_motor_speed_does_not_are_doubted(side: float) -> None:
     """Until one is near the motor speed again."""
     nearest = LEAP + SHARE * 150.0
-    x = heard(new(150.0 + side * 19.9), omega_1=150.0 - side * 40.0)
+    x = heard(new(150.0 + side * 20.0), omega_1=150.0 - side * 40.0)
     assert (x.doubted, x.witness, x.apart) == (False, True, T_S)
     x = heard(new(150.0 + side * 20.1), omega_1=150.0 - side * 40.0)
     assert (x.doubted, x.witness, x.apart) == (True, False, 0.0)
@@ -123,7 +123,7 @@ def test_messages_that_leap_while_the_motor_speed_does_not_are_doubted(side: flo
 def test_messages_that_follow_the_motor_speed_are_believed(side: float) -> None:
     """Up to LEAP from where it went, for a contradiction needs more."""
     start = wheels.start(new(300.0, counter=7), 150.0, 0.0, P)
-    for moved, doubted in ((20.1, False), (19.9, True)):
+    for moved, doubted in ((20.0, False), (19.9, True)):
         x = heard(new(300.0 + side * 40.0), start, omega_1=150.0 + side * moved)
         assert (x.doubted, x.witness) == (doubted, not doubted)
         assert x.late_then == 150.0 + side * moved, "from the next message on it counts from here"
@@ -250,6 +250,7 @@ def test_the_time_of_rolling_back_is_counted_up_to_twice_what_is_needed() -> Non
         x = wheels.rolling_time(x, -60.0, 0.0, 0.0, 0.0625, P)
         times.append(x)
     assert times == [0.0625, 0.125, 0.1875, 2.0 * ROLLING, 2.0 * ROLLING]
+    assert heard(new(60.0), omega_1=-60.0, omega_2_hat=-60.0).rolling == 2.0 * ROLLING, "a sample of 0.25 s"
 
 
 def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
