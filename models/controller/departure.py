@@ -10,7 +10,7 @@ the damping torque, which always pushes against the motion.
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Real
-from ..block.operators import clip, logical_and, maximum, minimum, sign, where
+from ..block.operators import clip, logical_and, logical_not, maximum, minimum, sign, where
 
 FREE = 3.0
 """Speed in rad/s that the torque must give a free motor before it is looked at: sensor noise is far below."""
@@ -30,22 +30,33 @@ class DepartureState(NamedTuple):
     turned: Annotated[float, Real("rad/s", "measured change of the motor speed meanwhile")]
     course: Annotated[float, Real("rad2/s2", "integral of that change over the speed of a free motor")]
     way: Annotated[float, Real("1", "1 the motor has set off with its torque, -1 against it, 0 not known")]
+    misled: Annotated[bool, Boolean("in fallback, its speed has the other direction than it has set off in")]
 
 
 def start() -> DepartureState:
-    return DepartureState(pushed=False, free=0.0, turned=0.0, course=0.0, way=0.0)
+    return DepartureState(pushed=False, free=0.0, turned=0.0, course=0.0, way=0.0, misled=False)
 
 
 def update(
-    x: DepartureState, T_driver: Any, T_mot: Any, change: Any, resting: Any, launching: Any, T_s: Any, p: Any
+    x: DepartureState,
+    T_driver: Any,
+    T_mot: Any,
+    omega_1: Any,
+    change: Any,
+    resting: Any,
+    launching: Any,
+    trusted: Any,
+    T_s: Any,
+    p: Any,
 ) -> DepartureState:
     """The state after one sample.
 
     Args:
         T_driver: demand, N.m.
         T_mot: torque that the motor should have, N.m.
-        change: of the motor speed in this sample, rad/s.
+        omega_1, change: motor speed, and its change in this sample, rad/s.
         resting, launching: whether the car was at rest until now, and was so a moment ago.
+        trusted: whether the motor signals were trusted until now.
     """
     pushed = where(resting, abs(T_driver) > p.T_still, x.pushed)
     counting = logical_and(logical_and(x.pushed, launching), abs(x.free) < FREE)
@@ -55,12 +66,14 @@ def update(
     seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= FIRM * p.T_still)
     course = x.course + turned * (free - x.free)
     way = where(seen, like(course, 0.5 * free * free), x.way)
+    opposite = sign(x.free) * omega_1 < -p.omega_still
     return DepartureState(
         pushed=pushed,
         free=where(resting, 0.0, free),
         turned=where(resting, 0.0, turned),
         course=where(resting, 0.0, course),
         way=where(resting, 0.0, way),
+        misled=logical_and(logical_and(launching, logical_not(trusted)), logical_and(is_with(x), opposite)),
     )
 
 

@@ -115,9 +115,11 @@ class Supervised:
             x.departure,
             demand(u, p),
             signals.loop.T_mot,
+            signals.omega_1,
             signals.omega_1_change,
             x.since_rest <= 0.0,
             is_launching(x),
+            trust.is_trusted(x.trust),
             T_S,
             p,
         )

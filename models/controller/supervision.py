@@ -12,7 +12,7 @@ what the damping alone may take.
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Enumeration, Integer, Real
-from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, where
+from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, maximum, where
 from ..vehicle import CAR, MotorInertia, MotorLag
 from . import departure, rest, swings, trust
 from .departure import DepartureState
@@ -148,7 +148,8 @@ def trust_after(
     departs_wrongly = logical_and(departure.is_against(leaving), logical_not(departure.is_against(x.departure)))
     confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
     lying = logical_or(swings.feeds(x.swings), departs_wrongly)
-    return trust.update(x.trust, signals.bad, heard.apart, lying, confirmed, resting, T_S, p)
+    apart = maximum(heard.apart, where(leaving.misled, T_S, 0.0))
+    return trust.update(x.trust, signals.bad, apart, lying, confirmed, resting, T_S, p)
 
 
 def damping_limited(added: Addition, p: Any) -> Addition:

@@ -96,17 +96,18 @@ def direction_of(omega_1: Any, T_mot: Any, rolling: Any, leaving: DepartureState
     believed = logical_or(rolling >= ROLLING, departure.is_with(leaving))
     possible = logical_or(logical_not(is_pushing(T_mot, p)), believed)
     turning = where(logical_and(is_backwards(omega_1, p), possible), -1.0, 1.0)
-    return where(departure.is_against(leaving), departure.heading(leaving), turning)
+    wrong = logical_or(departure.is_against(leaving), leaving.misled)
+    return where(wrong, departure.heading(leaving), turning)
 
 
-def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, bad: Any, T_s: Any, p: Any) -> Any:
+def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, wrong: Any, T_s: Any, p: Any) -> Any:
     """Time in s for which the car was seen to roll back, one sample later.
 
     It counts while the motor does not push, stays while it does, and is taken back while the motor does not turn
-    backwards; a bad motor speed has seen nothing.
+    backwards; a motor speed that is bad or misleads has seen nothing.
     """
     step = where(is_backwards(omega_1, p), where(is_pushing(T_mot, p), 0.0, T_s), -T_s)
-    return where(bad > 0.0, 0.0, clip(rolling + step, 0.0, 2.0 * ROLLING))
+    return where(wrong, 0.0, clip(rolling + step, 0.0, 2.0 * ROLLING))
 
 
 def update(
@@ -131,7 +132,7 @@ def update(
     """
     known = has_wheel_speed(u, p)
     believed = logical_and(x.silence < p.t_stale, logical_not(x.doubted))
-    rolling = rolling_time(x.rolling, omega_1, T_mot, bad, T_s, p)
+    rolling = rolling_time(x.rolling, omega_1, T_mot, logical_or(bad > 0.0, leaving.misled), T_s, p)
     direction = where(believed, x.direction, direction_of(omega_1, T_mot, rolling, leaving, p))
     new = logical_and(u.counter != x.counter, known)
     omega_2 = where(new, direction * message(u), x.omega_2)

@@ -25,18 +25,25 @@ def after(
     change: float = 0.0,
     resting: bool = False,
     launching: bool = True,
+    omega_1: float = 0.0,
+    trusted: bool = True,
 ) -> DepartureState:
     """The state after samples in which the torque gives a free motor T_mot rad/s each, and it turns by `change`."""
     x = PUSHED if x is None else x
     for _ in range(samples):
-        x = departure.update(x, T_mot if T_driver is None else T_driver, T_mot, change, resting, launching, T_S, P)
+        demand = T_mot if T_driver is None else T_driver
+        x = departure.update(x, demand, T_mot, omega_1, change, resting, launching, trusted, T_S, P)
     return x
 
 
 @each_side
 def test_it_is_looked_at_when_the_torque_has_given_a_free_motor_a_speed(side: float) -> None:
-    assert after(5, T_mot=side * 0.5, change=side * 0.5) == DepartureState(True, side * 2.5, side * 2.5, 3.75, 0.0)
-    assert after(6, T_mot=side * 0.5, change=side * 0.5) == DepartureState(True, side * FREE, side * FREE, 5.25, 1.0)
+    assert after(5, T_mot=side * 0.5, change=side * 0.5) == DepartureState(
+        True, side * 2.5, side * 2.5, 3.75, 0.0, False
+    )
+    assert after(6, T_mot=side * 0.5, change=side * 0.5) == DepartureState(
+        True, side * FREE, side * FREE, 5.25, 1.0, False
+    )
     most = math.nextafter(FREE, 0.0)
     assert after(1, T_mot=side * most, change=-side * 0.5 * most).way == 0.0
     assert after(1, T_mot=side * FREE, change=-side * 0.5 * FREE).way == -1.0
@@ -71,7 +78,9 @@ def test_it_is_looked_at_once_and_known_until_the_next_rest() -> None:
     x = after(6, change=-0.5)
     assert after(9, x, change=5.0) == x
     assert after(1, x, change=5.0, launching=False) == x
-    assert after(1, x, T_driver=0.0, resting=True) == departure.start() == DepartureState(False, 0.0, 0.0, 0.0, 0.0)
+    assert (
+        after(1, x, T_driver=0.0, resting=True) == departure.start() == DepartureState(False, 0.0, 0.0, 0.0, 0.0, False)
+    )
     assert departure.heading(departure.start()) == 0.0
 
 
@@ -103,3 +112,17 @@ def test_only_a_car_that_was_at_rest_a_moment_ago_departs() -> None:
     x = after(2, change=-0.5)
     assert after(9, x, change=-0.5, launching=False) == x
     assert after(4, x, change=-0.5).way == -1.0
+
+
+@each_side
+def test_a_speed_that_was_bad_misleads_while_it_is_not_where_the_motor_has_set_off_to(side: float) -> None:
+    """During the launch, and from where on a motor turns backwards."""
+    x = after(1, T_mot=side * FREE, change=side * 0.5 * FREE)
+    opposite = -side * math.nextafter(P.omega_still, math.inf)
+    assert after(1, x, omega_1=opposite, trusted=False).misled
+    assert not after(1, x, omega_1=-side * P.omega_still, trusted=False).misled
+    assert not after(1, x, omega_1=-opposite, trusted=False).misled
+    assert not after(1, x, omega_1=opposite, trusted=True).misled, "a motor may be thrown back, and a car roll"
+    assert not after(1, x, omega_1=opposite, trusted=False, launching=False).misled
+    for way in (-1.0, 0.0):
+        assert not after(1, x._replace(way=way), omega_1=opposite, trusted=False).misled

@@ -74,6 +74,20 @@ def test_what_is_ahead_is_the_motion_under_the_torque_that_the_motor_will_have()
     assert gained > 40.0
 
 
+def test_a_speed_that_misleads_does_not_prove_itself() -> None:
+    """In fallback, while the car pulls away; however steady the speed of the other direction is."""
+    p, backwards = OURS.Parameters(), ROLLING._replace(T_driver=20.0, T_mot_est=20.0, omega_1_meas=-10.0, valid=False)
+    x = OURS.start(backwards, p)
+    away = x.departure._replace(pushed=True, free=3.0, way=1.0)
+    x = x._replace(departure=away, since_rest=0.2, trust=TrustState(proof=0.0, needed=p.t_proof, caught=False))
+    statuses = []
+    for k in range(round(1.2 / T_S)):
+        x = OURS.update(x, backwards._replace(omega_1_meas=-10.0 + 0.3 * (-1) ** k), p)
+        statuses.append(x.status)
+    proven = statuses.index(supervision.WITHOUT_WHEEL_SPEED) * T_S
+    assert proven == pytest.approx(rest.LAUNCH - 0.2 + p.t_proof, abs=2.0 * T_S)
+
+
 def test_rest_clears_a_doubt_when_it_is_complete_and_no_sample_sooner() -> None:
     """A motor speed that was caught to be wrong is asked for no further proof."""
     p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)

@@ -212,7 +212,7 @@ def test_a_car_that_was_seen_to_roll_back_does_so_under_any_torque() -> None:
 def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque() -> None:
     """It was pushed too little to hold the car, which rolls back now."""
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    right = DepartureState(pushed=True, free=2.0, turned=2.0, course=2.0, way=1.0)
+    right = DepartureState(pushed=True, free=2.0, turned=2.0, course=2.0, way=1.0, misled=False)
     assert heard(new(60.0), x, omega_1=-60.0, T_mot=180.0, leaving=right).omega_2 == -60.0
     assert heard(new(60.0), x, omega_1=60.0, T_mot=180.0, leaving=right).omega_2 == 60.0
 
@@ -220,10 +220,18 @@ def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque()
 @each_side
 def test_a_motor_that_has_set_off_against_its_torque_goes_where_that_pushed(side: float) -> None:
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    wrong = DepartureState(pushed=True, free=side * 2.0, turned=-side * 2.0, course=-2.0, way=-1.0)
+    wrong = DepartureState(pushed=True, free=side * 2.0, turned=-side * 2.0, course=-2.0, way=-1.0, misled=False)
     for T_mot in (0.0, 180.0):
         y = heard(new(60.0), x, omega_1=-side * 60.0, T_mot=T_mot, omega_2_hat=-side * 60.0, leaving=wrong)
         assert (y.omega_2, y.usable, y.apart) == (side * 60.0, False, T_S)
+
+
+@each_side
+def test_a_motor_speed_that_misleads_tells_no_direction_but_the_torque_has(side: float) -> None:
+    misled = UNKNOWN._replace(pushed=True, free=side * 3.0, way=1.0, misled=True)
+    x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
+    y = heard(new(60.0), x, omega_1=-side * 60.0, omega_2_hat=-side * 60.0, leaving=misled)
+    assert (y.omega_2, y.rolling, y.apart) == (side * 60.0, 0.0, T_S)
 
 
 @pytest.mark.parametrize(
@@ -240,14 +248,14 @@ def test_a_car_is_seen_to_roll_back_while_its_motor_turns_backwards_and_does_not
     omega_1: float, T_mot: float, bad: float, rolling: float
 ) -> None:
     """And no more after as long a time in which it does not turn backwards, or with a bad motor speed."""
-    assert wheels.rolling_time(0.0625, omega_1, T_mot, bad, 0.0625, P) == rolling
+    assert wheels.rolling_time(0.0625, omega_1, T_mot, bad > 0.0, 0.0625, P) == rolling
 
 
 def test_the_time_of_rolling_back_is_counted_up_to_twice_what_is_needed() -> None:
     """A swing of the motor past standstill does not take it back."""
     x, times = wheels.start(U._replace(valid=False), 0.0, 0.0, P).rolling, []
     for _ in range(5):
-        x = wheels.rolling_time(x, -60.0, 0.0, 0.0, 0.0625, P)
+        x = wheels.rolling_time(x, -60.0, 0.0, False, 0.0625, P)
         times.append(x)
     assert times == [0.0625, 0.125, 0.1875, 2.0 * ROLLING, 2.0 * ROLLING]
     assert heard(new(60.0), omega_1=-60.0, omega_2_hat=-60.0).rolling == 2.0 * ROLLING, "a sample of 0.25 s"
