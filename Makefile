@@ -61,6 +61,9 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/python -m harness.analysis.calibration_page
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m benchmarks.target_cost
+	$(BIN)/driveline analyse --replace --quiet
+	cp results/analyse/analysis.md docs/
+	cp results/analyse/figures/*.png docs/figures/
 	rm -rf results/faults
 	$(BIN)/driveline faults --cases 10000 --replace --quiet || test $$? = 1
 	cp results/faults/faults.md docs/
