@@ -1,10 +1,10 @@
 """Whether the motor sets off the way in which its torque pushes it.
 
-A demand that ends the rest meets nothing but the inertia of the motor until the teeth touch: J_1 domega_1/dt =
-T_mot, taken here from rest to FREE. A motor that was measured to turn like that, under a firm torque, has the
-right sign, one that has turned as far the other way all the while the wrong one. Whatever else it does tells
-nothing: on the flank of a tooth say, or thrown back by one. Nor does a car that rolls before it is pushed, or
-the damping torque, which always pushes against the motion.
+A demand that ends the rest meets nothing but the inertia of the motor until the teeth touch. With s the speed that
+the torque gives a free motor, J_1 ds/dt = T_mot, a speed of the right sign is s and one of the wrong sign -s. What
+is compared is its integral over s from 0 to FREE, `course`, with FREE^2/2 and -FREE^2/2, so that a throw at the end
+counts little. Whatever else the motor does tells nothing: on the flank of a tooth say, or thrown back by one. Nor
+does a car that rolls before it is pushed, or the damping torque, which always pushes against the motion.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -19,7 +19,7 @@ FIRM = 1.5
 """Torque over T_still that must push it then: with less its offset decides, and the flanks throw it about."""
 
 LIKE = 0.5
-"""Share by which what was measured, in the mean over that speed, may differ from it."""
+"""Share of FREE^2/2 by which `course` may differ from it."""
 
 
 class DepartureState(NamedTuple):
@@ -28,7 +28,9 @@ class DepartureState(NamedTuple):
     pushed: Annotated[bool, Boolean("it was the demand that has ended the rest")]
     free: Annotated[float, Real("rad/s", "speed that the demanded torque gives a free motor, until it is FREE")]
     turned: Annotated[float, Real("rad/s", "measured change of the motor speed meanwhile")]
-    course: Annotated[float, Real("rad2/s2", "integral of that change over the speed of a free motor")]
+    course: Annotated[
+        float, Real("rad2/s2", "integral of that change over the speed that the torque gives a free motor")
+    ]
     way: Annotated[float, Real("1", "1 the motor has set off with its torque, -1 against it, 0 not known")]
     misled: Annotated[bool, Boolean("in fallback, its speed has the other direction than it has set off in")]
 
@@ -53,7 +55,7 @@ def update(
 
     Args:
         T_driver: demand, N.m.
-        T_mot: torque that the motor should have, N.m.
+        T_mot: torque that the motor should have in this sample, N.m.
         omega_1, change: motor speed, and its change in this sample, rad/s.
         resting, launching: whether the car was at rest until now, and was so a moment ago.
         trusted: whether the motor signals were trusted until now.
@@ -65,7 +67,9 @@ def update(
     turned = x.turned + where(counting, change, 0.0)
     seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= FIRM * p.T_still)
     course = x.course + turned * (free - x.free)
-    way = where(seen, like(course, 0.5 * free * free), x.way)
+    failing = logical_not(trusted)
+    forgotten = logical_and(failing, logical_not(launching))
+    way = where(seen, like(course, 0.5 * free * free), where(forgotten, minimum(x.way, 0.0), x.way))
     opposite = sign(x.free) * omega_1 < -p.omega_still
     return DepartureState(
         pushed=pushed,
@@ -73,7 +77,7 @@ def update(
         turned=where(resting, 0.0, turned),
         course=where(resting, 0.0, course),
         way=where(resting, 0.0, way),
-        misled=logical_and(logical_and(launching, logical_not(trusted)), logical_and(is_with(x), opposite)),
+        misled=logical_and(logical_and(launching, failing), logical_and(is_with(x), opposite)),
     )
 
 

@@ -114,7 +114,7 @@ class Supervised:
         leaving = departure.update(
             x.departure,
             demand(u, p),
-            signals.loop.T_mot,
+            x.monitor.loop.T_mot,
             signals.omega_1,
             signals.omega_1_change,
             x.since_rest <= 0.0,

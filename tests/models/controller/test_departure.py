@@ -126,3 +126,12 @@ def test_a_speed_that_was_bad_misleads_while_it_is_not_where_the_motor_has_set_o
     assert not after(1, x, omega_1=opposite, trusted=False, launching=False).misled
     for way in (-1.0, 0.0):
         assert not after(1, x._replace(way=way), omega_1=opposite, trusted=False).misled
+
+
+@each_side
+def test_a_right_sign_is_forgotten_with_the_first_fault_after_the_launch(side: float) -> None:
+    x = after(1, T_mot=side * FREE, change=side * 0.5 * FREE)
+    for launching, trusted, way in ((False, True, 1.0), (True, False, 1.0), (False, False, 0.0)):
+        assert after(1, x, launching=launching, trusted=trusted).way == way
+    wrong = after(1, T_mot=side * FREE, change=-side * 0.5 * FREE)
+    assert after(1, wrong, launching=False, trusted=False).way == -1.0

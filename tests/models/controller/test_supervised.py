@@ -74,6 +74,20 @@ def test_what_is_ahead_is_the_motion_under_the_torque_that_the_motor_will_have()
     assert gained > 40.0
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("T_driver", [20.0, 60.0, 120.0, 180.0])
+def test_a_free_motor_is_compared_with_the_torque_of_the_same_sample(T_driver: float, side: float) -> None:
+    """Out of rest, with a step of the demand: the motor's speed follows from the torque that it has."""
+    p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
+    x = OURS.start(standing, p)._replace(since_rest=0.0)
+    omega, T_mot = 0.0, 0.0
+    while x.departure.way == 0.0 and omega < 6.0:
+        x = OURS.update(x, standing._replace(T_driver=T_driver, T_mot_est=T_mot, omega_1_meas=side * omega), p)
+        before, T_mot = T_mot, x.monitor.loop.T_mot
+        omega += 0.5 * T_S * (before + T_mot) / p.J_1
+    assert x.departure.way == side
+
+
 def test_a_speed_that_misleads_does_not_prove_itself() -> None:
     """In fallback, while the car pulls away; however steady the speed of the other direction is."""
     p, backwards = OURS.Parameters(), ROLLING._replace(T_driver=20.0, T_mot_est=20.0, omega_1_meas=-10.0, valid=False)
