@@ -8,7 +8,7 @@ the same paths.
 import asyncio
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 from pickle import loads
@@ -57,13 +57,15 @@ def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callabl
             yield lambda case: pool.submit(_result, client, name, address, case)
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
-            client.unregister_worker_plugin(name)
+            with suppress(OSError):  # the scheduler may have gone
+                client.unregister_worker_plugin(name)
 
 
 @contextmanager
 def _connected(address: str) -> Iterator[Client]:
     try:
-        asyncio.run(_knock(address))  # a client that gets no answer complains long after
+        with ThreadPoolExecutor(1) as pool:  # a notebook has an event loop of its own in this thread
+            pool.submit(lambda: asyncio.run(_knock(address))).result()  # a client complains long after
     except (OSError, ValueError) as reason:
         raise DrivelineError(f"no Dask scheduler answers at {address!r}: {reason}") from reason
     with Client(address, timeout=TIMEOUT, set_as_default=False) as client:

@@ -17,5 +17,9 @@ class SimulationError(DrivelineError):
     exit_code = 1
 
 
+class UnpackingError(SimulationError):
+    """An FMU cannot be unpacked or loaded on this machine: nothing is said of how it would run elsewhere."""
+
+
 class MissingExtra(DrivelineError):
     """A package of an optional extra is not installed; the message names the extra."""

@@ -34,8 +34,8 @@ ROOMS = {
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
     | {"harness.linear", "models", "models.block", "models.controller"},
-    "harness.bound": {"harness", "harness.manoeuvres", "harness.metrics", "harness.reports", "harness.linear"}
-    | {"models", "models.controller"},
+    "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
+    | {"harness.linear", "models", "models.controller"},
     "harness.tuning": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
     | {"harness.robustness"},

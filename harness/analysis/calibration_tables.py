@@ -62,7 +62,7 @@ class Remedy(NamedTuple):
 
 
 REMEDIES = (
-    Remedy("long shuffle, overshoot", "k_d", True, Effect("overshoot", "tipin15"), Effect("response_delay", "launch")),
+    Remedy("overshoot, swing", "k_d", True, Effect("overshoot", "tipin15"), Effect("response_delay", "launch")),
     Remedy("overshoot alone", "omega_w", False, Effect("overshoot", "tipin15"), Effect("withheld_time", "tipin15")),
     Remedy(
         "jerk when a tip-in lands", "T_gap", False, Effect("jerk_rms", "tipin15"), Effect("response_delay", "tipout")

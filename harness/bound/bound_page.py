@@ -75,8 +75,9 @@ demand. To keep the programme small it is held over several samples later on, wh
 - **For the model**: of the motion linear along the optimum. The products of deviations that this leaves out are seen in
   the deviation of the run on the nonlinear model, which is the last column.
 - **By the run**: that the ratio is reached. The torque of the programme was driven through the design model, and every
-  figure of the optima above was measured there. To be safe the programme asks for {reserve:g} N·m more at 90 % of the
-  way and {swing:g} N·m less swing than needed.
+  figure of the optima above was measured there. To be safe the programme, and so the bound, asks for {reserve:g} N·m
+  more at 90 % of the way and {swing:g} N·m less swing than needed: what a torque without these reserves could gain is
+  not in the bound.
 - Of the metrics made small alone only that such a run exists; their switching times are those that a descent on the
   grid finds.
 

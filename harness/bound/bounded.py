@@ -11,12 +11,13 @@ import numpy as np
 from models.controller.supervision import Parameters
 
 from ..control_loop import PLANTS
+from ..cosimulation.wiring import fit
 from ..linear.driven import NOISELESS
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..many import run_many
 from ..metrics.evaluate import at_samples, evaluate
 from ..metrics.record import Metrics
-from ..simulate import simulate, start
+from ..simulate import looped, simulate, start
 from .contacts import Contacts
 from .driven import driven
 from .linear_car import linear_car
@@ -81,14 +82,10 @@ def bounded(name: str, settings: Mapping[str, Any]) -> Bounded:
     """
     manoeuvre = MANOEUVRES[name]
     quiet = dict(settings) | {"parameters": settings["parameters"] | {f"motor.{n}": v for n, v in NOISELESS.items()}}
-    parameters = quiet["parameters"]
-    limits = {field: parameters.get(f"controller.{field}") for field in Parameters._fields}
-    given = task(
-        manoeuvre,
-        simulate(manoeuvre, PLANT, **quiet),
-        Parameters(**{field: value for field, value in limits.items() if value is not None}),
-    )
-    of_car = start(manoeuvre) | parameters
+    blocks = fit(looped(PLANT, quiet)).parameters(start(manoeuvre) | quiet["parameters"])
+    limits = {name: value for name, value in blocks["controller"].items() if name in Parameters._fields}
+    given = task(manoeuvre, simulate(manoeuvre, PLANT, **quiet), Parameters(**limits))
+    of_car = {f"{place}.{name}": value for place in ("plant", "motor") for name, value in blocks[place].items()}
 
     search = Search(given, linear_car(given.results, of_car, given.first), given.metrics)
     contacts = search.descend(given.contacts)

@@ -11,7 +11,7 @@ from ..metrics.step_response import SETTLED, fitted
 from .task import Task
 
 DENSE, SPARSE = 150, 25
-"""To begin with, so many samples from 90 % of the way on are watched, and every so manieth one later."""
+"""To begin with, so many samples from 90 % of the way on are watched, and later every SPARSEth."""
 
 SWING_RESERVE = 0.02
 """Torque in N.m by which less is allowed to swing: more than solver and linear car are off by."""

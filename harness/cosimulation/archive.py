@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
-from ..errors import SimulationError, WiringError
+from ..errors import UnpackingError, WiringError
 from ..plain import plain
 from .limits import USUAL, Limits
 
@@ -88,7 +88,7 @@ def unpack(path: Path, folder: str) -> None:
     """Unpacks what an FMU needs to run; its description must have been read before.
 
     Raises:
-        SimulationError: the archive is damaged, or does not fit on the disk.
+        UnpackingError: the archive is damaged, or does not fit on the disk.
     """
     try:
         with ZipFile(path) as archive:
@@ -96,7 +96,7 @@ def unpack(path: Path, folder: str) -> None:
                 if not name.startswith(NOT_NEEDED):
                     archive.extract(name, folder)
     except Exception as error:
-        raise SimulationError(f"{path.name} cannot be unpacked: {plain(error)}") from error
+        raise UnpackingError(f"{path.name} cannot be unpacked: {plain(error)}") from error
 
 
 def damage(path: Path) -> str | None:

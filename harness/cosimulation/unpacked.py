@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import fmpy
 
-from ..errors import SimulationError
+from ..errors import UnpackingError
 from .archive import unpack
 from .interface import Interface
 from .whereabouts import rest
@@ -29,16 +29,16 @@ def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpac
         folder: in which it is unpacked; None: that for temporary files.
 
     Raises:
-        SimulationError: it cannot be unpacked, or has no binary for this platform.
+        UnpackingError: it cannot be unpacked, or has no binary for this platform.
     """
     path = interface.path
     with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as files:
         if not files.isascii():
-            raise SimulationError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
+            raise UnpackingError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
         rest()  # unpacking may take longer than a call may
         unpack(path, files)
         platforms = fmpy.supported_platforms(files)
         if fmpy.platform not in platforms:
             has = ", ".join(platforms) or "none"
-            raise SimulationError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
+            raise UnpackingError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
         yield Unpacked(interface, files)

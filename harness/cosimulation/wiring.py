@@ -31,6 +31,15 @@ class Fit(NamedTuple):
         """Of the FMU that a variable `instance.variable` belongs to."""
         return self.interfaces[name.partition(".")[0]].path.name
 
+    def parameters(self, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
+        """The numbers that the parameters have, by instance and name: those that are given, and where others start."""
+        found: dict[str, dict[str, float]] = {}
+        for instance, interface in self.interfaces.items():
+            reals = [v for v in interface.of_causality("parameter") if v.type == "Real"]
+            starts = {v.name: float(v.start) * interface.factors.get(v.name, 1.0) for v in reals if v.start is not None}
+            found[instance] = {name: given.get(f"{instance}.{name}", start) for name, start in starts.items()}
+        return found
+
 
 def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = ()) -> Fit:
     """Reads the FMUs of a system, maps their variables and checks that they fit.

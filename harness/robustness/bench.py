@@ -10,8 +10,8 @@ import numpy as np
 
 from ..analysis.box import changed
 from ..control_loop import PLACES
-from ..cosimulation.wiring import Fit, fit
-from ..errors import DrivelineError, SimulationError
+from ..cosimulation.wiring import fit
+from ..errors import DrivelineError, SimulationError, UnpackingError
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..metrics.evaluate import evaluate
 from ..plain import plain
@@ -72,9 +72,15 @@ class Bench:
         return simulate(MANOEUVRES[case.manoeuvre], loop.plant, control, **{**settings, "seed": drawn.noise})
 
     def outcome(self, case: Case) -> Outcome:
-        """What came of a case; one that an FMU ends has no metrics."""
+        """What came of a case; one that an FMU ends has no metrics.
+
+        Raises:
+            UnpackingError: an FMU cannot be unpacked or loaded on this machine.
+        """
         try:
             results = self.results(case)
+        except UnpackingError:
+            raise  # that is the machine, and not the controller
         except SimulationError as reason:
             return Outcome(case, {metric.name: nan for metric in METRICS}, plain(reason))
         metrics = evaluate(results, MANOEUVRES[case.manoeuvre])
@@ -91,22 +97,12 @@ def _loop(plant: str, settings: Settings) -> Loop:
     places = {place: _absolute(str(settings[place])) for place in PLACES if settings.get(place)}
     given = {**settings, **places, "folder": Path(settings["folder"]).absolute()}
     digests = {path.absolute(): digest(path) for path in system.instances.values()}
-    return Loop(_absolute(plant), given, blocks_of(fit(system), settings["parameters"]), digests)
+    return Loop(_absolute(plant), given, fit(system).parameters(settings["parameters"]), digests)
 
 
 def _absolute(block: str) -> str:
     """A block by its name, or the whole path of an FMU."""
     return str(Path(block).absolute()) if Path(block).suffix == ".fmu" else block
-
-
-def blocks_of(fitted: Fit, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """The parameters of each FMU by its place: those that are given, and where others start."""
-    found: dict[str, dict[str, float]] = {}
-    for place, interface in fitted.interfaces.items():
-        reals = [v for v in interface.of_causality("parameter") if v.type == "Real"]
-        starts = {v.name: float(v.start) * interface.factors.get(v.name, 1.0) for v in reals if v.start is not None}
-        found[place] = {name: given.get(f"{place}.{name}", start) for name, start in starts.items()}
-    return found
 
 
 def _require(path: Path, wanted: str) -> None:

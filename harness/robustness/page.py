@@ -67,11 +67,12 @@ answered is run again by another one.
 """
 
 
-def page(summaries: Sequence[Summary], seed: int, arguments: str) -> str:
+def page(summaries: Sequence[Summary], seed: int, arguments: str, drawn: Sequence[Summary]) -> str:
     """The page as Markdown.
 
     Args:
         arguments: of the command, beside how many cases.
+        drawn: those of which there is a figure of the worst draw.
     """
     count, controller = len(summaries[0].outcomes), summaries[0].controller
     plants = list(dict.fromkeys(summary.plant for summary in summaries))
@@ -87,11 +88,11 @@ def page(summaries: Sequence[Summary], seed: int, arguments: str) -> str:
         loss=100.0 * LOSS,
         scaled="\n".join(f"- {name}: {', '.join(f'`{each}`' for each in names)}" for name, names in SCALED.items()),
         verdicts="\n".join(f"- *{name}*: {meaning}." for name, meaning in VERDICTS.items()),
-        three=300.0 / count,
+        three=min(300.0 / count, 100.0),
         results="\n\n".join(_of_plant(plant, summaries, controller) for plant in plants),
         controller=controller,
         worst=markdown_table(["plant", "manoeuvre", "draw"], _worst(own, seed), labels=3),
-        figures="\n".join(f"![{s.plant}, {s.manoeuvre}](figures/{figure_name(s)}.png)" for s in own),
+        figures="\n".join(f"![{s.plant}, {s.manoeuvre}](figures/{figure_name(s)}.png)" for s in drawn),
     )
 
 

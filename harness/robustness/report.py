@@ -1,12 +1,14 @@
 """What is shown and written of a campaign: tables on the terminal, the page, figures."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from ..analysis.box import Deviation
+from ..errors import SimulationError
 from ..reports.csv_file import write_csv, write_rows
 from ..reports.files import write_text
 from ..reports.table import write_metrics
@@ -59,13 +61,16 @@ def write(outcomes: Sequence[Outcome], bench: Bench, arguments: str, caption: st
     drawn = [draw(number, bench.seed) for number in numbers]
     write_rows(["number", "noise", *Deviation._fields], ([d.number, d.noise, *d.deviation] for d in drawn), draws)
     write_metrics([each.record for each in found], summary)
-    write_text(page(found, bench.seed, arguments), text)
     files = [draws, summary, text]
     for plant in dict.fromkeys(each.plant for each in found):
         files += plot_distributions(found, plant, caption, figures / f"robustness_{plant}")
+    drawn = []
     for each in found:
         if each.controller == found[0].controller and not each.worst.reason:
-            files += plot_draw(bench, each.worst.case, caption, figures / figure_name(each))
+            with suppress(SimulationError):  # a car that is not fit to be driven without damping
+                files += plot_draw(bench, each.worst.case, caption, figures / figure_name(each))
+                drawn.append(each)
+    write_text(page(found, bench.seed, arguments, drawn), text)
     return files
 
 

@@ -1,5 +1,6 @@
 """Many runs on a Dask cluster: the same answers as here, and a worker that is lost takes no answer with it."""
 
+import asyncio
 import os
 import signal
 import sys
@@ -65,6 +66,13 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
 
     cases = [0.0, 1.0, 2.0, 3.0]
     assert answers(end, cases, cluster) == [end(case) for case in cases]
+
+
+def test_a_notebook_has_an_event_loop_of_its_own(cluster):
+    async def cell():
+        return answers(abs, [-1, -2], cluster)
+
+    assert asyncio.run(cell()) == [1, 2]
 
 
 def test_what_goes_wrong_on_a_worker_names_its_case(cluster):

@@ -11,6 +11,7 @@ from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface, unit_of
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import Connection, System
+from harness.cosimulation.wiring import fit
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
@@ -33,6 +34,14 @@ def face(path):
         for v in Interface(path).variables.values()
         if v.causality in ("input", "output")
     ]
+
+
+def test_parameters_are_those_that_are_given_and_where_the_fmus_start(native):
+    fitted = fit(loop("TwoMassDriveline", folder=native.parent, build="native"))
+    found = fitted.parameters({"plant.J_1": 0.07})
+    assert found["plant"]["J_1"] == 0.07
+    assert found["plant"]["C"] == float(Interface(native / "TwoMassDriveline.fmu").variables["C"].start)
+    assert found.keys() == {"plant", "motor", "can", "controller"}
 
 
 def test_both_plants_have_one_interface(built):

@@ -7,7 +7,7 @@ import pytest
 
 from harness.analysis.box import Deviation, changed, deviating
 from harness.control_loop import PLACES
-from harness.errors import DrivelineError
+from harness.errors import DrivelineError, SimulationError, UnpackingError
 from harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from harness.metrics.evaluate import evaluate
 from harness.robustness.archive import Archive
@@ -34,6 +34,20 @@ class Pretended(Bench):
             raise DrivelineError("stopped")
         self.asked.append(case)
         return outcome(case.number, case.controller, case.manoeuvre, settling_time=0.1 * case.number)
+
+
+@pytest.mark.parametrize("error", [SimulationError, UnpackingError])
+def test_what_an_fmu_refuses_is_an_outcome_and_what_the_machine_refuses_is_not(error, monkeypatch):
+    def refused(self, case):
+        raise error("no space left")
+
+    monkeypatch.setattr(Bench, "results", refused)
+    case = cases(LOOPS, [1])[0]
+    if error is UnpackingError:
+        with pytest.raises(UnpackingError, match="no space left"):
+            Bench.outcome(Pretended(), case)
+    else:
+        assert Bench.outcome(Pretended(), case).reason == "no space left"
 
 
 def test_every_controller_gets_every_draw_in_every_manoeuvre():
