@@ -40,7 +40,7 @@ def test_parameters_are_those_that_are_given_and_where_the_fmus_start(native):
     fitted = fit(loop("TwoMassDriveline", folder=native.parent, build="native"))
     found = fitted.parameters({"plant.J_1": 0.07})
     assert found["plant"]["J_1"] == 0.07
-    assert found["plant"]["C"] == float(Interface(native / "TwoMassDriveline.fmu").variables["C"].start)
+    assert found["plant"]["C"] == float(Interface(native / "TwoMassDriveline.fmu").variables["C"].start or "nan")
     assert found.keys() == {"plant", "motor", "can", "controller"}
 
 
