@@ -3,8 +3,9 @@
 A demand that ends the rest meets nothing but the inertia of the motor until the teeth touch. With s the speed that
 the torque gives a free motor, J_1 ds/dt = T_mot, a speed of the right sign is s and one of the wrong sign -s. What
 is compared is its integral over s from 0 to FREE, `course`, with FREE^2/2 and -FREE^2/2, so that a throw at the end
-counts little. Whatever else the motor does tells nothing: on the flank of a tooth say, or thrown back by one. Nor
-does a car that rolls before it is pushed, or the damping torque, which always pushes against the motion.
+counts little; and it must not have turned the other way meanwhile. Whatever else the motor does tells nothing: on the
+flank of a tooth say, or thrown back by one. Nor does a car that rolls before it is pushed, or the damping torque,
+which always pushes against the motion.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -12,11 +13,14 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Boolean, Real
 from ..block.operators import clip, logical_and, logical_not, maximum, minimum, sign, where
 
-FREE = 3.0
+FREE = 4.5
 """Speed in rad/s that the torque must give a free motor before it is looked at: sensor noise is far below."""
 
 FIRM = 1.5
 """Torque over T_still that must push it then: with less its offset decides, and the flanks throw it about."""
+
+STRAY = 0.5
+"""Speed in rad/s by which it may have turned the other way meanwhile: a flank that throws it back makes more."""
 
 LIKE = 0.5
 """Share of FREE^2/2 by which `course` may differ from it."""
@@ -31,12 +35,14 @@ class DepartureState(NamedTuple):
     course: Annotated[
         float, Real("rad2/s2", "integral of that change over the speed that the torque gives a free motor")
     ]
+    forth: Annotated[float, Real("rad/s", "how far it has turned with the torque at most")]
+    back: Annotated[float, Real("rad/s", "how far it has turned against it at most")]
     way: Annotated[float, Real("1", "1 the motor has set off with its torque, -1 against it, 0 not known")]
     misled: Annotated[bool, Boolean("in fallback, its speed has the other direction than it has set off in")]
 
 
 def start() -> DepartureState:
-    return DepartureState(pushed=False, free=0.0, turned=0.0, course=0.0, way=0.0, misled=False)
+    return DepartureState(pushed=False, free=0.0, turned=0.0, course=0.0, forth=0.0, back=0.0, way=0.0, misled=False)
 
 
 def update(
@@ -67,15 +73,21 @@ def update(
     turned = x.turned + where(counting, change, 0.0)
     seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= FIRM * p.T_still)
     course = x.course + turned * (free - x.free)
+    with_it = sign(free) * turned
+    forth, back = maximum(x.forth, with_it), maximum(x.back, -with_it)
     failing = logical_not(trusted)
     forgotten = logical_and(failing, logical_not(launching))
-    way = where(seen, like(course, 0.5 * free * free), where(forgotten, minimum(x.way, 0.0), x.way))
+    other = where(course > 0.0, back, forth)
+    looks = where(other <= STRAY, like(course, 0.5 * free * free), 0.0)
+    way = where(seen, looks, where(forgotten, minimum(x.way, 0.0), x.way))
     opposite = sign(x.free) * omega_1 < -p.omega_still
     return DepartureState(
         pushed=pushed,
         free=where(resting, 0.0, free),
         turned=where(resting, 0.0, turned),
         course=where(resting, 0.0, course),
+        forth=where(resting, 0.0, forth),
+        back=where(resting, 0.0, back),
         way=where(resting, 0.0, way),
         misled=logical_and(logical_and(launching, failing), logical_and(is_with(x), opposite)),
     )

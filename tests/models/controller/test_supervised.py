@@ -81,7 +81,7 @@ def test_a_free_motor_is_compared_with_the_torque_of_the_same_sample(T_driver: f
     p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
     x = OURS.start(standing, p)._replace(since_rest=0.0)
     omega, T_mot = 0.0, 0.0
-    while x.departure.way == 0.0 and omega < 6.0:
+    while x.departure.way == 0.0 and omega < 20.0:
         x = OURS.update(x, standing._replace(T_driver=T_driver, T_mot_est=T_mot, omega_1_meas=side * omega), p)
         before, T_mot = T_mot, x.monitor.loop.T_mot
         omega += 0.5 * T_S * (before + T_mot) / p.J_1
@@ -92,7 +92,7 @@ def test_a_speed_that_misleads_does_not_prove_itself() -> None:
     """In fallback, while the car pulls away; however steady the speed of the other direction is."""
     p, backwards = OURS.Parameters(), ROLLING._replace(T_driver=20.0, T_mot_est=20.0, omega_1_meas=-10.0, valid=False)
     x = OURS.start(backwards, p)
-    away = x.departure._replace(pushed=True, free=3.0, way=1.0)
+    away = x.departure._replace(pushed=True, free=4.5, way=1.0)
     x = x._replace(departure=away, since_rest=0.2, trust=TrustState(proof=0.0, needed=p.t_proof, caught=False))
     statuses = []
     for k in range(round(1.2 / T_S)):

@@ -212,7 +212,7 @@ def test_a_car_that_was_seen_to_roll_back_does_so_under_any_torque() -> None:
 def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque() -> None:
     """It was pushed too little to hold the car, which rolls back now."""
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    right = DepartureState(pushed=True, free=2.0, turned=2.0, course=2.0, way=1.0, misled=False)
+    right = DepartureState(pushed=True, free=2.0, turned=2.0, course=2.0, forth=2.0, back=0.0, way=1.0, misled=False)
     assert heard(new(60.0), x, omega_1=-60.0, T_mot=180.0, leaving=right).omega_2 == -60.0
     assert heard(new(60.0), x, omega_1=60.0, T_mot=180.0, leaving=right).omega_2 == 60.0
 
@@ -220,7 +220,9 @@ def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque()
 @each_side
 def test_a_motor_that_has_set_off_against_its_torque_goes_where_that_pushed(side: float) -> None:
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    wrong = DepartureState(pushed=True, free=side * 2.0, turned=-side * 2.0, course=-2.0, way=-1.0, misled=False)
+    wrong = DepartureState(
+        pushed=True, free=side * 2.0, turned=-side * 2.0, course=-2.0, forth=0.0, back=2.0, way=-1.0, misled=False
+    )
     for T_mot in (0.0, 180.0):
         y = heard(new(60.0), x, omega_1=-side * 60.0, T_mot=T_mot, omega_2_hat=-side * 60.0, leaving=wrong)
         assert (y.omega_2, y.usable, y.apart) == (side * 60.0, False, T_S)
