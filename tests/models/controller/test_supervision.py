@@ -316,7 +316,8 @@ def test_a_motor_that_sets_off_against_its_torque_is_not_believed(block: Sampled
 
     wrong, right = driven_with(1.0), driven_with(-1.0)
     first = [x.status for x in wrong].index(FALLBACK)
-    assert (first - len(resting)) * T_S == pytest.approx(4.5 * P.J_1 / 10.0 + lag, abs=2.0 * T_S)
+    soonest = 4.5 * P.J_1 / 10.0 + lag
+    assert soonest - 2.0 * T_S <= (first - len(resting)) * T_S <= soonest + 5.0 * T_S, "a landing withholds torque"
     assert {x.status for x in wrong[first : len(resting) + len(launch)]} == {FALLBACK}
     assert wrong[-1].status == WITHOUT_WHEEL_SPEED
     assert {x.status for x in right[: len(resting) + len(launch)]} == {WITHOUT_WHEEL_SPEED}
