@@ -64,13 +64,13 @@ def write(outcomes: Sequence[Outcome], bench: Bench, arguments: str, caption: st
     files = [draws, summary, text]
     for plant in dict.fromkeys(each.plant for each in found):
         files += plot_distributions(found, plant, caption, figures / f"robustness_{plant}")
-    drawn = []
+    shown = []
     for each in found:
         if each.controller == found[0].controller and not each.worst.reason:
             with suppress(SimulationError):  # a car that is not fit to be driven without damping
                 files += plot_draw(bench, each.worst.case, caption, figures / figure_name(each))
-                drawn.append(each)
-    write_text(page(found, bench.seed, arguments, drawn), text)
+                shown.append(each)
+    write_text(page(found, bench.seed, arguments, shown), text)
     return files
 
 
