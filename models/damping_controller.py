@@ -5,11 +5,9 @@ torque will act; the damping law (damping_law) adds to the driver's demand what 
 motion and vanishes when stationary. Damping and landing together take no more than T_take_max from the
 demand and add no more than T_add_max to it; modes fade within t_fade.
 
-A motor speed or torque that is not finite, out of range, jumping or frozen is not used. If that lasts, if
-the wheel speed contradicts the motor speed, or if the damping feeds an oscillation, the driver's demand is
-passed through (fallback) until the signals have proved themselves for t_proof. A lost, late or absurd wheel
-speed only ends the mode that uses it. A demand that is not finite counts as zero. At rest (neither demand
-nor motion) the damping fades out and the estimator is held, until there is one or the other.
+While the motor signals are not to be trusted, the driver's demand is passed through (fallback); a wheel speed
+that is not only ends the mode that uses it. What counts as that, and how long, is in docs/control.md. At rest
+(neither demand nor motion) the damping fades out and the estimator is held, until there is one or the other.
 """
 
 from .controller import damping_law, torque_estimator

@@ -1,5 +1,6 @@
 """What a change of a parameter does in a drive: of the damping law, of the car behind its back, and of its sensors."""
 
+from functools import cache
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -89,6 +90,7 @@ def changed_law(name: str) -> tuple[Given, Given]:
     return ((f"controller.{name}", start / FACTOR),), ((f"controller.{name}", start * FACTOR),)
 
 
+@cache
 def another_car(plant: str, deviation: Deviation) -> tuple[Given, Given]:
     """A car that the controller takes for the default one, and the same car with a controller designed for it."""
     controller = PLACES["controller"][0]

@@ -2,10 +2,9 @@
 
 A demand that ends the rest meets nothing but the inertia of the motor until the teeth touch. With s the speed that
 the torque gives a free motor, J_1 ds/dt = T_mot, a speed of the right sign is s and one of the wrong sign -s. What
-is compared is its integral over s from 0 to FREE, `course`, with FREE^2/2 and -FREE^2/2, so that a throw at the end
-counts little; and it must not have turned the other way meanwhile. Whatever else the motor does tells nothing: on the
-flank of a tooth say, or thrown back by one. Nor does a car that rolls before it is pushed, or the damping torque,
-which always pushes against the motion.
+is looked at is how far it is from s and from -s, integrated over s from 0 to FREE and compared with FREE^2/2, the
+integral of s itself. Whatever else the motor does tells nothing: on the flank of a tooth say, or thrown back by one.
+Nor does a car that rolls before it is pushed, or the damping torque, which always pushes against the motion.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -19,11 +18,8 @@ FREE = 4.5
 FIRM = 1.5
 """Torque over T_still that must push it then: with less its offset decides, and the flanks throw it about."""
 
-STRAY = 0.5
-"""Speed in rad/s by which it may have turned the other way meanwhile: a flank that throws it back makes more."""
-
-LIKE = 0.5
-"""Share of FREE^2/2 by which `course` may differ from it."""
+LIKE = 0.25
+"""Share of FREE^2/2 that it may be off: with a slow launch it is less, with a car that rocks on ice more."""
 
 
 class DepartureState(NamedTuple):
@@ -32,17 +28,16 @@ class DepartureState(NamedTuple):
     pushed: Annotated[bool, Boolean("it was the demand that has ended the rest")]
     free: Annotated[float, Real("rad/s", "speed that the demanded torque gives a free motor, until it is FREE")]
     turned: Annotated[float, Real("rad/s", "measured change of the motor speed meanwhile")]
-    course: Annotated[
-        float, Real("rad2/s2", "integral of that change over the speed that the torque gives a free motor")
+    off_with: Annotated[
+        float, Real("rad2/s2", "how far it is from turning with the torque, integrated over the speed of a free motor")
     ]
-    forth: Annotated[float, Real("rad/s", "how far it has turned with the torque at most")]
-    back: Annotated[float, Real("rad/s", "how far it has turned against it at most")]
+    off_against: Annotated[float, Real("rad2/s2", "how far it is from turning against it, integrated likewise")]
     way: Annotated[float, Real("1", "1 the motor has set off with its torque, -1 against it, 0 not known")]
     misled: Annotated[bool, Boolean("in fallback, its speed has the other direction than it has set off in")]
 
 
 def start() -> DepartureState:
-    return DepartureState(pushed=False, free=0.0, turned=0.0, course=0.0, forth=0.0, back=0.0, way=0.0, misled=False)
+    return DepartureState(pushed=False, free=0.0, turned=0.0, off_with=0.0, off_against=0.0, way=0.0, misled=False)
 
 
 def update(
@@ -72,30 +67,24 @@ def update(
     free = x.free + where(counting, T_s * demanded / p.J_1, 0.0)
     turned = x.turned + where(counting, change, 0.0)
     seen = logical_and(logical_and(counting, abs(free) >= FREE), abs(demanded) >= FIRM * p.T_still)
-    course = x.course + turned * (free - x.free)
-    with_it = sign(free) * turned
-    forth, back = maximum(x.forth, with_it), maximum(x.back, -with_it)
+    between, gained = 0.5 * (x.free + free), abs(free - x.free)
+    off_with = x.off_with + gained * abs(turned - between)
+    off_against = x.off_against + gained * abs(turned + between)
     failing = logical_not(trusted)
     forgotten = logical_and(failing, logical_not(launching))
-    other = where(course > 0.0, back, forth)
-    looks = where(other <= STRAY, like(course, 0.5 * free * free), 0.0)
+    most = LIKE * 0.5 * free * free
+    looks = where(off_with <= most, 1.0, where(off_against <= most, -1.0, 0.0))
     way = where(seen, looks, where(forgotten, minimum(x.way, 0.0), x.way))
     opposite = sign(x.free) * omega_1 < -p.omega_still
     return DepartureState(
         pushed=pushed,
         free=where(resting, 0.0, free),
         turned=where(resting, 0.0, turned),
-        course=where(resting, 0.0, course),
-        forth=where(resting, 0.0, forth),
-        back=where(resting, 0.0, back),
+        off_with=where(resting, 0.0, off_with),
+        off_against=where(resting, 0.0, off_against),
         way=where(resting, 0.0, way),
         misled=logical_and(logical_and(launching, failing), logical_and(is_with(x), opposite)),
     )
-
-
-def like(course: Any, free: Any) -> Any:
-    """1 for a course like that of a free motor, -1 for one as far the other way, else 0."""
-    return where(abs(abs(course) - free) <= LIKE * free, sign(course), 0.0)
 
 
 def is_against(x: DepartureState) -> Any:

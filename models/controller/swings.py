@@ -13,7 +13,7 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Real
 from ..block.operators import clip, logical_and, logical_not, maximum, where
 
-SWING = 0.1
+SWING = 0.12
 """Least damping torque of a half swing, over T_max."""
 
 GROWS = 0.7

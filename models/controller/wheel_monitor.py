@@ -143,7 +143,8 @@ def update(
     usable = logical_and(new, near)
     silence = where(new, 0.0, minimum(x.silence + T_s, p.t_stale))
     witness = logical_and(logical_and(known, silence < p.t_stale), logical_not(doubted))
-    far = apart > p.e_wheel + allowed
+    late_then = where(new, late, x.late_then)
+    far = minimum(apart, abs(omega_2 - late_then)) > p.e_wheel + allowed
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=omega_2,
@@ -155,7 +156,7 @@ def update(
         doubted=doubted,
         witness=witness,
         late=late,
-        late_then=where(new, late, x.late_then),
+        late_then=late_then,
         apart=where(logical_and(witness, far), minimum(x.apart + T_s, p.t_apart + T_s), 0.0),
     )
 

@@ -29,11 +29,11 @@ def test_an_unknown_plant_is_answered_with_the_nearest(capsys):
 
 
 @pytest.fixture(scope="module")
-def compared(built, tmp_path_factory):
+def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
     outcomes = list(
-        run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", {plant: {"folder": built} for plant in PLANTS})
+        run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", {plant: {"folder": native.parent} for plant in PLANTS})
     )
     write_tables(outcomes, folder)
     write_figures(outcomes, folder)

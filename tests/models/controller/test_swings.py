@@ -32,7 +32,7 @@ def test_a_half_swing_reaches_over_a_torque_on_both_sides(side: float) -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_half_swings_are_as_large_as_the_motor(side: float) -> None:
     small = P._replace(T_max=1.0)
-    for torques, count in (((0.2, -0.15, 0.12), 2.0 - 1.0 / 8.0), ((0.2, -0.13), 0.0)):
+    for torques, count in (((0.2, -0.15, 0.125), 2.0 - 1.0 / 8.0), ((0.2, -0.13), 0.0)):
         x = swings.start(0.5)
         for torque in torques:
             x = swings.update(x, side * torque, 0.5, True, T_S, small)

@@ -158,14 +158,26 @@ def test_the_motor_speed_is_held_back_to_be_as_late_as_the_messages() -> None:
 
 @each_side
 def test_a_motor_speed_is_contradicted_from_e_wheel_and_a_share_of_the_wheel_speed_on(side: float) -> None:
-    u = new(200.0, counter=7)
-    forwards = wheels.start(u, 200.0, 0.0, P)
+    u = new(200.0)
+    forwards = wheels.start(new(200.0, counter=7), 200.0, 0.0, P)
     limit = P.e_wheel + SHARE * 200.0
     for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
         assert heard(u, forwards, omega_1=200.0 + side * distance).apart == apart
     backwards = wheels.start(new(200.0, counter=7), -200.0, 0.0, P)
     for distance, apart in ((limit - 0.01, 0.0), (limit + 0.01, T_S)):
         assert heard(u, backwards, omega_1=-200.0 + side * distance).apart == apart
+
+
+@each_side
+def test_a_message_contradicts_neither_the_motor_speed_of_now_nor_that_of_when_it_came(side: float) -> None:
+    """Wheels that lock take the motor far from the last message before the next one comes."""
+    limit = P.e_wheel + SHARE * 200.0
+    x = wheels.start(new(200.0, counter=7), 200.0, 0.0, P)
+    moved = heard(new(200.0, counter=7), x, omega_1=200.0 + side * (limit + 0.01))
+    assert (moved.late, moved.late_then, moved.apart) == (200.0 + side * (limit + 0.01), 200.0, 0.0)
+    again = heard(new(200.0), moved, omega_1=moved.late)
+    assert (again.late_then, again.apart) == (moved.late, T_S)
+    assert heard(new(200.0), again, omega_1=200.0 + side * (limit - 0.01)).apart == 0.0
 
 
 @pytest.mark.parametrize("sent", [60.0, -60.0])
@@ -212,7 +224,7 @@ def test_a_car_that_was_seen_to_roll_back_does_so_under_any_torque() -> None:
 def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque() -> None:
     """It was pushed too little to hold the car, which rolls back now."""
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    right = DepartureState(pushed=True, free=2.0, turned=2.0, course=2.0, forth=2.0, back=0.0, way=1.0, misled=False)
+    right = UNKNOWN._replace(free=2.0, way=1.0)
     assert heard(new(60.0), x, omega_1=-60.0, T_mot=180.0, leaving=right).omega_2 == -60.0
     assert heard(new(60.0), x, omega_1=60.0, T_mot=180.0, leaving=right).omega_2 == 60.0
 
@@ -220,9 +232,7 @@ def test_a_motor_that_has_set_off_with_its_torque_is_believed_under_any_torque()
 @each_side
 def test_a_motor_that_has_set_off_against_its_torque_goes_where_that_pushed(side: float) -> None:
     x = wheels.start(U._replace(valid=False), 0.0, 0.0, P)
-    wrong = DepartureState(
-        pushed=True, free=side * 2.0, turned=-side * 2.0, course=-2.0, forth=0.0, back=2.0, way=-1.0, misled=False
-    )
+    wrong = UNKNOWN._replace(free=side * 2.0, way=-1.0)
     for T_mot in (0.0, 180.0):
         y = heard(new(60.0), x, omega_1=-side * 60.0, T_mot=T_mot, omega_2_hat=-side * 60.0, leaving=wrong)
         assert (y.omega_2, y.usable, y.apart) == (side * 60.0, False, T_S)
@@ -273,8 +283,8 @@ def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
 
 
 def test_only_a_witness_contradicts() -> None:
-    assert heard(U, omega_1=300.0).apart == T_S
-    assert heard(U._replace(valid=False), omega_1=300.0).apart == 0.0
+    assert heard(new(), omega_1=300.0).apart == T_S
+    assert heard(new(valid=False), omega_1=300.0).apart == 0.0
     assert heard(new(250.0), omega_1=100.0).apart == 0.0, "it has leapt"
 
 
