@@ -5,6 +5,7 @@ from random import Random
 
 import pytest
 
+from fmus.builds import NotPossible
 from tests.fuzz.targets import TARGETS
 
 
@@ -12,7 +13,10 @@ from tests.fuzz.targets import TARGETS
 def test_odd_input_is_answered_as_promised(name, tmp_path, unpacked):
     target, own = TARGETS[name], tmp_path / "own"
     own.mkdir()
-    with target.open(own) as attempt:
-        for k in range(target.short):
-            attempt(Random(f"1 {k}"))
+    try:
+        with target.open(own) as attempt:
+            for k in range(target.short):
+                attempt(Random(f"1 {k}"))
+    except NotPossible as reason:
+        pytest.skip(str(reason))
     assert list(unpacked.iterdir()) == [], tempfile.tempdir
