@@ -23,7 +23,8 @@ ROOMS = {
     "fmus": {"fmus.description", "fmus.python", "fmus.native", "models", "models.block", "models.comparators"},
     "": {"fmus"},
     "harness.cosimulation": {"harness"},
-    "harness.manoeuvres": COSIMULATION,
+    "harness.recordings": COSIMULATION,
+    "harness.manoeuvres": COSIMULATION | {"harness.recordings"},
     "harness.metrics": {"harness", "harness.manoeuvres"},
     "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
@@ -44,7 +45,14 @@ ROOMS = {
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
-    | {"harness.bound", "harness.faults", "harness.linear", "harness.tuning", "harness.robustness"},
+    | {
+        "harness.recordings",
+        "harness.bound",
+        "harness.faults",
+        "harness.linear",
+        "harness.tuning",
+        "harness.robustness",
+    },
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
 the analysis, its linear loop and the bound know the models."""
@@ -98,7 +106,7 @@ def reached(module: str) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("room", ["cosimulation", "manoeuvres", "metrics", "compliance"])
+@pytest.mark.parametrize("room", ["cosimulation", "recordings", "manoeuvres", "metrics", "compliance"])
 def test_what_runs_any_fmu_knows_nothing_of_how_ours_are_made(room: str) -> None:
     for module in modules():
         if module.startswith(f"harness.{room}."):

@@ -5,21 +5,25 @@ from hashlib import sha256
 from pathlib import Path
 
 from ..control_loop import PLACES, PLANTS
-from ..manoeuvres.recording import COLUMNS
 from ..metrics.record import RideMetrics
+from ..recordings.quantities import aliases, example
 from ..reports.table import legend
 from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
+from .recording_options import add_recording
 from .settings import caption, distinguishing, settings_of_each
 
 LEGEND = legend(RideMetrics)
 
+COLUMNS = ", ".join(example(quantity, aliases()) for quantity in ("time", "v", "elevation", "T_mot"))
+
 DESCRIPTION = f"""\
-Reads a recorded drive, a CSV file with the columns
+Reads a recorded drive, a file with the columns
 
-  {", ".join(column.example for column in COLUMNS.values())}
+  {COLUMNS}
 
-in any order (others are ignored), and drives the vehicle with its torque demand, once without damping
+in any order and under any name that docs/recordings.md lists (others are ignored; without elevation the
+road is level), and drives the vehicle with its torque demand, once without damping
 and once with each controller. Brake and grade keep the simulated car at the recorded speed. They are
 found by driving without damping and are then the same for all; nothing in them is as fast as 1 Hz
 (docs/replay.md). The table shows
@@ -34,14 +38,14 @@ EXAMPLES = """\
 examples:
   driveline replay harness/manoeuvres/data/town_drive.csv
   driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
+  driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
   driveline replay my_trip.csv --set plant.m=1900
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    file = parser.add_argument("recording", type=Path, metavar="RECORDING.csv", help="the recorded drive")
-    file.complete = "file"  # type: ignore[attr-defined]
+    add_recording(parser, "the recorded drive")
     add_plant(parser, default=PLANTS[1])
     parser.add_argument(
         "--held",
@@ -57,15 +61,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.wiring import fit
-    from ..manoeuvres.recording import read_recording
     from ..manoeuvres.road import RoadLoad, Track, torque_limit
     from ..provenance import recorded
+    from ..recordings.drive import read_drive
     from ..replay import by_name, records, replay, write
     from ..reports.terminal import print_table, rides_reasons, rides_table
     from ..simulate import looped
 
     out = Printer(args)
-    recording = read_recording(args.recording)
+    recording = read_drive(args.recording, dict(args.columns), args.aliases)
+    if recording.elevation is None:
+        out.say(f"{args.recording} has no elevation: the road is level")
     controllers = by_name(args.controller or PLACES["controller"][:1])
     plant = Path(args.plant).stem
     given = settings_of_each(args, args.plant, controllers)
@@ -76,8 +82,9 @@ def run(args: argparse.Namespace) -> int:
     track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
+    same |= {"columns": dict(args.columns)}
     same |= {f"with {name}": distinguishing(given[name], system, None) for name, system in systems.items()}
-    read = [args.recording, args.vehicle, args.parameters]
+    read = [args.recording, *args.aliases, args.vehicle, args.parameters]
     with recorded(record, same, systems, read, [metrics], args.replace) as made:
         out.say(
             f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {given[first]['build']} FMUs, without damping and "

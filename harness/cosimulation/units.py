@@ -43,6 +43,15 @@ def factor(unit: str, wanted: str) -> float:
     return float(one)
 
 
+def known(unit: str) -> bool:
+    """Whether the text is a unit."""
+    try:
+        _parsed(unit, _registry())
+    except ValueError:
+        return False
+    return True
+
+
 @cache
 def _registry() -> Any:
     import pint  # takes half a second, which only those who convert should pay

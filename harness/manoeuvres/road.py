@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..cosimulation.interface import Interface
 from ..errors import WiringError
-from .recording import Recording
+from ..recordings.drive import Drive
 
 ROTATING_MASS = 1.09
 """Mass including the rotating parts, over the mass."""
@@ -93,7 +93,7 @@ class Track:
         t: in s.
         v: speed in m/s.
         T_driver: motor torque in N.m within the limits of the motor: the driver's demand.
-        slope: of the road in rad.
+        slope: of the road in rad, 0 where no elevation was recorded.
     """
 
     name: str
@@ -104,7 +104,7 @@ class Track:
     slope: np.ndarray
 
     @classmethod
-    def of(cls, recording: Recording, T_max: float = inf) -> Self:
+    def of(cls, recording: Drive, T_max: float = inf) -> Self:
         """
         Args:
             T_max: largest torque of the motor in N.m.
@@ -112,8 +112,10 @@ class Track:
         time = recording.time - recording.time[0]
         interval = round(float(np.median(np.diff(time))), 9)
         t = np.arange(int(time[-1] / interval + 1e-6) + 1) * interval
-        v, elevation, T_mot = (np.interp(t, time, x) for x in (recording.v, recording.elevation, recording.T_mot))
-        slope = road_slope(v, elevation, interval)
+        v, T_mot = (np.interp(t, time, x) for x in (recording.v, recording.T_mot))
+        slope = np.zeros_like(v)
+        if recording.elevation is not None:
+            slope = road_slope(v, np.interp(t, time, recording.elevation), interval)
         return cls(recording.name, interval, t, v, np.clip(T_mot, -T_max, T_max), slope)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from harness.errors import DrivelineError
 from harness.manoeuvres.follower import drive, needed_force
-from harness.manoeuvres.recording import read_recording
 from harness.manoeuvres.road import RoadLoad, Track
+from harness.recordings.drive import read_drive
 
 from .damage import ODD, spoiled_bytes, spoiled_text
 from .target import Attempt, Target, Unclean
@@ -40,7 +40,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         path = folder / "drive.csv"
         path.write_bytes(damaged(random))
         try:
-            track = Track.of(read_recording(path))
+            track = Track.of(read_drive(path))
             manoeuvre = drive(track, CAR, needed_force(track, CAR), held=random.choice((None, 0.5)))
         except DrivelineError as refusal:
             if "\n" in str(refusal):

@@ -16,13 +16,13 @@ from harness.cosimulation.interface import Interface
 from harness.errors import WiringError
 from harness.manoeuvres.follower import HELD_MIN, drive, needed_force
 from harness.manoeuvres.manoeuvre import Manoeuvre
-from harness.manoeuvres.recording import read_recording
 from harness.manoeuvres.road import RoadLoad, Track
 from harness.manoeuvres.signals import Lines
 from harness.manoeuvres.town_drive import PATH
 from harness.metrics.damage import MissingExtra
 from harness.metrics.evaluate import T_S
 from harness.metrics.spectrum import band_rms
+from harness.recordings.drive import read_drive
 from harness.replay import CLOSE, followed, replay, signals_of, speed_error, write
 from tests import ROOT
 
@@ -56,7 +56,7 @@ def load(native):
 def replayed(settings, load, short_drive, tmp_path_factory):
     """Rides of the short drive, two with the same controller, and the folder with their files."""
     folder = tmp_path_factory.mktemp("replay")
-    track = Track.of(read_recording(short_drive))
+    track = Track.of(read_drive(short_drive))
     controllers = {"DampingController": settings, "Again": settings}
     rides = replay(track, load, "ValidationVehicle", controllers, held=0.5)
     write(rides, track, "ValidationVehicle", folder)
@@ -64,7 +64,7 @@ def replayed(settings, load, short_drive, tmp_path_factory):
 
 
 def town():
-    return Track.of(read_recording(PATH), T_max=180.0)
+    return Track.of(read_drive(PATH), T_max=180.0)
 
 
 def hilly():
@@ -78,7 +78,7 @@ def stretch(name):
     path = DATA / f"{name}.csv"
     if not path.exists():
         pytest.skip(f"recorded drive {path} is not on this machine")
-    recording, (begin, end) = read_recording(path), TRIPS[name]
+    recording, (begin, end) = read_drive(path), TRIPS[name]
     part = (recording.time - recording.time[0] >= begin) & (recording.time - recording.time[0] <= end)
     names = ("time", "v", "elevation", "T_mot")
     return Track.of(replace(recording, **{name: getattr(recording, name)[part] for name in names}), T_max=180.0)
@@ -164,7 +164,7 @@ def test_all_drive_on_the_same_road(replayed):
 
 
 def test_a_demand_is_not_held_for_less_than_a_step(load, short_drive):
-    track = Track.of(read_recording(short_drive))
+    track = Track.of(read_drive(short_drive))
     F = needed_force(track, load)
     assert drive(track, load, F, held=HELD_MIN).duration == drive(track, load, F).duration
     for held in (0.999 * HELD_MIN, 1e-300, float("nan")):
@@ -224,4 +224,4 @@ def test_without_the_counting_package_the_extra_is_named_before_the_run(short_dr
     monkeypatch.setitem(sys.modules, "rainflow", None)
     load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
     with pytest.raises(MissingExtra, match="extra `replay`"):
-        replay(Track.of(read_recording(short_drive)), load, "ValidationVehicle", {"DampingController": {}})
+        replay(Track.of(read_drive(short_drive)), load, "ValidationVehicle", {"DampingController": {}})

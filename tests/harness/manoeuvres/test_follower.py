@@ -18,10 +18,10 @@ from harness.manoeuvres.follower import (
     lacking_force,
     needed_force,
 )
-from harness.manoeuvres.recording import read_recording
 from harness.manoeuvres.road import RoadLoad, Track
 from harness.manoeuvres.town_drive import PATH
 from harness.metrics.spectrum import band_rms
+from harness.recordings.drive import read_drive
 
 LOAD = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
 RESISTANCE = 1450.0 * 9.81 * 0.012
@@ -81,7 +81,7 @@ def test_of_1_hz_less_than_a_hundredth_is_left_and_of_the_drive_train_nothing(fr
 
 
 def test_brake_and_grade_are_the_force_together_while_the_car_rolls():
-    town = Track.of(read_recording(PATH))
+    town = Track.of(read_drive(PATH))
     F = needed_force(town, LOAD)
     rolling = ~holding(town, LOAD, F)
     manoeuvre = drive(town, LOAD, F)
@@ -91,7 +91,7 @@ def test_brake_and_grade_are_the_force_together_while_the_car_rolls():
 
 
 def test_nothing_of_it_is_in_the_band_of_the_drive_train_while_the_car_rolls():
-    town = Track.of(read_recording(PATH))
+    town = Track.of(read_drive(PATH))
     manoeuvre = drive(town, LOAD, needed_force(town, LOAD))
     t = np.arange(2.5, 22.0, 0.002)
     for torque in (manoeuvre.T_brake(t), 0.29 * 1450.0 * 9.81 * np.sin(manoeuvre.slope(t))):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from harness.manoeuvres import town_drive
-from harness.manoeuvres.recording import read_recording
+from harness.recordings.drive import read_drive
 
 
 def test_the_bundled_file_is_what_its_script_writes(tmp_path):
@@ -12,7 +12,7 @@ def test_the_bundled_file_is_what_its_script_writes(tmp_path):
 
 
 def test_it_pulls_away_passes_zero_torque_and_stops_at_a_light():
-    recording = read_recording(town_drive.PATH)
+    recording = read_drive(town_drive.PATH)
     moving = recording.v > 0.0
     starts = np.flatnonzero(moving[1:] & ~moving[:-1])
     stops = np.flatnonzero(~moving[1:] & moving[:-1])

@@ -9,8 +9,9 @@ import pytest
 
 from harness.cosimulation.interface import Interface
 from harness.manoeuvres.follower import drive, needed_force
-from harness.manoeuvres.recording import RecordingError, read_recording
 from harness.manoeuvres.road import RoadLoad, Track, torque_limit
+from harness.recordings.drive import read_drive
+from harness.recordings.source import RecordingError
 from tests import ROOT
 
 HEADER = "Time [s],Velocity [km/h],Elevation [m],Throttle [%],Motor Torque [Nm]"
@@ -38,15 +39,16 @@ def rows(count):
 
 def test_columns_are_found_by_name_and_turned_into_si_units(write):
     path = write("0,10,1,x,0.02", "200,11,2,x,0.03", header="t [ms],SPEED [m/s],Altitude [km],Note, Torque [kNm]")
-    recording = read_recording(path)
+    recording = read_drive(path)
     assert recording.time.tolist() == [0.0, 0.2]
     assert recording.v.tolist() == [10.0, 11.0]
+    assert recording.elevation is not None
     assert recording.elevation.tolist() == [1000.0, 2000.0]
     assert recording.T_mot.tolist() == [20.0, 30.0]
 
 
 def test_kilometres_per_hour_and_newton_metres(write):
-    recording = read_recording(write(*rows(3), ""))
+    recording = read_drive(write(*rows(3), ""))
     assert recording.v == pytest.approx([10.0, 10.0, 10.0])
     assert recording.T_mot.tolist() == [0.0, 1.0, 2.0]
 
@@ -55,86 +57,106 @@ def test_kilometres_per_hour_and_newton_metres(write):
     ("header", "said"),
     [
         ("Time [s],Velocty [km/h],Elevation [m],Motor Torque [Nm]", r"no column Velocity.*Velocty"),
-        ("Time [s],Velocity [km/s],Elevation [m],Motor Torque [Nm]", r"Velocity \[km/s\].*allowed.*km/h"),
+        (
+            "Time [s],Velocity [km],Elevation [m],Motor Torque [Nm]",
+            r"Velocity \[km\] is in km, .* as in Velocity \[km/h\]",
+        ),
         ("Time [s],Velocity,Elevation [m],Motor Torque [Nm]", r"unit \(none\)"),
         ("Time [s],Velocity [m/s],Elevation [m],Speed [m/s],Torque [Nm]", r"Velocity.*Speed.*keep one"),
     ],
 )
 def test_a_header_that_does_not_fit_is_explained(write, header, said):
     with pytest.raises(RecordingError, match=said):
-        read_recording(write("0,1,2,3", header=header))
+        read_drive(write("0,1,2,3", header=header))
 
 
 @pytest.mark.parametrize("cell", ["nan", "inf", "fast", ""])
 def test_a_cell_that_is_no_number_is_named_by_line_and_column(write, cell):
     with pytest.raises(RecordingError, match=r"line 4, column Velocity \[km/h\]"):
-        read_recording(write(*rows(2), f"0.2,{cell},500,3,1"))
+        read_drive(write(*rows(2), f"0.2,{cell},500,3,1"))
 
 
 def test_what_a_refused_cell_holds_is_shown_in_one_short_line(write):
     path = write("0,36,500,3,1", '0.1,"\x1b[31m' + 500 * "\n7" + '",501,3,1')
     with pytest.raises(RecordingError, match="Velocity") as refusal:
-        read_recording(path)
+        read_drive(path)
     assert str(refusal.value).isprintable()
     assert len(str(refusal.value)) < 200 + len(str(path))
 
 
-@pytest.mark.parametrize("content", [b"Time [s]\xff,\n", b"\xff\xfe", b'Time [s],"' + 200_000 * b"x"])
-def test_what_is_no_text_or_no_csv_is_refused(tmp_path, content):
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "is empty"),
+        (b"\xff\xfe", "is empty"),
+        (b"\xff\xfex", "is no text: truncated data"),
+        (b'Time [s],"' + 200_000 * b"x", "is no CSV file"),
+        (b"Time [s]\xff,\n", "no column Time"),
+        (b"0.0,36,500,1\n0.1,36,500,1\n", "line 1: there is no line of names"),
+    ],
+)
+def test_what_is_no_text_or_no_csv_is_refused(tmp_path, content, said):
     path = tmp_path / "trip.csv"
     path.write_bytes(content)
-    with pytest.raises(RecordingError, match="no CSV file in UTF-8"):
-        read_recording(path)
+    with pytest.raises(RecordingError, match=said):
+        read_drive(path)
+
+
+def test_without_elevation_the_road_is_level(write):
+    drive = read_drive(write("0,36,1", "1,36,2", header="Time [s],Velocity [km/h],Motor Torque [Nm]"))
+    assert drive.elevation is None
+    assert Track.of(drive).slope.tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("0.1,721,501,3,1", r"line 3: Velocity is 200\.278 m/s; at most 200 m/s"),
-        ("0.1,36,-10001,3,1", r"line 3: Elevation is -10001 m; at most 10000 m"),
-        ("0.1,36,501,3,10001", r"line 3: Motor Torque is 10001 Nm; at most 10000 Nm"),
+        ("0.1,721,501,3,1", r"line 3: Velocity \[km/h\] is 200\.278 m/s; at most 200 m/s"),
+        ("0.1,36,-10001,3,1", r"line 3: Elevation \[m\] is -10001 m; at most 10000 m"),
+        ("0.1,36,501,3,10001", r"line 3: Motor Torque \[Nm\] is 10001 N\.m; at most 10000 N\.m"),
     ],
 )
 def test_what_no_car_can_have_recorded_is_refused_with_its_line(write, line, said):
     with pytest.raises(RecordingError, match=said):
-        read_recording(write(*rows(1), line))
+        read_drive(write(*rows(1), line))
 
 
 def test_the_largest_values_that_can_be_are_taken(write):
-    recording = read_recording(write(*rows(1), "0.1,720,10000,3,-10000"))
+    recording = read_drive(write(*rows(1), "0.1,720,10000,3,-10000"))
+    assert recording.elevation is not None
     assert (recording.v[-1], recording.elevation[-1], recording.T_mot[-1]) == (200.0, 1e4, -1e4)
 
 
 def test_a_short_line_is_refused(write):
     with pytest.raises(RecordingError, match=r"line 4, column Motor Torque.*nothing"):
-        read_recording(write(*rows(2), "0.2,36,500"))
+        read_drive(write(*rows(2), "0.2,36,500"))
 
 
 @pytest.mark.parametrize("time", ["0.1", "0.05"])
 def test_time_that_does_not_increase_is_refused_with_its_line(write, time):
     with pytest.raises(RecordingError, match=r"line 4.*does not come after"):
-        read_recording(write(*rows(2), f"{time},36,500,3,1"))
+        read_drive(write(*rows(2), f"{time},36,500,3,1"))
 
 
 def test_a_gap_is_refused_with_its_line(write):
     with pytest.raises(RecordingError, match=r"line 12: gap of 0\.4 s"):
-        read_recording(write(*rows(10), "1.3,36,500,3,1"))
+        read_drive(write(*rows(10), "1.3,36,500,3,1"))
 
 
 def test_blank_lines_do_not_shift_the_line_numbers(write):
     with pytest.raises(RecordingError, match="line 6"):
-        read_recording(write(*rows(2), "", "", "0.1,36,500,3,1"))
+        read_drive(write(*rows(2), "", "", "0.1,36,500,3,1"))
 
 
 @pytest.mark.parametrize("lines", [[], rows(1)])
 def test_a_file_without_a_drive_is_refused(write, lines):
     with pytest.raises(RecordingError, match="needs at least two"):
-        read_recording(write(*lines))
+        read_drive(write(*lines))
 
 
 def test_the_demand_is_the_recorded_torque_within_the_limits_of_the_motor(write):
     lines = [f"{k},36,500,0,{T}" for k, T in ((5, 10), (6, 20), (7, 300))]
-    manoeuvre = manoeuvre_of(Track.of(read_recording(write(*lines)), T_max=180.0))
+    manoeuvre = manoeuvre_of(Track.of(read_drive(write(*lines)), T_max=180.0))
     assert manoeuvre.T_driver([0.0, 0.5, 1.0, 2.0]) == pytest.approx([10, 15, 20, 180])
     assert manoeuvre.v_0 == pytest.approx(10.0)
     assert manoeuvre.duration == pytest.approx(2.0)
@@ -142,7 +164,7 @@ def test_the_demand_is_the_recorded_torque_within_the_limits_of_the_motor(write)
 
 def test_a_steady_climb_has_its_slope(write):
     lines = [f"{k / 10},72,{500 + 0.04 * 2.0 * k},0,0" for k in range(1200)]
-    assert Track.of(read_recording(write(*lines))).slope[600] == pytest.approx(0.04, rel=1e-3)
+    assert Track.of(read_drive(write(*lines))).slope[600] == pytest.approx(0.04, rel=1e-3)
 
 
 def test_the_brakes_know_the_vehicle_as_the_run_sets_it(built):
@@ -168,7 +190,7 @@ def test_what_is_mapped_is_in_the_units_of_the_loop(built):
 
 @pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")
 def test_a_real_drive_gives_a_drivable_road():
-    manoeuvre = manoeuvre_of(Track.of(read_recording(TRIP), T_max=180.0))
+    manoeuvre = manoeuvre_of(Track.of(read_drive(TRIP), T_max=180.0))
     t = np.arange(0.0, manoeuvre.duration, 0.05)
     assert manoeuvre.duration == pytest.approx(1008.9)
     assert manoeuvre.v_0 == 0.0
@@ -181,4 +203,4 @@ def test_what_is_no_file_is_no_recording(tmp_path):
     os.mkfifo(pipe)
     for path in (pipe, tmp_path, tmp_path / "nothing.csv"):
         with pytest.raises(RecordingError, match="there is no recording"):
-            read_recording(path)
+            read_drive(path)

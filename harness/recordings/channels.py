@@ -1,0 +1,107 @@
+"""The channels of a recording in SI units, with the checks that each of them has to pass alone."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .choosing import Choice, Chooser
+from .opening import opened
+from .quantities import QUANTITIES, aliases
+from .source import RecordingError, Samples
+from .time_checks import check_time
+
+LEAST = 2
+"""Samples that every recording has."""
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """A quantity over time, in SI units.
+
+    Attributes:
+        quantity: see QUANTITIES.
+        heading: of the column that it was, in one line.
+        unit: of the values.
+        time: in s, strictly increasing; channels that were sampled together have the same array.
+        values: finite, one for each time.
+        where: of a value in the file by its index, as in "line 12".
+    """
+
+    quantity: str
+    heading: str
+    unit: str
+    time: np.ndarray
+    values: np.ndarray
+    where: Callable[[int], str]
+
+
+class Channels:
+    """The channels of one recording, read when asked for, so that a file needs no more than a purpose asks.
+
+    Attributes:
+        path: of the file.
+    """
+
+    def __init__(self, path: Path, columns: Mapping[str, str] | None = None, names: Sequence[Path] = ()) -> None:
+        """
+        Args:
+            columns: the headings of quantities that are not to be found by name, see `Chooser`.
+            names: files of aliases beside ours.
+
+        Raises:
+            RecordingError: there is no such file; it is of no kind that can be read; a file of aliases is refused.
+        """
+        self.path = path
+        self._source = opened(path)
+        self._chooser = Chooser(self._source, aliases(*names), columns or {})
+
+    def has(self, quantity: str) -> bool:
+        """Whether there is a column for it."""
+        return self._chooser.found(quantity) is not None
+
+    def read(self, *quantities: str) -> dict[str, Channel]:
+        """The channels of these quantities.
+
+        Raises:
+            RecordingError: a column is missing, doubled or of an unknown unit; a value is not a finite number, or
+                larger than any car has; time does not increase or has a gap; there are less than two samples.
+        """
+        clock = [] if self._source.own_time else [self._chooser.needed("time")]
+        choices = [*clock, *(self._chooser.needed(quantity) for quantity in quantities)]
+        samples = self._source.read([choice.place for choice in choices])
+        time = clock[0].factor * samples[0].values if clock else None
+        channels = {
+            choice.quantity: _channel(choice, one, time)
+            for choice, one in zip(choices[len(clock) :], samples[len(clock) :], strict=True)
+        }
+        for channel in {id(channel.time): channel for channel in channels.values()}.values():
+            if len(channel.time) < LEAST:
+                raise RecordingError(f"{self.path}: {len(channel.time)} samples; a drive needs at least two")
+            check_time(self.path, channel.time, channel.where)
+        for channel in channels.values():
+            check_limit(self.path, channel)
+        return channels
+
+
+def _channel(choice: Choice, samples: Samples, time: np.ndarray | None) -> Channel:
+    own = samples.time if time is None else time
+    assert own is not None, "a file has a column of time, or its channels have their own"
+    values = choice.factor * samples.values
+    return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where)
+
+
+def check_limit(path: Path, channel: Channel) -> None:
+    """
+    Raises:
+        RecordingError: a value is larger than any car has.
+    """
+    limit = QUANTITIES[channel.quantity].limit
+    beyond = np.flatnonzero(np.abs(channel.values) > limit)
+    if len(beyond):
+        k = int(beyond[0])
+        raise RecordingError(
+            f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; "
+            f"at most {limit:g} {channel.unit} in magnitude can be"
+        )

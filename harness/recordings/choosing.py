@@ -1,0 +1,130 @@
+"""Which column of a file holds which quantity."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from ..names import nearest
+from ..plain import plain
+from .headings import after_underscores, key, split
+from .quantities import QUANTITIES, Aliases, example
+from .source import Column, RecordingError, Source
+from .units import factor_to
+
+NAMES_SHOWN = 3
+"""Other names of a quantity that are told where none is found."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A column that holds a quantity.
+
+    Attributes:
+        place: of the column in the file.
+        unit: of the SI, into which `factor` turns its values.
+    """
+
+    quantity: str
+    column: Column
+    place: int
+    unit: str
+    factor: float
+
+
+@dataclass(frozen=True)
+class Chooser:
+    """Finds the columns of a file.
+
+    Attributes:
+        given: by quantity, the heading or name of the column in which somebody says it is, with or without a unit;
+            a minus before it says that its sign is the other one.
+    """
+
+    source: Source
+    names: Aliases
+    given: Mapping[str, str]
+
+    def needed(self, quantity: str) -> Choice:
+        """The column of a quantity.
+
+        Raises:
+            RecordingError: there is none; several; one of a unit that is none of this quantity.
+        """
+        choice = self.found(quantity)
+        if choice:
+            return choice
+        present = [column.name for column in self.source.columns]
+        others = " or ".join(self.names[quantity][1 : 1 + NAMES_SHOWN])
+        also = f" (also {others})" if others else ""
+        raise RecordingError(
+            f"{self.source.headings}: no column {example(quantity, self.names)}{also}; "
+            f"in the file: {plain(nearest(self.names[quantity][0], present))}"
+        )
+
+    def found(self, quantity: str) -> Choice | None:
+        """The column of a quantity, None if there is none; else as `needed`."""
+        if quantity in self.given:
+            return self._given(quantity, self.given[quantity])
+        names = {key(name) for name in self.names[quantity]}
+        found = [
+            (place, unit)
+            for place, column in enumerate(self.source.columns)
+            for name, unit in _readings(column)
+            if key(name) in names
+        ]
+        return self._one(quantity, found, 1.0) if found else None
+
+    def _given(self, quantity: str, text: str) -> Choice:
+        sign = -1.0 if text.startswith("-") else 1.0
+        wanted = text.removeprefix("-").strip()
+        name, unit = split(wanted)
+        columns = self.source.columns
+        found = [(place, column.unit) for place, column in enumerate(columns) if column.heading == wanted]
+        found = found or [
+            (place, unit or column.unit) for place, column in enumerate(columns) if key(column.name) == key(name)
+        ]
+        if not found:
+            near = plain(nearest(name, [column.name for column in columns]))
+            raise RecordingError(
+                f"{self.source.headings}: no column {plain(wanted, 60)}, as --column says of {quantity}; "
+                f"in the file: {near}"
+            )
+        return self._one(quantity, found, sign)
+
+    def _one(self, quantity: str, found: Sequence[tuple[int, str | None]], sign: float) -> Choice:
+        columns = self.source.columns
+        if len(found) > 1:
+            headings = ", ".join(columns[place].heading for place, _ in found)
+            raise RecordingError(
+                f"{self.source.headings}: {headings} all name {self.names[quantity][0]}; keep one of them, "
+                f"or say which with --column {quantity}=NAME"
+            )
+        place, unit = found[0]
+        si, factor = self._factor(quantity, columns[place], unit)
+        return Choice(quantity, columns[place], place, si, sign * factor)
+
+    def _factor(self, quantity: str, column: Column, unit: str | None) -> tuple[str, float]:
+        """Unit of the SI and the factor to it."""
+        declared = QUANTITIES[quantity]
+        if unit is None and declared.unit != "1":
+            raise RecordingError(
+                f"{self.source.headings}: {column.heading} has the unit (none); write it as in "
+                f"{example(quantity, self.names)}, or say --column {quantity}='{column.name} [{declared.written}]'"
+            )
+        if declared.also:
+            try:
+                return declared.also, factor_to(declared.also, unit or "1")
+            except ValueError:
+                pass  # then it must be of the first
+        try:
+            return declared.unit, factor_to(declared.unit, unit or "1")
+        except ValueError as reason:
+            raise RecordingError(
+                f"{self.source.headings}: {column.heading} {plain(reason, 200)}, as in {example(quantity, self.names)}"
+            ) from reason
+
+
+def _readings(column: Column) -> Iterator[tuple[str, str | None]]:
+    """Name and unit as the column can be understood."""
+    yield column.name, column.unit
+    if column.unit is None:
+        yield from after_underscores(column.name)

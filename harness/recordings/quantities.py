@@ -1,0 +1,94 @@
+"""The quantities that a recording can hold, each declared once, and the names that files give them.
+
+Nothing here is slow to import: help needs it.
+"""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+
+from ..names import nearest
+from ..plain import plain
+from .headings import key
+from .source import RecordingError
+
+OWN = Path(__file__).with_name("aliases.toml")
+
+Aliases = Mapping[str, Sequence[str]]
+"""Names by quantity; the first one is shown."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of a recording, in SI units.
+
+    Attributes:
+        unit: of the SI, as in Modelica.
+        written: a unit in which files have it.
+        limit: largest magnitude that a car can have.
+        also: another unit of the SI in which it may stand, which something else turns into the first.
+    """
+
+    meaning: str
+    unit: str
+    written: str
+    limit: float
+    also: str | None = None
+
+
+QUANTITIES: dict[str, Quantity] = {
+    "time": Quantity("time", "s", "s", inf),
+    "v": Quantity("speed of the vehicle", "m/s", "km/h", 200.0),
+    "elevation": Quantity("height of the road", "m", "m", 10_000.0),
+    "T_mot": Quantity("motor torque", "N.m", "Nm", 10_000.0),
+    "omega_1": Quantity("motor speed", "rad/s", "rpm", 5_000.0),
+    "omega_2": Quantity("wheel speed times i", "rad/s", "rad/s", 5_000.0),
+    "omega_wheel": Quantity("mean speed of the driven wheels", "rad/s", "km/h", 500.0, also="m/s"),
+    "omega_wheel_L": Quantity("speed of the left driven wheel", "rad/s", "km/h", 500.0, also="m/s"),
+    "omega_wheel_R": Quantity("speed of the right driven wheel", "rad/s", "km/h", 500.0, also="m/s"),
+    "valid": Quantity("whether the wheel speed on the bus is valid, 0 or 1", "1", "1", 1.0),
+    "counter": Quantity("one more with every message of the wheel speed", "1", "1", inf),
+    "T_load": Quantity("load torque over i, negative when it brakes", "N.m", "Nm", 10_000.0),
+    "T_wheel": Quantity("torque of both measurement wheels, positive when it drives", "N.m", "Nm", 100_000.0),
+    "T_wheel_L": Quantity("torque of the left measurement wheel, positive when it drives", "N.m", "Nm", 100_000.0),
+    "T_wheel_R": Quantity("torque of the right measurement wheel, positive when it drives", "N.m", "Nm", 100_000.0),
+}
+
+
+def aliases(*others: Path) -> Aliases:
+    """The names of every quantity: ours, and then those of other files.
+
+    Raises:
+        RecordingError: a file cannot be read, or has something else; it gives two quantities one name.
+    """
+    names: dict[str, list[str]] = {quantity: [] for quantity in QUANTITIES}
+    for path in (OWN, *others):
+        for quantity, more in _read(path).items():
+            names[quantity] += more
+    taken: dict[str, str] = {}
+    for quantity, given in names.items():
+        for name in given:
+            if taken.setdefault(key(name), quantity) != quantity:
+                file = ", ".join(map(str, others))
+                raise RecordingError(f"{file}: {plain(name, 60)} names both {taken[key(name)]} and {quantity}")
+    return names
+
+
+def _read(path: Path) -> dict[str, list[str]]:
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise RecordingError(f"{path}: no file of names can be read: {plain(error)}") from error
+    for quantity, names in content.items():
+        if quantity not in QUANTITIES:
+            raise RecordingError(f"{path}: {plain(quantity, 60)} is no quantity; {nearest(quantity, QUANTITIES)}")
+        if not (isinstance(names, list) and all(isinstance(name, str) and key(name) for name in names)):
+            raise RecordingError(f'{path}: {quantity} = {plain(names, 60)}; it must be a list such as ["Motor Speed"]')
+    return content
+
+
+def example(quantity: str, names: Aliases) -> str:
+    """A heading under which a file may have the quantity."""
+    return f"{names[quantity][0]} [{QUANTITIES[quantity].written}]"

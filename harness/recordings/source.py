@@ -1,0 +1,74 @@
+"""What every file of a recording is to its reader, whatever its format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from ..errors import DrivelineError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+class RecordingError(DrivelineError):
+    """A recording that cannot be used; the message says where and why."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column or channel of a file, before its values are read.
+
+    Attributes:
+        heading: as it stands in the file, in one line.
+        name: in it.
+        unit: that the file gives, None if it gives none.
+    """
+
+    heading: str
+    name: str
+    unit: str | None
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """The values of a column as the file has them.
+
+    Attributes:
+        values: finite.
+        time: of each, in s, if the channel has its own; None if a column of the file is the time of all.
+        where: of a value in the file by its index, as in "line 12".
+    """
+
+    values: np.ndarray
+    time: np.ndarray | None
+    where: Callable[[int], str]
+
+
+class Source(Protocol):
+    """A file that is open for reading.
+
+    Attributes:
+        headings: where in the file they stand, for messages, as in "drive.csv, line 1".
+        own_time: whether every channel has its time, so that no column is the time of all.
+    """
+
+    path: Path
+    headings: str
+    own_time: bool
+    columns: Sequence[Column]
+
+    def read(self, places: Sequence[int]) -> list[Samples]:
+        """The values of some of the columns.
+
+        Raises:
+            RecordingError: one is not a finite number, naming place and column.
+        """
+        ...
+
+
+def not_finite(path: Path, where: str, column: Column, value: str) -> RecordingError:
+    """What is said of a value that cannot be used."""
+    return RecordingError(f"{path}, {where}, column {column.heading}: {value or 'nothing'} is not a finite number")

@@ -1,0 +1,131 @@
+"""Text files of numbers, parsed by pandas: it reads what spreadsheets and loggers quote and leave out, and the readers
+of the other formats are made for it too."""
+
+import csv
+from collections.abc import Sequence
+from io import StringIO
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+
+from ..numbers import real
+from ..plain import plain
+from .dialect import Dialect, dialect_of
+from .encoding import decoded
+from .headings import split
+from .own_results import units_beside
+from .source import Column, RecordingError, Samples, not_finite
+
+LONGEST_CELL = 60
+"""Characters of a cell that are shown."""
+
+PLAIN_NUMBERS = frozenset("0123456789+-.eE")
+
+
+class TextFile:
+    """A Source. Its lines are counted from 1, as an editor does."""
+
+    own_time = False
+
+    def __init__(self, path: Path) -> None:
+        """
+        Raises:
+            RecordingError: it is no text, or has no line of names.
+        """
+        self.path = path
+        try:
+            self._text = decoded(path.read_bytes())
+        except UnicodeDecodeError as error:
+            raise RecordingError(f"{path} is no text: {error.reason} at byte {error.start}") from error
+        self._dialect = dialect_of(self._text, path)
+        self.headings = f"{path}, line {self._dialect.names_line}"
+        self.columns: Sequence[Column] = _columns(self._dialect, units_beside(path))
+
+    def read(self, places: Sequence[int]) -> list[Samples]:
+        """See `harness.recordings.source.Source.read`; lines in which nothing stands are passed over."""
+        first = self._dialect.first_line
+        lines = self._text.split("\n")[first - 1 :]
+        blank = "\t " + self._dialect.separator
+        kept = np.array([k for k, line in enumerate(lines) if line.strip(blank)], dtype=int)
+        cells = self._cells(lines, places)
+
+        def where(k: int) -> str:
+            return f"line {first + kept[k]}"
+
+        return [
+            Samples(
+                self._numbers(np.asarray(cells[place], dtype=object)[kept], self.columns[place], where), None, where
+            )
+            for place in places
+        ]
+
+    def _cells(self, lines: Sequence[str], places: Sequence[int]) -> "dict[int, Sequence[str]]":
+        """Of some columns, one for every line."""
+        import pandas as pd  # takes most of a second
+
+        separator = self._dialect.separator
+        if not any(lines):
+            return {place: [] for place in places}
+        try:
+            table = pd.read_csv(
+                StringIO("\n".join(lines)),
+                sep=separator,
+                header=None,
+                names=range(max(len(self.columns), 1 + max(line.count(separator) for line in lines))),
+                usecols=list(places),
+                index_col=False,
+                dtype=str,
+                na_filter=False,
+                skip_blank_lines=False,
+                engine="c",
+            )
+        except pd.errors.ParserError as error:
+            raise RecordingError(f"{self.path} is no CSV file: {plain(error)}") from error
+        if len(table) + (not lines[-1]) != len(lines):
+            self._refuse_many_lines(lines)
+        return {place: table[place].tolist() + [""] * (len(lines) - len(table)) for place in places}
+
+    def _refuse_many_lines(self, lines: Sequence[str]) -> None:
+        """Names a cell that goes over several lines, as only quoted ones can."""
+        reader, before = csv.reader(StringIO("\n".join(lines), newline=""), delimiter=self._dialect.separator), 0
+        for row in reader:
+            if reader.line_num > before + 1:
+                place = next((k for k, cell in enumerate(row) if "\n" in cell), len(row) - 1)
+                named = self.columns[place].heading if place < len(self.columns) else f"number {place + 1}"
+                raise RecordingError(
+                    f"{self.path}, line {self._dialect.first_line + before}, column {named}: "
+                    f"{plain(row[place], LONGEST_CELL)} is a cell over several lines"
+                )
+            before = reader.line_num
+
+    def _numbers(self, cells: np.ndarray, column: Column, where) -> np.ndarray:
+        """
+        Raises:
+            RecordingError: one is not a finite number.
+        """
+        decimal = self._dialect.decimal
+        texts = [cell.strip().replace(",", ".") for cell in cells] if decimal == "," else [c.strip() for c in cells]
+        if PLAIN_NUMBERS.issuperset("".join(texts)) and (decimal == "." or not any("." in cell for cell in cells)):
+            try:
+                values = np.array(texts, dtype=float)  # the same numbers, all at once
+            except ValueError:
+                pass
+            else:
+                if np.isfinite(values).all():
+                    return values
+        for k, cell in enumerate(cells):
+            value = real(texts[k])
+            if value is None or not isfinite(value) or (decimal == "," and "." in cell):
+                raise not_finite(self.path, where(k), column, plain(cell, LONGEST_CELL))
+        return np.array(texts, dtype=float)
+
+
+def _columns(dialect: Dialect, beside: dict[str, str]) -> list[Column]:
+    """The columns with their units: beside the name, in the line below it, or in the file beside results of ours."""
+    columns = []
+    for k, cell in enumerate(dialect.names):
+        name, unit = split(cell)
+        below = dialect.units[k].strip(" []()") if k < len(dialect.units) else ""
+        columns.append(Column(plain(cell, LONGEST_CELL), plain(name, LONGEST_CELL), unit or below or beside.get(name)))
+    return columns
