@@ -93,13 +93,12 @@ def _numbers(cells: Sequence[str]) -> int:
 def _parted(rows: Sequence[Row]) -> tuple[Sequence[Row], Sequence[Row]]:
     """The rows above the numbers, and those from the first one after the last of them.
 
-    A row of numbers has as many cells as is usual, half of them numbers or more; others above it, such as the date
-    of the recording, are no names either if a number is among them.
+    A row of numbers has more than half of the cells that are usual, half of them numbers or more, and so has the row
+    after it. Others above it, such as the rate of the recording, are no names if a number is among them.
     """
     usual = median(_filled(cells) for _, cells in rows)
-    first = next(
-        (k for k, (_, cells) in enumerate(rows) if 2 * _numbers(cells) >= _filled(cells) >= 0.5 * usual), len(rows)
-    )
+    numeric = [2 * _numbers(cells) >= _filled(cells) > 0.5 * usual for _, cells in rows] + [True]
+    first = next((k for k in range(len(rows)) if numeric[k] and numeric[k + 1]), len(rows))
     last = max((k for k in range(first) if not _numbers(rows[k][1])), default=-1)
     if first == len(rows):
         last = min(last, 0)

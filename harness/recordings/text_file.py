@@ -2,7 +2,7 @@
 of the other formats are made for it too."""
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import StringIO
 from math import isfinite
 from pathlib import Path
@@ -60,19 +60,19 @@ class TextFile:
             for place in places
         ]
 
-    def _cells(self, lines: Sequence[str], places: Sequence[int]) -> "dict[int, Sequence[str]]":
+    def _cells(self, lines: Sequence[str], places: Sequence[int]) -> dict[int, list[str]]:
         """Of some columns, one for every line."""
         import pandas as pd  # takes most of a second
 
         separator = self._dialect.separator
-        if not any(lines):
-            return {place: [] for place in places}
+        widest = max(len(self.columns), 1 + max(line.count(separator) for line in lines))
         try:
             table = pd.read_csv(
-                StringIO("\n".join(lines)),
+                StringIO(
+                    "\n".join([separator * (widest - 1), *lines])
+                ),  # the first row says how many cells there can be
                 sep=separator,
                 header=None,
-                names=range(max(len(self.columns), 1 + max(line.count(separator) for line in lines))),
                 usecols=list(places),
                 index_col=False,
                 dtype=str,
@@ -82,9 +82,9 @@ class TextFile:
             )
         except pd.errors.ParserError as error:
             raise RecordingError(f"{self.path} is no CSV file: {plain(error)}") from error
-        if len(table) + (not lines[-1]) != len(lines):
+        if len(table) - 1 + (not lines[-1]) != len(lines):
             self._refuse_many_lines(lines)
-        return {place: table[place].tolist() + [""] * (len(lines) - len(table)) for place in places}
+        return {place: [*table[place].tolist()[1:], ""] for place in places}
 
     def _refuse_many_lines(self, lines: Sequence[str]) -> None:
         """Names a cell that goes over several lines, as only quoted ones can."""
@@ -99,7 +99,7 @@ class TextFile:
                 )
             before = reader.line_num
 
-    def _numbers(self, cells: np.ndarray, column: Column, where) -> np.ndarray:
+    def _numbers(self, cells: np.ndarray, column: Column, where: Callable[[int], str]) -> np.ndarray:
         """
         Raises:
             RecordingError: one is not a finite number.

@@ -1,0 +1,88 @@
+"""Parquet and Feather files, read by pyarrow: tables with typed columns, whose units stand in their names or beside
+them in the metadata of the column (`unit`)."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..plain import plain
+from .extra import required
+from .headings import split
+from .source import Column, RecordingError, Samples, not_finite
+
+PARQUET, FEATHER = b"PAR1", b"ARROW1"
+"""With which such files begin."""
+
+
+class ArrowFile:
+    """A Source. Rows are counted from 1; a date or a duration is in s from the first row on."""
+
+    own_time = False
+
+    def __init__(self, path: Path) -> None:
+        """
+        Raises:
+            RecordingError: it is damaged.
+            MissingExtra: pyarrow is not installed.
+        """
+        self.path = path
+        self.headings = str(path)
+        self._schema = self._done(lambda: _schema(path))
+        self.columns: Sequence[Column] = [_column(field) for field in self._schema]
+
+    def read(self, places: Sequence[int]) -> list[Samples]:
+        """See `harness.recordings.source.Source.read`."""
+        names = [self._schema.field(place).name for place in places]
+        table = self._done(lambda: _table(self.path, names))
+        return [self._samples(table.column(name), place) for name, place in zip(names, places, strict=True)]
+
+    def _samples(self, column: Any, place: int) -> Samples:
+        values = column.to_numpy()
+        if values.dtype.kind in "mM":
+            values = (values - values[:1]) / np.timedelta64(1, "s")
+        if values.dtype.kind not in "biuf":
+            raise RecordingError(
+                f"{self.path}: {self.columns[place].heading} holds no numbers, or has rows without one"
+            )
+        values = values.astype(float)
+
+        def where(k: int) -> str:
+            return f"row {k + 1}"
+
+        odd = np.flatnonzero(~np.isfinite(values))
+        if len(odd):
+            raise not_finite(self.path, where(int(odd[0])), self.columns[place], f"{values[odd[0]]:g}")
+        return Samples(values, None, where)
+
+    def _done(self, work: Any) -> Any:
+        try:
+            return work()
+        except (OSError, ValueError, KeyError) as error:  # bases of all that pyarrow raises of a file
+            raise RecordingError(f"{self.path} is a damaged Parquet or Feather file: {plain(error, 200)}") from error
+
+
+def _is_parquet(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(PARQUET)) == PARQUET
+
+
+def _schema(path: Path) -> Any:
+    if _is_parquet(path):
+        return required("pyarrow.parquet", "Parquet files").read_schema(path)
+    with required("pyarrow", "Feather files").ipc.open_file(path) as file:
+        return file.schema
+
+
+def _table(path: Path, names: Sequence[str]) -> Any:
+    if _is_parquet(path):
+        return required("pyarrow.parquet", "Parquet files").read_table(path, columns=list(names))
+    return required("pyarrow.feather", "Feather files").read_table(path, columns=list(names))
+
+
+def _column(field: Any) -> Column:
+    name, unit = split(field.name)
+    beside = (field.metadata or {}).get(b"unit", b"").decode(errors="replace")
+    dated = "s" if str(field.type).startswith(("timestamp", "duration")) else None
+    return Column(plain(field.name, 60), plain(name, 60), unit or plain(beside, 60) or dated)

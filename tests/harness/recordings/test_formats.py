@@ -1,0 +1,121 @@
+"""One recording, as many files: whatever tool wrote it, the same drive is read."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.errors import MissingExtra
+from harness.recordings.drive import Drive, read_drive
+from harness.recordings.source import RecordingError
+
+from .variants import TEXTS, Written, recording, table, write_arrow, write_mdf
+
+DRIVE = recording()
+
+
+def as_read(drive: Written) -> Drive:
+    """What reading must give."""
+    time, v, elevation, T_mot = (values for values, _ in drive.values())
+    return Drive("drive", time, v / 3.6, elevation, T_mot)
+
+
+def require_same(found: Drive, expected: Drive) -> None:
+    for name in ("time", "v", "elevation", "T_mot"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-9, atol=1e-9, err_msg=name)
+
+
+@pytest.mark.parametrize("variant", TEXTS)
+def test_the_same_drive_is_read_from_every_text(tmp_path: Path, variant: str) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_bytes(TEXTS[variant](DRIVE))
+    require_same(read_drive(path), as_read(DRIVE))
+
+
+@pytest.mark.parametrize("variant", TEXTS)
+@pytest.mark.parametrize("cell", ["x", "nan", ""])
+def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant: str, cell: str) -> None:
+    path = tmp_path / "drive.csv"
+    text = TEXTS[variant](DRIVE)
+    encoding = "utf-16" if text.startswith(b"\xff\xfe") else "utf-16-le" if b"\0" in text[:9] else "latin-1"
+    lines = text.decode(encoding).split("\n")
+    separator = next(s for s in "\t;," if s in lines[-2])
+    quote = '"' if lines[-2].startswith('"') else ""
+    cells = lines[-4].split(f"{quote}{separator}{quote}")
+    cells[1] = cell
+    lines[-4] = f"{quote}{separator}{quote}".join(cells)
+    path.write_bytes("\n".join(lines).encode(encoding))
+    with pytest.raises(RecordingError, match=rf"line {len(lines) - 3}, column .?[Vv]elocity.*: {cell or 'nothing'} is"):
+        read_drive(path)
+
+
+@pytest.mark.parametrize("name", ["drive.parquet", "drive.feather"])
+@pytest.mark.parametrize("units_beside", [False, True])
+def test_the_same_drive_is_read_from_parquet_and_feather(tmp_path: Path, name: str, units_beside: bool) -> None:
+    write_arrow(DRIVE, tmp_path / name, units_beside)
+    require_same(read_drive(tmp_path / name), as_read(DRIVE))
+
+
+def test_what_the_file_is_called_does_not_matter(tmp_path: Path) -> None:
+    write_arrow(DRIVE, tmp_path / "drive.parquet")
+    (tmp_path / "drive.parquet").rename(tmp_path / "drive.csv")
+    require_same(read_drive(tmp_path / "drive.csv"), as_read(DRIVE))
+
+
+def test_groups_of_an_mdf_file_with_other_rates_come_onto_the_time_of_the_torque(tmp_path: Path) -> None:
+    write_mdf(DRIVE, tmp_path / "drive.mf4")
+    found, expected = read_drive(tmp_path / "drive.mf4"), as_read(DRIVE)
+    assert found.time.tolist() == expected.time[:-1].tolist(), "the time that both groups have in common"
+    assert found.T_mot.tolist() == expected.T_mot[:-1].tolist(), "nothing is done to the base"
+    np.testing.assert_allclose(found.v[::2], expected.v[:-1:2], rtol=1e-14, err_msg="nor to a sample that is there")
+    np.testing.assert_allclose(found.v, expected.v[:-1], atol=3e-3)  # between them, rounded to 0.01 km/h
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_bad_value_of_a_binary_file_is_named_with_its_row(tmp_path: Path, value: float) -> None:
+    drive = recording()
+    drive["Velocity"][0][6] = value
+    for name, place in (("drive.parquet", "row 7"), ("drive.mf4", "sample 4 at 0.06 s")):
+        (write_mdf if name.endswith("mf4") else write_arrow)(drive, tmp_path / name)
+        with pytest.raises(RecordingError, match=rf"{place}, column Velocity.*: {value:g} is not a finite number"):
+            read_drive(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["drive.parquet", "drive.feather", "drive.mf4"])
+def test_a_file_that_was_cut_off_is_refused_in_one_line(
+    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (write_mdf if name.endswith("mf4") else write_arrow)(DRIVE, tmp_path / name)
+    whole = (tmp_path / name).read_bytes()
+    for size in (12, 100, len(whole) // 2, len(whole) - 9):
+        (tmp_path / name).write_bytes(whole[:size])
+        with pytest.raises(RecordingError, match=r"damaged|no column|samples|gap") as refusal:
+            read_drive(tmp_path / name)
+        assert str(refusal.value).isprintable()
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(("name", "package"), [("drive.parquet", "pyarrow.parquet"), ("drive.mf4", "asammdf")])
+def test_without_the_extra_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, package: str
+) -> None:
+    (write_mdf if name.endswith("mf4") else write_arrow)(DRIVE, tmp_path / name)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(MissingExtra, match=r"the extra `recordings`, as in pip install"):
+        read_drive(tmp_path / name)
+
+
+def test_text_is_read_without_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for package in ("pyarrow", "pyarrow.parquet", "asammdf"):
+        monkeypatch.setitem(sys.modules, package, None)
+    (tmp_path / "drive.csv").write_text(table(DRIVE), encoding="utf-8")
+    require_same(read_drive(tmp_path / "drive.csv"), as_read(DRIVE))
+
+
+def test_points_among_decimal_commas_are_named(tmp_path: Path) -> None:
+    text = table(DRIVE, ";", ",").split("\n")
+    text[20] = text[20].replace(",", ".")
+    (tmp_path / "drive.csv").write_text("\n".join(text), encoding="utf-8")
+    with pytest.raises(RecordingError, match=r"line 21, column .* is not a finite number"):
+        read_drive(tmp_path / "drive.csv")
