@@ -41,7 +41,7 @@ ROOMS = {
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
     | {"harness.robustness"},
     "harness": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
+    | {"harness.recordings", "harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}

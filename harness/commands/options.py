@@ -185,6 +185,22 @@ def seconds(text: str) -> float:
     return number
 
 
+def finite(text: str) -> float:
+    """A finite number."""
+    number = real(text)
+    if number is None or not isfinite(number):
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a finite number")
+    return number
+
+
+def amount(text: str) -> float:
+    """A finite number that is 0 or more."""
+    number = finite(text)
+    if number < 0.0:
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is below 0")
+    return number
+
+
 def megabytes(text: str) -> int:
     """A size above 0 MB, in bytes."""
     number = real(text)

@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 from .manoeuvre import Manoeuvre
-from .signals import FlatSine, Held, lines
+from .prbs import binary_torque
+from .signals import FlatSine, lines
 
 KMH = 1.0 / 3.6
 
@@ -14,16 +15,6 @@ def step(name: str, description: str, v_0: float, before: float, after: float, r
     return Manoeuvre(name, description, 6.0, v_0, demand, t_0=1.0, dT=after - before)
 
 
-def shift_register(length: int) -> list[int]:
-    """The first bits of the pseudo-random binary sequence x^9 + x^5 + 1, which repeats after 511."""
-    stages = [1] * 9
-    bits = []
-    for _ in range(length):
-        bits.append(stages[8])
-        stages = [stages[8] ^ stages[4], *stages[:8]]
-    return bits
-
-
 DRIVE = lines(
     (0.0, 12.0), (0.5, 12.0), (0.7, 100.0), (2.0, 100.0), (2.2, 30.0), (3.2, 30.0), (3.3, 125.0),
     (4.5, 125.0), (4.6, -18.0), (5.6, -18.0), (5.8, 80.0), (7.0, 80.0), (7.1, 12.0), (8.0, 12.0),
@@ -32,13 +23,7 @@ DRIVE = lines(
 )  # fmt: skip
 DRIVE_PLATEAU_ENDS = (2.0, 3.2, 4.5, 5.6, 7.0, 8.0, 9.4, 10.6, 12.0, 13.2, 14.5, 16.0)
 
-_PRBS = Manoeuvre(
-    name="prbs",
-    description="pseudo-random binary torque of 15 N.m around 8 N.m at 15 km/h",
-    duration=10.0,
-    v_0=15 * KMH,
-    T_driver=Held(0.04, [8.0 + 15.0 * (2.0 * bit - 1.0) for bit in shift_register(511)]),
-)
+_PRBS = binary_torque("prbs", mean=8.0, amplitude=15.0, clock=0.04, order=9, duration=10.0, v_0=15 * KMH)
 
 MANOEUVRES: dict[str, Manoeuvre] = {
     manoeuvre.name: manoeuvre

@@ -1,6 +1,6 @@
 """The channels of a recording in SI units, with the checks that each of them has to pass alone."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,6 +42,7 @@ class Channels:
 
     Attributes:
         path: of the file.
+        names: by which quantities are found.
     """
 
     def __init__(self, path: Path, columns: Mapping[str, str] | None = None, names: Sequence[Path] = ()) -> None:
@@ -54,8 +55,9 @@ class Channels:
             RecordingError: there is no such file; it is of no kind that can be read; a file of aliases is refused.
         """
         self.path = path
+        self.names = aliases(*names)
         self._source = opened(path)
-        self._chooser = Chooser(self._source, aliases(*names), columns or {})
+        self._chooser = Chooser(self._source, self.names, columns or {})
 
     def has(self, quantity: str) -> bool:
         """Whether there is a column for it."""
@@ -76,10 +78,12 @@ class Channels:
             choice.quantity: _channel(choice, one, time)
             for choice, one in zip(choices[len(clock) :], samples[len(clock) :], strict=True)
         }
-        for channel in {id(channel.time): channel for channel in channels.values()}.values():
-            if len(channel.time) < LEAST:
-                raise RecordingError(f"{self.path}: {len(channel.time)} samples; a drive needs at least two")
-            check_time(self.path, channel.time, channel.where)
+        for together in _by_time(channels.values()):
+            first = together[0]
+            if len(first.time) < LEAST:
+                raise RecordingError(f"{self.path}: {len(first.time)} samples; a drive needs at least two")
+            gap = min(QUANTITIES[channel.quantity].gap for channel in together)
+            check_time(self.path, first.time, first.where, gap)
         for channel in channels.values():
             check_limit(self.path, channel)
         return channels
@@ -90,6 +94,14 @@ def _channel(choice: Choice, samples: Samples, time: np.ndarray | None) -> Chann
     assert own is not None, "a file has a column of time, or its channels have their own"
     values = choice.factor * samples.values
     return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where)
+
+
+def _by_time(channels: Iterable[Channel]) -> Iterable[list[Channel]]:
+    """Those that were sampled together."""
+    groups: dict[int, list[Channel]] = {}
+    for channel in channels:
+        groups.setdefault(id(channel.time), []).append(channel)
+    return groups.values()
 
 
 def check_limit(path: Path, channel: Channel) -> None:

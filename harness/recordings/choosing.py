@@ -8,7 +8,7 @@ from ..plain import plain
 from .headings import after_underscores, key, split
 from .quantities import QUANTITIES, Aliases, example
 from .source import Column, RecordingError, Source
-from .units import factor_to
+from .units import factor_to, is_unit
 
 NAMES_SHOWN = 3
 """Other names of a quantity that are told where none is found."""
@@ -69,7 +69,7 @@ class Chooser:
             (place, unit)
             for place, column in enumerate(self.source.columns)
             for name, unit in _readings(column)
-            if key(name) in names
+            if key(name) in names and (unit == column.unit or is_unit(str(unit)))
         ]
         return self._one(quantity, found, 1.0) if found else None
 

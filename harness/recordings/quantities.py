@@ -29,6 +29,9 @@ class Quantity:
         written: a unit in which files have it.
         limit: largest magnitude that a car can have.
         also: another unit of the SI in which it may stand, which something else turns into the first.
+        slowest: longest interval in s from which a model can be identified.
+        least_swing: by how much it must vary so that a model can be identified.
+        gap: longest step of time that is still no gap, in median steps; messages come late and are lost.
     """
 
     meaning: str
@@ -36,24 +39,37 @@ class Quantity:
     written: str
     limit: float
     also: str | None = None
+    slowest: float = inf
+    least_swing: float = 0.0
+    gap: float = 3.0
+
+
+def _wheel_speed(meaning: str) -> Quantity:
+    return Quantity(meaning, "rad/s", "km/h", 500.0, also="m/s", slowest=0.1, gap=10.0)
+
+
+def _wheel_torque(meaning: str) -> Quantity:
+    return Quantity(f"{meaning}, positive when it drives", "N.m", "Nm", 100_000.0, slowest=0.01, least_swing=20.0)
 
 
 QUANTITIES: dict[str, Quantity] = {
     "time": Quantity("time", "s", "s", inf),
     "v": Quantity("speed of the vehicle", "m/s", "km/h", 200.0),
     "elevation": Quantity("height of the road", "m", "m", 10_000.0),
-    "T_mot": Quantity("motor torque", "N.m", "Nm", 10_000.0),
-    "omega_1": Quantity("motor speed", "rad/s", "rpm", 5_000.0),
-    "omega_2": Quantity("wheel speed times i", "rad/s", "rad/s", 5_000.0),
-    "omega_wheel": Quantity("mean speed of the driven wheels", "rad/s", "km/h", 500.0, also="m/s"),
-    "omega_wheel_L": Quantity("speed of the left driven wheel", "rad/s", "km/h", 500.0, also="m/s"),
-    "omega_wheel_R": Quantity("speed of the right driven wheel", "rad/s", "km/h", 500.0, also="m/s"),
-    "valid": Quantity("whether the wheel speed on the bus is valid, 0 or 1", "1", "1", 1.0),
-    "counter": Quantity("one more with every message of the wheel speed", "1", "1", inf),
-    "T_load": Quantity("load torque over i, negative when it brakes", "N.m", "Nm", 10_000.0),
-    "T_wheel": Quantity("torque of both measurement wheels, positive when it drives", "N.m", "Nm", 100_000.0),
-    "T_wheel_L": Quantity("torque of the left measurement wheel, positive when it drives", "N.m", "Nm", 100_000.0),
-    "T_wheel_R": Quantity("torque of the right measurement wheel, positive when it drives", "N.m", "Nm", 100_000.0),
+    "T_mot": Quantity("motor torque", "N.m", "Nm", 10_000.0, slowest=0.01, least_swing=2.0),
+    "omega_1": Quantity("motor speed", "rad/s", "rpm", 5_000.0, slowest=0.01, least_swing=1.0),
+    "omega_2": Quantity("wheel speed times i", "rad/s", "rad/s", 5_000.0, slowest=0.1, gap=10.0),
+    "omega_wheel": _wheel_speed("mean speed of the driven wheels"),
+    "omega_wheel_L": _wheel_speed("speed of the left driven wheel"),
+    "omega_wheel_R": _wheel_speed("speed of the right driven wheel"),
+    "valid": Quantity("whether the wheel speed on the bus is valid, 0 or 1", "1", "1", 1.0, gap=10.0),
+    "counter": Quantity("one more with every message of the wheel speed", "1", "1", inf, gap=10.0),
+    "T_load": Quantity(
+        "load torque over i, negative when it brakes", "N.m", "Nm", 10_000.0, slowest=0.01, least_swing=2.0
+    ),
+    "T_wheel": _wheel_torque("torque of both measurement wheels"),
+    "T_wheel_L": _wheel_torque("torque of the left measurement wheel"),
+    "T_wheel_R": _wheel_torque("torque of the right measurement wheel"),
 }
 
 

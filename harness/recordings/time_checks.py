@@ -7,16 +7,14 @@ import numpy as np
 
 from .source import RecordingError
 
-GAP = 3.0
-"""Longest step of time that is still no gap, in median steps."""
 
-
-def check_time(path: Path, time: np.ndarray, where: Callable[[int], str]) -> None:
+def check_time(path: Path, time: np.ndarray, where: Callable[[int], str], gap: float) -> None:
     """
     Args:
         path: of the recording, for messages.
         time: in s.
         where: of a sample in the file.
+        gap: longest step that is still no gap, in median steps.
 
     Raises:
         RecordingError: it does not increase, or has a gap.
@@ -27,10 +25,10 @@ def check_time(path: Path, time: np.ndarray, where: Callable[[int], str]) -> Non
         k = int(backward[0])
         raise RecordingError(f"{path}, {where(k + 1)}: time {time[k + 1]:g} s does not come after {time[k]:g} s")
     median = float(np.median(steps))
-    gaps = np.flatnonzero(steps > GAP * median)
+    gaps = np.flatnonzero(steps > gap * median)
     if len(gaps):
         k = int(gaps[0])
         raise RecordingError(
-            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {time[k]:g} s; at most {GAP * median:g} s "
-            f"({GAP:g} times the median step) is allowed, so cut the file there"
+            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {time[k]:g} s; at most {gap * median:g} s "
+            f"({gap:g} times the median step) is allowed, so cut the file there"
         )

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.manoeuvres.catalogue import COMPARED, MANOEUVRES, shift_register
+from harness.manoeuvres.catalogue import COMPARED, MANOEUVRES
+from harness.manoeuvres.prbs import shift_register
 from harness.manoeuvres.signals import Held, lines
 
 

@@ -1,0 +1,114 @@
+"""`driveline record`: a test drive under pseudo-random torque, recorded as a real car would."""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+
+from ..manoeuvres.prbs import FEEDBACK, binary_torque
+from .built import built
+from .options import add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
+from .printing import Printer
+from .settings import blocks, distinguishing, settings
+
+DESCRIPTION = """\
+Drives the car with a pseudo-random binary torque demand, on a road on which it about keeps its speed, and
+writes what its sensors record every 2 ms to PLANT_prbs_CONTROL.csv in the output folder:
+
+  motor speed      of the resolver, with its noise and resolution
+  motor torque     as motor control estimates it
+  wheel speed      mean of the driven wheels over CAN, as received: coarse, late, held between messages;
+                   with its validity, and a counter of the messages
+  wheel torque     of measurement wheels at both driven wheels, positive when it drives, with noise,
+                   offset and gain error; T_load = -(wheel torque)/i
+
+Columns have their units in brackets, so that other commands read the file (docs/recordings.md). Errors of
+the other sensors are parameters of motor and can.
+"""
+
+EXAMPLES = f"""\
+examples:
+  driveline record
+  driveline record --plant ValidationVehicle --seed 7
+  driveline record --amplitude 15 --clock 0.06 --order 7 --mean 5 --speed 30 --duration 30
+  driveline record --control on --output results/closed
+  driveline record --noise 0 --offset 0 --gain-error 0 --set motor.sigma_T=0 --set motor.g_T=1.03
+  driveline record --vehicle examples/cars/van.toml
+
+orders: {", ".join(map(str, FEEDBACK))}; the demand repeats after 2^order - 1 clocks
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_plant(parser)
+    parser.add_argument("--control", choices=("on", "off"), default="off", help="active damping (default: %(default)s)")
+    torque = parser.add_argument_group("torque demand")
+    torque.add_argument(
+        "--amplitude", type=amount, default=30.0, metavar="N.m", help="about the mean (default: %(default)g)"
+    )
+    torque.add_argument("--mean", type=finite, default=10.0, metavar="N.m", help="of the demand (default: %(default)g)")
+    torque.add_argument(
+        "--clock", type=seconds, default=0.04, metavar="SECONDS", help="shortest pulse (default: %(default)g)"
+    )
+    torque.add_argument(
+        "--order", type=_order, default=9, help="of the shift register that makes the pulses (default: %(default)s)"
+    )
+    torque.add_argument("--speed", type=amount, default=15.0, metavar="km/h", help="of the car (default: %(default)g)")
+    torque.add_argument(
+        "--duration", type=seconds, default=10.0, metavar="SECONDS", help="of the drive (default: %(default)g)"
+    )
+    wheels = parser.add_argument_group("measurement wheels, both together")
+    wheels.add_argument("--noise", type=amount, default=10.0, metavar="N.m", help="rms (default: %(default)g)")
+    wheels.add_argument("--offset", type=finite, default=8.0, metavar="N.m", help="(default: %(default)g)")
+    wheels.add_argument("--gain-error", type=finite, default=0.01, metavar="SHARE", help="(default: %(default)g)")
+    add_loop(parser)
+    add_output(parser, "results/record", "the recording", of_a_run=True)
+    add_printing(parser)
+
+
+def _order(text: str) -> int:
+    return count(text, min(FEEDBACK), max(FEEDBACK))
+
+
+def run(args: argparse.Namespace) -> int:
+    build = built(args.plant, args.fmus, args.build, **blocks(args))
+    # here and not above: mistakes and help are answered without them
+    from ..cosimulation.wiring import fit
+    from ..manoeuvres.road import RoadLoad, torque_limit
+    from ..provenance import recorded
+    from ..record import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed, write
+    from ..simulate import looped, simulate
+
+    out = Printer(args)
+    plant = Path(args.plant).stem
+    name = f"{plant}_prbs_{args.control}"
+    recording, record = args.output / f"{name}.csv", args.output / f"{name}.json"
+    given = settings(args, args.plant, build)
+    system = looped(args.plant, given)
+    interfaces = fit(system).interfaces
+    require_sensors(interfaces)
+    require_demand(args.mean, args.amplitude, args.clock, torque_limit(interfaces["motor"], given["parameters"]))
+    load = RoadLoad.of_plant(interfaces["plant"], given["parameters"])
+    v_0 = args.speed / 3.6
+    slope = holding_slope(load, args.mean, v_0)
+    demand = {name: getattr(args, name) for name in ("mean", "amplitude", "clock", "order", "duration")}
+    manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
+    wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
+    same = {"demand": demand | {"speed": args.speed, "slope": slope}, "damping": args.control}
+    same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, system, manoeuvre)
+    with recorded(record, same, {plant: system}, [args.vehicle, args.parameters], [recording], args.replace) as made:
+        results = simulate(manoeuvre, plant=args.plant, control=args.control == "on", **given)
+        made.begin()
+        write(sensed(results, load.i, wheels, given["seed"]), recording)
+        made.files.append(recording)
+    out.say(
+        f"{manoeuvre.description}, {args.duration:g} s on {plant}, {build} FMUs, damping {args.control}, "
+        f"slope {100.0 * slope:.2f} %"
+    )
+    v = results["plant.v"]
+    out.say(
+        f"speed {3.6 * v.min():.1f} to {3.6 * v.max():.1f} km/h, gear torque up to "
+        f"{abs(results['plant.T_gear']).max():.0f} N.m"
+    )
+    for file in (*made.files, record):
+        out.say(f"written: {file}")
+    return 0

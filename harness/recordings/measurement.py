@@ -1,0 +1,140 @@
+"""A recorded drive from which a model is identified."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .alignment import aligned
+from .channels import Channel, Channels
+from .delays import Delay, estimated
+from .quantities import example
+from .relations import check_relations
+from .signal_checks import check_signal, clipping
+from .source import RecordingError
+
+BASE = "omega_1"
+"""Whose samples are the time base."""
+
+WHEEL_SPEEDS = (("omega_2",), ("omega_wheel",), ("omega_wheel_L", "omega_wheel_R"))
+LOADS = (("T_load",), ("T_wheel",), ("T_wheel_L", "T_wheel_R"))
+"""What each may have been recorded as; the first that a file has is taken."""
+
+MESSAGE = ("valid", "counter")
+
+SLOWER = 1.5
+"""Times the interval of the base from which on a wheel speed is taken as sent in messages, and held between them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """A recording in SI units, motor side, one element a sample.
+
+    Attributes:
+        name: of the file, without its ending.
+        time: in s, as recorded, strictly increasing.
+        T_mot: motor torque in N.m.
+        omega_1: motor speed in rad/s.
+        omega_2: wheel speed times i in rad/s.
+        valid: whether the wheel speed is, as the bus says; None if it was not recorded.
+        counter: one more with every message of the wheel speed; None if it was not recorded.
+        T_load: load torque in N.m, negative when it brakes; None if it was not recorded.
+        columns: heading of the column by quantity.
+        delays: that the recording tells, see `harness.recordings.delays`.
+        warnings: what is odd but can be used, a sentence each.
+    """
+
+    name: str
+    time: np.ndarray
+    T_mot: np.ndarray
+    omega_1: np.ndarray
+    omega_2: np.ndarray
+    valid: np.ndarray | None
+    counter: np.ndarray | None
+    T_load: np.ndarray | None
+    columns: Mapping[str, str]
+    delays: Sequence[Delay]
+    warnings: Sequence[str]
+
+
+def read_measurement(
+    path: Path, i: float, r: float, columns: Mapping[str, str] | None = None, names: Sequence[Path] = ()
+) -> Measurement:
+    """Reads a recording to identify a model from. Columns are found by name and converted by unit; others are ignored.
+
+    The wheel speed may be there as speed of the wheels or as speed over ground, one for both driven wheels or one
+    each, of which the mean is taken; it counts i times. The load torque may be that of measurement wheels, which show
+    it positive when they drive, one for both or one each, of which the sum is taken: T_load = -T_wheel/i.
+
+    Args:
+        i: gear ratio.
+        r: radius of the tyre in m.
+        columns, names: see `harness.recordings.channels.Channels`.
+
+    Raises:
+        RecordingError: see `harness.recordings.channels.Channels.read`, `harness.recordings.signal_checks` and
+            `harness.recordings.relations`.
+    """
+    recording = Channels(path, columns, names)
+    wheels, loads = _present(recording, WHEEL_SPEEDS), _present(recording, LOADS)
+    if not wheels:
+        raise RecordingError(f"{path}: no wheel speed, such as {example('omega_wheel', recording.names)}")
+    message = [quantity for quantity in MESSAGE if recording.has(quantity)]
+    channels = recording.read(BASE, "T_mot", *wheels, *loads, *message)
+    judged = [channel for quantity, channel in channels.items() if quantity not in MESSAGE]
+    for channel in judged:
+        check_signal(path, channel)
+    received = {
+        *message,
+        *(wheel for wheel in wheels if _interval(channels[wheel]) > SLOWER * _interval(channels[BASE])),
+    }
+    time, values = aligned(channels, BASE, received)
+    signals = {"T_mot": values["T_mot"], BASE: values[BASE], "omega_2": _wheel_speed(channels, values, wheels, i, r)}
+    if loads:
+        signals["T_load"] = _load(values, loads, i)
+    headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE)}
+    headings |= {
+        q: " and ".join(channels[one].heading for one in of) for q, of in (("omega_2", wheels), ("T_load", loads))
+    }
+    interval = float(np.median(np.diff(time)))
+    check_relations(path, headings, interval, signals)
+    return Measurement(
+        path.stem,
+        time,
+        signals["T_mot"],
+        signals["omega_1"],
+        signals["omega_2"],
+        values["valid"] > 0.5 if "valid" in values else None,
+        values.get("counter"),
+        signals.get("T_load"),
+        {quantity: heading for quantity, heading in headings.items() if heading},
+        estimated(interval, signals),
+        [f"{path}, {said}" for channel in judged if channel.quantity in (BASE, *loads) and (said := clipping(channel))],
+    )
+
+
+def _present(recording: Channels, forms: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """The first form in which the file has it; none."""
+    return next((form for form in forms if all(recording.has(quantity) for quantity in form)), ())
+
+
+def _interval(channel: Channel) -> float:
+    return float(np.median(np.diff(channel.time)))
+
+
+def _wheel_speed(
+    channels: Mapping[str, Channel], values: Mapping[str, np.ndarray], wheels: Sequence[str], i: float, r: float
+) -> np.ndarray:
+    """In rad/s, motor side."""
+    if wheels == ("omega_2",):
+        return values["omega_2"]
+    speeds = [values[wheel] / r if channels[wheel].unit == "m/s" else values[wheel] for wheel in wheels]
+    return i * np.mean(speeds, axis=0)
+
+
+def _load(values: Mapping[str, np.ndarray], loads: Sequence[str], i: float) -> np.ndarray:
+    """In N.m, motor side, negative when it brakes."""
+    if loads == ("T_load",):
+        return values["T_load"]
+    return -np.sum([values[load] for load in loads], axis=0) / i

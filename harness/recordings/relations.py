@@ -1,0 +1,117 @@
+"""What the channels of one car must have to do with each other: a wrong sign, a wrong unit or two exchanged channels
+show there, whatever the car is.
+
+- The wheels turn as fast as the motor, over i.
+- What the torque of the motor does within a few hundredths of a second, it does to the motor: the faster parts of
+  T_mot and d omega_1/dt go together, those of any other torque and speed do not (paper, eq. (2): J_1 d omega_1/dt =
+  T_mot - T_gear, and T_gear is slower).
+- In the long run the load opposes the motor, with about its size.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from .filters import band, low
+from .source import RecordingError
+
+RATIO = 0.1
+"""Largest part by which motor speed over wheel speed times i may differ from 1; slip and tyre radius take less."""
+
+STANDSTILL = 1.0
+"""Speed in rad/s, rms, motor side, below which the ratio of two speeds tells nothing."""
+
+FAST, LINK = (20.0, 60.0), 0.5
+"""Band in Hz, and correlation of a torque with a rate of speed from which on they are certain to belong together. In
+test drives of both plants with 15 and 30 N.m, at 15 and 50 km/h, with and without damping, that of T_mot and omega_1 is
+.54 to .98 and always the largest; no other is above .48."""
+
+SLOW, OPPOSED, SIZE = 2.0, 0.5, 3.0
+"""Frequency in Hz below which the load opposes the motor, the correlation of the wrong sign from which on it is
+certain that it does not, and by which factor it may be larger or smaller."""
+
+
+def check_relations(
+    path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]
+) -> None:
+    """
+    Args:
+        path: of the recording, for messages.
+        headings: of the columns, by quantity: omega_1, omega_2, T_mot and, if it was recorded, T_load.
+        interval: between the samples in s.
+        signals: in SI units, motor side, by quantity.
+
+    Raises:
+        RecordingError: a channel has the wrong sign or unit, or is exchanged with another.
+    """
+    _check_links(path, headings, interval, signals)
+    _check_speeds(path, headings, signals)
+    if "T_load" in signals:
+        _check_load(path, headings, interval, signals)
+
+
+def links(interval: float, signals: Mapping[str, np.ndarray]) -> dict[tuple[str, str], float]:
+    """Correlation of each torque with the rate of each speed, in the band FAST."""
+    torques = {name: band(x, interval, FAST) for name, x in signals.items() if name.startswith("T_")}
+    rates = {
+        name: band(np.gradient(x, interval), interval, FAST) for name, x in signals.items() if name.startswith("omega_")
+    }
+    return {(T, omega): _correlation(torques[T], rates[omega]) for T in torques for omega in rates}
+
+
+def _check_links(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
+    found = links(interval, signals)
+    T, omega = max(found, key=lambda pair: abs(found[pair]))
+    link = found[T, omega]
+    if abs(link) < LINK:
+        return  # too little excitation to tell
+    said = f"{headings[omega]} follows {headings[T]} (correlation {link:.2f} from {FAST[0]:g} to {FAST[1]:g} Hz)"
+    if (T, omega) != ("T_mot", "omega_1"):
+        exchanged = [
+            f"{headings[wanted]} and {headings[name]}"
+            for wanted, name in (("T_mot", T), ("omega_1", omega))
+            if wanted != name
+        ]
+        raise RecordingError(f"{path}: {said}: are {', and '.join(exchanged)} exchanged?")
+    if link < 0.0:
+        raise RecordingError(f"{path}: {said}: one of them has the wrong sign")
+
+
+def _check_speeds(path: Path, headings: Mapping[str, str], signals: Mapping[str, np.ndarray]) -> None:
+    omega_1, omega_2 = signals["omega_1"], signals["omega_2"]
+    if np.sqrt(np.mean(omega_2**2)) < STANDSTILL:
+        return
+    ratio = float(omega_1 @ omega_2 / (omega_2 @ omega_2))
+    if ratio < 0.0:
+        raise RecordingError(
+            f"{path}: {headings['omega_1']} and {headings['omega_2']} turn against each other: one has the wrong sign"
+        )
+    if abs(ratio - 1.0) > RATIO:
+        raise RecordingError(
+            f"{path}: {headings['omega_1']} is {ratio:.4g} times what {headings['omega_2']} says of the motor: "
+            f"the unit of one, the gear ratio or the tyre radius is not what it is said to be "
+            f"(rpm for rad/s makes 9.549, km/h for m/s 3.6)"
+        )
+
+
+def _check_load(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
+    T_mot, T_load = (low(signals[name], interval, SLOW) for name in ("T_mot", "T_load"))
+    correlation = _correlation(T_mot, T_load)
+    if correlation > OPPOSED:
+        raise RecordingError(
+            f"{path}: {headings['T_load']} acts with {headings['T_mot']} (correlation {correlation:.2f} below "
+            f"{SLOW:g} Hz): its sign is wrong; a load that brakes is negative, the torque of wheels that drive positive"
+        )
+    size = float(np.std(T_load) / np.std(T_mot))
+    if correlation < -OPPOSED and not 1.0 / SIZE <= size <= SIZE:
+        raise RecordingError(
+            f"{path}: {headings['T_load']} is {size:.3g} times as large as {headings['T_mot']}, motor side: the unit "
+            f"of one or the gear ratio is not what it is said to be, or it is not on the side that its name says"
+        )
+
+
+def _correlation(x: np.ndarray, y: np.ndarray) -> float:
+    x, y = x - x.mean(), y - y.mean()
+    size = np.sqrt((x @ x) * (y @ y))
+    return float(x @ y / size) if size > 0.0 else 0.0

@@ -1,0 +1,105 @@
+"""Wrong signs, wrong units and exchanged channels show in what the channels have to do with each other."""
+
+import numpy as np
+import pytest
+
+from harness.recordings.filters import band, low
+from harness.recordings.relations import FAST, LINK, OPPOSED, RATIO, SIZE, SLOW, links
+from harness.recordings.source import RecordingError
+
+from .car import drive
+from .conftest import Read
+
+INTERVAL = 0.002
+
+
+@pytest.mark.parametrize("names", [("omega_1", "omega_2"), ("T_mot", "T_load")])
+def test_exchanged_channels_are_named(read: Read, names: tuple[str, str]) -> None:
+    one, (a, b) = drive(), names
+    with pytest.raises(RecordingError, match=rf"are {a} \[.*\] and {b} \[.*\] exchanged\?"):
+        read(one | {a: one[b], b: one[a]})
+
+
+@pytest.mark.parametrize("name", ["omega_1", "T_mot"])
+def test_a_motor_of_the_wrong_sign_is_named(read: Read, name: str) -> None:
+    with pytest.raises(
+        RecordingError, match=r"omega_1 .*follows T_mot .*correlation -.*one of them has the wrong sign"
+    ):
+        read(drive() | {name: -drive()[name]})
+
+
+def test_wheels_of_the_wrong_sign_are_named(read: Read) -> None:
+    with pytest.raises(RecordingError, match="turn against each other"):
+        read(drive() | {"omega_2": -drive()["omega_2"]})
+
+
+def test_a_load_of_the_wrong_sign_is_named(read: Read) -> None:
+    with pytest.raises(RecordingError, match=r"T_load .*acts with T_mot .*its sign is wrong"):
+        read(drive() | {"T_load": -drive()["T_load"]})
+
+
+@pytest.mark.parametrize("unit", [60.0 / (2.0 * np.pi), 1.0 / 3.6, 9.0])
+def test_a_speed_in_another_unit_than_is_said_is_named(read: Read, unit: float) -> None:
+    with pytest.raises(RecordingError, match=r"omega_1 .* is .* times what omega_2"):
+        read(drive() | {"omega_1": unit * drive()["omega_1"]})
+
+
+def test_the_ratio_of_the_speeds_just_inside_and_just_outside(read: Read) -> None:
+    one = drive()
+    ratio = float(one["omega_1"] @ one["omega_2"] / (one["omega_2"] @ one["omega_2"]))
+    for side in (1.0, -1.0):
+        read(one | {"omega_1": (1.0 + side * (RATIO - 1e-4)) / ratio * one["omega_1"]})
+        with pytest.raises(RecordingError, match="times what"):
+            read(one | {"omega_1": (1.0 + side * (RATIO + 1e-4)) / ratio * one["omega_1"]})
+
+
+def test_the_size_of_the_load_just_inside_and_just_outside(read: Read) -> None:
+    one = drive()
+    size = np.std(low(one["T_load"], INTERVAL, SLOW)) / np.std(low(one["T_mot"], INTERVAL, SLOW))
+    for factor, odd in ((SIZE, 1.001), (1.0 / SIZE, 0.999)):
+        read(one | {"T_load": factor / odd / size * one["T_load"]})
+        with pytest.raises(RecordingError, match="times as large as T_mot"):
+            read(one | {"T_load": factor * odd / size * one["T_load"]})
+
+
+def test_the_correlation_of_the_load_just_inside_and_just_outside(read: Read) -> None:
+    one = drive()
+    T, other = low(one["T_mot"], INTERVAL, SLOW), np.sin(0.9 * one["time"])
+    T, other = T - T.mean(), other - other.mean()
+    other -= T * (T @ other) / (T @ T)
+    for correlation in (OPPOSED - 0.02, OPPOSED + 0.02):
+        mixed = correlation * T / np.std(T) + np.sqrt(1.0 - correlation**2) * other / np.std(other)
+        if correlation < OPPOSED:
+            read(one | {"T_load": 5.0 * mixed})
+        else:
+            with pytest.raises(RecordingError, match="its sign is wrong"):
+                read(one | {"T_load": 5.0 * mixed})
+
+
+def test_the_link_of_torque_and_speed_just_inside_and_just_outside(read: Read) -> None:
+    """A torque of the wrong sign, in noise that hides it more and more."""
+    one = drive()
+    noise = np.random.default_rng(1).standard_normal(len(one["time"]))
+
+    def link(size: float) -> float:
+        return links(INTERVAL, {"T_mot": size * noise - one["T_mot"], "omega_1": one["omega_1"]})["T_mot", "omega_1"]
+
+    sizes = np.linspace(0.0, 200.0, 2001)
+    hidden = next(size for size in sizes if link(size) > -LINK)
+    without_load = {name: values for name, values in one.items() if name != "T_load"}
+    assert hidden > 0.0
+    read(without_load | {"T_mot": hidden * noise - one["T_mot"]})
+    with pytest.raises(RecordingError, match="wrong sign"):
+        read(without_load | {"T_mot": (hidden - 0.1) * noise - one["T_mot"]})
+
+
+def test_a_car_that_stands_has_no_ratio_of_speeds(read: Read) -> None:
+    one = drive()
+    read(one | {name: one[name] - 130.0 for name in ("omega_1", "omega_2")} | {"omega_2": 0.1 * np.sin(one["time"])})
+
+
+def test_the_band_lets_through_what_lies_in_it() -> None:
+    time = drive()["time"]
+    for frequency, passes in ((5.0, 0.0), (35.0, 1.0), (150.0, 0.0)):
+        wave = np.sin(2.0 * np.pi * frequency * time)
+        assert np.std(band(wave, INTERVAL, FAST)[500:-500]) / np.std(wave) == pytest.approx(passes, abs=0.1)

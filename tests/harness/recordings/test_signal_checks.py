@@ -1,0 +1,82 @@
+"""Every defect of a channel is named; what is just good enough is read."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.recordings.channels import Channel
+from harness.recordings.quantities import QUANTITIES
+from harness.recordings.signal_checks import CLIPPED, SHORTEST, check_signal
+from harness.recordings.source import RecordingError
+
+from .car import drive
+from .conftest import Read
+
+
+def cut(samples: int, stride: int = 1) -> dict[str, np.ndarray]:
+    return {name: values[: samples * stride : stride].copy() for name, values in drive().items()}
+
+
+def at_every(interval: float) -> dict[str, np.ndarray]:
+    """The drive with samples so many s apart."""
+    time = np.arange(0.0, 10.0, interval)
+    return {name: np.interp(time, drive()["time"], values) for name, values in drive().items()} | {"time": time}
+
+
+def test_a_drive_without_defects_is_read_without_a_word(read: Read) -> None:
+    assert read(drive()).warnings == []
+
+
+def test_the_shortest_recording(read: Read) -> None:
+    samples = round(SHORTEST / 0.002) + 1
+    assert len(read(cut(samples)).time) == samples
+    with pytest.raises(RecordingError, match=r"omega_1 \[rad/s\] is 1\.998 s long; 2 s or more are needed"):
+        read(cut(samples - 1))
+
+
+def test_the_slowest_recording(read: Read) -> None:
+    assert len(read(at_every(0.01)).time) == 1000
+    with pytest.raises(RecordingError, match=r"omega_1 \[rad/s\] has a sample every 10\.1 ms; 10 ms or less"):
+        read(at_every(0.0101))
+
+
+@pytest.mark.parametrize("name", ["T_mot", "omega_1", "T_load", "omega_2"])
+def test_a_channel_that_hardly_varies(name: str) -> None:
+    least = QUANTITIES[name].least_swing
+    wave = np.sin(drive()["time"])
+
+    def channel(swing: float) -> Channel:
+        values = 100.0 + swing * (wave - wave.min()) / np.ptp(wave)
+        return Channel(name, name, QUANTITIES[name].unit, drive()["time"], values, str)
+
+    check_signal(Path("measured.csv"), channel(least + 1e-6))
+    with pytest.raises(RecordingError, match=rf"{name} varies by .*; more than {least:g} .* are needed"):
+        check_signal(Path("measured.csv"), channel(max(least - 1e-6, 0.0)))
+
+
+def test_a_constant_input_is_refused(read: Read) -> None:
+    with pytest.raises(RecordingError, match=r"T_mot \[N\.m\] varies by 0 N\.m"):
+        read(drive() | {"T_mot": np.full_like(drive()["T_mot"], 10.0)})
+
+
+@pytest.mark.parametrize("name", ["omega_1", "T_load"])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_channel_that_was_cut_off_is_named(read: Read, name: str, sign: float) -> None:
+    one = drive()
+    values = sign * one[name]
+    top = int(np.argmax(values[50:-50])) + 50
+    for length in (CLIPPED - 1, CLIPPED):
+        flat = values.copy()
+        flat[top : top + length] = values[top]
+        warnings = read(one | {name: sign * flat}).warnings
+        if length < CLIPPED:
+            assert warnings == []
+        else:
+            word = "largest" if sign > 0.0 else "smallest"
+            assert [f"line {top + 2}: {name} " in text and word in text for text in warnings] == [True]
+
+
+def test_the_torque_of_a_binary_demand_is_not_cut_off(read: Read) -> None:
+    one = drive()
+    assert read(one | {"T_mot": np.clip(one["T_mot"], -19.0, 39.0)}).warnings == []
