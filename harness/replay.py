@@ -19,7 +19,7 @@ from .metrics.declaration import given, measured
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
 from .reports.csv_file import write_csv
-from .reports.table import values, write_metrics
+from .reports.table import values, write_metrics, write_rides
 from .simulate import simulate
 
 KEPT = [
@@ -166,11 +166,12 @@ def records(rides: Sequence[Ride], track: Track, plant: str) -> list[dict[str, A
 
 
 def write(rides: Sequence[Ride], track: Track, plant: str, folder: Path, caption: str = "") -> list[Path]:
-    """Writes metrics, signals (every 10 ms) and the figure of a replay, with its caption; returns the files."""
+    """Writes metrics, table, signals (every 10 ms) and the figure of a replay, with its caption; returns the files."""
     from .reports.replay_figure import plot_replay  # not for the workers, which draw nothing
 
-    files = [folder / f"{track.name}_metrics.csv"]
+    files = [folder / f"{track.name}{end}" for end in ("_metrics.csv", "_table.md")]
     write_metrics(records(rides, track, plant), files[0])
+    write_rides({ride.controller: ride.metrics for ride in rides}, f"{track.name} on {plant}", files[1])
     for ride in rides:
         files.append(folder / f"{track.name}_{ride.suffix}.csv")
         write_csv(ride.signals[::CSV_STRIDE], files[-1])

@@ -30,8 +30,8 @@ found by driving without damping and are then the same for all; nothing in them 
 
 {LEGEND}
 
-in brackets over that without damping, and goes to RECORDING_metrics.csv in the output folder, the signals
-to RECORDING_off.csv and RECORDING_CONTROLLER.csv, the figure to RECORDING.png and RECORDING.pdf.
+in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
+folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv, the figure to RECORDING.png and RECORDING.pdf.
 """
 
 EXAMPLES = """\

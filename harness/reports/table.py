@@ -1,6 +1,6 @@
 """The metrics of many runs as one table, for people (Markdown) and for tools (CSV, JSON), and what they mean."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from inspect import cleandoc
 from math import isnan
 from pathlib import Path
@@ -8,7 +8,7 @@ from textwrap import fill
 from typing import Any, NamedTuple
 
 from ..metrics.declaration import Column, declared
-from ..metrics.record import Metrics
+from ..metrics.record import Metrics, RideMetrics
 from .csv_file import write_rows
 from .files import write_text
 from .markdown import markdown_table
@@ -25,6 +25,9 @@ class Row(NamedTuple):
 
 SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column]
 """The metrics that the table has, and how."""
+
+RIDES_SHOWN = [(metric, metric.column) for metric in declared(RideMetrics) if metric.column]
+"""Those that the table of recorded drives has."""
 
 
 def cells(row: Row) -> list[str]:
@@ -83,6 +86,26 @@ def write_markdown(rows: Sequence[Row], path: Path) -> None:
     dashes = "\n".join(reasons(rows))
     table += f"\n\n{dashes}" if dashes else ""
     write_text(f"{table}\n\n{cleandoc(Metrics.__doc__ or '')}\n\n{explained}\n", path)
+
+
+def ride_rows(rides: Mapping[str, RideMetrics]) -> Iterator[list[str]]:
+    """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
+    undamped = next(iter(rides.values()))
+    for name, ride in rides.items():
+        yield [name, *(_compared(metric.of(ride), metric.of(undamped)) for metric, _ in RIDES_SHOWN)]
+
+
+def _compared(value: float, other: float) -> str:
+    """A value, and in brackets its ratio to another one."""
+    if isnan(value):
+        return "-"
+    return f"{value:.3g} ({value / other:.3f})" if other and not isnan(other) else f"{value:.3g} (-)"
+
+
+def write_rides(rides: Mapping[str, RideMetrics], title: str, path: Path) -> None:
+    """Writes the table of the rides as Markdown."""
+    headings = [title, *(f"{column.plain_heading}, {column.unit}" for _, column in RIDES_SHOWN)]
+    write_text(f"{markdown_table(headings, ride_rows(rides), labels=1)}\n", path)
 
 
 def values(metrics: Any) -> dict[str, Any]:

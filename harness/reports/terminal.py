@@ -1,7 +1,6 @@
 """Tables and verdicts on the terminal."""
 
 from collections.abc import Mapping, Sequence
-from math import isnan
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -10,7 +9,7 @@ from rich.text import Text
 
 from ..metrics.declaration import declared
 from ..metrics.record import RideMetrics
-from .table import SHOWN, Row, cells
+from .table import RIDES_SHOWN, SHOWN, Row, cells, ride_rows
 
 NUMBER_WIDTH = 5
 """Columns of the terminal that a number may need."""
@@ -56,21 +55,12 @@ def runs_table(rows: Sequence[Row]) -> Table:
 def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:
     """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
-    shown = [(metric, metric.column) for metric in declared(RideMetrics) if metric.column]
     table.add_column("", no_wrap=True)
-    for _, column in shown:
+    for _, column in RIDES_SHOWN:
         table.add_column(f"{column.heading}\n{column.unit}", justify="right", no_wrap=True)
-    undamped = next(iter(rides.values()))
-    for name, ride in rides.items():
-        table.add_row(name, *(_compared(metric.of(ride), metric.of(undamped)) for metric, _ in shown))
+    for row in ride_rows(rides):
+        table.add_row(*row)
     return table
-
-
-def _compared(value: float, other: float) -> str:
-    """A value, and in brackets its ratio to another one."""
-    if isnan(value):
-        return "-"
-    return f"{value:.3g} ({value / other:.3f})" if other and not isnan(other) else f"{value:.3g} (-)"
 
 
 def rides_reasons(rides: Mapping[str, RideMetrics]) -> list[str]:

@@ -185,8 +185,14 @@ def test_damping_lowers_oscillation_and_damage(replayed):
 def test_figure_and_signals_every_10_ms_are_written(replayed):
     folder = replayed[1]
     assert {path.name for path in folder.iterdir()} == {
-        "short_metrics.csv", "short_off.csv", "short_DampingController.csv", "short_Again.csv", "short.png", "short.pdf"
+        "short_metrics.csv", "short_table.md", "short_off.csv", "short_DampingController.csv", "short_Again.csv",
+        "short.png", "short.pdf",
     }  # fmt: skip
+    table = (folder / "short_table.md").read_text(encoding="utf-8").splitlines()
+    assert [row.split(" | ")[0] for row in table] == [
+        "| short on ValidationVehicle", "| ---", "| without damping", "| DampingController", "| Again"
+    ]  # fmt: skip
+    assert all(row.count("(1.000)") == (k == 2) * (row.count("|") - 2) for k, row in enumerate(table))
     with (folder / "short_Again.csv").open(encoding="utf-8") as file:
         times = [float(row["time"]) for row in csv.DictReader(file)]
     assert times == pytest.approx(np.arange(801) * 0.01)
