@@ -31,11 +31,12 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     """What the options of `add_loop` say for a plant and a build, as arguments of `harness.simulate.simulate`.
 
     Raises:
-        WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter.
+        WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter, or not
+            with that value.
         DrivelineError: a file of parameters is refused.
     """
     from ..cosimulation.mapping import parsed
-    from ..cosimulation.wiring import fit
+    from ..cosimulation.wiring import beyond, fit, require
     from ..simulate import looped
 
     given = {
@@ -48,7 +49,7 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     }
     system = looped(plant, given)
     parameters = _from_files(args, system) | dict(args.assignments)
-    fit(system, parameters=parameters)
+    require(beyond(fit(system, parameters=parameters), parameters))
     return given | {"parameters": parameters}
 
 

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from math import inf
 from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
@@ -79,6 +80,21 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
                     yield f"{name} is a String; only numbers and truth values can be set"
             if name in targets:
                 yield f"{name} is fed more than once"
+
+
+def beyond(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
+    """Which of the values that a run gives to parameters are beyond the bounds that an FMU declares."""
+    for name, value in parameters.items():
+        variable, _ = find(name, "parameter", fitted.interfaces)
+        if variable is None:
+            continue
+        instance, _, own = name.partition(".")
+        interface = fitted.interfaces[instance]
+        factor = interface.factors.get(own, 1.0)
+        low = -inf if variable.min is None else factor * float(variable.min)
+        high = inf if variable.max is None else factor * float(variable.max)
+        if not low <= value <= high:
+            yield f"{name} = {value:g}: {interface.path.name} takes {low:g} to {high:g} {unit_of(variable) or ''}".rstrip()
 
 
 def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:

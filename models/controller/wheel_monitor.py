@@ -3,7 +3,8 @@
 A message corrects the estimate when it is new, valid, in range, not doubted and near it; the wheel speed is
 in use while such messages keep coming. Any message that says a speed is a witness against a motor
 speed that is far from it, unless it is the messages that have leapt from one to the next while the motor
-speed has not: then they are doubted, until one is near the motor speed again.
+speed has not: then they are doubted, until one is near the motor speed again. What contradicts is far from the motor
+speed of now and from that of when the message came: wheels that lock leave the last message behind in between.
 
 The teeth of a wheel do not tell its direction. It is taken from the motor while the messages are silent or
 doubted, and kept otherwise: a car that turns round passes the speeds at which they say nothing. A motor that

@@ -1,5 +1,6 @@
 """Whether FMUs fit together is known before the run: the two plants do, foreign ones are told why not."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -11,7 +12,7 @@ from harness.cosimulation.experiment import Experiment
 from harness.cosimulation.interface import Interface, unit_of
 from harness.cosimulation.runs import run
 from harness.cosimulation.system import Connection, System
-from harness.cosimulation.wiring import fit
+from harness.cosimulation.wiring import beyond, fit
 from harness.errors import WiringError
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
@@ -42,6 +43,17 @@ def test_parameters_are_those_that_are_given_and_where_the_fmus_start(native):
     assert found["plant"]["J_1"] == 0.07
     assert found["plant"]["C"] == float(Interface(native / "TwoMassDriveline.fmu").variables["C"].start or "nan")
     assert found.keys() == {"plant", "motor", "can", "controller"}
+
+
+def test_bounds_are_those_of_the_fmu_in_the_units_of_the_loop(native):
+    fitted = fit(loop("TwoMassDriveline", folder=native.parent, build="native"))
+    bounds = 0.001, 10.0
+    assert list(beyond(fitted, {"plant.J_1": bounds[0], "plant.C": 1e3, "plant.unknown": 7.0})) == []
+    for value in (math.nextafter(bounds[0], 0.0), math.nextafter(bounds[1], 11.0)):
+        assert len(list(beyond(fitted, {"plant.J_1": value}))) == 1
+    fitted.interfaces["plant"].factors["J_1"] = 0.1
+    assert list(beyond(fitted, {"plant.J_1": 0.0001})) == []
+    assert list(beyond(fitted, {"plant.J_1": 1.1})) == ["plant.J_1 = 1.1: TwoMassDriveline.fmu takes 0.0001 to 1 kg.m2"]
 
 
 def test_both_plants_have_one_interface(built):
