@@ -59,6 +59,9 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline back-to-back --output docs
 	$(BIN)/python -m harness.analysis.design_page
 	$(BIN)/python -m harness.analysis.calibration_page
+	$(BIN)/driveline build NoDamping SpeedWashout SpeedDifference PaperObserver LinearObserver PerfectState
+	$(BIN)/python -m harness.tuning.comparison_page
+	$(BIN)/python -m harness.tuning.goals_page
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline analyse --replace --quiet

@@ -86,10 +86,12 @@ def recorded(
         replace: whether results of another run may be replaced.
 
     Raises:
-        DrivelineError: there are results of another run; nothing has been run.
+        DrivelineError: there are results of another run, or a folder in the place of one; nothing has been run.
     """
 
     def require() -> None:
+        if folder := next((path for path in (*results, record) if path.is_dir()), None):
+            raise DrivelineError(f"{folder} is a folder; a file is needed")
         if not replace:
             require_same_run(record, run, results)
 

@@ -94,7 +94,8 @@ def beyond(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
         low = -inf if variable.min is None else factor * float(variable.min)
         high = inf if variable.max is None else factor * float(variable.max)
         if not low <= value <= high:
-            yield f"{name} = {value:g}: {interface.path.name} takes {low:g} to {high:g} {unit_of(variable) or ''}".rstrip()
+            unit = unit_of(variable) or ""
+            yield f"{name} = {value:g}: {interface.path.name} takes {low:g} to {high:g} {unit}".rstrip()
 
 
 def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:

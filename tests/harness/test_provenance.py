@@ -82,6 +82,16 @@ def test_another_run_does_not_replace_it(
     assert {path: path.read_bytes() for path in made.iterdir()} == before
 
 
+@pytest.mark.parametrize("ending", [".csv", ".json"])
+def test_a_folder_in_the_place_of_a_result_is_found_before_anything_runs(
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, ending: str
+) -> None:
+    monkeypatch.setattr("harness.simulate.run", lambda *_: pytest.fail("it has run"))
+    (tmp_path / f"{NAME}{ending}").mkdir()
+    assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"driveline simulate: {tmp_path / NAME}{ending} is a folder; a file is needed\n"
+
+
 def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
     both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

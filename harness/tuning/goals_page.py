@@ -1,0 +1,63 @@
+"""Writes docs/goals.md, what the controller is to reach and what it reaches: `python -m harness.tuning.goals_page`."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..control_loop import PLANTS
+from ..many import run_many
+from ..metrics.record import Metrics
+from ..reports.files import write_text
+from ..reports.markdown import markdown_table
+from .goals import GOALS, Goal, Run, measured, reached, runs, title
+from .runs import HELD_OUT_SEEDS
+
+MET = 1.005
+"""Share of a goal that rounds to it."""
+
+PAGE = """\
+# Goals
+
+Made by `python -m harness.tuning.goals_page`; do not edit.
+
+What the controller is to reach on both plants, and what it reaches with its default parameters: means over the noise
+of seeds {seeds}, which no search has seen. In bold what is not reached: {missed} of {all}. The goals were set when the
+controller was begun, from what a study had found possible with one law or another, though not with one law at a time.
+[comparison.md](comparison.md) has the other controllers, [bound.md](bound.md) what none can beat, and
+[robustness.md](robustness.md) the cars that are drawn.
+
+{table}
+"""
+
+
+def page(found: Mapping[Run, Metrics]) -> str:
+    """The page as Markdown."""
+    rows = [[title(goal), *cells] for goal in GOALS for cells in [_cells(goal, found)]]
+    missed = sum(cell.startswith("**") for row in rows for cell in row)
+    headings = ["goal", *(text for plant in PLANTS for text in (f"{plant}: is", "at most"))]
+    return PAGE.format(
+        seeds=", ".join(map(str, HELD_OUT_SEEDS)),
+        missed=missed,
+        all=len(GOALS) * len(PLANTS),
+        table=markdown_table(headings, rows, labels=1),
+    )
+
+
+def _cells(goal: Goal, found: Mapping[Run, Metrics]) -> list[str]:
+    cells = []
+    for plant, most in zip(PLANTS, goal.values, strict=True):
+        value = reached(goal, plant, found)
+        shown = f"{value:.3g}"
+        cells += [shown if value <= MET * most else f"**{shown}**", f"{most:g}"]
+    return cells
+
+
+def main() -> None:
+    todo = runs()
+    found = dict(zip(todo, run_many(lambda run: measured(run, {}), todo), strict=True))
+    path = Path(__file__).parents[2] / "docs" / "goals.md"
+    write_text(page(found), path)
+    print(path)
+
+
+if __name__ == "__main__":
+    main()
