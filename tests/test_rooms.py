@@ -26,7 +26,7 @@ ROOMS = {
     "harness.recordings": COSIMULATION,
     "harness.manoeuvres": COSIMULATION | {"harness.recordings"},
     "harness.metrics": {"harness", "harness.manoeuvres"},
-    "harness.reports": {"harness", "harness.manoeuvres", "harness.metrics"},
+    "harness.reports": {"harness", "harness.recordings", "harness.manoeuvres", "harness.metrics"},
     "harness.compliance": COSIMULATION,
     "harness.linear": {"harness", "harness.metrics", "harness.reports", "models", "models.block", "models.controller"},
     "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports"},

@@ -4,7 +4,7 @@ import re
 from functools import cache
 from typing import Any
 
-SYMBOL = r"(?:[A-Za-zµΩ%°]+(?:\^?[+-]?\d+)?|1)"
+SYMBOL = r"(?:[A-Za-zµΩ%°]+(?:\^?[+-]?[1-9]\d*)?|1)"
 PRODUCT = rf"{SYMBOL}(?:[.*]{SYMBOL})*"
 UNIT = re.compile(rf"{PRODUCT}(?:/(?:{SYMBOL}|\({PRODUCT}\)))?")
 """A product, over one symbol or a product in brackets: N.m, kg.m2, s-1, N.m/rad, J/(kg.K), 1."""

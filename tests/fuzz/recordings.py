@@ -1,6 +1,7 @@
-"""Recorded drives."""
+"""Recordings: drives to replay and drives to identify from, in every format."""
 
-from collections.abc import Iterator
+import logging
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from random import Random
@@ -11,6 +12,10 @@ from harness.errors import DrivelineError
 from harness.manoeuvres.follower import drive, needed_force
 from harness.manoeuvres.road import RoadLoad, Track
 from harness.recordings.drive import read_drive
+from harness.recordings.measurement import read_measurement
+from tests.harness.recordings.car import RADIUS, RATIO
+from tests.harness.recordings.car import drive as excited
+from tests.harness.recordings.variants import TEXTS, recording, write_arrow, write_mdf
 
 from .damage import ODD, spoiled_bytes, spoiled_text
 from .target import Attempt, Target, Unclean
@@ -18,7 +23,7 @@ from .target import Attempt, Target, Unclean
 SOUND = "Time [s],Velocity [km/h],Elevation [m],Motor Torque [Nm]\n" + "".join(
     f"{0.1 * k:.1f},{20.0 + 0.1 * k:.2f},{500.0 + 0.01 * k:.2f},{k % 7 * 5.0:.2f}\n" for k in range(30)
 )
-CAR = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
+CAR = RoadLoad(i=RATIO, r=RADIUS, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
 
 
 def other_cells(text: str, random: Random) -> str:
@@ -29,34 +34,79 @@ def other_cells(text: str, random: Random) -> str:
     return "\n".join(",".join(line) for line in lines)
 
 
-def damaged(random: Random) -> bytes:
+def damaged_text(random: Random) -> bytes:
     content = random.choice((other_cells, spoiled_text))(SOUND, random).encode("utf-8", "surrogatepass")
     return spoiled_bytes(content, random) if random.random() < 0.2 else content
 
 
+def measured() -> str:
+    """A drive to identify from, as text."""
+    one = excited(2.5)
+    rows = np.column_stack([one["time"], one["omega_1"], one["T_mot"], one["omega_2"] / RATIO, -RATIO * one["T_load"]])
+    lines = (",".join(f"{value:.6g}" for value in row) for row in rows.tolist())
+    heading = "Time [s],Motor Speed [rad/s],Motor Torque [N.m],Wheel Speed [rad/s],Wheel Torque [N.m]"
+    return "\n".join((heading, *lines))
+
+
+def sound_files(folder: Path) -> list[bytes]:
+    """One drive in every text dialect and in every binary format."""
+    one = recording(30)
+    files = [text(one) for text in TEXTS.values()]
+    for name, write in (("a.mf4", write_mdf), ("a.parquet", write_arrow), ("a.feather", write_arrow)):
+        write(one, folder / name)
+        files.append((folder / name).read_bytes())
+        (folder / name).unlink()
+    return files
+
+
+def driven(path: Path, random: Random) -> list[np.ndarray]:
+    """The signals of a drive."""
+    track = Track.of(read_drive(path))
+    manoeuvre = drive(track, CAR, needed_force(track, CAR), held=random.choice((None, 0.5)))
+    t = np.linspace(0.0, manoeuvre.duration, 50)
+    return [signal(t) for signal in (manoeuvre.T_driver, manoeuvre.T_brake, manoeuvre.slope)]
+
+
+def identified(path: Path, random: Random) -> list[np.ndarray]:
+    """The signals of a drive to identify from."""
+    found = read_measurement(path, RATIO, RADIUS)
+    return [x for x in (found.time, found.T_mot, found.omega_1, found.omega_2, found.T_load) if x is not None]
+
+
 @contextmanager
 def attempts(folder: Path) -> Iterator[Attempt]:
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL)
+    files, other = sound_files(folder), measured()
+
+    def drawn(random: Random) -> tuple[bytes, Callable[[Path, Random], list[np.ndarray]]]:
+        kind = random.random()
+        if kind < 0.5:
+            return damaged_text(random), driven
+        if kind < 0.9:
+            return spoiled_bytes(random.choice(files), random), driven
+        return random.choice((other_cells, spoiled_text))(other, random).encode("utf-8", "surrogatepass"), identified
+
     def attempt(random: Random) -> str:
         path = folder / "drive.csv"
-        path.write_bytes(damaged(random))
+        content, use = drawn(random)
+        path.write_bytes(content)
         try:
-            track = Track.of(read_drive(path))
-            manoeuvre = drive(track, CAR, needed_force(track, CAR), held=random.choice((None, 0.5)))
+            signals = use(path, random)
         except DrivelineError as refusal:
-            if "\n" in str(refusal):
-                raise Unclean(f"{path.read_bytes()!r}: {refusal}") from refusal
+            if "\n" in str(refusal) or not str(refusal).isprintable():
+                raise Unclean(f"{content[:3000]!r}: {refusal}") from refusal
             return "refused in one line"
-        t = np.linspace(0.0, manoeuvre.duration, 50)
-        for signal in (manoeuvre.T_driver, manoeuvre.T_brake, manoeuvre.slope):
-            if not np.isfinite(signal(t)).all():
-                raise Unclean(f"{path.read_bytes()!r}: a signal that is not finite")
+        except Exception as fault:
+            raise Unclean(f"{content[:3000]!r}: {type(fault).__name__}: {fault}") from fault
+        if not all(np.isfinite(signal).all() for signal in signals):
+            raise Unclean(f"{content[:3000]!r}: a signal that is not finite")
         return "driven"
 
     yield attempt
 
 
 TARGET = Target(
-    "damaged recordings of drives",
+    "damaged recordings, as text of every dialect, MDF, Parquet and Feather",
     "a drive with finite signals, or one line that refuses it",
     attempts,
     short=300,

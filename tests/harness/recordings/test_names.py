@@ -68,7 +68,7 @@ def test_units_as_files_write_them(unit: str, wanted: str, factor: float) -> Non
 
 
 @pytest.mark.parametrize(
-    ("unit", "wanted"), [("Hz", "rad/s"), ("1/s", "rad/s"), ("km", "m/s"), ("quux", "s"), ("", "s")]
+    ("unit", "wanted"), [("Hz", "rad/s"), ("1/s", "rad/s"), ("km", "m/s"), ("quux", "s"), ("", "s"), ("m0", "m")]
 )
 def test_a_unit_that_does_not_convert_is_refused(unit: str, wanted: str) -> None:
     with pytest.raises(ValueError, match=f"wanted is {wanted}"):
