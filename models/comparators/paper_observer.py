@@ -32,5 +32,5 @@ BLOCK = supervised(
     description="Comparator: damping by the derivative of the gear torque that the paper's observer estimates",
     module=__name__,
     estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, Lw_T_l=0.0, L_can_T_l=0.0),
-    law=fixed(damping_law, {"k_T": 2.0, "omega_w": 120.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, **NO_LANDING),
+    law=fixed(damping_law, {"k_T": 4.32, "omega_w": 293.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, **NO_LANDING),
 )

@@ -10,4 +10,7 @@ from .fixed import fixed
 
 NO_LANDING = dict.fromkeys(("T_gap", "bounce", "brake", "haste", "omega_slow", "t_return", "t_land"), 0.0)
 
-LAW = fixed(damping_law, phi_B=0.0, k_gap=1.0, **NO_LANDING)
+GAINS = {"k_d": 3.45, "k_T": 0.00474, "omega_w": 2.75, "T_pred": 0.00241}
+"""Found by `driveline design --search`, see docs/tuning.md."""
+
+LAW = fixed(damping_law, GAINS, phi_B=0.0, k_gap=1.0, **NO_LANDING)

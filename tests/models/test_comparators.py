@@ -82,7 +82,7 @@ def test_the_gear_torque_that_it_estimates_is_washed_out() -> None:
 def test_the_linear_observer_is_ours_without_a_gap() -> None:
     inputs = shaken(0.4)
     states, p = run(linear_observer.BLOCK, inputs), linear_observer.BLOCK.Parameters()
-    assert torques(states) == torques(run(OURS, inputs, **LINEAR))
+    assert torques(states) == torques(run(OURS, inputs, **LINEAR, **state_feedback.GAINS))
     for x in states:
         assert x.ahead.T_gear == p.C * x.ahead.phi
 
