@@ -55,9 +55,10 @@ def test_the_document_has_nothing_that_json_does_not_know(found: Analysis) -> No
 
 
 def test_a_loop_that_is_not_stable_has_no_margins() -> None:
-    assert linear_part(Part(PLANT, "15"), "SpeedWashout", {PLANT: {"controller.k_v": 12.0}}).margins.gain_margin > 1.0
+    stable, unstable = ({PLANT: {"controller.k_v": k_v, "controller.omega_v": 25.0}} for k_v in (12.0, 13.0))
+    assert linear_part(Part(PLANT, "15"), "SpeedWashout", stable).margins.gain_margin > 1.0
     with pytest.raises(DrivelineError, match=r"SpeedWashout is not stable in contact at 15 km/h: it has no margins"):
-        linear_part(Part(PLANT, "15"), "SpeedWashout", {PLANT: {"controller.k_v": 13.0}})
+        linear_part(Part(PLANT, "15"), "SpeedWashout", unstable)
 
 
 def test_an_unknown_controller_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:

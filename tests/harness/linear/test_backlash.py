@@ -57,7 +57,8 @@ def test_without_control_nothing_lasts() -> None:
 
 def test_a_controller_that_is_stable_in_contact_may_swing_for_ever_through_the_gap() -> None:
     """The paper's observer on the vehicle, with a dead time below its margin in contact."""
-    point = Point(validation_vehicle.BLOCK, EVERY["PaperObserver"].block, late=0.010, wheel=False)  # type: ignore[arg-type]
+    gains = {"controller": {"k_T": 2.0, "omega_w": 120.0}}
+    point = Point(validation_vehicle.BLOCK, EVERY["PaperObserver"].block, gains, late=0.010, wheel=False)  # type: ignore[arg-type]
     found = swings(point)
     assert found[-1].stable
     smaller, larger = limit_cycles(point, found)

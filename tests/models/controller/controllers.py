@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -9,12 +10,16 @@ import pytest
 from hypothesis import strategies as st
 
 from models import damping_controller
+from models.block.declaration import with_defaults
 from models.block.types import SampledBlock
 from models.comparators import speed_washout
 from models.controller.supervision import T_S, Input, State
 
 OURS = damping_controller.BLOCK
-OTHER = speed_washout.BLOCK
+OTHER = replace(
+    speed_washout.BLOCK, Parameters=with_defaults(speed_washout.BLOCK.Parameters, {"k_v": 2.0, "omega_v": 25.0})
+)
+"""With gains of its own, whatever the search finds."""
 EVERY = (OURS, OTHER)
 
 every_controller = pytest.mark.parametrize("block", EVERY, ids=lambda block: block.name)

@@ -7,7 +7,7 @@ import pytest
 
 from models.block.declaration import variables
 from models.block.runner import runner
-from models.comparators import measured_speeds
+from models.comparators import measured_speeds, speed_washout
 from models.comparators.speed_washout import Washout
 from models.controller import damping_law, rest, supervision, torque_estimator, torque_loop
 from models.controller.parts import Addition, Estimator, Law, Motion
@@ -19,7 +19,7 @@ from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shake
 
 def test_the_parameters_are_those_of_the_parts_and_of_the_supervision() -> None:
     parts = measured_speeds.Parameters, Washout.Parameters, supervision.Parameters
-    assert variables(OTHER.Parameters) == tuple(v for part in parts for v in variables(part))
+    assert variables(speed_washout.BLOCK.Parameters) == tuple(v for part in parts for v in variables(part))
 
 
 @pytest.mark.parametrize("law", [damping_law, Washout()], ids=["damping_law", "washout"])
