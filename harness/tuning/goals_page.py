@@ -20,8 +20,7 @@ PAGE = """\
 Made by `python -m harness.tuning.goals_page`; do not edit.
 
 What the controller is to reach on both plants, and what it reaches with its default parameters: means over the noise
-of seeds {seeds}, which no search has seen. In bold what is not reached: {missed} of {all}. The goals were set when the
-controller was begun, from what a study had found possible with one law or another, though not with one law at a time.
+of seeds {seeds}, which no search has seen. In bold what is not reached: {missed} of {all}.
 [comparison.md](comparison.md) has the other controllers, [bound.md](bound.md) what none can beat, and
 [robustness.md](robustness.md) the cars that are drawn.
 
