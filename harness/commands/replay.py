@@ -15,7 +15,8 @@ from .settings import caption, distinguishing, settings_of_each
 
 LEGEND = legend(RideMetrics)
 
-COLUMNS = ", ".join(example(quantity, aliases()) for quantity in ("time", "v", "elevation", "T_mot"))
+NAMES = aliases()
+COLUMNS = ", ".join(example(quantity, NAMES) for quantity in ("time", "v", "elevation", "T_mot"))
 
 DESCRIPTION = f"""\
 Reads a recorded drive, a file with the columns

@@ -10,7 +10,7 @@ import numpy as np
 from ..plain import plain
 from .extra import required
 from .headings import split
-from .source import Column, RecordingError, Samples, not_finite
+from .source import Column, RecordingError, Samples, samples
 
 PARQUET, FEATHER = b"PAR1", b"ARROW1"
 """With which such files begin."""
@@ -51,10 +51,7 @@ class ArrowFile:
         def where(k: int) -> str:
             return f"row {k + 1}"
 
-        odd = np.flatnonzero(~np.isfinite(values))
-        if len(odd):
-            raise not_finite(self.path, where(int(odd[0])), self.columns[place], f"{values[odd[0]]:g}")
-        return Samples(values, None, where)
+        return samples(self.path, self.columns[place], values, None, where)
 
     def _done(self, work: Any) -> Any:
         try:

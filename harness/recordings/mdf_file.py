@@ -12,7 +12,7 @@ import numpy as np
 
 from ..plain import plain
 from .extra import required
-from .source import Column, RecordingError, Samples, not_finite
+from .source import Column, RecordingError, Samples, samples
 
 MARKS = (b"MDF     ", b"UnFinMF ")
 """With which such files begin; the second one if the logger was cut off."""
@@ -63,10 +63,7 @@ class MdfFile:
         def where(k: int) -> str:
             return f"sample {k + 1} at {time[k]:g} s"
 
-        odd = np.flatnonzero(~np.isfinite(values) | ~np.isfinite(time))
-        if len(odd):
-            raise not_finite(self.path, where(int(odd[0])), column, f"{values[odd[0]]:g}")
-        return Samples(values, time, where)
+        return samples(self.path, column, values, time, where)
 
 
 @contextmanager

@@ -69,6 +69,22 @@ class Source(Protocol):
         ...
 
 
+def samples(
+    path: Path, column: Column, values: np.ndarray, time: np.ndarray | None, where: Callable[[int], str]
+) -> Samples:
+    """The values of a column that a package has read.
+
+    Raises:
+        RecordingError: one, or its time, is not a finite number.
+    """
+    import numpy as np
+
+    odd = np.flatnonzero(~np.isfinite(values) | (False if time is None else ~np.isfinite(time)))
+    if len(odd):
+        raise not_finite(path, where(int(odd[0])), column, f"{values[odd[0]]:g}")
+    return Samples(values, time, where)
+
+
 def not_finite(path: Path, where: str, column: Column, value: str) -> RecordingError:
     """What is said of a value that cannot be used."""
     return RecordingError(f"{path}, {where}, column {column.heading}: {value or 'nothing'} is not a finite number")

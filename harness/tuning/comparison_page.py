@@ -108,10 +108,9 @@ def _rows(plant: str, metric: Metric, found: Found) -> Iterator[list[str]]:
         values = {name: abs(metric.of(found[Key(plant, manoeuvre, name)])) for name in (OURS, *COMPARATORS)}
         if isnan(values[OURS]):
             continue
-        cells = {name: number(value, SHOWN[metric.name]) for name, value in values.items()}
         best = min(value for name, value in values.items() if name != MARK and not isnan(value))
-        bold = {name for name in cells if name != MARK and values[name] == best}
-        yield [manoeuvre, *(f"**{cell}**" if name in bold else cell for name, cell in cells.items())]
+        cells = ((name != MARK and value == best, number(value, SHOWN[metric.name])) for name, value in values.items())
+        yield [manoeuvre, *(f"**{cell}**" if bold else cell for bold, cell in cells)]
 
 
 def _better(plant: str, found: Found) -> Iterator[str]:

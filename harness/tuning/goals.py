@@ -117,6 +117,12 @@ def measured(run: Run, parameters: Mapping[str, Any], folder: Path = BUILD, buil
     return evaluate(results, manoeuvre)
 
 
+def all_measured(parameters: Mapping[str, Any]) -> dict[Run, Metrics]:
+    """The metrics of all runs with these parameters of the controller, made on all cores."""
+    todo = runs()
+    return dict(zip(todo, run_many(lambda run: measured(run, parameters), todo), strict=True))
+
+
 def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
     """The magnitude of what a goal is set for, in the unit of the table: its mean over the seeds."""
 
@@ -155,8 +161,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--draws", type=int, default=0, help="of the Monte-Carlo (default: none)")
     args = parser.parse_args(arguments)
     parameters = read_parameters(args.parameters) if args.parameters else {}
-    todo = runs()
-    found = dict(zip(todo, run_many(lambda run: measured(run, parameters), todo), strict=True))
+    found = all_measured(parameters)
     table = Table("goal", *(f"{plant}: is" if k == 0 else "at most" for plant in PLANTS for k in range(2)))
     for goal in GOALS:
         cells = [
