@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import asin
-from pathlib import Path
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from .manoeuvres.follower import SIN_MAX
 from .manoeuvres.road import RoadLoad
 from .metrics.evaluate import T_S, at_samples
 from .recordings.quantities import QUANTITIES, aliases
-from .reports.csv_file import write_csv
 
 RECORDED = {
     "motor": ("omega_1_meas", "T_mot_est"),
@@ -96,7 +94,8 @@ def holding_slope(load: RoadLoad, mean: float, v_0: float) -> float:
 
 
 def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) -> np.ndarray:
-    """What the sensors of the car have recorded, every T_S: a field for each column of the file.
+    """What the sensors of the car have recorded, every T_S: a field for each column of the file, with its unit in
+    brackets, as `harness.recordings` reads it.
 
     The speed of the wheels is that of the last message, its validity and counter as received.
 
@@ -123,8 +122,3 @@ def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) 
     for heading, values in zip(headings, columns.values(), strict=True):
         recording[heading] = np.round(values.astype(float), DECIMALS)
     return recording
-
-
-def write(recording: np.ndarray, path: Path) -> None:
-    """Writes the recording as CSV, units in brackets, as `harness.recordings` reads it."""
-    write_csv(recording, path)

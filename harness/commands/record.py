@@ -75,7 +75,8 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.road import RoadLoad, torque_limit
     from ..provenance import recorded
-    from ..record import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed, write
+    from ..record import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed
+    from ..reports.csv_file import write_csv
     from ..simulate import looped, simulate
 
     out = Printer(args)
@@ -98,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
     with recorded(record, same, {plant: system}, [args.vehicle, args.parameters], [recording], args.replace) as made:
         results = simulate(manoeuvre, plant=args.plant, control=args.control == "on", **given)
         made.begin()
-        write(sensed(results, load.i, wheels, given["seed"]), recording)
+        write_csv(sensed(results, load.i, wheels, given["seed"]), recording)
         made.files.append(recording)
     out.say(
         f"{manoeuvre.description}, {args.duration:g} s on {plant}, {build} FMUs, damping {args.control}, "
