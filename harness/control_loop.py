@@ -36,6 +36,9 @@ first by default."""
 
 PLANTS = PLACES["plant"]
 
+STEP_SIZE = 1e-3
+"""Communication step of the loop in s, unless another is asked for."""
+
 NameOrFile = str | Path
 """What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""
 

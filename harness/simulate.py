@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from .arguments import require_arguments
-from .control_loop import BUILD, INPUTS, PARAMETERS, NameOrFile, loop
-from .cosimulation.experiment import Experiment, Source
+from .control_loop import BUILD, INPUTS, PARAMETERS, STEP_SIZE, NameOrFile, loop
+from .cosimulation.experiment import Experiment, Source, require_steps
 from .cosimulation.limits import USUAL, Limits
 from .cosimulation.runs import run
 from .cosimulation.system import Port, Scheme, System
@@ -30,7 +30,7 @@ def simulate(
     plant: NameOrFile | None = None,
     control: bool = True,
     parameters: Mapping[str, float] | None = None,
-    step_size: float = 1e-3,
+    step_size: float = STEP_SIZE,
     scheme: Scheme = Scheme.PROPAGATED,
     seed: int = 1,
     folder: str | Path = BUILD,
@@ -61,12 +61,14 @@ def simulate(
 
     Raises:
         WiringError: a block, a parameter or an argument does not fit.
+        MemoryError: the results of so many steps do not fit in memory.
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
     blocks: dict[str, Any] = {"plant": plant, "controller": controller, "motor": motor, "can": can}
     require_arguments(manoeuvre=manoeuvre, **blocks, control=control, parameters=parameters, step_size=step_size)
     require_arguments(scheme=scheme, seed=seed, folder=folder, build=build, mapping=mapping, limits=limits)
     given = _checked(start(manoeuvre, seed) | dict(parameters or {}))
+    require_steps(manoeuvre.duration, step_size)
     _warn(manoeuvre, given, step_size)
     system = loop(folder=Path(folder), build=build, mapping=mapping, limits=limits, **blocks)
     warn_of_stale(system)

@@ -3,7 +3,7 @@
 import argparse
 from itertools import product
 
-from ..control_loop import PLANTS, loop
+from ..control_loop import PLANTS, STEP_SIZE, loop
 from ..cosimulation.system import Scheme
 from .built import built
 from .options import add_fmus, add_output, add_printing
@@ -22,9 +22,6 @@ examples:
   driveline coupling                             writes results/coupling.md
   driveline coupling --output docs               writes docs/coupling.md
 """
-
-STEP_SIZE = 1e-3
-"""Communication step in s of the table of errors, the default of the loop."""
 
 DEAD_TIME_STEPS = (STEP_SIZE, 0.5 * STEP_SIZE)
 

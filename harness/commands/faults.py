@@ -9,6 +9,7 @@ from typing import Any
 
 from ..control_loop import BUILD, NATIVE, PLANTS
 from ..errors import DrivelineError
+from ..names import require_different
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, count
 from .printing import Printer
@@ -57,6 +58,7 @@ def _number(text: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     plants = list(dict.fromkeys(args.plant or PLANTS))
+    require_different(plants)
     given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..faults.bench import with_faults

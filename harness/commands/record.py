@@ -4,6 +4,7 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
+from ..control_loop import STEP_SIZE
 from ..manoeuvres.prbs import FEEDBACK, binary_torque
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
@@ -72,12 +73,13 @@ def _order(text: str) -> int:
 def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.wiring import fit
+    from ..cosimulation.experiment import require_steps
+    from ..cosimulation.wiring import beyond, fit, require
     from ..manoeuvres.road import RoadLoad, torque_limit
     from ..provenance import recorded
     from ..record import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed
     from ..reports.csv_file import write_csv
-    from ..simulate import looped, simulate
+    from ..simulate import looped, simulate, start
 
     out = Printer(args)
     plant = Path(args.plant).stem
@@ -85,14 +87,16 @@ def run(args: argparse.Namespace) -> int:
     recording, record = args.output / f"{name}.csv", args.output / f"{name}.json"
     given = settings(args, args.plant, build)
     system = looped(args.plant, given)
-    interfaces = fit(system).interfaces
-    require_sensors(interfaces)
-    require_demand(args.mean, args.amplitude, args.clock, torque_limit(interfaces["motor"], given["parameters"]))
-    load = RoadLoad.of_plant(interfaces["plant"], given["parameters"])
+    fitted = fit(system)
+    require_sensors(fitted.interfaces)
+    require_steps(args.duration, STEP_SIZE)
+    require_demand(args.mean, args.amplitude, args.clock, torque_limit(fitted.interfaces["motor"], given["parameters"]))
+    load = RoadLoad.of_plant(fitted.interfaces["plant"], given["parameters"])
     v_0 = args.speed / 3.6
     slope = holding_slope(load, args.mean, v_0)
     demand = {name: getattr(args, name) for name in ("mean", "amplitude", "clock", "order", "duration")}
     manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
+    require(beyond(fitted, start(manoeuvre) | given["parameters"]))
     wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
     same = {"demand": demand | {"speed": args.speed, "slope": slope}, "damping": args.control}
     same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, system, manoeuvre)

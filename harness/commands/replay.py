@@ -62,6 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.wiring import fit
+    from ..manoeuvres.follower import require_held
     from ..manoeuvres.road import RoadLoad, Track, torque_limit
     from ..provenance import recorded
     from ..recordings.drive import read_drive
@@ -70,6 +71,7 @@ def run(args: argparse.Namespace) -> int:
     from ..simulate import looped
 
     out = Printer(args)
+    require_held(args.held)
     recording = read_drive(args.recording, dict(args.columns), args.aliases)
     if recording.elevation is None:
         out.say(f"{args.recording} has no elevation: the road is level")

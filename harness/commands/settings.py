@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from shlex import quote
 from typing import Any
 
-from ..control_loop import BUILD, PLACES
+from ..control_loop import BUILD, PLACES, STEP_SIZE
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
 from ..errors import DrivelineError
@@ -94,7 +94,7 @@ def as_given(args: argparse.Namespace) -> str:
 
 def caption(args: argparse.Namespace) -> str:
     """What a figure, whose title names plant and manoeuvre, says of the options: those that are not the usual ones."""
-    usual = {"seed": 1, "step": 1e-3, "scheme": Scheme.PROPAGATED.value, "held": None}
+    usual = {"seed": 1, "step": STEP_SIZE, "scheme": Scheme.PROPAGATED.value, "held": None}
     return _joined([*_set(args), *((n, v) for n, v in vars(args).items() if n in usual and v != usual[n])])
 
 

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
+from ..control_loop import STEP_SIZE
 from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
@@ -51,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--control", choices=("on", "off"), default="on", help="active damping (default: %(default)s)")
     add_loop(parser)
     parser.add_argument(
-        "--step", type=seconds, default=1e-3, metavar="SECONDS", help="communication step (default: %(default)s)"
+        "--step", type=seconds, default=STEP_SIZE, metavar="SECONDS", help="communication step (default: %(default)s)"
     )
     parser.add_argument(
         "--scheme",
@@ -68,6 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
+    from ..cosimulation.experiment import require_steps
     from ..cosimulation.schedule import described, transfers
     from ..provenance import recorded
     from ..reports.csv_file import write_csv
@@ -75,6 +77,7 @@ def run(args: argparse.Namespace) -> int:
 
     out = Printer(args)
     manoeuvre = MANOEUVRES[args.manoeuvre]
+    require_steps(manoeuvre.duration, args.step)
     plant = Path(args.plant).stem
     name = f"{plant}_{manoeuvre.name}_{args.control}"
     signals, record = args.output / f"{name}.csv", args.output / f"{name}.json"

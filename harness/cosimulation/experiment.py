@@ -59,11 +59,14 @@ def memory() -> float:
     return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
 
 
-def instants(duration: float, step_size: float) -> NDArray[np.float64]:
-    """k * step_size for k = 0, 1, ... up to the duration, in s.
+def require_steps(duration: float, step_size: float) -> None:
+    """Refuses a run whose steps cannot be made.
+
+    Args:
+        duration, step_size: in s.
 
     Raises:
-        WiringError: there is not one step to make.
+        WiringError: there is not one step to make, or there are too many to count.
         MemoryError: they are more than the machine has memory for; nothing has been allocated.
     """
     if not (isfinite(duration) and isfinite(step_size) and 0.0 < step_size <= duration):
@@ -79,6 +82,15 @@ def instants(duration: float, step_size: float) -> NDArray[np.float64]:
             f"a step of {step_size:g} s in a run of {duration:g} s needs about {needed / 1e9:.3g} GB; "
             f"there are {memory() / 1e9:.3g}"
         )
+
+
+def instants(duration: float, step_size: float) -> NDArray[np.float64]:
+    """k * step_size for k = 0, 1, ... up to the duration, in s.
+
+    Raises:
+        WiringError, MemoryError: as of `require_steps`.
+    """
+    require_steps(duration, step_size)
     return np.arange(floor(duration / step_size + 1e-6) + 1, dtype=np.float64) * step_size
 
 

@@ -16,6 +16,7 @@ its friction and its true inertia. Each is smoothed by a Gaussian of SMOOTHING, 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from ..control_loop import STEP_SIZE
 from ..errors import WiringError
 from .manoeuvre import Manoeuvre
 from .road import RoadLoad, Track
@@ -33,8 +34,6 @@ STILL = 0.3
 """Speed in m/s up to which brakes may hold a car, so that its motion tells nothing of the forces."""
 SIN_MAX = 0.4
 """Sine of the steepest grade."""
-HELD_MIN = 1e-3
-"""Shortest time in s for which a demand is held, the communication step."""
 
 
 def needed_force(track: Track, load: RoadLoad) -> np.ndarray:
@@ -68,6 +67,16 @@ def holding(track: Track, load: RoadLoad, F: np.ndarray) -> np.ndarray:
     return (track.v == 0.0) & (load.motor_force(track.T_driver) + np.minimum(F, 0.0) <= F_UNCERTAIN)
 
 
+def require_held(held: float | None) -> None:
+    """Refuses to sample and hold a demand for so many seconds; None: it is not held.
+
+    Raises:
+        WiringError: that is less than a communication step.
+    """
+    if held is not None and not held >= STEP_SIZE:
+        raise WiringError(f"a demand that is held for {held:g} s: it must be {STEP_SIZE:g} s or more")
+
+
 def drive(track: Track, load: RoadLoad, F: np.ndarray, held: float | None = None) -> Manoeuvre:
     """The manoeuvre of a whole recorded trip, with the force F along the road as brake and grade.
 
@@ -78,10 +87,9 @@ def drive(track: Track, load: RoadLoad, F: np.ndarray, held: float | None = None
         held: if given, the demand is sampled and held for so many seconds: a rougher foot.
 
     Raises:
-        WiringError: it is held for less than HELD_MIN.
+        WiringError: as of `require_held`.
     """
-    if held is not None and not held >= HELD_MIN:
-        raise WiringError(f"a demand that is held for {held:g} s: it must be {HELD_MIN:g} s or more")
+    require_held(held)
     F_brake, duration = brake_force(track, load, F), float(track.t[-1])
     sine = np.clip(-(F + F_brake) / (load.m * load.g), -SIN_MAX, SIN_MAX)
     demand = Lines(track.t, track.T_driver)

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from harness.cli import main
+from harness.control_loop import STEP_SIZE
 from harness.cosimulation.interface import Interface
 from harness.errors import WiringError
-from harness.manoeuvres.follower import HELD_MIN, drive, needed_force
+from harness.manoeuvres.follower import drive, needed_force
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.road import RoadLoad, Track
 from harness.manoeuvres.signals import Lines
@@ -166,8 +167,8 @@ def test_all_drive_on_the_same_road(replayed):
 def test_a_demand_is_not_held_for_less_than_a_step(load, short_drive):
     track = Track.of(read_drive(short_drive))
     F = needed_force(track, load)
-    assert drive(track, load, F, held=HELD_MIN).duration == drive(track, load, F).duration
-    for held in (0.999 * HELD_MIN, 1e-300, float("nan")):
+    assert drive(track, load, F, held=STEP_SIZE).duration == drive(track, load, F).duration
+    for held in (0.999 * STEP_SIZE, 1e-300, float("nan")):
         with pytest.raises(WiringError, match=r"it must be 0\.001 s or more"):
             drive(track, load, F, held)
 

@@ -66,6 +66,13 @@ def test_a_step_longer_than_the_sample_of_the_controller_is_named_once(
     assert caplog.text.count("is longer than the 2 ms between samples of the damping control") == named
 
 
+def test_a_step_longer_than_the_run_is_refused_without_another_word(caplog: pytest.LogCaptureFixture) -> None:
+    warn_once.cache_clear()
+    with pytest.raises(WiringError, match=r"a step of 7 s in a run of 0\.01 s"):
+        simulate(SHORT, step_size=7.0)
+    assert caplog.text == ""
+
+
 def test_a_start_that_disagrees_with_the_demand_is_named(built: Path, caplog: pytest.LogCaptureFixture) -> None:
     simulate(SHORT, folder=built, parameters={"plant.T_0": -12.0})
     assert caplog.text == ""
