@@ -26,7 +26,7 @@ def folder(text: str) -> Path:
         if path.exists() and not path.is_dir():
             raise ArgumentTypeError(f"{text} is a file; a folder is needed")
     except OSError as error:  # a name that is too long
-        raise ArgumentTypeError(str(error)) from error
+        raise ArgumentTypeError(error.strerror or str(error)) from error
     return path
 
 
@@ -52,5 +52,5 @@ def file(text: str) -> Path:
         if path.is_dir():
             raise ArgumentTypeError(f"{text} is a folder; a file is needed")
     except OSError as error:  # a name that is too long
-        raise ArgumentTypeError(str(error)) from error
+        raise ArgumentTypeError(error.strerror or str(error)) from error
     return path

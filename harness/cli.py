@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from .errors import DrivelineError
 from .names import nearest
-from .plain import plain
+from .plain import plain, reason
 from .progress import hidden
 from .stopping import forget_stdout, reopen_closed_streams, stoppable
 
@@ -154,9 +154,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{name}: {error}", file=sys.stderr)
         return error.exit_code
     except OSError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        if error.errno == ENOSPC:
-            forget_stdout()  # perhaps it is stdout that is full
+        if error.errno == ENOSPC and error.filename is None:  # whoever writes files names them
+            error.filename = "standard output"
+            forget_stdout()
+        print(f"{name}: {reason(error)}", file=sys.stderr)
         return 1
     except MemoryError as error:
         print(f"{name}: not enough memory: {error}", file=sys.stderr)

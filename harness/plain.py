@@ -1,4 +1,5 @@
-"""Texts of strangers, as they may stand in a message: one line, no control characters, not too long."""
+"""Texts of strangers and of the system, as they may stand in a message: one line, no control characters, not too
+long."""
 
 LONGEST = 500
 """Characters of a text that are shown."""
@@ -8,6 +9,13 @@ def plain(text: object, longest: int = LONGEST) -> str:
     """The text in one line, without what a terminal would obey."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in str(text)).split())
     return line if len(line) <= longest else f"{line[:longest]} ... ({len(line)} characters)"
+
+
+def reason(error: BaseException) -> str:
+    """What an error says, in words; one of the operating system without its number, after the file that it names."""
+    if not isinstance(error, OSError) or error.strerror is None:
+        return plain(error)
+    return plain(error.strerror if error.filename is None else f"{error.filename}: {error.strerror}")
 
 
 def quoted(text: object) -> str:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from ..errors import UnpackingError, WiringError
-from ..plain import plain
+from ..plain import plain, reason
 from .limits import USUAL, Limits
 
 DESCRIPTION = "modelDescription.xml"
@@ -60,7 +60,7 @@ def entries(path: Path) -> list[ZipInfo]:
         with ZipFile(path) as archive:
             return archive.infolist()
     except Exception as error:  # whatever strange bytes lead zipfile to
-        raise WiringError(f"{path} is not an FMU: {plain(error)}") from error
+        raise WiringError(f"{path} is not an FMU: {reason(error)}") from error
 
 
 def described(path: Path, limits: Limits = USUAL) -> bytes:
@@ -81,7 +81,7 @@ def described(path: Path, limits: Limits = USUAL) -> bytes:
         with ZipFile(path) as archive:
             return archive.read(DESCRIPTION)
     except Exception as error:
-        raise WiringError(f"{path}: {DESCRIPTION} cannot be unpacked: {plain(error)}") from error
+        raise WiringError(f"{path}: {DESCRIPTION} cannot be unpacked: {reason(error)}") from error
 
 
 def unpack(path: Path, folder: str) -> None:
@@ -96,7 +96,7 @@ def unpack(path: Path, folder: str) -> None:
                 if not name.startswith(NOT_NEEDED):
                     archive.extract(name, folder)
     except Exception as error:
-        raise UnpackingError(f"{path.name} cannot be unpacked: {plain(error)}") from error
+        raise UnpackingError(f"{path.name} cannot be unpacked: {reason(error)}") from error
 
 
 def damage(path: Path) -> str | None:
@@ -105,5 +105,5 @@ def damage(path: Path) -> str | None:
         with ZipFile(path) as archive:
             broken = archive.testzip()
     except Exception as error:
-        return plain(error)
+        return reason(error)
     return broken and f"{plain(broken)} is damaged"

@@ -93,10 +93,12 @@ def aliases(*others: Path) -> Aliases:
 
 
 def _read(path: Path) -> dict[str, list[str]]:
+    if not path.is_file():
+        raise RecordingError(f"there is no file of names {path}")
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise RecordingError(f"{path}: no file of names can be read: {plain(error)}") from error
+    except (ValueError, RecursionError) as error:
+        raise RecordingError(f"{path} is not TOML: {plain(error)}") from error
     for quantity, names in content.items():
         if quantity not in QUANTITIES:
             raise RecordingError(f"{path}: {plain(quantity, 60)} is no quantity; {nearest(quantity, QUANTITIES)}")

@@ -31,31 +31,30 @@ def complete(path: Path) -> Iterator[Path]:
     """
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; a file is needed")
-    with _naming(path):
-        if path.exists() and not replaceable(path):
-            with _read(path):
-                yield path
-            return
-        path = destination(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
-        with _noted(unfinished):
-            try:
-                yield unfinished
-                os.replace(unfinished, path)
-            finally:
-                unfinished.unlink(missing_ok=True)
+    if path.exists() and not replaceable(path):
+        with _naming(path), _read(path):
+            yield path
+        return
+    path = destination(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
+    with _naming(path, unfinished), _noted(unfinished):
+        try:
+            yield unfinished
+            os.replace(unfinished, path)
+        finally:
+            unfinished.unlink(missing_ok=True)
 
 
 @contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """An error of the system that names no file, as that of a full disk, names this one."""
+def _naming(file: str | Path, unfinished: Path | None = None) -> Iterator[None]:
+    """An error of the system that names no file, as that of a full disk, or names the unfinished one names this."""
     try:
         yield
     except OSError as error:
-        if error.errno is None or error.filename is not None:
+        if error.errno is None or (error.filename is not None and error.filename != str(unfinished)):
             raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
+        raise OSError(error.errno, error.strerror, str(file)) from error
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """The command line: what it does, what it answers to mistakes, and its exit codes."""
 
 import json
+import os
 import subprocess
 import sys
 from importlib.metadata import version
@@ -252,6 +253,13 @@ def test_compare_as_a_document_has_every_metric_of_every_run(capsys, built, tmp_
     assert document["files"] == [str(tmp_path / "table.md"), str(tmp_path / "metrics.csv")]
     # without gain only what it does in the gap and with the estimated torque is left
     assert 0.0 < on["added_torque_rms_N_m"] < 20.0
+
+
+def test_what_the_system_refuses_is_one_line_of_words(capsys, tmp_path):
+    pipe = tmp_path / "gains.toml"
+    os.mkfifo(pipe)
+    said = f"driveline design: {pipe}: it is a pipe that nobody reads\n"
+    assert answer(capsys, "design", "--output", str(pipe)) == (1, "", said)
 
 
 def test_check_looks_at_no_fmu_where_one_is_missing(capsys, tmp_path):

@@ -98,7 +98,7 @@ def test_a_full_device_is_named_in_one_line() -> None:
     command = [sys.executable, "-m", "harness", "design"]
     with open("/dev/full", "w", encoding="utf-8") as full:
         done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert (done.returncode, done.stderr) == (1, "driveline design: [Errno 28] No space left on device\n")
+    assert (done.returncode, done.stderr) == (1, "driveline design: standard output: No space left on device\n")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")

@@ -5,6 +5,7 @@ import io
 import math
 import os
 import re
+from errno import ENOSPC
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from rich.console import Console
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics, RideMetrics
+from harness.plain import reason
 from harness.reports.figures import plot_drive, plot_step, titled
 from harness.reports.files import complete, remove, write_text
 from harness.reports.replay_figure import plot_replay
@@ -162,9 +164,32 @@ def test_what_is_no_regular_file_is_written_to_and_not_replaced(tmp_path):
 def test_a_pipe_that_nobody_reads_is_refused_and_not_waited_for(tmp_path):
     pipe = tmp_path / "signals.csv"
     os.mkfifo(pipe)
-    with pytest.raises(OSError, match="a pipe that nobody reads"):
+    with pytest.raises(OSError, match="nobody reads") as refusal:
         write_text("new", pipe)
+    assert reason(refusal.value) == f"{pipe}: it is a pipe that nobody reads"
     assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_what_cannot_be_written_is_told_in_words_with_the_name_that_was_asked_for(tmp_path):
+    (tmp_path / "full.csv").symlink_to("/dev/full")
+    for path, words in (
+        (tmp_path / "full.csv", "No space left on device"),
+        (Path("/proc/new.csv"), "No such file or directory"),
+    ):
+        with pytest.raises(OSError, match=words) as refusal:
+            write_text("new", path)
+        assert reason(refusal.value) == f"{path}: {words}"
+
+
+def test_a_disk_that_is_full_is_told_with_the_file_and_not_the_unfinished_one(tmp_path):
+    for name in (None, "unfinished"):
+        with pytest.raises(OSError, match="No space") as refusal, complete(tmp_path / "signals.csv") as unfinished:
+            raise OSError(ENOSPC, "No space left on device", name and str(unfinished))
+        assert reason(refusal.value) == f"{tmp_path / 'signals.csv'}: No space left on device"
+    with pytest.raises(FileNotFoundError, match="other"), complete(tmp_path / "signals.csv"):
+        (tmp_path / "other").read_bytes()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_only_files_are_removed_before_new_ones_come(tmp_path):
