@@ -17,6 +17,7 @@ RECORDED = {
     "motor": ("omega_1_meas", "T_mot_est"),
     "can": ("omega_2_can", "valid", "counter"),
     "plant": ("T_rim",),
+    "controller": ("T_ref",),
 }
 """Outputs of the blocks that a test drive needs."""
 
@@ -97,7 +98,8 @@ def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) 
     """What the sensors of the car have recorded, every T_S: a field for each column of the file, with its unit in
     brackets, as `harness.recordings` reads it.
 
-    The speed of the wheels is that of the last message, its validity and counter as received.
+    The speed of the wheels is that of the last message, its validity and counter as received. The torque demand is what
+    motor control receives at the sample and holds until the next.
 
     Args:
         results: of a run of the loop.
@@ -109,6 +111,7 @@ def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) 
         "time": sampled["time"],
         "omega_1": sampled["motor.omega_1_meas"],
         "T_mot": sampled["motor.T_mot_est"],
+        "T_ref": sampled["controller.T_ref"],
         "omega_wheel": sampled["can.omega_2_can"] / i,
         "valid": sampled["can.valid"],
         "counter": sampled["can.counter"],

@@ -17,6 +17,7 @@ writes what its sensors record every 2 ms to PLANT_prbs_CONTROL.csv in the outpu
 
   motor speed      of the resolver, with its noise and resolution
   motor torque     as motor control estimates it
+  torque demand    that motor control receives, held until the next sample
   wheel speed      mean of the driven wheels over CAN, as received: coarse, late, held between messages;
                    with its validity, and a counter of the messages
   wheel torque     of measurement wheels at both driven wheels, positive when it drives, with noise,

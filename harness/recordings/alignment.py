@@ -2,9 +2,9 @@
 
 Channels that were sampled together are left as they are, bit by bit. Others are taken to the samples of the base,
 within the time that all channels have in common: what is measured by a cubic spline through its samples, what is sent
-(messages on a bus, flags, counters) as it was last received. A straight line between samples would take away from
-what is fast: it biases an identified J_2 by -.055 % if the load torque is interpolated so at 2 ms, a cubic one does
-not. Nothing is filtered: of a channel that is faster than the base, what the base cannot resolve is folded back.
+(messages on a bus, flags, counters, demands) as it was last received. A straight line between samples would take away
+from what is fast: it biases an identified J_2 by -.055 % if the load torque is interpolated so at 2 ms, a cubic one
+does not. Nothing is filtered: of a channel that is faster than the base, what the base cannot resolve is folded back.
 """
 
 from collections.abc import Collection, Mapping

@@ -23,6 +23,9 @@ LOADS = (("T_load",), ("T_wheel",), ("T_wheel_L", "T_wheel_R"))
 
 MESSAGE = ("valid", "counter")
 
+HELD = (*MESSAGE, "T_ref")
+"""What a recording may have beside them, and what holds until the next sample."""
+
 SLOWER = 1.5
 """Times the interval of the base from which on a wheel speed is taken as sent in messages, and held between them."""
 
@@ -40,6 +43,7 @@ class Measurement:
         valid: whether the wheel speed is, as the bus says; None if it was not recorded.
         counter: one more with every message of the wheel speed; None if it was not recorded.
         T_load: load torque in N.m, negative when it brakes; None if it was not recorded.
+        T_ref: torque demand in N.m, each held until the next; None if it was not recorded.
         columns: heading of the column by quantity.
         delays: that the recording tells, see `harness.recordings.delays`.
         warnings: what is odd but can be used, a sentence each.
@@ -53,6 +57,7 @@ class Measurement:
     valid: np.ndarray | None
     counter: np.ndarray | None
     T_load: np.ndarray | None
+    T_ref: np.ndarray | None
     columns: Mapping[str, str]
     delays: Sequence[Delay]
     warnings: Sequence[str]
@@ -80,20 +85,22 @@ def read_measurement(
     wheels, loads = _present(recording, WHEEL_SPEEDS), _present(recording, LOADS)
     if not wheels:
         raise RecordingError(f"{path}: no wheel speed, such as {example('omega_wheel', recording.names)}")
-    message = [quantity for quantity in MESSAGE if recording.has(quantity)]
-    channels = recording.read(BASE, "T_mot", *wheels, *loads, *message)
+    held = [quantity for quantity in HELD if recording.has(quantity)]
+    channels = recording.read(BASE, "T_mot", *wheels, *loads, *held)
     judged = [channel for quantity, channel in channels.items() if quantity not in MESSAGE]
     for channel in judged:
         check_signal(path, channel)
     received = {
-        *message,
+        *held,
         *(wheel for wheel in wheels if _interval(channels[wheel]) > SLOWER * _interval(channels[BASE])),
     }
     time, values = aligned(channels, BASE, received)
     signals = {"T_mot": values["T_mot"], BASE: values[BASE], "omega_2": _wheel_speed(channels, values, wheels, i, r)}
     if loads:
         signals["T_load"] = _load(values, loads, i)
-    headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE)}
+    if "T_ref" in values:
+        signals["T_ref"] = values["T_ref"]
+    headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE, "T_ref") if quantity in channels}
     headings |= {
         q: " and ".join(channels[one].heading for one in of) for q, of in (("omega_2", wheels), ("T_load", loads))
     }
@@ -108,6 +115,7 @@ def read_measurement(
         values["valid"] > 0.5 if "valid" in values else None,
         values.get("counter"),
         signals.get("T_load"),
+        signals.get("T_ref"),
         {quantity: heading for quantity, heading in headings.items() if heading},
         estimated(interval, signals),
         [f"{path}, {said}" for channel in judged if channel.quantity in (BASE, *loads) and (said := clipping(channel))],

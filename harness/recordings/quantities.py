@@ -57,6 +57,9 @@ QUANTITIES: dict[str, Quantity] = {
     "v": Quantity("speed of the vehicle", "m/s", "km/h", 200.0),
     "elevation": Quantity("height of the road", "m", "m", 10_000.0),
     "T_mot": Quantity("motor torque", "N.m", "Nm", 10_000.0, slowest=0.01, least_swing=2.0),
+    "T_ref": Quantity(
+        "motor torque as motor control is to make it", "N.m", "Nm", 10_000.0, slowest=0.1, least_swing=2.0, gap=10.0
+    ),
     "omega_1": Quantity("motor speed", "rad/s", "rpm", 5_000.0, slowest=0.01, least_swing=1.0),
     "omega_2": Quantity("wheel speed times i", "rad/s", "rad/s", 5_000.0, slowest=0.1, gap=10.0),
     "omega_wheel": _wheel_speed("mean speed of the driven wheels"),

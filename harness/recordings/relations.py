@@ -5,7 +5,7 @@ show there, whatever the car is.
 - What the torque of the motor does within a few hundredths of a second, it does to the motor: the faster parts of
   T_mot and d omega_1/dt go together, those of any other torque and speed do not (paper, eq. (2): J_1 d omega_1/dt =
   T_mot - T_gear, and T_gear is slower).
-- In the long run the load opposes the motor, with about its size.
+- In the long run the load opposes the motor, with about its size, and the motor makes what is demanded.
 """
 
 from collections.abc import Mapping
@@ -28,8 +28,8 @@ test drives of both plants with 15 and 30 N.m, at 15 and 50 km/h, with and witho
 .54 to .98 and always the largest; no other is above .48."""
 
 SLOW, OPPOSED, SIZE = 2.0, 0.5, 3.0
-"""Frequency in Hz below which the load opposes the motor, the correlation of the wrong sign from which on it is
-certain that it does not, and by which factor it may be larger or smaller."""
+"""Frequency in Hz below which load and demand are compared with the motor torque, the correlation from which on it is
+certain that one goes with it or against it, and by which factor it may be larger or smaller."""
 
 
 def check_relations(
@@ -38,7 +38,8 @@ def check_relations(
     """
     Args:
         path: of the recording, for messages.
-        headings: of the columns, by quantity: omega_1, omega_2, T_mot and, if it was recorded, T_load.
+        headings: of the columns, by quantity: omega_1, omega_2, T_mot and, if they were recorded, T_load and
+            T_ref.
         interval: between the samples in s.
         signals: in SI units, motor side, by quantity.
 
@@ -49,11 +50,14 @@ def check_relations(
     _check_speeds(path, headings, signals)
     if "T_load" in signals:
         _check_load(path, headings, interval, signals)
+    if "T_ref" in signals:
+        _check_demand(path, headings, interval, signals)
 
 
 def links(interval: float, signals: Mapping[str, np.ndarray]) -> dict[tuple[str, str], float]:
-    """Correlation of each torque with the rate of each speed, in the band FAST."""
-    torques = {name: band(x, interval, FAST) for name, x in signals.items() if name.startswith("T_")}
+    """Correlation of each torque with the rate of each speed, in the band FAST. The demand is left out: that of a fast
+    motor is its torque, without noise."""
+    torques = {name: band(x, interval, FAST) for name, x in signals.items() if name in ("T_mot", "T_load")}
     rates = {
         name: band(np.gradient(x, interval), interval, FAST) for name, x in signals.items() if name.startswith("omega_")
     }
@@ -96,19 +100,37 @@ def _check_speeds(path: Path, headings: Mapping[str, str], signals: Mapping[str,
 
 
 def _check_load(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
-    T_mot, T_load = (low(signals[name], interval, SLOW) for name in ("T_mot", "T_load"))
-    correlation = _correlation(T_mot, T_load)
+    correlation, size = _slow_parts(signals["T_load"], signals["T_mot"], interval)
     if correlation > OPPOSED:
         raise RecordingError(
             f"{path}: {headings['T_load']} acts with {headings['T_mot']} (correlation {correlation:.2f} below "
             f"{SLOW:g} Hz): its sign is wrong; a load that brakes is negative, the torque of wheels that drive positive"
         )
-    size = float(np.std(T_load) / np.std(T_mot))
     if correlation < -OPPOSED and not 1.0 / SIZE <= size <= SIZE:
         raise RecordingError(
             f"{path}: {headings['T_load']} is {size:.3g} times as large as {headings['T_mot']}, motor side: the unit "
             f"of one or the gear ratio is not what it is said to be, or it is not on the side that its name says"
         )
+
+
+def _check_demand(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
+    correlation, size = _slow_parts(signals["T_ref"], signals["T_mot"], interval)
+    if correlation < -OPPOSED:
+        raise RecordingError(
+            f"{path}: {headings['T_mot']} does the opposite of {headings['T_ref']} (correlation {correlation:.2f} "
+            f"below {SLOW:g} Hz): one of them has the wrong sign"
+        )
+    if correlation > OPPOSED and not 1.0 / SIZE <= size <= SIZE:
+        raise RecordingError(
+            f"{path}: {headings['T_ref']} is {size:.3g} times as large as {headings['T_mot']}: the unit of one is not "
+            f"what it is said to be, or it is not on the side that its name says"
+        )
+
+
+def _slow_parts(x: np.ndarray, T_mot: np.ndarray, interval: float) -> tuple[float, float]:
+    """Correlation of a torque with that of the motor, and its size over that of the motor, below SLOW."""
+    x, T_mot = low(x, interval, SLOW), low(T_mot, interval, SLOW)
+    return _correlation(x, T_mot), float(np.std(x) / np.std(T_mot))
 
 
 def _correlation(x: np.ndarray, y: np.ndarray) -> float:

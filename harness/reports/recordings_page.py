@@ -29,7 +29,9 @@ def _columns() -> str:
     return markdown_table(("quantity", "what it is", "SI", "for example in", "names"), rows, labels=5)
 
 
-def _each(value: str, names: tuple[str, ...] = ("T_mot", "omega_1", "T_load", "T_wheel", "omega_wheel")) -> str:
+def _each(
+    value: str, names: tuple[str, ...] = ("T_mot", "T_ref", "omega_1", "T_load", "T_wheel", "omega_wheel")
+) -> str:
     """A threshold of several quantities, those that have the same together."""
     by_value: dict[str, list[str]] = {}
     for name in names:
@@ -66,6 +68,17 @@ def _checks() -> str:
         (
             "wrong unit or side of a torque",
             f"the load is more than {relations.SIZE:g} times as large as the motor torque below {relations.SLOW:g} Hz, "
+            f"or as small",
+            "refused",
+        ),
+        (
+            "wrong sign of the torque demand",
+            f"the motor torque goes against it below {relations.SLOW:g} Hz, correlation below -{relations.OPPOSED:g}",
+            "refused",
+        ),
+        (
+            "wrong unit or side of the torque demand",
+            f"it is more than {relations.SIZE:g} times as large as the motor torque below {relations.SLOW:g} Hz, "
             f"or as small",
             "refused",
         ),

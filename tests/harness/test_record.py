@@ -72,6 +72,7 @@ def test_the_recording_is_what_the_sensors_of_the_loop_have_shown(record, both_b
     results = simulate(manoeuvre, control=False, seed=3, folder=both_built)[::2]
     for name, column in {
         "T_mot": "motor.T_mot_est",
+        "T_ref": "controller.T_ref",
         "omega_1": "motor.omega_1_meas",
         "omega_2": "can.omega_2_can",
         "T_load": "plant.T_load",
@@ -96,7 +97,7 @@ def test_same_input_same_bytes_and_another_seed_others(record) -> None:
     assert first.read_bytes() == again.read_bytes()
     assert first.read_bytes() != other.read_bytes()
     assert first.read_text().splitlines()[0] == (
-        "Time [s],Motor Speed [rad/s],Motor Torque [N.m],Wheel Speed [rad/s],Wheel Speed Valid [1],"
+        "Time [s],Motor Speed [rad/s],Motor Torque [N.m],Torque Demand [N.m],Wheel Speed [rad/s],Wheel Speed Valid [1],"
         "Wheel Speed Counter [1],Wheel Torque [N.m]"
     )
 

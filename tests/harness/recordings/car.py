@@ -20,7 +20,7 @@ J_1, J_2, J_V, C, D, K, T_0 = 0.055, 0.3, 1.5, 117.4, 0.3, 30.0, 6.0
 
 @cache
 def drive(duration: float = 10.0, interval: float = 0.002) -> dict[str, np.ndarray]:
-    """time, T_mot, omega_1, omega_2 and T_load in SI units, motor side."""
+    """time, T_ref, T_mot, omega_1, omega_2 and T_load in SI units, motor side."""
     time = np.arange(round(duration / interval) + 1) * interval
     bits = np.array(shift_register(round(duration / 0.04) + 2))
     demand = 10.0 + 30.0 * (2.0 * bits[(time / 0.04 + 1e-6).astype(int)] - 1.0)
@@ -44,5 +44,6 @@ def drive(duration: float = 10.0, interval: float = 0.002) -> dict[str, np.ndarr
     )
     omega_1, omega_2, omega_v, _ = np.asarray(x).T
     return {
-        "time": time, "T_mot": T_mot, "omega_1": omega_1, "omega_2": omega_2, "T_load": -K * (omega_2 - omega_v)
+        "time": time, "T_ref": demand, "T_mot": T_mot, "omega_1": omega_1, "omega_2": omega_2,
+        "T_load": -K * (omega_2 - omega_v)
     }  # fmt: skip

@@ -32,7 +32,7 @@ def read(write: Write) -> Read:
     """Reads what would be written of a drive, in SI units."""
 
     def read(drive: Mapping[str, np.ndarray], **more: object) -> Measurement:
-        units = {"time": "s", "T_mot": "N.m", "T_load": "N.m"}
+        units = {"time": "s", "T_ref": "N.m", "T_mot": "N.m", "T_load": "N.m"}
         path = write({f"{name} [{units.get(name, 'rad/s')}]": values for name, values in drive.items()})
         return read_measurement(path, RATIO, RADIUS, **more)  # type: ignore[arg-type]
 

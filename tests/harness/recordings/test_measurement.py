@@ -67,6 +67,15 @@ def test_validity_and_counter_of_the_messages(write: Write) -> None:
     np.testing.assert_array_equal(found.counter, count)
 
 
+@pytest.mark.parametrize("heading", ["Torque Demand [N.m]", "torque_request_Nm", "M_soll (Nm)", "T_ref [N·m]"])
+def test_the_torque_demand_under_its_names(write: Write, heading: str) -> None:
+    columns = MOTOR | {"Wheel Speed [rad/s]": WHEEL}
+    assert read_measurement(write(columns), RATIO, RADIUS).T_ref is None
+    found = read_measurement(write(columns | {heading: drive()["T_ref"]}), RATIO, RADIUS)
+    require_same(found, "T_mot", "T_ref")
+    assert found.columns["T_ref"] == heading
+
+
 def test_without_a_wheel_speed_it_is_refused(write: Write) -> None:
     with pytest.raises(RecordingError, match=r"no wheel speed, such as Wheel Speed \[km/h\]"):
         read_measurement(write(MOTOR), RATIO, RADIUS)
@@ -127,3 +136,21 @@ def test_a_logger_with_fast_sensors_and_messages_of_the_bus(tmp_path: Path) -> N
     np.testing.assert_allclose(found.T_load[1:-1], one["T_load"][part][1:-1], atol=2e-3)
     assert set(np.round(found.omega_2, 6)) <= set(np.round(RATIO * wheel, 6)), "held between messages"
     assert np.argmax(np.diff(found.omega_2) != 0.0) == 19, "until the next one has come"
+
+
+@pytest.mark.parametrize("interval", [0.003, 0.0105])
+def test_a_demand_that_was_sampled_otherwise_is_held_and_not_interpolated(tmp_path: Path, interval: float) -> None:
+    from asammdf import MDF, Signal
+
+    one = drive()
+    sent = np.arange(0.0, 10.0, interval)
+    demand = one["T_ref"][(sent / 0.002 + 1e-6).astype(int)]
+    with MDF(version="4.10") as file:
+        motor = [("omega_1", "rad/s"), ("T_mot", "Nm"), ("omega_2", "rad/s")]
+        file.append(
+            [Signal(one[name], one["time"], unit=unit, name=name) for name, unit in motor], common_timebase=True
+        )
+        file.append([Signal(demand, sent, unit="Nm", name="Torque Demand")], common_timebase=True)
+        file.save(tmp_path / "logged.mf4")
+    found = read_measurement(tmp_path / "logged.mf4", RATIO, RADIUS)
+    np.testing.assert_array_equal(found.T_ref, demand[np.searchsorted(sent, found.time, side="right") - 1])

@@ -38,6 +38,16 @@ def test_a_load_of_the_wrong_sign_is_named(read: Read) -> None:
         read(drive() | {"T_load": -drive()["T_load"]})
 
 
+def test_a_demand_of_the_wrong_sign_is_named(read: Read) -> None:
+    with pytest.raises(RecordingError, match=r"T_mot .* does the opposite of T_ref .*one of them has the wrong sign"):
+        read(drive() | {"T_ref": -drive()["T_ref"]})
+
+
+def test_the_demand_of_a_fast_motor_is_not_taken_for_its_torque(read: Read) -> None:
+    one, noise = drive(), np.random.default_rng(1).standard_normal(len(drive()["time"]))
+    read(one | {"T_mot": one["T_mot"] + noise, "T_ref": one["T_mot"]})
+
+
 @pytest.mark.parametrize("unit", [60.0 / (2.0 * np.pi), 1.0 / 3.6, 9.0])
 def test_a_speed_in_another_unit_than_is_said_is_named(read: Read, unit: float) -> None:
     with pytest.raises(RecordingError, match=r"omega_1 .* is .* times what omega_2"):
@@ -60,6 +70,15 @@ def test_the_size_of_the_load_just_inside_and_just_outside(read: Read) -> None:
         read(one | {"T_load": factor / odd / size * one["T_load"]})
         with pytest.raises(RecordingError, match="times as large as T_mot"):
             read(one | {"T_load": factor * odd / size * one["T_load"]})
+
+
+def test_the_size_of_the_demand_just_inside_and_just_outside(read: Read) -> None:
+    one = drive()
+    size = np.std(low(one["T_ref"], INTERVAL, SLOW)) / np.std(low(one["T_mot"], INTERVAL, SLOW))
+    for factor, odd in ((SIZE, 1.001), (1.0 / SIZE, 0.999)):
+        read(one | {"T_ref": factor / odd / size * one["T_ref"]})
+        with pytest.raises(RecordingError, match=r"T_ref .* times as large as T_mot"):
+            read(one | {"T_ref": factor * odd / size * one["T_ref"]})
 
 
 def test_the_correlation_of_the_load_just_inside_and_just_outside(read: Read) -> None:
@@ -86,11 +105,11 @@ def test_the_link_of_torque_and_speed_just_inside_and_just_outside(read: Read) -
 
     sizes = np.linspace(0.0, 200.0, 2001)
     hidden = next(size for size in sizes if link(size) > -LINK)
-    without_load = {name: values for name, values in one.items() if name != "T_load"}
+    alone = {name: values for name, values in one.items() if name not in ("T_load", "T_ref")}
     assert hidden > 0.0
-    read(without_load | {"T_mot": hidden * noise - one["T_mot"]})
+    read(alone | {"T_mot": hidden * noise - one["T_mot"]})
     with pytest.raises(RecordingError, match="wrong sign"):
-        read(without_load | {"T_mot": (hidden - 0.1) * noise - one["T_mot"]})
+        read(alone | {"T_mot": (hidden - 0.1) * noise - one["T_mot"]})
 
 
 def test_a_car_that_stands_has_no_ratio_of_speeds(read: Read) -> None:

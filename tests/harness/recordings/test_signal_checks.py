@@ -41,7 +41,7 @@ def test_the_slowest_recording(read: Read) -> None:
         read(at_every(0.0101))
 
 
-@pytest.mark.parametrize("name", ["T_mot", "omega_1", "T_load", "omega_2"])
+@pytest.mark.parametrize("name", ["T_mot", "T_ref", "omega_1", "T_load", "omega_2"])
 def test_a_channel_that_hardly_varies(name: str) -> None:
     least = QUANTITIES[name].least_swing
     wave = np.sin(drive()["time"])
