@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import ceil, isfinite
 from typing import Any
 
 from fmus.options import add_parameter_files, folder, output_folder
@@ -202,8 +202,8 @@ def amount(text: str) -> float:
 
 
 def megabytes(text: str) -> int:
-    """A size above 0 MB, in bytes."""
+    """A size above 0 MB, in bytes; of a part of a byte the whole."""
     number = real(text)
     if number is None or not (isfinite(number * 1e6) and number > 0.0):
         raise argparse.ArgumentTypeError(f"{quoted(text)} is not a size above 0 MB")
-    return round(number * 1e6)
+    return ceil(number * 1e6)

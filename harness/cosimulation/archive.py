@@ -30,10 +30,16 @@ def problems(entries: Sequence[ZipInfo], limits: Limits) -> Iterator[Problem]:
     """Everything for which an archive with these entries is not unpacked."""
     size = sum(entry.file_size for entry in entries)
     if size > limits.unpacked:
-        yield Problem("archive-size", f"it unpacks to {size / 1e6:.0f} MB; {limits.unpacked / 1e6:.0f} MB are allowed")
+        yield Problem("archive-size", f"it unpacks to {megabytes(size)}; {megabytes(limits.unpacked)} are allowed")
     for entry in entries:
         for rule, what in _problems(entry):
             yield Problem(rule, f"{plain(entry.orig_filename)} {what}")
+
+
+def megabytes(size: int) -> str:
+    """A number of bytes as the option for the limit takes it, to the byte: what is just too large must not read like
+    what is allowed."""
+    return f"{size / 1e6:.12g} MB"
 
 
 def _problems(entry: ZipInfo) -> Iterator[tuple[str, str]]:
@@ -76,7 +82,7 @@ def described(path: Path, limits: Limits = USUAL) -> bytes:
     if DESCRIPTION not in sizes:
         raise WiringError(f"{path} is not an FMU: there is no {DESCRIPTION} in it")
     if sizes[DESCRIPTION] > LARGEST_DESCRIPTION:
-        raise WiringError(f"{path}: {DESCRIPTION} has {sizes[DESCRIPTION] / 1e6:.0f} MB")
+        raise WiringError(f"{path}: {DESCRIPTION} has {megabytes(sizes[DESCRIPTION])}")
     try:
         with ZipFile(path) as archive:
             return archive.read(DESCRIPTION)

@@ -67,6 +67,7 @@ def test_a_time_is_above_zero_and_finite():
 
 def test_a_size_is_finite_in_bytes():
     assert megabytes("1e302") == round(1e308)
+    assert [megabytes(text) for text in ("1000", "0.29", "1e-6", "1e-7")] == [10**9, 290_000, 1, 1]
     for text in ("1e303", "0", "inf"):
         with pytest.raises(ArgumentTypeError, match="not a size above 0 MB"):
             megabytes(text)

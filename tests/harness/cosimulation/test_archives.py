@@ -42,7 +42,9 @@ def test_an_archive_may_unpack_to_the_limit_and_no_further(stranger, tmp_path):
     with ZipFile(path) as archive:
         size = sum(entry.file_size for entry in archive.infolist())
     Interface(path, Limits(unpacked=size))
-    with pytest.raises(WiringError, match=r"is not unpacked: it unpacks to 10 MB; 10 MB are allowed"):
+    with pytest.raises(
+        WiringError, match=rf"is not unpacked: it unpacks to {size / 1e6} MB; {(size - 1) / 1e6} MB are allowed"
+    ):
         Interface(path, Limits(unpacked=size - 1))
 
 
