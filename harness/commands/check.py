@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from ..plain import quoted
-from .options import add_limits, add_printing
+from .options import add_json, add_limits, add_printing
 from .settings import limits
 
 DESCRIPTION = """\
@@ -36,11 +36,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--ignore", action="append", default=[], metavar="RULE", type=rule, help="leave out this rule (repeatable)"
     )
-    parser.add_argument(
-        "--format", choices=FORMATS, default="text", help="lines, one document or JUnit XML (default: %(default)s)"
-    )
+    style = parser.add_mutually_exclusive_group()
+    style.add_argument("--format", choices=FORMATS, help=f"lines, one document or JUnit XML (default: {FORMATS[0]})")
+    add_json(style)
     add_limits(parser)
-    add_printing(parser, table=True)
+    add_printing(parser)
 
 
 def rule(text: str) -> str:
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     from ..compliance.rule import Severity
     from ..reports.terminal import print_verdict
 
-    style = "json" if args.json else args.format
+    style = "json" if args.json else args.format or FORMATS[0]
     failing = {severity.value for severity in Severity} if args.strict else {Severity.ERROR.value}
     checks = {path: check(path, limits(args), args.quick, args.ignore) for path in args.fmus}
     found = {}

@@ -147,7 +147,12 @@ def add_printing(parser: argparse.ArgumentParser, table: bool = False) -> None:
     """--quiet and, of a command that prints a table, --json."""
     parser.add_argument("--quiet", action="store_true", help="print only what goes wrong")
     if table:
-        parser.add_argument("--json", action="store_true", help="print one JSON document in the place of the table")
+        add_json(parser)
+
+
+def add_json(parser: argparse._ActionsContainer) -> None:
+    """--json, of a command that prints a table."""
+    parser.add_argument("--json", action="store_true", help="print one JSON document in the place of the table")
 
 
 def assignment(text: str) -> tuple[str, float]:

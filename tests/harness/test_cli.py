@@ -67,6 +67,8 @@ def test_the_version_is_that_of_the_package(capsys):
         (["build", "TwoMass"], "did you mean TwoMassDriveline"),
         (["build", "nothing.py"], "there is no file nothing.py"),
         (["check", "nothing.fmu"], "there is no FMU nothing.fmu"),
+        (["check", "nothing.fmu", "--json", "--format", "junit"], "--format: not allowed with argument --json"),
+        (["check", "nothing.fmu", "--format", "text", "--json"], "--json: not allowed with argument --format"),
         (["compare", "--manoeuvre", "launc"], "did you mean launch"),
         (["--print-completion", "bsh"], "did you mean bash"),
         ([], "COMMAND"),
