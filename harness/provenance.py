@@ -143,7 +143,7 @@ def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
     if isinstance(before, dict) and isinstance(now, dict):
         for key in sorted(before.keys() | now.keys()):
             yield from _differences(before.get(key), now.get(key), f"{name} {key}".strip())
-    elif before != now:
+    elif before != now and not (before in ({}, None) and now in ({}, None)):  # nothing is set in either
         yield f"{name}: {'not set' if before is None else before} there, {'not set' if now is None else now} here"
 
 

@@ -134,10 +134,11 @@ def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvr
     ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
     others = {name: path for name, path in system.instances.items() if name not in system.own}
     own = start(manoeuvre, given["seed"]) if manoeuvre else {}
+    digests = {name: digest(path) for name, path in others.items() if path.is_file()}
     return {
         "fmus": {name: str(path) for name, path in system.instances.items()},
         "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
-        "digests": {name: digest(path) for name, path in others.items() if path.is_file()},
+        **({"digests": digests} if digests else {}),
         "parameters": own | given["parameters"],
         "seed": given["seed"],
         "mapping": given["mapping"],

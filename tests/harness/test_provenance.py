@@ -5,6 +5,7 @@ import json
 import os
 import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from shutil import copytree
 from typing import Any
@@ -207,6 +208,17 @@ def test_an_fmu_of_ones_own_that_was_built_again_makes_another_run(both_built: P
     assert told_apart(loop(plant, both_built)) == before
     plant.write_bytes(b"another")
     assert told_apart(loop(plant, both_built)) != before
+    assert before["digests"].keys() == {"plant"}
+
+
+def test_there_are_no_digests_of_fmus_of_ones_own_where_there_are_none(both_built: Path, tmp_path: Path) -> None:
+    same = told_apart(loop(folder=both_built))
+    assert "digests" not in same
+    (tmp_path / "table.md").touch()
+    for before, refused in ((same | {"digests": {}}, False), (same | {"digests": {"plant": "sha256:0"}}, True)):
+        (tmp_path / "compare.json").write_text(json.dumps({"run": before}), encoding="utf-8")
+        with pytest.raises(DrivelineError, match="digests") if refused else nullcontext():
+            require_same_run(tmp_path / "compare.json", same, [tmp_path / "table.md"])
 
 
 def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:
