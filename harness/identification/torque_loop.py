@@ -1,0 +1,183 @@
+"""What motor control makes of the torque demand: a second-order lag (paper, eq. (1)), recorded with gain and offset.
+
+    tau^2 d2T/dt2 + sqrt(2) tau dT/dt + T = T_ref(t - delay)        T_mot = gain T + offset
+
+The demand is held from each sample to the next. So T is a sum of its steps, and each of them is answered by
+
+    s(t) = 1 - exp(-y) (cos y + sin y),   y = t/(sqrt(2) tau),   t > 0
+
+which after SETTLED is 1: the sum is the convolution of the demand with the short answer to a single sample of it.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import astuple, dataclass, fields
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ..recordings.delays import EARLIEST, LATEST
+from ..recordings.source import RecordingError
+
+SQRT_2 = 2.0**0.5
+
+SETTLED = 53.0
+"""Time in tau after which the rest of an answer is 5e-17."""
+
+START, SHORTEST, LONGEST = 0.003, 1e-4, 0.05
+"""Lag in s with which the search begins, and between which it stays."""
+
+UNKNOWN = 0.2
+"""Time in s at the beginning that is not fitted: what was demanded before the recording may still act."""
+
+
+@dataclass(frozen=True)
+class TorqueLoop:
+    """From the recorded demand to the recorded torque.
+
+    Attributes:
+        tau: lag in s.
+        gain: recorded over true torque.
+        offset: of the recorded torque in N.m.
+        delay: by which the torque comes after the demand beside the lag, in s; negative if the demand came late into
+            the recording.
+    """
+
+    tau: float
+    gain: float = 1.0
+    offset: float = 0.0
+    delay: float = 0.0
+
+    def torque(self, T_ref: np.ndarray, T_s: float) -> np.ndarray:
+        """The torque as it is recorded, without noise, from a steady start.
+
+        Args:
+            T_ref: demand in N.m, each held for T_s, shape (n,).
+            T_s: between samples in s.
+
+        Returns:
+            In N.m, at each sample, shape (n,).
+        """
+        return self.gain * self._sum(self._answer, T_ref, T_s) + self.offset
+
+    def means(self, T_ref: np.ndarray, T_s: float, parts: int) -> np.ndarray:
+        """Its means over each of so many equal parts of every sample.
+
+        Returns:
+            In N.m, shape (n, parts).
+        """
+        width = T_s / parts
+
+        def mean(t: np.ndarray) -> np.ndarray:
+            """Of the answer, over what ends at t."""
+            return (self._integral(t) - self._integral(t - width)) / width
+
+        each = [self._sum(mean, T_ref, T_s, ahead=(k + 1) * width) for k in range(parts)]
+        return self.gain * np.column_stack(each) + self.offset
+
+    def derivatives(self, T_ref: np.ndarray, T_s: float) -> np.ndarray:
+        """Of `torque` by tau, gain, offset and delay, shape (n, 4)."""
+        T = self._sum(self._answer, T_ref, T_s)
+        by_tau = self._sum(lambda t: -t / self.tau * self._rate(t), T_ref, T_s)
+        by_delay = self._sum(lambda t: -self._rate(t), T_ref, T_s)
+        return np.column_stack([self.gain * by_tau, T, np.ones_like(T), self.gain * by_delay])
+
+    def _y(self, t: np.ndarray) -> np.ndarray:
+        return np.maximum(t, 0.0) / (SQRT_2 * self.tau)
+
+    def _answer(self, t: np.ndarray) -> np.ndarray:
+        """s, t seconds after a step of 1."""
+        y = self._y(t)
+        return 1.0 - np.exp(-y) * (np.cos(y) + np.sin(y))
+
+    def _rate(self, t: np.ndarray) -> np.ndarray:
+        """ds/dt."""
+        y = self._y(t)
+        return SQRT_2 / self.tau * np.exp(-y) * np.sin(y)
+
+    def _integral(self, t: np.ndarray) -> np.ndarray:
+        """Of s, since the step."""
+        y = self._y(t)
+        return SQRT_2 * self.tau * (y - 1.0 + np.exp(-y) * np.cos(y))
+
+    def _sum(
+        self, answer: Callable[[np.ndarray], np.ndarray], T_ref: np.ndarray, T_s: float, ahead: float = 0.0
+    ) -> np.ndarray:
+        """The answers to all steps of the demand, so many seconds ahead of each sample.
+
+        Args:
+            answer: to a step of 1; 0 before it, and constant a sample after SETTLED.
+        """
+        shift = (self.delay - ahead) / T_s
+        first, last = int(np.floor(shift)), int(np.ceil(shift + SETTLED * self.tau / T_s)) + 1
+        pulse = np.diff(answer(np.arange(first, last + 1) * T_s + ahead - self.delay))
+        known = np.clip(np.arange(-last, len(T_ref) - first - 1), 0, len(T_ref) - 1)
+        return np.convolve(T_ref[known], pulse, mode="valid")
+
+
+PARAMETERS = tuple(field.name for field in fields(TorqueLoop))
+
+
+@dataclass(frozen=True)
+class FittedLoop:
+    """A torque loop as a recording shows it.
+
+    Attributes:
+        loop: with which the recorded torque is met best.
+        deviations: standard deviation of each of its parameters, in its unit.
+        noise: of the recorded torque, rms, in N.m.
+        explained: share of the power of the recorded torque.
+    """
+
+    loop: TorqueLoop
+    deviations: Mapping[str, float]
+    noise: float
+    explained: float
+
+
+def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
+    """The torque loop by least squares, its delay between EARLIEST and LATEST.
+
+    Args:
+        T_ref: recorded demand in N.m, each held until the next, shape (n,).
+        T_mot: recorded torque in N.m, with white noise, shape (n,).
+        T_s: between samples in s.
+
+    Raises:
+        RecordingError: the demand does not change.
+    """
+    at = slice(round(UNKNOWN / T_s), len(T_ref) + round(EARLIEST / T_s))
+    T = T_mot[at]
+    if not np.ptp(T_ref[at]) > 0.0:
+        raise RecordingError("the torque demand does not change, so that nothing can be said of motor control")
+
+    def misses(x: np.ndarray) -> np.ndarray:
+        return TorqueLoop(*x).torque(T_ref, T_s)[at] - T
+
+    def derivatives(x: np.ndarray) -> np.ndarray:
+        return TorqueLoop(*x).derivatives(T_ref, T_s)[at]
+
+    lower, upper = (SHORTEST, -np.inf, -np.inf, EARLIEST), (LONGEST, np.inf, np.inf, LATEST)
+    start = TorqueLoop(START, delay=_nearest_delay(T_ref, T_mot, T_s, at))
+    found = least_squares(
+        misses,
+        astuple(start),
+        derivatives,  # pyright: ignore[reportArgumentType]
+        (lower, upper),
+        x_scale="jac",
+    )
+    variance = 2.0 * found.cost / (len(T) - len(PARAMETERS))
+    deviations = np.sqrt(variance * np.diag(np.linalg.inv(found.jac.T @ found.jac)))
+    return FittedLoop(
+        TorqueLoop(*map(float, found.x)),
+        dict(zip(PARAMETERS, map(float, deviations), strict=True)),
+        float(np.sqrt(variance)),
+        1.0 - float(np.var(found.fun) / np.var(T)),
+    )
+
+
+def _nearest_delay(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float, at: slice) -> float:
+    """The whole number of samples, in s, with which the torque goes best with that of a usual lag."""
+    T = TorqueLoop(START).torque(T_ref, T_s)
+    delays = range(round(EARLIEST / T_s), round(LATEST / T_s) + 1)
+    along = [float(np.corrcoef(np.roll(T, k)[at], T_mot[at])[0, 1]) for k in delays]
+    return delays[int(np.argmax(along))] * T_s
