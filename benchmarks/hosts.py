@@ -31,6 +31,7 @@ from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.signals import lines
 from harness.simulate import signals
 from harness.stale import warn_of_stale
+from harness.stopping import script
 
 from . import plain_loop
 from .timed import Timed
@@ -197,4 +198,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

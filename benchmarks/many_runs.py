@@ -25,6 +25,7 @@ from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.many import run_many
 from harness.metrics.evaluate import evaluate
 from harness.simulate import signals, simulate, start
+from harness.stopping import script
 
 from .timed import Timed
 
@@ -90,4 +91,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

@@ -18,6 +18,7 @@ from rich.table import Table
 
 from fmus.builds import NATIVE_FOLDER
 from harness.control_loop import BUILD, PLANTS
+from harness.stopping import script
 
 DURATION, STEP_SIZE = 10.0, 1e-3
 """In s."""
@@ -72,4 +73,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

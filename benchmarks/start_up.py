@@ -13,6 +13,8 @@ from time import perf_counter
 from rich.console import Console
 from rich.table import Table
 
+from harness.stopping import script
+
 CONTENDERS: dict[str, tuple[str, ...]] = {
     "python": ("-c", "pass"),
     "python, import numpy": ("-c", "import numpy"),
@@ -48,4 +50,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

@@ -32,6 +32,7 @@ from harness.cosimulation.system import System
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import signals, start
 from harness.stale import warn_of_stale
+from harness.stopping import script
 
 from .timed import Timed
 
@@ -221,4 +222,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

@@ -19,6 +19,7 @@ from fmus.native.target import PRECISIONS
 from fmus.native.trace import leaves
 from harness.control_loop import BUILD
 from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.stopping import script
 
 from .target import FLAGS, as_text, compiled, outputs, program, recorded
 
@@ -173,8 +174,12 @@ def page(fmus: Path) -> str:
         return text + distances(folders["float"] / "run", folders["double"] / "run", fmus) + TAIL
 
 
-if __name__ == "__main__":
+def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.target_cost", description="Write docs/target.md.")
     parser.add_argument("--fmus", type=Path, default=BUILD / NATIVE_FOLDER, help="folder of the FMUs of the loop")
     PAGE.write_text(page(parser.parse_args().fmus), encoding="utf-8")
     print(PAGE)
+
+
+if __name__ == "__main__":
+    script(main)

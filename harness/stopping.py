@@ -7,7 +7,9 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
+from typing import NoReturn
 
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that end a process as an interruption at the keyboard does."""
@@ -42,6 +44,18 @@ def _stop(number: int, frame: FrameType | None) -> None:
     for other in ENDING:  # what follows is the cleaning up
         signal.signal(other, signal.SIG_IGN)
     raise Stopped(number)
+
+
+def script(main: Callable[[], int | None]) -> NoReturn:
+    """Runs the main function of a module and ends the process with its exit code; stopped, all is cleaned up and one
+    line says so, as by `driveline`."""
+    try:
+        with stoppable():
+            code = main()
+    except KeyboardInterrupt as stop:
+        print(f"{Path(sys.argv[0]).stem}: stopped", file=sys.stderr)
+        code = getattr(stop, "exit_code", 130)
+    sys.exit(code)
 
 
 @contextmanager

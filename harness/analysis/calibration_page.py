@@ -9,6 +9,7 @@ from ..many import run_many
 from ..reports.files import write_text
 from ..reports.markdown import markdown_table
 from ..reports.table import number
+from ..stopping import script
 from .box import Deviation
 from .calibration import FACTOR, STANDSTILL, answered, cases, stiff_vehicle
 from .calibration_figure import plot_calibration
@@ -180,4 +181,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

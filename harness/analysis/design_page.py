@@ -14,6 +14,7 @@ from ..metrics.record import Metrics
 from ..reports.files import write_text
 from ..reports.markdown import markdown_table
 from ..reports.table import number
+from ..stopping import script
 from .cars import Gains, Trial, measured, own_gains
 from .design import design
 from .weights import records
@@ -94,4 +95,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

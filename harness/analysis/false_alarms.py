@@ -23,6 +23,7 @@ from ..manoeuvres.signals import lines
 from ..many import run_many
 from ..reports.terminal import print_table
 from ..simulate import simulate
+from ..stopping import script
 
 GRADE = 0.2
 HOLDING = 2400.0
@@ -100,4 +101,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

@@ -26,6 +26,7 @@ from ..manoeuvres.signals import lines
 from ..many import run_many
 from ..reports.terminal import print_table
 from ..simulate import simulate
+from ..stopping import script
 
 P = BLOCK.Parameters()
 MINUTE = 60.0
@@ -198,4 +199,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

@@ -19,6 +19,7 @@ from ..manoeuvres.catalogue import MANOEUVRES, step
 from ..many import run_many
 from ..metrics.spectrum import band_rms
 from ..reports.terminal import print_table
+from ..stopping import script
 from . import monolithic
 
 LATE = 0.062
@@ -93,4 +94,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

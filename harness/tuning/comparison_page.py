@@ -21,6 +21,7 @@ from ..reports.markdown import markdown_table
 from ..reports.table import number
 from ..robustness.outcome import SHOWN
 from ..simulate import simulate
+from ..stopping import script
 from .runs import HELD_OUT_SEEDS
 
 OURS = PLACES["controller"][0]
@@ -148,4 +149,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

@@ -29,6 +29,7 @@ from ..robustness.campaign import campaign
 from ..robustness.summary import goal as told
 from ..robustness.summary import summaries
 from ..simulate import simulate
+from ..stopping import script
 from .runs import HELD_OUT_SEEDS, SLOW_MOTOR
 
 
@@ -180,4 +181,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

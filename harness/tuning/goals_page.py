@@ -7,6 +7,7 @@ from ..control_loop import PLANTS
 from ..metrics.record import Metrics
 from ..reports.files import write_text
 from ..reports.markdown import markdown_table
+from ..stopping import script
 from .goals import GOALS, Goal, Run, all_measured, reached, title
 from .runs import HELD_OUT_SEEDS
 
@@ -56,4 +57,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

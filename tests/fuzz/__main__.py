@@ -13,6 +13,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from harness.progress import progress
+from harness.stopping import script
 
 from . import page
 from .target import Target, Unclean
@@ -51,4 +52,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    script(main)

@@ -49,6 +49,36 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
     assert [path for path in results.rglob("*") if path.is_file()] == []
 
 
+def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "harness.analysis.untold"],
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.terminate()
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (143, "", "untold: stopped\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+MAINS = [
+    path
+    for path in [*(ROOT / "harness").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
+    if "\ndef main(" in (text := path.read_text(encoding="utf-8")) and '__name__ == "__main__"' in text
+]
+
+
+@pytest.mark.parametrize("path", MAINS, ids=lambda path: path.stem)
+def test_every_module_that_is_run_is_stopped_so(path: Path) -> None:
+    assert path.read_text(encoding="utf-8").endswith('\n\nif __name__ == "__main__":\n    script(main)\n')
+
+
 class Ended(Exception):
     """What the handler of a signal raises."""
 
