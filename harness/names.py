@@ -7,17 +7,20 @@ from pathlib import Path
 from .errors import DrivelineError
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def nearest(name: str, known: Iterable[str], every: str = "known are") -> str:
     """What to say of an unknown name: the known ones nearest to it, or all of them if none is near.
 
     For example "did you mean tipin15 or tipin50?" or "known are: drive, creep".
+
+    Args:
+        every: words before all of them.
     """
     names = list(known)
     by_folded = {candidate.casefold(): candidate for candidate in names}
     close = [by_folded[match] for match in get_close_matches(name.casefold(), by_folded, n=3)]
     if close:
         return f"did you mean {' or '.join(close)}?"
-    return f"known are: {', '.join(names)}"
+    return f"{every}: {', '.join(names)}"
 
 
 def require_different(plants: Iterable[str | Path]) -> None:

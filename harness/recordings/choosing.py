@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from shlex import quote
 
 from ..names import nearest
 from ..plain import plain
@@ -52,13 +53,16 @@ class Chooser:
         choice = self.found(quantity)
         if choice:
             return choice
-        present = [column.name for column in self.source.columns]
         others = " or ".join(self.names[quantity][1 : 1 + NAMES_SHOWN])
-        also = f" (also {others})" if others else ""
+        known = f" (other names are {others})" if others else ""
         raise RecordingError(
-            f"{self.source.headings}: no column {example(quantity, self.names)}{also}; "
-            f"in the file: {plain(nearest(self.names[quantity][0], present))}"
+            f"{self.source.headings}: no column {example(quantity, self.names)}{known}; "
+            f"{self._nearest(self.names[quantity][0])}"
         )
+
+    def _nearest(self, name: str) -> str:
+        """What to say of a name that no column has."""
+        return plain(nearest(name, [column.name for column in self.source.columns], every="the file has"))
 
     def found(self, quantity: str) -> Choice | None:
         """The column of a quantity, None if there is none; else as `needed`."""
@@ -83,20 +87,17 @@ class Chooser:
             (place, unit or column.unit) for place, column in enumerate(columns) if key(column.name) == key(name)
         ]
         if not found:
-            near = plain(nearest(name, [column.name for column in columns]))
             raise RecordingError(
-                f"{self.source.headings}: no column {plain(wanted, 60)}, as --column says of {quantity}; "
-                f"in the file: {near}"
+                f"{self.source.headings}: no column {plain(wanted, 60)}, which --column gives for {quantity}; "
+                f"{self._nearest(name)}"
             )
         return self._one(quantity, found, sign)
 
     def _one(self, quantity: str, found: Sequence[tuple[int, str | None]], sign: float) -> Choice:
         columns = self.source.columns
         if len(found) > 1:
-            headings = ", ".join(columns[place].heading for place, _ in found)
             raise RecordingError(
-                f"{self.source.headings}: {headings} all name {self.names[quantity][0]}; keep one of them, "
-                f"or say which with --column {quantity}=NAME"
+                f"{self.source.headings}: {_doubled(quantity, [columns[k].heading for k, _ in found])}"
             )
         place, unit = found[0]
         si, factor = self._factor(quantity, columns[place], unit)
@@ -107,8 +108,9 @@ class Chooser:
         declared = QUANTITIES[quantity]
         if unit is None and declared.unit != "1":
             raise RecordingError(
-                f"{self.source.headings}: {column.heading} has the unit (none); write it as in "
-                f"{example(quantity, self.names)}, or say --column {quantity}='{column.name} [{declared.written}]'"
+                f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
+                f"{example(quantity, self.names)}, or give it with "
+                f"--column {quantity}={quote(f'{column.name} [{declared.written}]')}"
             )
         if declared.also:
             try:
@@ -119,7 +121,8 @@ class Chooser:
             return declared.unit, factor_to(declared.unit, unit or "1")
         except ValueError as reason:
             raise RecordingError(
-                f"{self.source.headings}: {column.heading} {plain(reason, 200)}, as in {example(quantity, self.names)}"
+                f"{self.source.headings}: {column.heading} {plain(reason, 200)}, as in the heading "
+                f"{example(quantity, self.names)}"
             ) from reason
 
 
@@ -128,3 +131,14 @@ def _readings(column: Column) -> Iterator[tuple[str, str | None]]:
     yield column.name, column.unit
     if column.unit is None:
         yield from after_underscores(column.name)
+
+
+def _doubled(quantity: str, headings: Sequence[str]) -> str:
+    """What to say of several columns that could hold a quantity."""
+    distinct = [heading for heading in headings if headings.count(heading) == 1]
+    if not distinct:
+        return f"{len(headings)} columns are called {headings[0]}; rename all but one in the file"
+    return (
+        f"{' and '.join(headings)} could each be {quantity} ({QUANTITIES[quantity].meaning}); say which one is meant, "
+        f"as in --column {quantity}={quote(distinct[0])}"
+    )

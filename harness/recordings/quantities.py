@@ -28,7 +28,8 @@ class Quantity:
         unit: of the SI, as in Modelica.
         written: a unit in which files have it.
         limit: largest magnitude that a car can have.
-        also: another unit of the SI in which it may stand, which something else turns into the first.
+        also: a second SI unit that files may have it in and that no factor converts into the first: wheel speeds are
+            often given in m/s, and only the tyre radius makes rad/s of them. Whoever reads it does that.
         slowest: longest interval in s from which a model can be identified.
         least_swing: by how much it must vary so that a model can be identified.
         gap: longest step of time that is still no gap, in median steps; messages come late and are lost.

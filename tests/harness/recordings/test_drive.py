@@ -2,6 +2,7 @@
 
 import math
 import os
+import shlex
 from dataclasses import replace
 
 import numpy as np
@@ -56,18 +57,34 @@ def test_kilometres_per_hour_and_newton_metres(write):
 @pytest.mark.parametrize(
     ("header", "said"),
     [
-        ("Time [s],Velocty [km/h],Elevation [m],Motor Torque [Nm]", r"no column Velocity.*Velocty"),
+        ("Time [s],Velocty [km/h],Elevation [m],Motor Torque [Nm]", r"no column Velocity.*did you mean Velocty"),
+        (
+            "Time [s],x [km/h],Elevation [m],Torque [Nm]",
+            r"no column Velocity.*the file has: Time, x, Elevation, Torque",
+        ),
         (
             "Time [s],Velocity [km],Elevation [m],Motor Torque [Nm]",
-            r"Velocity \[km\] is in km, .* as in Velocity \[km/h\]",
+            r"Velocity \[km\] is in km, .* as in the heading Velocity \[km/h\]",
         ),
-        ("Time [s],Velocity,Elevation [m],Motor Torque [Nm]", r"unit \(none\)"),
-        ("Time [s],Velocity [m/s],Elevation [m],Speed [m/s],Torque [Nm]", r"Velocity.*Speed.*keep one"),
+        (
+            "Time [s],Velocity,Elevation [m],Motor Torque [Nm]",
+            r"Velocity has no unit; .* with --column v='Velocity \[km/h\]'",
+        ),
+        ("Time [s],Speed [m/s],x,Speed [m/s],Torque [Nm]", r"2 columns are called Speed \[m/s\]; rename all but one"),
     ],
 )
 def test_a_header_that_does_not_fit_is_explained(write, header, said):
     with pytest.raises(RecordingError, match=said):
         read_drive(write("0,1,2,3", header=header))
+
+
+def test_of_two_columns_that_one_is_taken_that_is_said_to_be_meant(write):
+    path = write("0,1,2,3,4", "1,1,2,3,4", header="Time [s],Velocity [m/s],Speed [m/s],Torque [Nm],Height [m]")
+    with pytest.raises(RecordingError, match=r"Velocity \[m/s\] and Speed \[m/s\] could each be v") as refusal:
+        read_drive(path)
+    *_, advice = shlex.split(str(refusal.value))
+    quantity, _, heading = advice.partition("=")
+    assert read_drive(path, {quantity: heading}).v.tolist() == [1.0, 1.0]
 
 
 @pytest.mark.parametrize("cell", ["nan", "inf", "fast", ""])

@@ -98,7 +98,10 @@ def test_results_of_ours_have_their_units_in_the_file_beside_them(write: Write) 
         "plant.T_load": ("T_load", "N.m"),
     }
     path = write({column: drive()[name] for column, (name, _) in names.items()})
-    with pytest.raises(RecordingError, match=r"can\.omega_2_can has the unit \(none\).*--column"):
+    with pytest.raises(
+        RecordingError,
+        match=r"can\.omega_2_can has no unit; .*, as in .* with --column omega_2='can\.omega_2_can \[rad/s\]'",
+    ):
         read_measurement(path, RATIO, RADIUS)
     record = {"files": [path.name], "units": {column: unit for column, (_, unit) in names.items()}}
     path.with_suffix(".json").write_text(json.dumps(record), encoding="utf-8")

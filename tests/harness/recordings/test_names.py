@@ -118,5 +118,5 @@ def test_a_file_of_names_that_is_refused(tmp_path: Path, content: str, said: str
 
 
 def test_a_column_that_is_said_to_be_there_and_is_not(write: Write) -> None:
-    with pytest.raises(RecordingError, match=r"no column n_EM2, as --column says of omega_1.*did you mean n_EM1"):
+    with pytest.raises(RecordingError, match=r"no column n_EM2, which --column gives for omega_1; did you mean n_EM1"):
         read_measurement(write(columns()), RATIO, RADIUS, {"omega_1": "n_EM2"})
