@@ -26,7 +26,8 @@ from textwrap import shorten
 from typing import Any, NoReturn, TypeVar
 
 from .cosimulation.runs import kept_loaded
-from .errors import DrivelineError, MissingExtra, SimulationError
+from .errors import DrivelineError, SimulationError
+from .extra import required
 from .progress import progress
 from .reports.files import note_unfinished, remove_unfinished
 from .stopping import uninterrupted_children
@@ -144,13 +145,9 @@ def _in_workers(
 def _on_cluster(
     function: Callable[[Case], Answer], scheduler: str
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
-    try:
-        from .cluster import Lost, on_cluster
-    except ImportError as error:
-        raise MissingExtra(
-            "a Dask cluster needs the package distributed: "
-            "install the extra `cluster`, as in pip install 'driveline-damping[cluster]'"
-        ) from error
+    required("distributed", "a Dask cluster", "cluster")
+    from .cluster import Lost, on_cluster
+
     with on_cluster(partial(answered_by, function), scheduler) as submit:
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:

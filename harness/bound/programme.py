@@ -13,15 +13,11 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from ..errors import MissingExtra, SimulationError
+from ..errors import SimulationError
+from ..extra import required
 from .prediction import Affine
 
-try:
-    import cvxpy as cp
-except ImportError as error:
-    raise MissingExtra(
-        "bounds need the package cvxpy: install the extra `bound`, as in pip install 'driveline-damping[bound]'"
-    ) from error
+cp = required("cvxpy", "computing bounds", "bound")
 
 MOST = 2.0
 """Largest ratio that is looked at."""

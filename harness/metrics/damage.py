@@ -1,11 +1,10 @@
 """Fatigue of the gear by counting the cycles of its torque."""
 
-from importlib import import_module
 from types import ModuleType
 
 import numpy as np
 
-from ..errors import MissingExtra
+from ..extra import required
 from .declaration import Absent
 
 EXPONENT = 5.0
@@ -18,13 +17,7 @@ def require_counting() -> ModuleType:
     Raises:
         MissingExtra: it is not installed.
     """
-    try:
-        return import_module("rainflow")
-    except ImportError as error:
-        raise MissingExtra(
-            "counting load cycles needs the package rainflow: "
-            "install the extra `replay`, as in pip install 'driveline-damping[replay]'"
-        ) from error
+    return required("rainflow", "counting load cycles", "replay")
 
 
 def damage(T_gear: np.ndarray) -> float:

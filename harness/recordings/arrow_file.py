@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..extra import required
 from ..plain import plain
-from .extra import required
 from .headings import split
 from .source import Column, RecordingError, Samples, samples
 
@@ -73,15 +73,15 @@ def _is_parquet(path: Path) -> bool:
 
 def _schema(path: Path) -> Any:
     if _is_parquet(path):
-        return required("pyarrow.parquet", "Parquet files").read_schema(path)
-    with required("pyarrow", "Feather files").ipc.open_file(path) as file:
+        return required("pyarrow.parquet", "reading Parquet files", "recordings").read_schema(path)
+    with required("pyarrow", "reading Feather files", "recordings").ipc.open_file(path) as file:
         return file.schema
 
 
 def _table(path: Path, names: Sequence[str]) -> Any:
     if _is_parquet(path):
-        return required("pyarrow.parquet", "Parquet files").read_table(path, columns=list(names))
-    return required("pyarrow.feather", "Feather files").read_table(path, columns=list(names))
+        return required("pyarrow.parquet", "reading Parquet files", "recordings").read_table(path, columns=list(names))
+    return required("pyarrow.feather", "reading Feather files", "recordings").read_table(path, columns=list(names))
 
 
 def _column(field: Any) -> Column:

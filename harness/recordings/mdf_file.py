@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ..extra import required
 from ..plain import plain
-from .extra import required
 from .source import Column, RecordingError, Samples, samples
 
 MARKS = (b"MDF     ", b"UnFinMF ")
@@ -69,7 +69,7 @@ class MdfFile:
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     """The file, while it is read; whatever asammdf meets in a damaged one is a RecordingError."""
-    asammdf = required("asammdf", "MDF files")
+    asammdf = required("asammdf", "reading MDF files", "recordings")
     damage = None
     before, sys.unraisablehook = sys.unraisablehook, lambda _: None  # a file that did not open says more as it is freed
     try:

@@ -7,13 +7,12 @@ was, by what is known of its candidates, and ends with the same bytes.
 """
 
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
-from importlib import import_module
 from math import log, nan
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import MissingExtra
+from ..extra import required
 from .cost import Costs
 from .space import Space
 
@@ -122,7 +121,7 @@ class Search:
             "tolfun": TOLERANCE,
             "verbose": -10,
         }
-        return _cma().CMAEvolutionStrategy(begin, step, options)
+        return required("cma", "searching", "design").CMAEvolutionStrategy(begin, step, options)
 
 
 def best(visited: Sequence[Evaluated], character: float) -> Evaluated:
@@ -137,12 +136,3 @@ def front(visited: Sequence[Evaluated]) -> list[Evaluated]:
         if not kept or each.costs.response < kept[-1].costs.response:
             kept.append(each)
     return kept
-
-
-def _cma() -> Any:
-    try:
-        return import_module("cma")
-    except ImportError as error:
-        raise MissingExtra(
-            "searching needs the package cma: install the extra `design`, as in pip install 'driveline-damping[design]'"
-        ) from error

@@ -14,13 +14,12 @@ import pytest
 from harness.cli import main
 from harness.control_loop import STEP_SIZE
 from harness.cosimulation.interface import Interface
-from harness.errors import WiringError
+from harness.errors import MissingExtra, WiringError
 from harness.manoeuvres.follower import drive, needed_force
 from harness.manoeuvres.manoeuvre import Manoeuvre
 from harness.manoeuvres.road import RoadLoad, Track
 from harness.manoeuvres.signals import Lines
 from harness.manoeuvres.town_drive import PATH
-from harness.metrics.damage import MissingExtra
 from harness.metrics.evaluate import T_S
 from harness.metrics.spectrum import band_rms
 from harness.recordings.drive import read_drive
