@@ -14,12 +14,15 @@ from .metrics.evaluate import T_S, at_samples
 from .recordings.quantities import QUANTITIES, aliases
 
 RECORDED = {
-    "motor": ("omega_1_meas", "T_mot_est"),
-    "can": ("omega_2_can", "valid", "counter"),
-    "plant": ("T_rim",),
-    "controller": ("T_ref",),
+    "omega_1": "motor.omega_1_meas",
+    "T_mot": "motor.T_mot_est",
+    "T_ref": "controller.T_ref",
+    "omega_wheel": "can.omega_2_can",
+    "valid": "can.valid",
+    "counter": "can.counter",
+    "T_wheel": "plant.T_rim",
 }
-"""Outputs of the blocks that a test drive needs."""
+"""The quantities of a test drive beside the time, and the output `instance.variable` from which each is recorded."""
 
 DECIMALS = 6
 """Of the values in the file, far below what any sensor resolves."""
@@ -69,7 +72,11 @@ def require_sensors(interfaces: Mapping[str, Interface]) -> None:
     Raises:
         WiringError: an FMU lacks an output that is recorded.
     """
-    for instance, outputs in RECORDED.items():
+    recorded: dict[str, list[str]] = {}
+    for output in RECORDED.values():
+        instance, _, name = output.partition(".")
+        recorded.setdefault(instance, []).append(name)
+    for instance, outputs in recorded.items():
         lacking = [name for name in outputs if name not in interfaces[instance].variables]
         if lacking:
             raise WiringError(
@@ -107,16 +114,9 @@ def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) 
         seed: of the noise of the measurement wheels.
     """
     sampled = at_samples(results)
-    columns = {
-        "time": sampled["time"],
-        "omega_1": sampled["motor.omega_1_meas"],
-        "T_mot": sampled["motor.T_mot_est"],
-        "T_ref": sampled["controller.T_ref"],
-        "omega_wheel": sampled["can.omega_2_can"] / i,
-        "valid": sampled["can.valid"],
-        "counter": sampled["can.counter"],
-        "T_wheel": wheels.measured(sampled["plant.T_rim"], seed),
-    }
+    columns = {"time": sampled["time"]} | {quantity: sampled[output] for quantity, output in RECORDED.items()}
+    columns["omega_wheel"] = columns["omega_wheel"] / i
+    columns["T_wheel"] = wheels.measured(columns["T_wheel"], seed)
     names = aliases()
     headings = [f"{names[quantity][0]} [{QUANTITIES[quantity].unit}]" for quantity in columns]
     whole = ("valid", "counter")
