@@ -21,6 +21,7 @@ from models.controller.supervision import FALLBACK, T_S, Input
 from models.damping_controller import BLOCK
 
 from ..control_loop import PLANTS
+from ..longest_run import longest_run
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import lines
 from ..many import run_many
@@ -120,8 +121,8 @@ def found(road: Road, seed: int) -> Found:
         jump=float(jumps(omega_1).max()) / P.e_jump,
         contradiction=contradiction(rows) / P.t_apart,
         half_swings=half_swings(rows) / swings.MOST,
-        torque=longest(disobeyed(rows)) * T_S / P.t_bad,
-        frozen=longest((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > STILL)) * T_S / P.t_frozen,
+        torque=longest_run(disobeyed(rows))[1] * T_S / P.t_bad,
+        frozen=longest_run((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > STILL))[1] * T_S / P.t_frozen,
     )
 
 
@@ -149,12 +150,6 @@ def contradiction(rows: np.ndarray) -> float:
         x = wheel_monitor.update(x, u, u.omega_1_meas, u.T_mot_est, 0.0, departure.start(), omega_2_hat, T_S, P)
         most = max(most, x.apart)
     return most
-
-
-def longest(condition: np.ndarray) -> int:
-    """Samples for which it holds in a row."""
-    changes = np.flatnonzero(np.diff(np.concatenate(([0], condition.astype(int), [0]))))
-    return int(max(changes[1::2] - changes[::2], default=0))
 
 
 def half_swings(rows: np.ndarray) -> float:

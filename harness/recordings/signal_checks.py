@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..longest_run import longest_run
 from .channels import Channel
 from .quantities import QUANTITIES
 from .source import RecordingError
@@ -47,18 +48,10 @@ def clipping(channel: Channel) -> str | None:
     The motor torque is not judged: under a binary demand it stays at two values.
     """
     for bound, word in ((channel.values.max(), "largest"), (channel.values.min(), "smallest")):
-        first, length = _longest_run(channel.values == bound)
+        first, length = longest_run(channel.values == bound)
         if length >= CLIPPED:
             return (
                 f"{channel.where(first)}: {channel.heading} stays at its {word} value, {bound:g} {channel.unit}, "
                 f"for {length} samples; it may have been cut off there"
             )
     return None
-
-
-def _longest_run(at: np.ndarray) -> tuple[int, int]:
-    """Index of the first sample of the longest run, and its length."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], at, [False])).astype(int)))
-    begins, lengths = edges[::2], edges[1::2] - edges[::2]
-    k = int(np.argmax(lengths))
-    return int(begins[k]), int(lengths[k])

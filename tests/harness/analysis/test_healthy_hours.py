@@ -18,7 +18,6 @@ from harness.analysis.healthy_hours import (
     drive,
     found,
     half_swings,
-    longest,
     worst,
 )
 from harness.simulate import simulate
@@ -79,10 +78,6 @@ def test_drives_stand_and_roll_and_brake_with_sensors_within_the_specification(r
     for name, low, high in (("can.g_w2", 0.98, 1.02), ("motor.g_T", 0.95, 1.05), ("motor.o_T", -1.5, 1.5)):
         assert all(low <= errors[name] <= high for _, errors in drives)
     assert {errors["can.loss"] for _, errors in drives} == {0.0, 0.1}
-
-
-def test_the_longest_stretch_is_counted():
-    assert [longest(np.array(list(text)) == "x") for text in ("", "...", "x..xx.", "..xxx", "xx")] == [0, 0, 2, 3, 2]
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
