@@ -6,7 +6,9 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -90,12 +92,14 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
     def end(*_: object) -> None:
         raise Ended
 
+    loop: dict[str, Any] = {"plant": "ValidationVehicle", "folder": built, "build": "python"}
+    simulate(replace(MANOEUVRES["drive"], duration=0.01), **loop)  # whose Python has been imported by then
     before = signal.signal(number, end)
     clock = threading.Timer(0.7, os.kill, (os.getpid(), number))
     clock.start()
     try:
         with pytest.raises(Ended):
-            simulate(MANOEUVRES["drive"], plant="ValidationVehicle", folder=built, build="python")
+            simulate(MANOEUVRES["drive"], **loop)
         assert signal.getsignal(number) is end
     finally:
         clock.join()
