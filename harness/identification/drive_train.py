@@ -1,0 +1,92 @@
+"""The model that is identified: the two inertias of the paper's eq. (2), with structural damping.
+
+    J_1 domega_1/dt = T_mot - T_gear
+    J_2 domega_2/dt = T_load + T_gear
+           dphi/dt  = omega_1 - omega_2          T_gear = C y + s d dphi/dt,   y = b(phi, phi_B)
+
+The damper acts between teeth that touch: s = min(1, |y|/Y_D), so that the torque has no jump.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import casadi as ca
+
+Y_D = 0.01
+"""Twist in rad (motor side) beyond the flank from which on the damper acts in full."""
+
+STEPS = 4
+"""Of the integrator in a sample. At 2 ms and 8 Hz its frequency is 1e-5 too high."""
+
+
+class Parameters(NamedTuple):
+    """Of the drive train and of its recorded torques, motor side.
+
+    Attributes:
+        J_1, J_2: inertia of motor and wheels in kg.m2.
+        C: stiffness in N.m/rad.
+        d: structural damping in N.m.s/rad.
+        phi_B: half the backlash in rad.
+        g_T, g_L: recorded over true motor and load torque.
+    """
+
+    J_1: float
+    J_2: float
+    C: float
+    d: float
+    phi_B: float
+    g_T: float = 1.0
+    g_L: float = 1.0
+
+
+class State(NamedTuple):
+    """Attributes:
+    omega_1, omega_2: speed of motor and wheels in rad/s.
+    phi: twist in rad.
+    o_T, o_L: true less recorded motor and load torque, without their gain, in N.m.
+    """
+
+    omega_1: ca.SX
+    omega_2: ca.SX
+    phi: ca.SX
+    o_T: ca.SX
+    o_L: ca.SX
+
+
+def gear_torque(phi: ca.SX, dphi: ca.SX, p: Parameters, implicit: ca.SX = 0.0) -> ca.SX:
+    """Torque in N.m of spring and damper.
+
+    Args:
+        phi: twist in rad.
+        dphi: its rate in rad/s; less implicit times the torque, if that depends on it.
+    """
+    y = phi - ca.fmax(-p.phi_B, ca.fmin(phi, p.phi_B))
+    d = p.d * ca.fmin(1.0, ca.fabs(y) / Y_D)
+    return (p.C * y + d * dphi) / (1.0 + d * implicit)
+
+
+def step(x: State, T_mot: ca.SX, T_load: ca.SX, h: ca.SX, p: Parameters) -> State:
+    """The state h seconds later: half a step of the twist, a step of the speeds, half a step of the twist
+    (Verlet, of second order; the damper with the mean of both speeds).
+
+    Args:
+        T_mot, T_load: recorded torques in N.m, means of the step.
+    """
+    T_1, T_2 = T_mot / p.g_T + x.o_T, T_load / p.g_L + x.o_L
+    phi = x.phi + 0.5 * h * (x.omega_1 - x.omega_2)
+    free = x.omega_1 - x.omega_2 + 0.5 * h * (T_1 / p.J_1 - T_2 / p.J_2)
+    T_gear = gear_torque(phi, free, p, implicit=0.5 * h * (1.0 / p.J_1 + 1.0 / p.J_2))
+    omega_1 = x.omega_1 + h * (T_1 - T_gear) / p.J_1
+    omega_2 = x.omega_2 + h * (T_2 + T_gear) / p.J_2
+    return State(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), x.o_T, x.o_L)
+
+
+def sample(x: State, T_mot: Sequence[ca.SX], T_load: Sequence[ca.SX], T_s: ca.SX, p: Parameters) -> State:
+    """The state after a sample of T_s seconds.
+
+    Args:
+        T_mot, T_load: recorded torques in N.m, means of each of STEPS parts of the sample.
+    """
+    for T_1, T_2 in zip(T_mot, T_load, strict=True):
+        x = step(x, T_1, T_2, T_s / STEPS, p)
+    return x

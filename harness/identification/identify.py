@@ -1,0 +1,201 @@
+"""From a recording of a test drive to the parameters of the drive train: prediction error where the model explains
+the recording, output error where it does not."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..recordings.measurement import Measurement
+from .drive_train import Parameters
+from .driven import Drive, driven
+from .maximum_likelihood import Found, maximise
+from .noise import white_noise
+from .output_error import Fitted
+from .prediction import Noise, Predictor, filtered
+from .quality import Quality, judged, near_starts, segments
+from .response import Tyre, resonance, tyre
+from .torque_loop import FittedLoop
+
+ALWAYS = ("J_2", "C", "phi_B")
+
+BROAD = 5.0
+"""Noise of the load torque in N.m with which the search begins: the filter then follows the motor speed whatever the
+parameters are, and the cost has one valley."""
+
+EXPLAINED = 1.25
+"""Size of the innovations up to which the model explains the recording."""
+
+DAMPED = 10.8
+"""Twice the gain in likelihood from which on the data ask for structural damping: by chance once in a thousand."""
+
+DAMPING = 0.1
+"""Damping ratio with which output error begins."""
+
+LACKING = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0)
+"""Without the load torque: what model and resistance are off by. Narrower, the parameters are those of the next few
+milliseconds."""
+
+WITHIN, UNMEASURED = 1.0, 10.0
+"""Standard deviation in N.m of the offset of a load torque that was measured, and of one that was not."""
+
+HELD_OUT = 0.25
+"""Share of the recording, its end, on which the fit is judged; for this the parameters are found without it."""
+
+WITH_LOAD, WITHOUT_LOAD = "with load torque", "effective, without load torque"
+
+Said = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """Attributes:
+    name: WITH_LOAD: J_2 is that of the wheels; WITHOUT_LOAD: J_2 carries the vehicle.
+    method: "prediction error" or "output error".
+    p: the parameters.
+    covariance: of the free ones, in their order.
+    free: their names.
+    noise: of the recording, or what the model lacks.
+    loop: motor control, if the demand was recorded.
+    tyre: what hangs on the wheels; None if J_2 carries it.
+    quality: on the last quarter of the recording, with parameters found on the rest.
+    drive: the recording.
+    """
+
+    name: str
+    method: str
+    p: Parameters
+    covariance: np.ndarray
+    free: tuple[str, ...]
+    noise: Noise
+    loop: FittedLoop | None
+    tyre: Tyre | None
+    quality: Quality
+    drive: Drive
+
+    @property
+    def deviations(self) -> Mapping[str, float]:
+        """Standard deviation of each free parameter, in its unit."""
+        return dict(zip(self.free, map(float, np.sqrt(np.diag(self.covariance))), strict=True))
+
+    @property
+    def resonance(self) -> float:
+        """Frequency in Hz at which the car answers most on its own."""
+        return resonance(self.p, self.tyre)
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Attributes:
+    method, p, covariance, free, noise: see `Identified`.
+    """
+
+    method: str
+    p: Parameters
+    covariance: np.ndarray
+    free: tuple[str, ...]
+    noise: Noise
+
+
+def identify(
+    recording: Measurement, start: Parameters, J_v: float, more: Sequence[str] = (), said: Said = lambda _: None
+) -> Identified:
+    """
+    Args:
+        start: with which the search begins; what is not free remains.
+        J_v: inertia of the vehicle in kg.m2, motor side.
+        more: names of parameters that are to be free as well.
+        said: gets a line about each step.
+
+    Raises:
+        RecordingError: see `harness.identification.driven.driven`.
+    """
+    drive, loop = driven(recording)
+    measured = recording.T_load is not None
+    noise = of_sensors(recording, drive) if measured else LACKING
+    answer = answered(drive, start, noise, measured, more, said)
+    said("judging it by data that were not used")
+    cut = round((1.0 - HELD_OUT) * len(drive))
+    used, held_out = drive.between(0, cut), drive.between(cut, len(drive))
+    without = again(used, answer, measured)
+    drift = WITHIN if measured else UNMEASURED
+    through = filtered(drive, answer.p, answer.noise)
+    behind = None
+    if recording.T_load is not None:
+        load = recording.T_load[1:] / answer.p.g_L
+        behind = tyre(load, through.states[:, 1], drive.T_s, J_v)
+    return Identified(
+        WITH_LOAD if measured else WITHOUT_LOAD,
+        answer.method,
+        answer.p,
+        answer.covariance,
+        answer.free,
+        answer.noise,
+        loop,
+        behind,
+        judged(held_out, without, answer.noise, drift),
+        drive,
+    )
+
+
+def of_sensors(recording: Measurement, drive: Drive) -> Noise:
+    """The noise that the recording shows."""
+    T_mot = 0.0 if recording.T_ref is not None else white_noise(recording.T_mot, drive.T_s)
+    return Noise(white_noise(recording.omega_1, drive.T_s), T_mot, white_noise(recording.T_load, drive.T_s))
+
+
+def answered(
+    drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], said: Said
+) -> Answer:
+    if not measured:
+        free = (*ALWAYS, "d", *more)
+        found = maximise(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise, said=_progress(said, "without load torque"))
+        return Answer("prediction error", found.p, sandwich(found), free, noise)
+    free = (*ALWAYS, "g_L", *more)
+    broad = Noise(noise.omega_1, noise.T_mot, BROAD)
+    found = maximise(Predictor(free), drive, start._replace(d=0.0), broad, said=_progress(said, "with a wide filter"))
+    found = maximise(Predictor(free), drive, found.p, noise, said=_progress(said, "with the noise of the sensors"))
+    damped = maximise(Predictor((*free, "d")), drive, found.p, noise, said=_progress(said, "with damping"))
+    asked = 2.0 * (found.innovations.cost - damped.innovations.cost) > DAMPED
+    best = damped if asked or "d" in more else found
+    if _size(best) <= EXPLAINED:
+        return Answer("prediction error", best.p, np.linalg.inv(best.innovations.information), best.free, noise)
+    free = tuple(dict.fromkeys((*free, "d")))
+    begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), Noise(noise.omega_1, noise.T_mot, 20.0), said=_progress(said, "the model does not explain all of it"))
+    pieces = segments(drive, free, WITHIN)
+    near = near_starts(pieces, filtered(drive, begun.p, begun.noise))
+    fitted = pieces.fit(begun.p._replace(d=_damping(begun.p)), near, said=_progress(said, "output error"))
+    return Answer("output error", fitted.p, fitted.covariance, free, Noise(fitted.error, noise.T_mot, noise.T_load))
+
+
+def again(drive: Drive, answer: Answer, measured: bool) -> Parameters:
+    """The parameters of another part of the recording."""
+    if answer.method == "prediction error":
+        return maximise(Predictor(answer.free), drive, answer.p, answer.noise).p
+    pieces = segments(drive, answer.free, WITHIN)
+    return pieces.fit(answer.p, near_starts(pieces, filtered(drive, answer.p, answer.noise)), most=6).p
+
+
+def sandwich(found: Found, block: int = 250) -> np.ndarray:
+    """Covariance of the free parameters where the innovations are not white: their blocks speak for themselves."""
+    seen = found.innovations
+    inverse = np.linalg.inv(seen.information)
+    each = seen.d_size * seen.size[:, None] + 0.5 * seen.d_log_S
+    scores = np.array([part.sum(axis=0) for part in np.array_split(each, max(len(each) // block, 2))])
+    scores = scores - scores.mean(axis=0)
+    return inverse @ (scores.T @ scores) @ inverse
+
+
+def _size(found: Found) -> float:
+    return float(np.sqrt(np.mean(found.innovations.size**2)))
+
+
+def _damping(p: Parameters) -> float:
+    return 2.0 * DAMPING * float(np.sqrt(p.C * p.J_1 * p.J_2 / (p.J_1 + p.J_2)))
+
+
+def _progress(said: Said, what: str) -> Callable[[Parameters, float], None]:
+    def tell(p: Parameters, cost: float) -> None:
+        said(f"{what}: J_2 = {p.J_2:.4g}, C = {p.C:.4g}, phi_B = {p.phi_B:.4g}")
+
+    return tell

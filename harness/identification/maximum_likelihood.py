@@ -1,0 +1,75 @@
+"""The parameters under which the innovations are likeliest, by scoring steps with a trust in them that adapts
+(Levenberg, Marquardt). Positive parameters are searched by their logarithm."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .drive_train import Parameters
+from .driven import Drive
+from .prediction import Innovations, Noise, Predictor
+
+SIGNED = {"d"}
+"""Parameters that may be zero; they are searched as they are, in this unit."""
+
+ENOUGH = 0.02
+"""Step in standard deviations at which the search has ended."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Attributes:
+    p: the parameters.
+    free: names of those that were searched.
+    innovations: with them.
+    passes: through the recording.
+    """
+
+    p: Parameters
+    free: tuple[str, ...]
+    innovations: Innovations
+    passes: int
+
+
+def scales(p: Parameters, free: Sequence[str]) -> np.ndarray:
+    """Derivative of each free parameter by what is searched."""
+    return np.array([1.0 if name in SIGNED else getattr(p, name) for name in free])
+
+
+def moved(p: Parameters, free: Sequence[str], by: np.ndarray) -> Parameters:
+    values = {
+        name: getattr(p, name) + step if name in SIGNED else getattr(p, name) * float(np.exp(step))
+        for name, step in zip(free, by, strict=True)
+    }
+    return p._replace(**values)
+
+
+def maximise(
+    predictor: Predictor,
+    drive: Drive,
+    start: Parameters,
+    noise: Noise,
+    most: int = 30,
+    said: Callable[[Parameters, float], None] | None = None,
+) -> Found:
+    free, trust = predictor.free, 1e-2
+    p, best = start, predictor.innovations(drive, start, noise)
+    passes = 1
+    while passes < most:
+        scale = scales(p, free)
+        H, g = best.information * np.outer(scale, scale), best.gradient * scale
+        step = -np.linalg.solve(H + trust * np.diag(np.diag(H)), g)
+        step = np.clip(step, -0.7, 0.7)
+        if np.sqrt(step @ H @ step / len(free)) < ENOUGH:
+            break
+        tried_p = moved(p, free, step)
+        tried = predictor.innovations(drive, tried_p, noise)
+        passes += 1
+        if np.isfinite(tried.cost) and tried.cost < best.cost:
+            p, best, trust = tried_p, tried, max(trust / 10.0, 1e-9)
+            if said:
+                said(p, best.cost)
+        else:
+            trust = max(trust, 1e-4) * 10.0
+    return Found(p, free, best, passes)

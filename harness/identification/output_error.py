@@ -1,0 +1,182 @@
+"""The parameters with which free runs of the model over short segments are nearest to the recorded motor speed.
+
+For a car that the model does not wholly explain: there the likelihood of one-step predictions looks at what happens
+within some ten milliseconds, and puts everything that the model lacks into the parameters. Each segment has its own
+start, which is eliminated (G. H. Golub, V. Pereyra, Inverse Problems 19(2), 2003). A segment that starts on the wrong
+flank fits badly wherever the parameters are, so that its start is looked for on both and between them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .drive_train import Parameters
+from .maximum_likelihood import ENOUGH, moved, scales
+from .driven import Drive
+from .simulation import Simulator
+
+WITHIN = np.array([3.0, 10.0, 0.5])
+"""Standard deviations within which speeds and twist at the start of a segment are looked for."""
+
+SIDES = (-1.0, 0.0, 1.0)
+"""Twists at which the search for a start begins, in half gaps."""
+
+SIGMA = 1.0
+"""What the motor speed is off by in rad/s, about."""
+
+STARTS = 4
+"""Speeds, twist and load offset."""
+
+O_T = 1.5
+"""Standard deviation in N.m within which the offset of the motor torque is looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """Attributes:
+    p: the parameters.
+    free: names of those that were fitted.
+    o_T: offset of the motor torque in N.m.
+    starts: omega_1, omega_2, phi, o_L of each segment, shape (segments, STARTS).
+    covariance: of the free parameters: what the segments say about them, each for itself (sandwich).
+    error: rms of the motor speed in rad/s.
+    """
+
+    p: Parameters
+    free: tuple[str, ...]
+    o_T: float
+    starts: np.ndarray
+    covariance: np.ndarray
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Point:
+    p: Parameters
+    o_T: float
+    starts: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """The problem about a point, starts eliminated: cost, its Hessian, the share of each segment in its gradient, and
+    how the starts follow the common unknowns, o_T first."""
+
+    cost: float
+    H: np.ndarray
+    scores: np.ndarray
+    follow: np.ndarray
+
+
+class Segments:
+    """A recording in segments.
+
+    Args:
+        length: of a segment in samples.
+        free: names of the parameters to be fitted.
+        drift: standard deviation in N.m of the load offset from segment to segment.
+        first: sample at which the first segment begins.
+    """
+
+    def __init__(
+        self, drive: Drive, length: int, free: Sequence[str], drift: float, first: int = 0
+    ) -> None:
+        self.drive, self.length, self.free = drive, length, tuple(free)
+        self.firsts = range(first, len(drive) - length + 1, length)
+        self.simulator = Simulator(length, free)
+        self.priors = 1.0 / np.square([*WITHIN, drift])
+
+    def fit(self, p: Parameters, starts: np.ndarray, most: int = 30, said: Callable[[Parameters, float], None] | None = None) -> Fitted:
+        """
+        Args:
+            p: to begin with.
+            starts: near those of the segments, shape (segments, STARTS).
+            most: steps.
+        """
+        now = _Point(p, 0.0, starts)
+        now = replace(now, starts=self.found(now, anywhere=True))
+        now, linear = self._descend(now, most // 2, said)
+        now = replace(now, starts=self.found(now, anywhere=True))
+        now, linear = self._descend(now, most - most // 2, said)
+        inverse = np.linalg.inv(linear.H)
+        n, m = linear.scores.shape
+        covariance = inverse @ (linear.scores.T @ linear.scores) @ inverse * n / (n - m)
+        error = SIGMA * np.sqrt(2.0 * linear.cost / (n * self.length))
+        return Fitted(now.p, self.free, now.o_T, now.starts, covariance[1:, 1:], float(error))
+
+    def free_runs(self, p: Parameters, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motor speed in rad/s of runs from the starts that fit best, and the recorded one, shape (segments, length)."""
+        at = _Point(p, 0.0, starts)
+        found = self.found(at, anywhere=True)
+        errors = [SIGMA * self._residuals(k, start, at)[0] for k, start in enumerate(found)]
+        recorded = [self.drive.omega_1[first + 1 : first + 1 + self.length] for first in self.firsts]
+        return np.array(recorded) + np.array(errors), np.array(recorded)
+
+    def _descend(self, now: _Point, most: int, said) -> tuple[_Point, _Linear]:
+        linear, trust = self._linear(now), 1e-3
+        for _ in range(most):
+            scale = np.concatenate([[1.0], scales(now.p, self.free)])
+            H, g = linear.H * np.outer(scale, scale), linear.scores.sum(axis=0) * scale
+            step = np.clip(-np.linalg.solve(H + trust * np.diag(np.diag(H)), g), -0.5, 0.5)
+            if np.sqrt(step @ H @ step / len(step)) < ENOUGH or trust > 1e4:
+                break
+            tried = _Point(moved(now.p, self.free, step[1:]), now.o_T + step[0], now.starts + linear.follow @ (scale * step))
+            tried = replace(tried, starts=self.found(tried))
+            after = self._linear(tried)
+            if after.cost < linear.cost:
+                now, linear, trust = tried, after, max(trust / 5.0, 1e-9)
+                if said:
+                    said(now.p, linear.cost)
+            else:
+                trust = max(10.0 * trust, 1e-3)
+        return now, linear
+
+    def _residuals(self, k: int, start: np.ndarray, at: _Point) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What the motor speed is off by in segment k over sigma, and its derivatives by start and common unknowns."""
+        first = self.firsts[k]
+        x, d = self.simulator.run_with_derivatives(
+            self.drive, first, np.array([*start[:3], at.o_T, start[3]]), at.p
+        )
+        r = x[:, 0] - self.drive.omega_1[first + 1 : first + 1 + self.length]
+        d = d[:, 0] / SIGMA
+        return r / SIGMA, d[:, [0, 1, 2, 4]], np.delete(d, [0, 1, 2, 4], axis=1)
+
+    def _linear(self, at: _Point) -> _Linear:
+        m = 1 + len(self.free)
+        H, scores, follow, cost = np.zeros((m, m)), [], [], 0.0
+        H[0, 0] = 1.0 / O_T**2
+        for k, start in enumerate(at.starts):
+            r, A, B = self._residuals(k, start, at)
+            E = np.linalg.solve(A.T @ A + np.diag(self.priors), A.T @ B)
+            H += (B - A @ E).T @ B
+            scores.append((B - A @ E).T @ r + [at.o_T / O_T**2 / len(at.starts), *np.zeros(m - 1)])
+            follow.append(-E)
+            cost += 0.5 * float(r @ r)
+        return _Linear(cost, H, np.array(scores), np.array(follow))
+
+    def found(self, at: _Point, anywhere: bool = False) -> np.ndarray:
+        """The starts that fit best."""
+        starts = []
+        for k, near in enumerate(at.starts):
+            best = self._start(k, near, at)
+            if anywhere:
+                others = [np.array([*near[:2], side * 1.5 * at.p.phi_B, near[3]]) for side in SIDES]
+                best = min([best, *(self._start(k, other, at) for other in others)], key=lambda found: found[1])
+            starts.append(best[0])
+        return np.array(starts)
+
+    def _start(self, k: int, start: np.ndarray, at: _Point, most: int = 5) -> tuple[np.ndarray, float]:
+        origin, trust = start, 1e-3
+        r, A, _ = self._residuals(k, start, at)
+        for _ in range(most):
+            H, g = A.T @ A + np.diag(self.priors), A.T @ r + self.priors * (start - origin)
+            step = -np.linalg.solve(H + trust * np.diag(np.diag(H)), g)
+            if step @ H @ step < 4 * ENOUGH**2:
+                break
+            tried, A_tried, _ = self._residuals(k, start + step, at)
+            if tried @ tried < r @ r:
+                start, r, A, trust = start + step, tried, A_tried, trust / 5.0
+            else:
+                trust = max(20.0 * trust, 1e-2)
+        return start, float(r @ r)

@@ -1,0 +1,186 @@
+"""One-step predictions of the motor speed by an extended Kalman filter, with their sensitivities to the parameters.
+
+The filter knows the torques as recorded, less their noise, and corrects itself by each sample of the motor speed. What
+it was off by before each correction, over its standard deviation, is the innovation; with true parameters and noise
+they are white and of size 1 (L. Ljung, System Identification, 2nd ed., section 7.2).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from functools import cache, cached_property
+
+import casadi as ca
+import numpy as np
+
+from .drive_train import STEPS, Parameters, State, sample
+from .driven import Drive
+
+STATES = len(State._fields)
+LOWER = [(row, column) for row in range(STATES) for column in range(row + 1)]
+"""What of a covariance is carried along."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations of the noise of a sample, white.
+
+    Attributes:
+        omega_1: of the recorded motor speed in rad/s, with its rounding.
+        T_mot, T_load: of the recorded torques in N.m.
+        phi: of what no equation of the twist has in it, in rad.
+    """
+
+    omega_1: float
+    T_mot: float
+    T_load: float
+    phi: float = 1e-4
+
+    def vector(self) -> np.ndarray:
+        return np.array([getattr(self, field.name) for field in fields(self)])
+
+
+@dataclass(frozen=True, eq=False)
+class Innovations:
+    """Attributes:
+    size: what each sample was predicted wrong by, over its standard deviation, shape (n,).
+    log_S: logarithm of the variance in (rad/s)2 that the filter expects of it, shape (n,).
+    d_size, d_log_S: their derivatives by the free parameters, shape (n, parameters).
+    """
+
+    size: np.ndarray
+    log_S: np.ndarray
+    d_size: np.ndarray
+    d_log_S: np.ndarray
+
+    @property
+    def cost(self) -> float:
+        """Minus the logarithm of the likelihood, but for a constant."""
+        return 0.5 * float(np.sum(self.size**2 + self.log_S))
+
+    @property
+    def gradient(self) -> np.ndarray:
+        return self.d_size.T @ self.size + 0.5 * self.d_log_S.sum(axis=0)
+
+    @property
+    def information(self) -> np.ndarray:
+        """Fisher's, as these innovations show it."""
+        return self.d_size.T @ self.d_size + 0.5 * self.d_log_S.T @ self.d_log_S
+
+
+class Predictor:
+    """The filter for a set of free parameters."""
+
+    def __init__(self, free: Sequence[str]) -> None:
+        self.free = tuple(free)
+        self._symbols = _filter(self.free)
+
+    def innovations(self, drive: Drive, p: Parameters, noise: Noise) -> Innovations:
+        m, n = len(self.free), len(drive)
+        start, d_start = _start(drive, p, self.free)
+        step = self._symbols.with_derivatives.mapaccum("predictions", n, 2)
+        _, _, seen, d_seen = step(start, d_start, *_given(drive, p, noise))
+        d_seen = np.asarray(d_seen).reshape(2, n, m)
+        size, log_S = np.asarray(seen)
+        return Innovations(size, log_S, d_seen[0], d_seen[1])
+
+
+@dataclass(frozen=True, eq=False)
+class Filtered:
+    """Attributes:
+    states: after each sample, shape (n, states).
+    size, log_S: see `Innovations`.
+    """
+
+    states: np.ndarray
+    size: np.ndarray
+    log_S: np.ndarray
+
+    @property
+    def cost(self) -> float:
+        """See `Innovations`."""
+        return 0.5 * float(np.sum(self.size**2 + self.log_S))
+
+    @property
+    def errors(self) -> np.ndarray:
+        """What the motor speed was predicted wrong by in rad/s."""
+        return self.size * np.exp(0.5 * self.log_S)
+
+
+def filtered(drive: Drive, p: Parameters, noise: Noise) -> Filtered:
+    """The filter without derivatives, in an eighth of the time."""
+    start, _ = _start(drive, p, ())
+    step = _filter(()).alone.mapaccum("predictions", len(drive))
+    after, seen = step(start, *_given(drive, p, noise))
+    return Filtered(np.asarray(after).T[:, :STATES], *np.asarray(seen))
+
+
+def _given(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, ...]:
+    n = len(drive)
+    once = [np.tile(np.array(values, dtype=float)[:, None], (1, n)) for values in (p, noise.vector(), [drive.T_s])]
+    return drive.T_mot.T, drive.T_load.T, drive.omega_1[None, 1:], *once
+
+
+START = (1.0, 1.0, 0.1, 2.0, 2.0)
+"""Standard deviations of the state that the filter starts with, in the units of `State`."""
+
+
+def _start(drive: Drive, p: Parameters, free: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """State and covariance at the first sample, and their derivatives: the wheels as fast as the motor, the twist that
+    the torque makes at rest."""
+    T_0, sign = drive.T_mot[0, 0], np.sign(drive.T_mot[0, 0])
+    x = np.array([drive.omega_1[0], drive.omega_1[0], T_0 / p.C + sign * p.phi_B, 0.0, 0.0])
+    P = np.diag(np.square(START))
+    d = np.zeros((STATES + len(LOWER), len(free)))
+    for k, name in enumerate(free):
+        d[2, k] = {"C": -T_0 / p.C**2, "phi_B": sign}.get(name, 0.0)
+    return np.concatenate([x, [P[at] for at in LOWER]]), d
+
+
+class _Filter:
+    """The filter as functions of CasADi."""
+
+    def __init__(self, free: Sequence[str]) -> None:
+        self.free = free
+        self.x, self.lower = ca.SX.sym("x", STATES), ca.SX.sym("lower", len(LOWER))
+        self.p, self.noise, self.T_s = ca.SX.sym("p", len(Parameters._fields)), ca.SX.sym("noise", 4), ca.SX.sym("T_s")
+        T_mot, T_load, omega_1 = ca.SX.sym("T_mot", STEPS), ca.SX.sym("T_load", STEPS), ca.SX.sym("omega_1")
+        self.given = [T_mot, T_load, omega_1, self.p, self.noise, self.T_s]
+        self.state = ca.vertcat(self.x, self.lower)
+        self.after, self.seen = self._step(T_mot, T_load, omega_1)
+
+    def _step(self, T_mot: ca.SX, T_load: ca.SX, omega_1: ca.SX) -> tuple[ca.SX, ca.SX]:
+        p = Parameters(*ca.vertsplit(self.p))
+        r, q_T, q_L, q_phi = ca.vertsplit(self.noise**2)
+        P = ca.SX(STATES, STATES)
+        for k, (row, column) in enumerate(LOWER):
+            P[row, column] = P[column, row] = self.lower[k]
+        x = ca.vertcat(
+            *sample(State(*ca.vertsplit(self.x)), ca.vertsplit(T_mot), ca.vertsplit(T_load), self.T_s, p)
+        )
+        F = ca.jacobian(x, self.x)
+        G = F[:, 3:5]  # the noise of a torque acts over the sample as its offset does, but is gone then
+        G[3:, :] = 0.0
+        P = F @ P @ F.T + G @ ca.diag(ca.vertcat(q_T, q_L)) @ G.T
+        P[2, 2] += q_phi
+        error, S = omega_1 - x[0], P[0, 0] + r
+        K = P[:, 0] / S
+        x, P = x + K * error, P - K @ P[0, :]
+        return ca.vertcat(x, *[P[at] for at in LOWER]), ca.vertcat(error / ca.sqrt(S), ca.log(S))
+
+    @cached_property
+    def alone(self) -> ca.Function:
+        return ca.Function("prediction", [self.state, *self.given], [self.after, self.seen])
+
+    @cached_property
+    def with_derivatives(self) -> ca.Function:
+        n = self.state.numel()
+        d_state = ca.SX.sym("d_state", n, len(self.free))
+        d_p = np.eye(len(Parameters._fields))[:, [Parameters._fields.index(name) for name in self.free]]
+        all_after, all_before = ca.vertcat(self.after, self.seen), ca.vertcat(self.state, self.p)
+        d = ca.jtimes(all_after, all_before, ca.vertcat(d_state, ca.DM(d_p)))
+        return ca.Function(
+            "sensitivity", [self.state, d_state, *self.given], [self.after, d[:n, :], self.seen, d[n:, :]]
+        )
+
+
+_filter = cache(_Filter)

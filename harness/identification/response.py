@@ -1,0 +1,83 @@
+"""Frequency response of the drive train in contact, from the motor torque to the motor speed.
+
+With the load torque measured, the model ends at the wheels. What hangs on them is needed to say how the car answers
+on its own: a tyre as spring and damper between the wheels and the inertia of the vehicle,
+
+    T_load = -(c_t theta + d_t dtheta/dt),   dtheta/dt = omega_2 - omega_v,   J_v domega_v/dt = -T_load
+
+fitted to the load torque and the wheel speed of the filter. J_v = m r^2/i^2 is known. A model identified without the
+load torque has the vehicle in J_2 and ends there.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..recordings.filters import band
+from .drive_train import Parameters
+
+FREQUENCIES = np.linspace(1.0, 20.0, 191)
+"""In Hz, of figures and tables."""
+
+PEAK = (3.0, 20.0)
+"""Frequencies in Hz between which the resonance is looked for."""
+
+TYRE = (1.5, 15.0)
+"""Frequencies in Hz at which the tyre is fitted: below, road and air act on the vehicle as well."""
+
+
+@dataclass(frozen=True)
+class Tyre:
+    """Attributes:
+    c_t: stiffness in N.m/rad, motor side.
+    d_t: damping in N.m.s/rad, motor side.
+    J_v: inertia of the vehicle in kg.m2, motor side.
+    explained: share of the power of the load torque.
+    """
+
+    c_t: float
+    d_t: float
+    J_v: float
+    explained: float
+
+
+def tyre(T_load: np.ndarray, omega_2: np.ndarray, T_s: float, J_v: float) -> Tyre:
+    """
+    Args:
+        T_load: load torque in N.m, shape (n,).
+        omega_2: speed of the wheels in rad/s, shape (n,).
+        T_s: between samples in s.
+        J_v: inertia of the vehicle in kg.m2, motor side.
+    """
+
+    def integral(x: np.ndarray) -> np.ndarray:
+        return np.cumsum(x - x.mean()) * T_s - 0.5 * T_s * (x - x.mean())
+
+    rate = omega_2 - omega_2.mean() + integral(T_load) / J_v
+    theta, rate, T = (band(x, T_s, TYRE) for x in (integral(rate), rate, T_load))
+    A = -np.column_stack([theta, rate])
+    (c_t, d_t), *_ = np.linalg.lstsq(A, T, rcond=None)
+    return Tyre(float(c_t), float(d_t), J_v, 1.0 - float(np.var(T - A @ [c_t, d_t]) / np.var(T)))
+
+
+def response(p: Parameters, frequencies: np.ndarray, behind: Tyre | None = None) -> np.ndarray:
+    """omega_1/T_mot in rad/s per N.m, complex, at frequencies in Hz, teeth in contact."""
+    s = 2j * np.pi * frequencies
+    wheels = p.J_2 * s
+    if behind:
+        joint = behind.c_t / s + behind.d_t
+        wheels = wheels + joint * behind.J_v * s / (joint + behind.J_v * s)
+    shaft = p.C / s + p.d
+    return 1.0 / (p.J_1 * s + shaft * wheels / (shaft + wheels))
+
+
+def resonance(p: Parameters, behind: Tyre | None = None) -> float:
+    """Frequency in Hz at which the response is largest."""
+    coarse = np.linspace(*PEAK, 341)
+    near = float(coarse[int(np.argmax(abs(response(p, coarse, behind))))])
+
+    def minus(f: float) -> float:
+        return -float(abs(response(p, np.array([f]), behind))[0])
+
+    return float(minimize_scalar(minus, bounds=(near - 0.1, near + 0.1), method="bounded").x)
