@@ -23,6 +23,9 @@ BROAD = 5.0
 """Noise of the load torque in N.m with which the search begins: the filter then follows the motor speed whatever the
 parameters are, and the cost has one valley."""
 
+WIDER = 20.0
+"""The same where the model does not explain the recording."""
+
 EXPLAINED = 1.25
 """Size of the innovations up to which the model explains the recording."""
 
@@ -123,7 +126,7 @@ def identify(
     behind = None
     if recording.T_load is not None:
         load = recording.T_load[1:] / answer.p.g_L
-        behind = tyre(load, through.states[:, 1], drive.T_s, J_v)
+        behind = tyre(load, through.states[:, 1], drive.T_mot.mean(axis=1), drive.T_s, J_v)
     return Identified(
         WITH_LOAD if measured else WITHOUT_LOAD,
         answer.method,
@@ -161,9 +164,10 @@ def answered(
     if _size(best) <= EXPLAINED:
         return Answer("prediction error", best.p, np.linalg.inv(best.innovations.information), best.free, noise)
     free = tuple(dict.fromkeys((*free, "d")))
-    begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), Noise(noise.omega_1, noise.T_mot, 20.0), said=_progress(said, "the model does not explain all of it"))
+    wider = Noise(noise.omega_1, noise.T_mot, WIDER)
+    begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), wider, said=_progress(said, "model lacks"))
     pieces = segments(drive, free, WITHIN)
-    near = near_starts(pieces, filtered(drive, begun.p, begun.noise))
+    near = near_starts(pieces, filtered(drive, begun.p, wider))
     fitted = pieces.fit(begun.p._replace(d=_damping(begun.p)), near, said=_progress(said, "output error"))
     return Answer("output error", fitted.p, fitted.covariance, free, Noise(fitted.error, noise.T_mot, noise.T_load))
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize_scalar
+from scipy.signal import csd
 
-from ..recordings.filters import band
 from .drive_train import Parameters
 
 FREQUENCIES = np.linspace(1.0, 20.0, 191)
@@ -23,8 +23,11 @@ FREQUENCIES = np.linspace(1.0, 20.0, 191)
 PEAK = (3.0, 20.0)
 """Frequencies in Hz between which the resonance is looked for."""
 
-TYRE = (1.5, 15.0)
+TYRE = (2.0, 12.0)
 """Frequencies in Hz at which the tyre is fitted: below, road and air act on the vehicle as well."""
+
+WINDOW = 1024
+"""Samples of a window of the spectra."""
 
 
 @dataclass(frozen=True)
@@ -42,23 +45,28 @@ class Tyre:
     explained: float
 
 
-def tyre(T_load: np.ndarray, omega_2: np.ndarray, T_s: float, J_v: float) -> Tyre:
-    """
+def tyre(T_load: np.ndarray, omega_2: np.ndarray, T_mot: np.ndarray, T_s: float, J_v: float) -> Tyre:
+    """By the spectra with the motor torque, so that the noise of the others, which it does not know, falls out.
+
     Args:
-        T_load: load torque in N.m, shape (n,).
+        T_load, T_mot: load and motor torque in N.m, shape (n,).
         omega_2: speed of the wheels in rad/s, shape (n,).
         T_s: between samples in s.
         J_v: inertia of the vehicle in kg.m2, motor side.
     """
-
-    def integral(x: np.ndarray) -> np.ndarray:
-        return np.cumsum(x - x.mean()) * T_s - 0.5 * T_s * (x - x.mean())
-
-    rate = omega_2 - omega_2.mean() + integral(T_load) / J_v
-    theta, rate, T = (band(x, T_s, TYRE) for x in (integral(rate), rate, T_load))
-    A = -np.column_stack([theta, rate])
-    (c_t, d_t), *_ = np.linalg.lstsq(A, T, rcond=None)
-    return Tyre(float(c_t), float(d_t), J_v, 1.0 - float(np.var(T - A @ [c_t, d_t]) / np.var(T)))
+    length = min(WINDOW, len(T_mot))
+    (f, load), (_, wheel) = (csd(T_mot, x, 1.0 / T_s, nperseg=length, detrend="linear") for x in (T_load, omega_2))
+    at = (f >= TYRE[0]) & (f <= TYRE[1])
+    s, load, wheel = 2j * np.pi * f[at], load[at], wheel[at]
+    # omega_2 - omega_v = -s T_load/(c_t + d_t s), as c_t + d_t s = joint
+    joint = -s / (wheel / load + 1.0 / (J_v * s))
+    weight = abs(load / joint)
+    A = np.concatenate([np.column_stack([weight, 0.0 * weight]), np.column_stack([0.0 * weight, weight * s.imag])])
+    b = np.concatenate([weight * joint.real, weight * joint.imag])
+    c_t, d_t = np.linalg.lstsq(A, b, rcond=None)[0]
+    missed = joint - c_t - d_t * s
+    explained = 1.0 - float(np.sum(abs(weight * missed) ** 2) / np.sum(abs(weight * joint) ** 2))
+    return Tyre(float(c_t), float(d_t), J_v, explained)
 
 
 def response(p: Parameters, frequencies: np.ndarray, behind: Tyre | None = None) -> np.ndarray:
