@@ -25,6 +25,7 @@ COMMANDS = {
     "compare": "run the manoeuvres without and with damping and compare",
     "replay": "drive a recorded torque demand and road without and with damping",
     "record": "drive with a pseudo-random torque and record it as a real car would",
+    "identify": "identify the drive train from a recorded test drive",
     "faults": "put faults on the controller's signals and judge what it makes of them",
     "robustness": "drive cars and sensors by lot with every controller",
     "check": "check FMUs for compliance",

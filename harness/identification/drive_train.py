@@ -53,7 +53,7 @@ class State(NamedTuple):
     o_L: ca.SX
 
 
-def gear_torque(phi: ca.SX, dphi: ca.SX, p: Parameters, implicit: ca.SX = 0.0) -> ca.SX:
+def gear_torque(phi: ca.SX, dphi: ca.SX, p: Parameters, implicit: ca.SX | float = 0.0) -> ca.SX:
     """Torque in N.m of spring and damper.
 
     Args:

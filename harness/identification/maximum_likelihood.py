@@ -1,7 +1,7 @@
 """The parameters under which the innovations are likeliest, by scoring steps with a trust in them that adapts
 (Levenberg, Marquardt). Positive parameters are searched by their logarithm."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,7 +51,6 @@ def maximise(
     start: Parameters,
     noise: Noise,
     most: int = 30,
-    said: Callable[[Parameters, float], None] | None = None,
 ) -> Found:
     free, trust = predictor.free, 1e-2
     p, best = start, predictor.innovations(drive, start, noise)
@@ -68,8 +67,6 @@ def maximise(
         passes += 1
         if np.isfinite(tried.cost) and tried.cost < best.cost:
             p, best, trust = tried_p, tried, max(trust / 10.0, 1e-9)
-            if said:
-                said(p, best.cost)
         else:
             trust = max(trust, 1e-4) * 10.0
     return Found(p, free, best, passes)

@@ -6,14 +6,14 @@ start, which is eliminated (G. H. Golub, V. Pereyra, Inverse Problems 19(2), 200
 flank fits badly wherever the parameters are, so that its start is looked for on both and between them.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .drive_train import Parameters
-from .maximum_likelihood import ENOUGH, moved, scales
 from .driven import Drive
+from .maximum_likelihood import ENOUGH, moved, scales
 from .simulation import Simulator
 
 WITHIN = np.array([3.0, 10.0, 0.5])
@@ -79,15 +79,13 @@ class Segments:
         first: sample at which the first segment begins.
     """
 
-    def __init__(
-        self, drive: Drive, length: int, free: Sequence[str], drift: float, first: int = 0
-    ) -> None:
+    def __init__(self, drive: Drive, length: int, free: Sequence[str], drift: float, first: int = 0) -> None:
         self.drive, self.length, self.free = drive, length, tuple(free)
         self.firsts = range(first, len(drive) - length + 1, length)
         self.simulator = Simulator(length, free)
         self.priors = 1.0 / np.square([*WITHIN, drift])
 
-    def fit(self, p: Parameters, starts: np.ndarray, most: int = 30, said: Callable[[Parameters, float], None] | None = None) -> Fitted:
+    def fit(self, p: Parameters, starts: np.ndarray, most: int = 30) -> Fitted:
         """
         Args:
             p: to begin with.
@@ -96,9 +94,9 @@ class Segments:
         """
         now = _Point(p, 0.0, starts)
         now = replace(now, starts=self.found(now, anywhere=True))
-        now, linear = self._descend(now, most // 2, said)
+        now, linear = self._descend(now, most // 2)
         now = replace(now, starts=self.found(now, anywhere=True))
-        now, linear = self._descend(now, most - most // 2, said)
+        now, linear = self._descend(now, most - most // 2)
         inverse = np.linalg.inv(linear.H)
         n, m = linear.scores.shape
         covariance = inverse @ (linear.scores.T @ linear.scores) @ inverse * n / (n - m)
@@ -106,14 +104,14 @@ class Segments:
         return Fitted(now.p, self.free, now.o_T, now.starts, covariance[1:, 1:], float(error))
 
     def free_runs(self, p: Parameters, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Motor speed in rad/s of runs from the starts that fit best, and the recorded one, shape (segments, length)."""
+        """Motor speed in rad/s of runs from the best starts, and the recorded one, shape (segments, length)."""
         at = _Point(p, 0.0, starts)
         found = self.found(at, anywhere=True)
         errors = [SIGMA * self._residuals(k, start, at)[0] for k, start in enumerate(found)]
         recorded = [self.drive.omega_1[first + 1 : first + 1 + self.length] for first in self.firsts]
         return np.array(recorded) + np.array(errors), np.array(recorded)
 
-    def _descend(self, now: _Point, most: int, said) -> tuple[_Point, _Linear]:
+    def _descend(self, now: _Point, most: int) -> tuple[_Point, _Linear]:
         linear, trust = self._linear(now), 1e-3
         for _ in range(most):
             scale = np.concatenate([[1.0], scales(now.p, self.free)])
@@ -121,13 +119,13 @@ class Segments:
             step = np.clip(-np.linalg.solve(H + trust * np.diag(np.diag(H)), g), -0.5, 0.5)
             if np.sqrt(step @ H @ step / len(step)) < ENOUGH or trust > 1e4:
                 break
-            tried = _Point(moved(now.p, self.free, step[1:]), now.o_T + step[0], now.starts + linear.follow @ (scale * step))
+            tried = _Point(
+                moved(now.p, self.free, step[1:]), now.o_T + step[0], now.starts + linear.follow @ (scale * step)
+            )
             tried = replace(tried, starts=self.found(tried))
             after = self._linear(tried)
             if after.cost < linear.cost:
                 now, linear, trust = tried, after, max(trust / 5.0, 1e-9)
-                if said:
-                    said(now.p, linear.cost)
             else:
                 trust = max(10.0 * trust, 1e-3)
         return now, linear
@@ -135,9 +133,7 @@ class Segments:
     def _residuals(self, k: int, start: np.ndarray, at: _Point) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the motor speed is off by in segment k over sigma, and its derivatives by start and common unknowns."""
         first = self.firsts[k]
-        x, d = self.simulator.run_with_derivatives(
-            self.drive, first, np.array([*start[:3], at.o_T, start[3]]), at.p
-        )
+        x, d = self.simulator.run_with_derivatives(self.drive, first, np.array([*start[:3], at.o_T, start[3]]), at.p)
         r = x[:, 0] - self.drive.omega_1[first + 1 : first + 1 + self.length]
         d = d[:, 0] / SIGMA
         return r / SIGMA, d[:, [0, 1, 2, 4]], np.delete(d, [0, 1, 2, 4], axis=1)

@@ -149,14 +149,12 @@ class _Filter:
         self.after, self.seen = self._step(T_mot, T_load, omega_1)
 
     def _step(self, T_mot: ca.SX, T_load: ca.SX, omega_1: ca.SX) -> tuple[ca.SX, ca.SX]:
-        p = Parameters(*ca.vertsplit(self.p))
+        p = Parameters._make(ca.vertsplit(self.p))
         r, q_T, q_L, q_phi = ca.vertsplit(self.noise**2)
         P = ca.SX(STATES, STATES)
         for k, (row, column) in enumerate(LOWER):
             P[row, column] = P[column, row] = self.lower[k]
-        x = ca.vertcat(
-            *sample(State(*ca.vertsplit(self.x)), ca.vertsplit(T_mot), ca.vertsplit(T_load), self.T_s, p)
-        )
+        x = ca.vertcat(*sample(State(*ca.vertsplit(self.x)), ca.vertsplit(T_mot), ca.vertsplit(T_load), self.T_s, p))
         F = ca.jacobian(x, self.x)
         G = F[:, 3:5]  # the noise of a torque acts over the sample as its offset does, but is gone then
         G[3:, :] = 0.0

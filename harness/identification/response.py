@@ -10,6 +10,7 @@ load torque has the vehicle in J_2 and ends there.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -88,4 +89,5 @@ def resonance(p: Parameters, behind: Tyre | None = None) -> float:
     def minus(f: float) -> float:
         return -float(abs(response(p, np.array([f]), behind))[0])
 
-    return float(minimize_scalar(minus, bounds=(near - 0.1, near + 0.1), method="bounded").x)
+    found: Any = minimize_scalar(minus, bounds=(near - 0.1, near + 0.1), method="bounded")
+    return float(found.x)

@@ -23,11 +23,8 @@ class Simulator:
         self.n, self.free = n, tuple(free)
         x, p, T_s = ca.SX.sym("x", STATES), ca.SX.sym("p", len(Parameters._fields)), ca.SX.sym("T_s")
         T_mot, T_load = ca.SX.sym("T_mot", STEPS), ca.SX.sym("T_load", STEPS)
-        after = ca.vertcat(
-            *sample(
-                State(*ca.vertsplit(x)), ca.vertsplit(T_mot), ca.vertsplit(T_load), T_s, Parameters(*ca.vertsplit(p))
-            )
-        )
+        state, parameters = State(*ca.vertsplit(x)), Parameters._make(ca.vertsplit(p))
+        after = ca.vertcat(*sample(state, ca.vertsplit(T_mot), ca.vertsplit(T_load), T_s, parameters))
         self._given, self._x, self._p, self._after = [T_mot, T_load, p, T_s], x, p, after
 
     @cached_property

@@ -1,0 +1,124 @@
+"""`driveline identify`: from a recording of a test drive to the parameters of the car."""
+
+import argparse
+import json
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+
+from fmus.options import file
+
+from ..errors import DrivelineError
+from .options import add_printing, add_replace
+from .printing import Printer
+from .recording_options import add_recording
+from .redesigning import redesign
+
+FREE = ("J_1", "d", "g_T")
+
+DESCRIPTION = """\
+Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and
+half the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded,
+and structural damping where the data ask for it. Two results have different names, as they mean different
+things:
+
+  with load torque                  measurement wheels were recorded: J_2 is that of the wheels
+  effective, without load torque    J_2 carries the vehicle
+
+Where the model explains the recording, prediction error is used (the likelihood of an extended Kalman filter); where it
+does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
+What is likely to be wrong with the recording, or is not determined by it, is said.
+
+Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it a JSON file
+with all that was found, and figures.
+"""
+
+EXAMPLES = """\
+examples:
+  driveline record && driveline identify results/record/TwoMassDriveline_prbs_off.csv --output car.toml
+  driveline identify drive.mf4 --vehicle examples/cars/van.toml --output my_van.toml
+  driveline identify drive.csv --free J_1 --column T_mot='M_em [Nm]'
+  driveline identify drive.csv --design
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_recording(parser, "the recorded test drive")
+    action = parser.add_argument(
+        "--vehicle", type=file, metavar="FILE.toml", help="what is known of the car (default: that of all blocks)"
+    )
+    action.complete = "file"  # type: ignore[attr-defined]
+    parser.add_argument(
+        "--free",
+        action="append",
+        default=[],
+        choices=FREE,
+        help="identify this too, which is else as known (repeatable); d is freed where the data ask for it",
+    )
+    action = parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE.toml",
+        help="the vehicle file (default: results/identify/RECORDING_car.toml); the others are beside it",
+    )
+    action.complete = "file"  # type: ignore[attr-defined]
+    parser.add_argument(
+        "--design",
+        action="store_true",
+        help="compute the gains for this car, build the controller with them, compare before and after on both plants",
+    )
+    add_replace(parser)
+    add_printing(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    # here and not above: mistakes and help are answered without them
+    from fmus.errors import ParameterFileError
+    from fmus.parameter_files import read_vehicle
+
+    from ..analysis.weights import records
+    from ..provenance import recorded
+    from ..recordings.measurement import read_measurement
+    from ..reports.files import write_text
+
+    try:
+        vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
+    except ParameterFileError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+    plant, motor, _ = records(vehicle)
+    out = Printer(args)
+    output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
+    if output.suffix != ".toml":
+        raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
+    recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases)
+    from ..identification import car_file
+    from ..identification.drive_train import Parameters
+    from ..identification.identify import identify
+
+    start = Parameters(plant.J_1, plant.J_2, plant.C, 0.0, plant.phi_B)
+    record = output.with_suffix(".json")
+    same = {
+        "recording": sha256(args.recording.read_bytes()).hexdigest(),
+        "vehicle": vehicle,
+        "free": sorted(set(args.free)),
+        "columns": dict(args.columns),
+    }
+    read = [args.recording, *args.aliases, args.vehicle]
+    with recorded(record, same, {}, read, [output], args.replace) as made:
+        J_v = plant.m * plant.r**2 / plant.i**2
+        identified = identify(recording, start, motor.tau, J_v, list(dict.fromkeys(args.free)), out.say)
+        made.begin()
+        program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
+        everything = output.with_name(f"{output.stem}_identified.json")
+        write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
+        write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
+        made.files += [output, everything]
+        if args.design:
+            made.files += redesign(output, vehicle, args.replace, out)
+    for line in car_file.lines(identified):
+        out.say(line)
+    for warning in identified.warnings:
+        out.say(f"warning: {warning}")
+    for path in (*made.files, record):
+        out.say(f"written: {path}")
+    return 0

@@ -1,0 +1,80 @@
+"""What `driveline identify --design` does with a car: gains, the rebuilt controller, and what they are worth."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from ..control_loop import PLACES, PLANTS
+from ..errors import DrivelineError
+from .design import designed
+from .printing import Printer
+from .searching import write_gains
+
+MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
+"""In which the controllers are compared."""
+
+
+def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer) -> Iterator[Path]:
+    """Gains for the car of a vehicle file and the controller built with both, beside it; yields the paths.
+
+    What the controller was before and what it is now on that car is printed.
+
+    Args:
+        vehicle: entries of the vehicle file that was known before.
+        replace: whether other gains may be replaced.
+
+    Raises:
+        DesignError: there is no controller for this car.
+        DrivelineError: there are other gains, or the controller cannot be built.
+    """
+    from fmus.builds import build_fmus
+    from fmus.errors import BuildError
+    from fmus.parameter_files import read_files
+
+    gains = car.with_name(f"{car.stem}_gains.toml")
+    write_gains(designed(car), gains, replace)
+    yield gains
+    try:
+        yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
+    except BuildError as reason:
+        raise DrivelineError(str(reason)) from reason
+    if not out.silent:
+        from ..reports.terminal import print_table
+
+        print_table(_compared(read_files(car, None), vehicle, read_files(car, gains)))
+
+
+def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]) -> Table:
+    """The car, by the entries of its vehicle file, with what the controller was told before and after."""
+    table = Table(title="settling time in ms and overshoot in %: before and after, on this car")
+    for heading in ("plant", "manoeuvre", "settling", "", "overshoot", ""):
+        table.add_column(heading, justify="right" if heading not in ("plant", "manoeuvre") else "left")
+    for plant in PLANTS:
+        for manoeuvre in MANOEUVRES:
+            both = [worth(plant, manoeuvre, car, told) for told in (before, after)]
+            cells = [f"{1e3 * settling:.0f}" for settling, _ in both] + [f"{1e2 * over:.1f}" for _, over in both]
+            table.add_row(plant, manoeuvre, *cells)
+    return table
+
+
+def worth(
+    plant: str, manoeuvre: str, car: Mapping[str, Any], told: Mapping[str, Any], seed: int = 1
+) -> tuple[float, float]:
+    """Settling time in s and overshoot (1) of a car whose controller is told something else.
+
+    Args:
+        car: entries of a vehicle file, for plant, motor and bus.
+        told: entries of a vehicle file and of gains, for the controller.
+    """
+    from ..analysis.cars import loop_parameters
+    from ..manoeuvres.catalogue import MANOEUVRES as KNOWN
+    from ..metrics.evaluate import evaluate
+    from ..simulate import simulate
+
+    true, believed = (loop_parameters(values, plant) for values in (car, told))
+    parameters = {name: value for name, value in true.items() if not name.startswith("controller.")}
+    parameters |= {name: value for name, value in believed.items() if name.startswith("controller.")}
+    metrics = evaluate(simulate(KNOWN[manoeuvre], plant, True, parameters=parameters, seed=seed), KNOWN[manoeuvre])
+    return metrics.settling_time, metrics.overshoot

@@ -1,0 +1,114 @@
+"""What identification leaves behind: a vehicle file for the controller's design, and a document with all of it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from .drive_train import Parameters
+from .equivalent import equivalent
+from .identify import WITH_LOAD, Identified
+
+UNITS = {
+    "J_1": "kg.m2",
+    "J_2": "kg.m2",
+    "C": "N.m/rad",
+    "d": "N.m.s/rad",
+    "phi_B": "rad",
+    "g_T": "1",
+    "g_L": "1",
+    "tau": "s",
+}
+
+MEANS = {
+    WITH_LOAD: "J_2 is that of the wheels alone",
+    "": "J_2 carries the vehicle",
+}
+
+Z_95 = 1.96
+"""Standard deviations of a 95 % interval."""
+
+
+def found(identified: Identified) -> list[tuple[str, float, float]]:
+    """Name, value and half of the 95 % interval of each parameter, by which order they are told."""
+    half = {name: Z_95 * deviation for name, deviation in identified.deviations.items()}
+    rows = [(name, float(value), half.get(name, 0.0)) for name, value in identified.p._asdict().items()]
+    if identified.loop:
+        rows.append(("tau", identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]))
+    return [row for row in rows if row[2] > 0.0]
+
+
+def lines(identified: Identified) -> list[str]:
+    """What was found, a line each, for people."""
+    quality = identified.quality
+    every = found(identified)
+    width = max(len(name) for name, *_ in every)
+    parameters = [
+        f"{name:{width}} = {value:.5g} +- {half:.2g} {UNITS[name]} ({100.0 * half / abs(value):.2g} %)"
+        for name, value, half in every
+    ]
+    meaning = MEANS.get(identified.name, MEANS[""])
+    return [
+        f"identified {identified.name}, by {identified.method}: {meaning}; 95 % intervals",
+        *(f"  {line}" for line in parameters),
+        f"the car answers most at {identified.resonance:.2f} Hz",
+        f"fit to the last quarter, which was not used: simulated 0.5 s {quality.simulated:.1f} %, "
+        f"predicted 50 ms {quality.predicted:.1f} %, one step {quality.one_step:.1f} %",
+        f"innovations: size {quality.size:.2f} (1 if all is right), correlation {quality.correlation:.2f} (0 if white)",
+    ]
+
+
+def car(identified: Identified, vehicle: Mapping[str, Any]) -> dict[str, Any]:
+    """Entries of the vehicle file: what the controller's model needs.
+
+    Args:
+        vehicle: entries of the one that was given, which stay but for those that were identified.
+    """
+    p = identified.p
+    entries: dict[str, Any] = {"C": equivalent(p, identified.tyre, identified.resonance).C, "phi_B": p.phi_B}
+    if "J_1" in identified.free:
+        entries["J_1"] = p.J_1
+    if identified.loop:
+        entries["tau"] = identified.loop.loop.tau
+    return {**vehicle, **{name: float(f"{value:.6g}") for name, value in entries.items()}}
+
+
+def text(identified: Identified, vehicle: Mapping[str, Any], comment: str) -> str:
+    """The vehicle file as TOML, under what was identified."""
+    known = [
+        *lines(identified),
+        *(f"warning: {warning}" for warning in identified.warnings),
+        "",
+        "What follows is what the controller's model needs of this car: C is that of the two masses that answer as the",
+        "car does on its own, tyre and vehicle included. J_2 stays as it was.",
+    ]
+    head = "\n".join(f"# {line}".rstrip() for line in [*comment.splitlines(), "", *known])
+    entries = car(identified, vehicle)
+    return f"{head}\n\n" + "".join(
+        f"{name} = {'true' if value is True else 'false' if value is False else repr(value)}\n"
+        for name, value in entries.items()
+    )
+
+
+def document(identified: Identified) -> dict[str, Any]:
+    """All that was found, in SI units."""
+    p: Parameters = identified.p
+    return {
+        "identified": identified.name,
+        "method": identified.method,
+        "parameters": {name: float(value) for name, value in p._asdict().items()},
+        "free": list(identified.free),
+        "standard_deviations": dict(identified.deviations),
+        "covariance": identified.covariance.tolist(),
+        "torque_loop": _loop(identified),
+        "tyre": vars(identified.tyre) if identified.tyre else None,
+        "resonance_Hz": identified.resonance,
+        "equivalent": equivalent(p, identified.tyre, identified.resonance)._asdict(),
+        "fit": vars(identified.quality),
+        "warnings": list(identified.warnings),
+    }
+
+
+def _loop(identified: Identified) -> dict[str, Any] | None:
+    if identified.loop is None:
+        return None
+    loop = identified.loop
+    return {**vars(loop.loop), "standard_deviations": dict(loop.deviations), "noise": loop.noise}

@@ -1,0 +1,111 @@
+"""What may be wrong with a recording or with what is taken as known: looked for where the innovations are too large."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .drive_train import Parameters
+from .driven import Drive
+from .maximum_likelihood import Found, maximise
+from .prediction import Noise, Predictor, filtered
+from .torque_loop import FittedLoop
+
+LIKELY = 10.8
+"""Twice the gain in likelihood of one more parameter from which on it is asked for: by chance once in a thousand."""
+
+LATE = 2
+"""Samples by which it is tried whether the load torque is late or early."""
+
+TRIAL = 6
+"""Passes that a trial may take."""
+
+DEMAND_LATE = 0.5
+"""Samples by which the torque demand is late or early from when on it is said."""
+
+LAG_OFF = 0.1
+"""Share of tau that the vehicle file may be wrong by until it is said."""
+
+FLANK = 0.02
+"""Share of the time that the teeth must spend on either flank."""
+
+CLOSE = 0.05
+"""Relative standard deviation from which on a parameter counts as undetermined."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Something that would explain the recording better.
+
+    Attributes:
+        gain: twice the logarithm of the likelihood.
+        text: a sentence.
+    """
+
+    gain: float
+    text: str
+
+
+def causes(drive: Drive, found: Found, noise: Noise) -> list[Cause]:
+    """What would explain the recording better than the parameters that were found, the likeliest first."""
+    before = found.innovations.cost
+    known = maximise(Predictor((*found.free, "J_1")), drive, found.p, noise, most=TRIAL)
+    J_1 = found.p.J_1
+    off = 100.0 * (known.p.J_1 / J_1 - 1.0)
+    every = [
+        Cause(
+            2.0 * (before - known.innovations.cost),
+            f"J_1 = {J_1:g} kg.m2 looks {abs(off):.1f} % too {'small' if off > 0 else 'large'}, or the motor torque "
+            f"has a gain: with J_1 = {known.p.J_1:.4g} the recording is explained better (--free J_1)",
+        )
+    ]
+    for late, word in ((LATE, "late"), (-LATE, "early")):
+        shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
+        told = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
+        text = (
+            f"the load torque looks {word}: shifted by {1e3 * drive.T_s * LATE:g} ms the recording is explained better"
+        )
+        every.append(Cause(2.0 * (before - told.innovations.cost), text))
+    return sorted((cause for cause in every if cause.gain > LIKELY), key=lambda cause: -cause.gain)
+
+
+def undetermined(
+    drive: Drive, p: Parameters, noise: Noise, deviations: Mapping[str, float], messages: bool, free: Sequence[str]
+) -> list[str]:
+    """What the excitation does not determine.
+
+    Args:
+        messages: whether the wheel speed came in messages.
+    """
+    said = []
+    phi = filtered(drive, p, noise).states[:, 2]
+    driving, braking = (float(np.mean(side * phi > p.phi_B)) for side in (1.0, -1.0))
+    if min(driving, braking) < FLANK:
+        side = "never drive" if driving < FLANK else "never brake"
+        said.append(
+            f"phi_B is not determined: the teeth {side}, so that the gap is not crossed; excite about zero torque"
+        )
+    if "J_1" in free and "g_T" in free:
+        said.append(
+            "J_1 and the gain of the motor torque are both free: only the gain of the load torque sets the scale"
+        )
+    wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
+    if wide:
+        said.append(f"{', '.join(wide)}: standard deviation of more than {100.0 * CLOSE:g} %; excite more or longer")
+    if "d" in deviations and messages and deviations["d"] > CLOSE * abs(p.d):
+        said.append("d is determined poorly, as the wheel speed is known from messages only; a faster one would help")
+    return said
+
+
+def of_demand(loop: FittedLoop, T_s: float, tau: float) -> list[str]:
+    """What the torque demand tells against the recording or the vehicle file, where tau is the lag in s."""
+    said = []
+    if abs(loop.loop.delay) > DEMAND_LATE * T_s:
+        early = loop.loop.delay > 0.0
+        said.append(
+            f"the motor torque comes {1e3 * abs(loop.loop.delay):.2f} ms {'after' if early else 'before'} its demand, "
+            "beside the lag of motor control: one of the two channels looks shifted"
+        )
+    if abs(loop.loop.tau / tau - 1.0) > LAG_OFF:
+        said.append(f"tau = {tau:g} s of the vehicle file looks wrong: motor control has {loop.loop.tau:.4g} s")
+    return said
