@@ -48,6 +48,7 @@ ROOMS = {
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
     | {
         "harness.recordings",
+        "harness.identification",
         "harness.bound",
         "harness.faults",
         "harness.linear",

@@ -107,6 +107,10 @@ def run(args: argparse.Namespace) -> int:
     with recorded(record, same, {}, read, [output], args.replace) as made:
         J_v = plant.m * plant.r**2 / plant.i**2
         identified = identify(recording, start, motor.tau, J_v, list(dict.fromkeys(args.free)), out.say)
+        for line in car_file.lines(identified):
+            out.say(line)
+        for warning in identified.warnings:
+            out.say(f"warning: {warning}")
         made.begin()
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
         everything = output.with_name(f"{output.stem}_identified.json")
@@ -115,10 +119,6 @@ def run(args: argparse.Namespace) -> int:
         made.files += [output, everything]
         if args.design:
             made.files += redesign(output, vehicle, args.replace, out)
-    for line in car_file.lines(identified):
-        out.say(line)
-    for warning in identified.warnings:
-        out.say(f"warning: {warning}")
     for path in (*made.files, record):
         out.say(f"written: {path}")
     return 0

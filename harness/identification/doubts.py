@@ -17,7 +17,7 @@ LIKELY = 10.8
 LATE = 2
 """Samples by which it is tried whether the load torque is late or early."""
 
-TRIAL = 6
+TRIAL = 4
 """Passes that a trial may take."""
 
 DEMAND_LATE = 0.5

@@ -25,8 +25,8 @@ SIDES = (-1.0, 0.0, 1.0)
 SIGMA = 1.0
 """What the motor speed is off by in rad/s, about."""
 
-STARTS = 4
-"""Speeds, twist and load offset."""
+OF_START = (0, 1, 2, 4)
+"""What of the state each segment has for itself: speeds, twist and load offset."""
 
 O_T = 1.5
 """Standard deviation in N.m within which the offset of the motor torque is looked for."""
@@ -38,7 +38,7 @@ class Fitted:
     p: the parameters.
     free: names of those that were fitted.
     o_T: offset of the motor torque in N.m.
-    starts: omega_1, omega_2, phi, o_L of each segment, shape (segments, STARTS).
+    starts: omega_1, omega_2, phi, o_L of each segment, shape (segments, 4).
     covariance: of the free parameters: what the segments say about them, each for itself (sandwich).
     error: rms of the motor speed in rad/s.
     """
@@ -82,14 +82,14 @@ class Segments:
     def __init__(self, drive: Drive, length: int, free: Sequence[str], drift: float, first: int = 0) -> None:
         self.drive, self.length, self.free = drive, length, tuple(free)
         self.firsts = range(first, len(drive) - length + 1, length)
-        self.simulator = Simulator(length, free)
+        self.simulator, self.starting = Simulator(length, free), Simulator(length)
         self.priors = 1.0 / np.square([*WITHIN, drift])
 
     def fit(self, p: Parameters, starts: np.ndarray, most: int = 30) -> Fitted:
         """
         Args:
             p: to begin with.
-            starts: near those of the segments, shape (segments, STARTS).
+            starts: near those of the segments, shape (segments, 4).
             most: steps.
         """
         now = _Point(p, 0.0, starts)
@@ -107,7 +107,7 @@ class Segments:
         """Motor speed in rad/s of runs from the best starts, and the recorded one, shape (segments, length)."""
         at = _Point(p, 0.0, starts)
         found = self.found(at, anywhere=True)
-        errors = [SIGMA * self._residuals(k, start, at)[0] for k, start in enumerate(found)]
+        errors = [SIGMA * self._residuals(self.starting, k, start, at)[0] for k, start in enumerate(found)]
         recorded = [self.drive.omega_1[first + 1 : first + 1 + self.length] for first in self.firsts]
         return np.array(recorded) + np.array(errors), np.array(recorded)
 
@@ -130,20 +130,22 @@ class Segments:
                 trust = max(10.0 * trust, 1e-3)
         return now, linear
 
-    def _residuals(self, k: int, start: np.ndarray, at: _Point) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the motor speed is off by in segment k over sigma, and its derivatives by start and common unknowns."""
+    def _residuals(
+        self, simulator: Simulator, k: int, start: np.ndarray, at: _Point
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What the motor speed is off by in segment k over SIGMA, and its derivatives by start and common unknowns."""
         first = self.firsts[k]
-        x, d = self.simulator.run_with_derivatives(self.drive, first, np.array([*start[:3], at.o_T, start[3]]), at.p)
+        x, d = simulator.run_with_derivatives(self.drive, first, np.array([*start[:3], at.o_T, start[3]]), at.p)
         r = x[:, 0] - self.drive.omega_1[first + 1 : first + 1 + self.length]
         d = d[:, 0] / SIGMA
-        return r / SIGMA, d[:, [0, 1, 2, 4]], np.delete(d, [0, 1, 2, 4], axis=1)
+        return r / SIGMA, d[:, OF_START], np.delete(d, OF_START, axis=1)
 
     def _linear(self, at: _Point) -> _Linear:
         m = 1 + len(self.free)
         H, scores, follow, cost = np.zeros((m, m)), [], [], 0.0
         H[0, 0] = 1.0 / O_T**2
         for k, start in enumerate(at.starts):
-            r, A, B = self._residuals(k, start, at)
+            r, A, B = self._residuals(self.simulator, k, start, at)
             E = np.linalg.solve(A.T @ A + np.diag(self.priors), A.T @ B)
             H += (B - A @ E).T @ B
             scores.append((B - A @ E).T @ r + [at.o_T / O_T**2 / len(at.starts), *np.zeros(m - 1)])
@@ -164,13 +166,13 @@ class Segments:
 
     def _start(self, k: int, start: np.ndarray, at: _Point, most: int = 5) -> tuple[np.ndarray, float]:
         origin, trust = start, 1e-3
-        r, A, _ = self._residuals(k, start, at)
+        r, A, _ = self._residuals(self.starting, k, start, at)
         for _ in range(most):
             H, g = A.T @ A + np.diag(self.priors), A.T @ r + self.priors * (start - origin)
             step = -np.linalg.solve(H + trust * np.diag(np.diag(H)), g)
             if step @ H @ step < 4 * ENOUGH**2:
                 break
-            tried, A_tried, _ = self._residuals(k, start + step, at)
+            tried, A_tried, _ = self._residuals(self.starting, k, start + step, at)
             if tried @ tried < r @ r:
                 start, r, A, trust = start + step, tried, A_tried, trust / 5.0
             else:

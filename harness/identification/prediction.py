@@ -77,8 +77,7 @@ class Predictor:
     def innovations(self, drive: Drive, p: Parameters, noise: Noise) -> Innovations:
         m, n = len(self.free), len(drive)
         start, d_start = _start(drive, p, self.free)
-        step = self._symbols.with_derivatives.mapaccum("predictions", n, 2)
-        _, _, seen, d_seen = step(start, d_start, *_given(drive, p, noise))
+        _, _, seen, d_seen = self._symbols.passed_with_derivatives(n)(start, d_start, *_given(drive, p, noise))
         d_seen = np.asarray(d_seen).reshape(2, n, m)
         size, log_S = np.asarray(seen)
         return Innovations(size, log_S, d_seen[0], d_seen[1])
@@ -109,8 +108,7 @@ class Filtered:
 def filtered(drive: Drive, p: Parameters, noise: Noise) -> Filtered:
     """The filter without derivatives, in an eighth of the time."""
     start, _ = _start(drive, p, ())
-    step = _filter(()).alone.mapaccum("predictions", len(drive))
-    after, seen = step(start, *_given(drive, p, noise))
+    after, seen = _filter(()).passed(len(drive))(start, *_given(drive, p, noise))
     return Filtered(np.asarray(after).T[:, :STATES], *np.asarray(seen))
 
 
@@ -164,6 +162,16 @@ class _Filter:
         K = P[:, 0] / S
         x, P = x + K * error, P - K @ P[0, :]
         return ca.vertcat(x, *[P[at] for at in LOWER]), ca.vertcat(error / ca.sqrt(S), ca.log(S))
+
+    @cache  # noqa: B019 filters are few, and remain
+    def passed(self, n: int) -> ca.Function:
+        """Through n samples."""
+        return self.alone.mapaccum("predictions", n)
+
+    @cache  # noqa: B019
+    def passed_with_derivatives(self, n: int) -> ca.Function:
+        """Through n samples, with derivatives."""
+        return self.with_derivatives.mapaccum("predictions", n, 2)
 
     @cached_property
     def alone(self) -> ca.Function:
