@@ -9,6 +9,7 @@ from pathlib import Path
 from fmus.options import file
 
 from ..errors import DrivelineError
+from ..extra import required
 from .options import add_printing, add_replace
 from .printing import Printer
 from .recording_options import add_recording
@@ -91,6 +92,7 @@ def run(args: argparse.Namespace) -> int:
     if output.suffix != ".toml":
         raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases)
+    required("casadi", "identifying a model", "native")
     from ..identification import car_file
     from ..identification.drive_train import Parameters
     from ..identification.identify import identify
