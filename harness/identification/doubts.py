@@ -1,7 +1,7 @@
 """What may be wrong with a recording or with what is taken as known: looked for where the innovations are too large."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,40 +33,27 @@ CLOSE = 0.05
 """Relative standard deviation from which on a parameter counts as undetermined."""
 
 
-@dataclass(frozen=True)
-class Cause:
-    """Something that would explain the recording better.
-
-    Attributes:
-        gain: twice the logarithm of the likelihood.
-        text: a sentence.
-    """
-
-    gain: float
-    text: str
-
-
-def causes(drive: Drive, found: Found, noise: Noise) -> list[Cause]:
-    """What would explain the recording better than the parameters that were found, the likeliest first."""
-    before = found.innovations.cost
-    known = maximise(Predictor((*found.free, "J_1")), drive, found.p, noise, most=TRIAL)
-    J_1 = found.p.J_1
-    off = 100.0 * (known.p.J_1 / J_1 - 1.0)
-    every = [
-        Cause(
-            2.0 * (before - known.innovations.cost),
-            f"J_1 = {J_1:g} kg.m2 looks {abs(off):.1f} % too {'small' if off > 0 else 'large'}, or the motor torque "
-            f"has a gain: with J_1 = {known.p.J_1:.4g} the recording is explained better (--free J_1)",
-        )
-    ]
+def late_or_early(drive: Drive, found: Found, noise: Noise) -> list[str]:
+    """Whether the recording is explained better if the load torque is shifted."""
+    gains = []
     for late, word in ((LATE, "late"), (-LATE, "early")):
         shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
         told = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
-        text = (
-            f"the load torque looks {word}: shifted by {1e3 * drive.T_s * LATE:g} ms the recording is explained better"
-        )
-        every.append(Cause(2.0 * (before - told.innovations.cost), text))
-    return sorted((cause for cause in every if cause.gain > LIKELY), key=lambda cause: -cause.gain)
+        gains.append((2.0 * (found.innovations.cost - told.innovations.cost), word))
+    gain, word = max(gains)
+    by = 1e3 * drive.T_s * LATE
+    said = f"the load torque looks {word}: shifted by {by:g} ms the recording is explained better"
+    return [said] if gain > LIKELY else []
+
+
+def of_gain(p: Parameters) -> list[str]:
+    """What a gain of the motor torque that the data ask for may mean."""
+    if p.g_T == 1.0:
+        return []
+    return [
+        f"the recorded motor torque looks {p.g_T:.4g} times the true one, or J_1 = {p.J_1:g} kg.m2 should be "
+        f"{p.J_1 * p.g_T:.4g} (--free J_1); in the latter case J_2, C and d are {p.g_T:.4g} times as large too"
+    ]
 
 
 def undetermined(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..recordings.measurement import Measurement
-from .doubts import LIKELY, Cause, causes, of_demand, undetermined
+from .doubts import LIKELY, late_or_early, of_demand, of_gain, undetermined
 from .drive_train import Parameters
 from .driven import Drive, driven
 from .maximum_likelihood import Found, maximise
@@ -18,6 +18,9 @@ from .response import Tyre, resonance, tyre
 from .torque_loop import FittedLoop
 
 ALWAYS = ("J_2", "C", "phi_B")
+
+ASKED = ("g_T", "d")
+"""What the data may ask for, in this order."""
 
 BROAD = 5.0
 """Noise of the load torque in N.m with which the search begins: the filter then follows the motor speed whatever the
@@ -146,6 +149,7 @@ def identify(
     warnings = [
         *recording.warnings,
         *(of_demand(loop, drive.T_s, tau) if loop else ()),
+        *of_gain(answer.p),
         *answer.warnings,
         *undetermined(drive, answer.p, answer.noise, answer.deviations, recording.counter is not None, answer.free),
     ]
@@ -183,19 +187,11 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
     _told(said, "predicted by a wide filter", found.p)
     found = maximise(Predictor(free), drive, found.p, noise, most=FEW)
     _told(said, "predicted with the noise of the sensors", found.p)
-    damped = maximise(Predictor((*free, "d")), drive, found.p, noise, most=FEW)
-    _told(said, "predicted with damping", damped.p)
-    gain = 2.0 * (found.innovations.cost - damped.innovations.cost)
-    doubts: list[Cause] = []
-    if gain > LIKELY or _size(found) > SUSPECT:
-        said("looking for what would explain it better")
-        doubts = causes(drive, found, noise)
-    asked = gain > max([LIKELY, *(doubt.gain for doubt in doubts)])
-    best = damped if asked or "d" in more else found
+    best = asked(drive, found, noise, more, said)
+    doubts = late_or_early(drive, best, noise) if _size(best) > SUSPECT else []
     if _size(best) <= EXPLAINED:
-        warnings = () if asked else tuple(doubt.text for doubt in doubts[:1])
         covariance = np.linalg.inv(best.innovations.information)
-        return Answer("prediction error", best.p, covariance, best.free, noise, warnings)
+        return Answer("prediction error", best.p, covariance, best.free, noise, tuple(doubts))
     free = tuple(dict.fromkeys((*free, "d")))
     wider = Noise(noise.omega_1, noise.T_mot, WIDER)
     said("the model does not explain all of the recording: pieces of 0.5 s are simulated")
@@ -207,10 +203,23 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
     lacks = (
         f"the two masses do not explain all of this car (size of the innovations {_size(best):.2f}): parameters are "
         f"those with which free runs of 0.5 s fit best, to {fitted.error:.2g} rad/s",
-        *(doubt.text for doubt in doubts[:1] if doubt.gain > gain),
+        *doubts,
     )
     of_model = Noise(fitted.error, noise.T_mot, noise.T_load)
     return Answer("output error", fitted.p, fitted.covariance, free, of_model, lacks)
+
+
+def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: Said) -> Found:
+    """With what the data ask for beside: the gain of the motor torque, structural damping."""
+    best = found
+    for name in ASKED:
+        if name in best.free or (name == "g_T" and "J_1" in more):
+            continue
+        tried = maximise(Predictor((*best.free, name)), drive, best.p, noise, most=FEW)
+        if 2.0 * (best.innovations.cost - tried.innovations.cost) > LIKELY:
+            best = tried
+            _told(said, f"the data ask for {name} = {getattr(best.p, name):.4g}", best.p)
+    return best
 
 
 def again(drive: Drive, answer: Answer, measured: bool) -> Parameters:
