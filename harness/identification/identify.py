@@ -12,6 +12,7 @@ from .drive_train import Parameters
 from .driven import Drive, driven
 from .maximum_likelihood import Found, maximise
 from .noise import white_noise
+from .output_error import Fitted
 from .prediction import Noise, Predictor, filtered
 from .quality import Quality, judged, near_starts, segments
 from .response import Tyre, resonance, tyre
@@ -34,6 +35,9 @@ WIDER = 20.0
 
 SUSPECT = 1.03
 """Size of the innovations from which on a cause is looked for; of 5000 it is 1 to within .01."""
+
+SURELY = 4.0
+"""Standard deviations by which the gain of the motor torque must be off where the model does not explain all."""
 
 EXPLAINED = 1.25
 """Size of the innovations up to which the model explains the recording."""
@@ -192,13 +196,8 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
     if _size(best) <= EXPLAINED:
         covariance = np.linalg.inv(best.innovations.information)
         return Answer("prediction error", best.p, covariance, best.free, noise, tuple(doubts))
-    free = tuple(dict.fromkeys((*free, "d")))
-    wider = Noise(noise.omega_1, noise.T_mot, WIDER)
     said("the model does not explain all of the recording: pieces of 0.5 s are simulated")
-    begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), wider, most=FEW)
-    pieces = segments(drive, free, WITHIN)
-    near = near_starts(pieces, filtered(drive, begun.p, wider))
-    fitted = pieces.fit(begun.p._replace(d=_damping(begun.p)), near)
+    fitted = simulated(drive, start, noise, more)
     _told(said, "simulated", fitted.p)
     lacks = (
         f"the two masses do not explain all of this car (size of the innovations {_size(best):.2f}): parameters are "
@@ -206,7 +205,7 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
         *doubts,
     )
     of_model = Noise(fitted.error, noise.T_mot, noise.T_load)
-    return Answer("output error", fitted.p, fitted.covariance, free, of_model, lacks)
+    return Answer("output error", fitted.p, fitted.covariance, fitted.free, of_model, lacks)
 
 
 def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: Said) -> Found:
@@ -220,6 +219,20 @@ def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: S
             best = tried
             _told(said, f"the data ask for {name} = {getattr(best.p, name):.4g}", best.p)
     return best
+
+
+def simulated(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str]) -> Fitted:
+    """By output error; with the gain of the motor torque if that is surely not 1."""
+    known = tuple(dict.fromkeys((*ALWAYS, "g_L", "d", *more)))
+    free = known if "J_1" in more else tuple(dict.fromkeys((*known, "g_T")))
+    wider = Noise(noise.omega_1, noise.T_mot, WIDER)
+    begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), wider, most=FEW)
+    pieces = segments(drive, free, WITHIN)
+    near = near_starts(pieces, filtered(drive, begun.p, wider))
+    fitted = pieces.fit(begun.p._replace(d=_damping(begun.p)), near)
+    if free == known or abs(fitted.p.g_T - 1.0) > SURELY * float(np.sqrt(fitted.covariance[-1, -1])):
+        return fitted
+    return segments(drive, known, WITHIN).fit(fitted.p._replace(g_T=1.0), fitted.starts, most=FEW)
 
 
 def again(drive: Drive, answer: Answer, measured: bool) -> Parameters:
