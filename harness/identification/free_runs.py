@@ -1,0 +1,56 @@
+"""Free runs of an identified model over the end of its recording."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ..recordings.measurement import Measurement
+from .drive_train import Parameters, gear_torque
+from .identify import UNMEASURED, WITHIN, Identified
+from .prediction import filtered
+from .quality import BURN_IN, near_starts, segments
+from .simulation import Simulator
+
+
+@dataclass(frozen=True, eq=False)
+class FreeRuns:
+    """Runs of `harness.identification.quality.SIMULATED`, each from the start that fits best, one behind the other
+    with NaN between them, each of shape (n,).
+
+    Attributes:
+        time: in s, as recorded.
+        omega_1, omega_2: speed of motor and wheels in rad/s.
+        T_gear: in N.m.
+        error: simulated less recorded motor speed in rad/s.
+    """
+
+    time: np.ndarray
+    omega_1: np.ndarray
+    omega_2: np.ndarray
+    T_gear: np.ndarray
+    error: np.ndarray
+
+
+def free_runs(identified: Identified, recording: Measurement, stretch: float) -> FreeRuns:
+    """
+    Args:
+        recording: from which it was identified.
+        stretch: how much of its end in s.
+    """
+    drive, p = identified.drive, identified.p
+    before = max(len(drive) - round((stretch + BURN_IN) / drive.T_s), 0)
+    end, time = drive.between(before, len(drive)), recording.time[before:]
+    pieces = segments(end, (), UNMEASURED if recording.T_load is None else WITHIN)
+    starts = pieces.fit(p, near_starts(pieces, filtered(end, p, identified.noise)), most=0).starts
+    simulator, runs = Simulator(pieces.length), []
+    for first, (omega_1, omega_2, phi, o_L) in zip(pieces.firsts, starts, strict=True):
+        x = simulator.run(end, first, np.array([omega_1, omega_2, phi, 0.0, o_L]), p)
+        at = slice(first + 1, first + 1 + pieces.length)
+        runs.append(np.array([time[at], x[:, 0], x[:, 1], _gear_torque(x, p), x[:, 0] - end.omega_1[at]]))
+        runs.append(np.full((5, 1), np.nan))
+    return FreeRuns(*np.hstack(runs))
+
+
+def _gear_torque(x: np.ndarray, p: Parameters) -> np.ndarray:
+    return np.asarray(gear_torque(ca.DM(x[:, 2]), ca.DM(x[:, 0] - x[:, 1]), p)).ravel()
