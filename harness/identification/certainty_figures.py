@@ -7,16 +7,15 @@ from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from scipy.signal import csd, welch
 from scipy.stats import chi2
 
 from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
-from .cost import POINTS, SPAN, cost_over, ellipse, exact
+from .cost import POINTS, cost_over, curvature, ellipse, exact
 from .figures import said
 from .identify import Identified
-from .response import FREQUENCIES, WINDOW, Tyre, resonance, response
+from .response import FREQUENCIES, WINDOW, Tyre, response
 
 LABELS = {"J_2": r"$J_2$ in kg·m²", "C": r"$C$ in N·m/rad", "phi_B": r"$\varphi_B$ in rad"}
 """The parameters whose pairs are drawn."""
@@ -24,15 +23,22 @@ LABELS = {"J_2": r"$J_2$ in kg·m²", "C": r"$C$ in N·m/rad", "phi_B": r"$\varp
 INSIDE = float(chi2.ppf(0.95, 2))
 """Square of the distance of two parameters, within which 95 % are."""
 
-LEVELS = [digit * 10.0**power for power in range(9) for digit in (1.0, 2.0, 5.0)]
-"""Of the cost."""
+LEVELS = [digit * 10.0**power for power in range(9) for digit in (1.0, 3.0)]
+"""Of the cost. Where the likelihood has the covariance of the answer, 95 % are within 3.0."""
 
-LEVELS_SHOWN = 7
+CONTOURS = 6
+"""At most, the highest of them."""
 
-BAND = (2.5, 97.5)
-"""In %."""
+RESPONSE = np.linspace(FREQUENCIES[0], FREQUENCIES[-1], 951)
+"""Frequencies in Hz, nearer to each other than those of the tables: peaks are narrow."""
 
-DRAWS = 500
+ABOVE = 6.0
+"""In dB above the highest of what is finite, the end of the axis; a model without damping has no highest."""
+
+PERCENTILES, DRAWS = (2.5, 97.5), 500
+"""Of the band, and how many responses it is made of."""
+
+BAND = "Bands: 95 % by the covariance of the parameters, the tyre as it is."
 
 
 def plot_cost(identified: Identified, stem: Path, caption: str = "") -> list[Path]:
@@ -46,50 +52,45 @@ def plot_cost(identified: Identified, stem: Path, caption: str = "") -> list[Pat
         The files written.
     """
     J_2, C, phi_B = LABELS
+    H = curvature(identified)
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 6.6), layout=ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06))
-        grid = figure.subplots(2, 2, sharex="col")
-        for axes, (x, y) in zip((grid[0, 0], grid[1, 0], grid[1, 1]), ((J_2, C), (J_2, phi_B), (C, phi_B)), strict=True):
-            _cost(axes, identified, x, y)
-        for axes in (grid[0, 0], grid[1, 0]):
-            axes.set_ylabel(LABELS[C if axes is grid[0, 0] else phi_B])
-        grid[1, 0].set_xlabel(LABELS[J_2])
-        grid[1, 1].set_xlabel(LABELS[C])
-        _key(grid[0, 1])
+        ((C_J_2, key), (phi_J_2, phi_C)) = figure.subplots(2, 2, sharex="col")
+        for axes, x, y in ((C_J_2, J_2, C), (phi_J_2, J_2, phi_B), (phi_C, C, phi_B)):
+            _cost(axes, identified, x, y, H)
+            axes.set(ylabel=LABELS[y], xlabel=LABELS[x] if y == phi_B else "")
+        key.axis("off")
+        key.legend(*C_J_2.get_legend_handles_labels(), loc="lower left")
         figure.align_ylabels()
         titled(figure, f"Cost above that of the answer\n{said(identified)}", f"{caption}\n{_of(identified)}".strip())
         return save(figure, stem)
 
 
-def _cost(axes: Axes, identified: Identified, x: str, y: str) -> None:
-    at_x, at_y, cost = cost_over(identified, x, y)
-    levels = [level for level in LEVELS if level < cost.max()][-LEVELS_SHOWN:]
-    axes.clabel(axes.contour(at_x, at_y, cost.T, levels, colors=GREY, linewidths=0.8), fmt="%g", fontsize=7)
-    axes.contour(at_x, at_y, cost.T, [0.5 * INSIDE], colors=BLUE, linewidths=1.2)
-    axes.plot(*ellipse(identified, x, y, INSIDE), color=VERMILION, ls="--", lw=1.2)
-    axes.plot(getattr(identified.p, x), getattr(identified.p, y), "+", color=BLACK)
+def _cost(axes: Axes, identified: Identified, x: str, y: str, H: np.ndarray) -> None:
+    surface = cost_over(identified, x, y, H)
+    fine = surface.fine
+    levels = [level for level in LEVELS if level < surface.cost.max()][-CONTOURS:]
+    axes.plot(getattr(identified.p, x), getattr(identified.p, y), "+", color=BLACK, label="answer")
+    axes.plot(*ellipse(identified, x, y, INSIDE), color=VERMILION, label="95 % by the covariance of the answer")
+    axes.clabel(axes.contour(fine.x, fine.y, fine.cost.T, levels, colors=BLUE, linewidths=0.8), fmt="%g", fontsize=7)
+    axes.plot([], [], color=BLUE, lw=0.8, label="cost")
+    if exact(identified):
+        axes.plot(*np.meshgrid(surface.x, surface.y), ".", color=GREY, ms=2.5, zorder=1)
+        axes.plot([], [], ".", color=GREY, ms=2.5, label="where it was computed")
+    axes.set(xlim=(fine.x[0], fine.x[-1]), ylim=(fine.y[0], fine.y[-1]))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(4))
         axis.set_major_formatter(ScalarFormatter(useOffset=False))
 
 
-def _key(axes: Axes) -> None:
-    lines = {
-        "answer": Line2D([], [], color=BLACK, marker="+", ls=""),
-        "95 % of the answer, by its covariance": Line2D([], [], color=VERMILION, ls="--"),
-        f"cost of {0.5 * INSIDE:.1f}: 95 % by the likelihood": Line2D([], [], color=BLUE),
-        "cost": Line2D([], [], color=GREY),
-    }
-    axes.axis("off")
-    axes.legend(lines.values(), lines.keys(), loc="lower left")
-
-
 def _of(identified: Identified) -> str:
     """How the cost was found."""
-    follow = "the other free parameters follow"
-    if not exact(identified):
-        return f"quadratic, by the covariance; within {SPAN:g} standard deviations; {follow}"
-    return f"one pass of the filter at each of {POINTS} x {POINTS} points within {SPAN:g} standard deviations; {follow}"
+    how = (
+        f"a spline through {POINTS} x {POINTS} passes of the filter"
+        if exact(identified)
+        else "quadratic, by the covariance"
+    )
+    return f"cost: {how}; the other free parameters are the likeliest"
 
 
 def plot_response(identified: Identified, stem: Path, caption: str = "", seed: int = 1) -> list[Path]:
@@ -107,14 +108,21 @@ def plot_response(identified: Identified, stem: Path, caption: str = "", seed: i
         figure = Figure(figsize=(7.2, 5.6), layout=ConstrainedLayoutEngine(h_pad=0.1))
         amplitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         _recorded(amplitude, phase, identified)
+        peak = identified.resonance
+        _modelled(
+            amplitude, phase, identified, identified.tyre, f"car on its own, peak at {peak:.2f} Hz", VERMILION, seed
+        )
+        amplitude.set_ylim(top=amplitude.dataLim.y1 + ABOVE)
         if identified.tyre:
             _modelled(amplitude, phase, identified, None, "load torque held", BLUE, seed)
-        _modelled(amplitude, phase, identified, identified.tyre, "car on its own", VERMILION, seed)
+        for axes in (amplitude, phase):
+            axes.axvline(peak, color=VERMILION, ls=":", lw=0.8)
         amplitude.set_ylabel(r"amplitude of $\omega_1/T_{mot}$ in dB" "\n" "(0 dB: 1 rad/s per N·m)")
         phase.set(ylabel="phase in degrees", xlabel="frequency in Hz", xlim=(FREQUENCIES[0], FREQUENCIES[-1]))
+        phase.set_xticks(range(2, 21, 2))
         phase.set_yticks(range(-90, 91, 45))
         legend(amplitude)
-        note = "recording: with the gap, which the models in contact leave out"
+        note = f"{BAND} The recording crosses the gap, the models stay in contact."
         titled(figure, f"Frequency response, teeth in contact\n{said(identified)}", f"{caption}\n{note}".strip())
         return save(figure, stem)
 
@@ -122,18 +130,15 @@ def plot_response(identified: Identified, stem: Path, caption: str = "", seed: i
 def _modelled(
     amplitude: Axes, phase: Axes, identified: Identified, behind: Tyre | None, name: str, colour: str, seed: int
 ) -> None:
-    """The response, its peak and its band. The tyre is taken as it is."""
-    p, peak = identified.p, resonance(identified.p, behind)
-    values = [getattr(p, name) for name in identified.free]
-    drawn = np.random.default_rng(seed).multivariate_normal(values, identified.covariance, DRAWS)
-    others = [p._replace(**dict(zip(identified.free, map(float, each), strict=True))) for each in drawn]
-    answers = np.array([response(other, FREQUENCIES, behind) for other in others])
-    at_peak = response(p, np.array([peak]), behind)
+    """The response and its band, with parameters drawn from the covariance; the tyre is taken as it is."""
+    p, free = identified.p, identified.free
+    answer = [getattr(p, name) for name in free]
+    drawn = np.random.default_rng(seed).multivariate_normal(answer, identified.covariance, DRAWS)
+    others = [p._replace(**dict(zip(free, map(float, each), strict=True))) for each in drawn]
+    answers = np.array([response(other, RESPONSE, behind) for other in others])
     for axes, of in ((amplitude, _decibels), (phase, _degrees)):
-        axes.fill_between(FREQUENCIES, *np.percentile(of(answers), BAND, axis=0), color=colour, alpha=0.3, lw=0)
-        axes.plot(FREQUENCIES, of(response(p, FREQUENCIES, behind)), color=colour, label=f"{name}, peak at {peak:.2f} Hz")
-        axes.axvline(peak, color=colour, ls=":", lw=0.8)
-    amplitude.plot(peak, _decibels(at_peak), "o", color=colour, ms=4)
+        axes.plot(RESPONSE, of(response(p, RESPONSE, behind)), color=colour, label=name)
+        axes.fill_between(RESPONSE, *np.percentile(of(answers), PERCENTILES, axis=0), color=colour, alpha=0.3, lw=0)
 
 
 def _recorded(amplitude: Axes, phase: Axes, identified: Identified) -> None:

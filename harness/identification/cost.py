@@ -1,5 +1,7 @@
 """The cost of an identified model over two of its parameters."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
@@ -16,30 +18,51 @@ POINTS, FINE = 7, 81
 """In each direction, at which the cost is computed, and to which a cubic spline refines it."""
 
 
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Attributes:
+    x, y: values of the two parameters, shape (POINTS,).
+    cost: shape (POINTS, POINTS), x first.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    cost: np.ndarray
+
+    @property
+    def fine(self) -> "Surface":
+        """With a cubic spline between the points, shape (FINE, FINE)."""
+        x, y = (np.linspace(each[0], each[-1], FINE) for each in (self.x, self.y))
+        return Surface(x, y, RectBivariateSpline(self.x, self.y, self.cost)(x, y))
+
+
 def exact(identified: Identified) -> bool:
     """Whether the cost itself is computed. For output error, which looks for the starts of all segments anew at each
     point, it is that of second order by the covariance."""
     return identified.method == "prediction error"
 
 
-def cost_over(identified: Identified, x: str, y: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def curvature(identified: Identified) -> np.ndarray:
+    """Second derivatives of the cost by the free parameters."""
+    if exact(identified):
+        return Predictor(identified.free).innovations(identified.drive, identified.p, identified.noise).information
+    return np.linalg.inv(identified.covariance)
+
+
+def cost_over(identified: Identified, x: str, y: str, H: np.ndarray) -> Surface:
     """How much more it is than that of the answer, as the logarithm of a likelihood. The other free parameters follow:
     they are those with which it is least, to second order.
 
     Args:
         x, y: names of free parameters.
-
-    Returns:
-        Values of x and y in their units, shape (FINE,), and the cost there, shape (FINE, FINE), x first.
+        H: `curvature`.
     """
     p, free, noise = identified.p, identified.free, identified.noise
-    H = np.linalg.inv(identified.covariance)
-    if exact(identified):
-        H = Predictor(free).innovations(identified.drive, p, noise).information
     pair = [free.index(name) for name in (x, y)]
     others = [k for k in range(len(free)) if k not in pair]
     follow = np.eye(len(free))[:, pair]
     follow[others] = -np.linalg.solve(H[np.ix_(others, others)], H[np.ix_(others, pair)])
+    least = filtered(identified.drive, p, noise).cost
 
     def cost(value_x: float, value_y: float) -> float:
         away = follow @ [value_x - getattr(p, x), value_y - getattr(p, y)]
@@ -48,16 +71,13 @@ def cost_over(identified: Identified, x: str, y: str) -> tuple[np.ndarray, np.nd
         there = p._replace(**{name: getattr(p, name) + by for name, by in zip(free, away, strict=True)})
         return filtered(identified.drive, there, noise).cost - least
 
-    least = filtered(identified.drive, p, noise).cost
-    at_x, at_y = _about(identified, x, POINTS), _about(identified, y, POINTS)
-    coarse = np.array([[cost(value_x, value_y) for value_y in at_y] for value_x in at_x])
-    fine_x, fine_y = _about(identified, x, FINE), _about(identified, y, FINE)
-    return fine_x, fine_y, RectBivariateSpline(at_x, at_y, coarse)(fine_x, fine_y)
+    at_x, at_y = _about(identified, x), _about(identified, y)
+    return Surface(at_x, at_y, np.array([[cost(value_x, value_y) for value_y in at_y] for value_x in at_x]))
 
 
-def _about(identified: Identified, name: str, points: int) -> np.ndarray:
+def _about(identified: Identified, name: str) -> np.ndarray:
     value, deviation = getattr(identified.p, name), identified.deviations[name]
-    return np.linspace(max(value - SPAN * deviation, LEAST * value), value + SPAN * deviation, points)
+    return np.linspace(max(value - SPAN * deviation, LEAST * value), value + SPAN * deviation, POINTS)
 
 
 def ellipse(identified: Identified, x: str, y: str, size: float) -> np.ndarray:
