@@ -1,5 +1,6 @@
 """Figures of how certain an identified model is: cost over pairs of parameters, frequency response with its band."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -8,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
-from scipy.signal import csd, welch
 from scipy.stats import chi2
 
 from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
 from .cost import POINTS, cost_over, curvature, ellipse, exact
 from .figures import said
 from .identify import Identified
-from .response import FREQUENCIES, WINDOW, Tyre, response
+from .response import FREQUENCIES, Tyre, response
+from .response_band import drawn_responses, recorded_response
 
 LABELS = {"J_2": r"$J_2$ in kg·m²", "C": r"$C$ in N·m/rad", "phi_B": r"$\varphi_B$ in rad"}
 """The parameters whose pairs are drawn."""
@@ -35,10 +36,9 @@ RESPONSE = np.linspace(FREQUENCIES[0], FREQUENCIES[-1], 951)
 ABOVE = 6.0
 """In dB above the highest of what is finite, the end of the axis; a model without damping has no highest."""
 
-PERCENTILES, DRAWS = (2.5, 97.5), 500
-"""Of the band, and how many responses it is made of."""
+PERCENTILES = (2.5, 97.5)
 
-BAND = "Bands: 95 % by the covariance of the parameters, the tyre as it is."
+BAND = "bands: 95 % by the covariance, the tyre as it is; the recording crosses the gap, the models do not"
 
 
 def plot_cost(identified: Identified, stem: Path, caption: str = "") -> list[Path]:
@@ -71,7 +71,13 @@ def _cost(axes: Axes, identified: Identified, x: str, y: str, H: np.ndarray) -> 
     fine = surface.fine
     levels = [level for level in LEVELS if level < surface.cost.max()][-CONTOURS:]
     axes.plot(getattr(identified.p, x), getattr(identified.p, y), "+", color=BLACK, label="answer")
-    axes.plot(*ellipse(identified, x, y, INSIDE), color=VERMILION, label="95 % by the covariance of the answer")
+    axes.plot(
+        *ellipse(identified, x, y, INSIDE),
+        color=VERMILION,
+        lw=2.5,
+        alpha=0.6,
+        label="95 % by the covariance of the answer",
+    )
     axes.clabel(axes.contour(fine.x, fine.y, fine.cost.T, levels, colors=BLUE, linewidths=0.8), fmt="%g", fontsize=7)
     axes.plot([], [], color=BLUE, lw=0.8, label="cost")
     if exact(identified):
@@ -85,11 +91,8 @@ def _cost(axes: Axes, identified: Identified, x: str, y: str, H: np.ndarray) -> 
 
 def _of(identified: Identified) -> str:
     """How the cost was found."""
-    how = (
-        f"a spline through {POINTS} x {POINTS} passes of the filter"
-        if exact(identified)
-        else "quadratic, by the covariance"
-    )
+    passes = f"a spline through {POINTS} x {POINTS} passes of the filter"
+    how = passes if exact(identified) else "quadratic, by the covariance"
     return f"cost: {how}; the other free parameters are the likeliest"
 
 
@@ -104,53 +107,37 @@ def plot_response(identified: Identified, stem: Path, caption: str = "", seed: i
     Returns:
         The files written.
     """
+    peak = identified.resonance
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 5.6), layout=ConstrainedLayoutEngine(h_pad=0.1))
-        amplitude, phase = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        _recorded(amplitude, phase, identified)
-        peak = identified.resonance
-        _modelled(
-            amplitude, phase, identified, identified.tyre, f"car on its own, peak at {peak:.2f} Hz", VERMILION, seed
-        )
+        amplitude, phase = rows = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        for axes, of in ((amplitude, _decibels), (phase, _degrees)):
+            f, recorded = recorded_response(identified)
+            at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
+            axes.plot(f[at], of(recorded[at]), ".", color="0.4", ms=4, label="recording")
+            axes.axvline(peak, color=VERMILION, ls=":", lw=0.8)
+        _model(rows, identified, identified.tyre, f"car on its own, peak at {peak:.2f} Hz", VERMILION, seed)
         amplitude.set_ylim(top=amplitude.dataLim.y1 + ABOVE)
         if identified.tyre:
-            _modelled(amplitude, phase, identified, None, "load torque held", BLUE, seed)
-        for axes in (amplitude, phase):
-            axes.axvline(peak, color=VERMILION, ls=":", lw=0.8)
+            _model(rows, identified, None, "load torque held", BLUE, seed)
         amplitude.set_ylabel(r"amplitude of $\omega_1/T_{mot}$ in dB" "\n" "(0 dB: 1 rad/s per N·m)")
-        phase.set(ylabel="phase in degrees", xlabel="frequency in Hz", xlim=(FREQUENCIES[0], FREQUENCIES[-1]))
+        phase.set(ylabel="phase in degrees", xlabel="frequency in Hz", xlim=(RESPONSE[0], RESPONSE[-1]))
         phase.set_xticks(range(2, 21, 2))
         phase.set_yticks(range(-90, 91, 45))
         legend(amplitude)
-        note = f"{BAND} The recording crosses the gap, the models stay in contact."
-        titled(figure, f"Frequency response, teeth in contact\n{said(identified)}", f"{caption}\n{note}".strip())
+        titled(figure, f"Frequency response, teeth in contact\n{said(identified)}", f"{caption}\n{BAND}".strip())
         return save(figure, stem)
 
 
-def _modelled(
-    amplitude: Axes, phase: Axes, identified: Identified, behind: Tyre | None, name: str, colour: str, seed: int
+def _model(
+    rows: Sequence[Axes], identified: Identified, behind: Tyre | None, name: str, colour: str, seed: int
 ) -> None:
-    """The response and its band, with parameters drawn from the covariance; the tyre is taken as it is."""
-    p, free = identified.p, identified.free
-    answer = [getattr(p, name) for name in free]
-    drawn = np.random.default_rng(seed).multivariate_normal(answer, identified.covariance, DRAWS)
-    others = [p._replace(**dict(zip(free, map(float, each), strict=True))) for each in drawn]
-    answers = np.array([response(other, RESPONSE, behind) for other in others])
-    for axes, of in ((amplitude, _decibels), (phase, _degrees)):
-        axes.plot(RESPONSE, of(response(p, RESPONSE, behind)), color=colour, label=name)
-        axes.fill_between(RESPONSE, *np.percentile(of(answers), PERCENTILES, axis=0), color=colour, alpha=0.3, lw=0)
-
-
-def _recorded(amplitude: Axes, phase: Axes, identified: Identified) -> None:
-    """By the spectra of motor torque and motor speed, both as means of the samples."""
-    drive = identified.drive
-    T_mot, omega_1 = drive.T_mot.mean(axis=1) / identified.p.g_T, 0.5 * (drive.omega_1[1:] + drive.omega_1[:-1])
-    window = {"fs": 1.0 / drive.T_s, "nperseg": min(WINDOW, len(drive)), "detrend": "linear"}
-    f, cross = csd(T_mot, omega_1, **window)
-    answer = cross / welch(T_mot, **window)[1]
-    at = (f >= FREQUENCIES[0]) & (f <= FREQUENCIES[-1])
-    for axes, of in ((amplitude, _decibels), (phase, _degrees)):
-        axes.plot(f[at], of(answer[at]), ".", color="0.4", ms=4, label="recording")
+    """The response and its band."""
+    answer = response(identified.p, RESPONSE, behind)
+    drawn = drawn_responses(identified, RESPONSE, behind, seed)
+    for axes, of in zip(rows, (_decibels, _degrees), strict=True):
+        axes.plot(RESPONSE, of(answer), color=colour, label=name)
+        axes.fill_between(RESPONSE, *np.percentile(of(drawn), PERCENTILES, axis=0), color=colour, alpha=0.3, lw=0)
 
 
 def _decibels(answer: np.ndarray) -> np.ndarray:

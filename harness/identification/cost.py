@@ -11,8 +11,8 @@ from .prediction import Predictor, filtered
 SPAN = 4.0
 """Standard deviations to either side of the answer."""
 
-LEAST = 0.1
-"""Times the answer, below which no parameter goes."""
+LEAST, MOST = 0.1, 3.0
+"""Times the answer, within which the two stay even if they are hardly determined."""
 
 POINTS, FINE = 7, 81
 """In each direction, at which the cost is computed, and to which a cubic spline refines it."""
@@ -77,7 +77,8 @@ def cost_over(identified: Identified, x: str, y: str, H: np.ndarray) -> Surface:
 
 def _about(identified: Identified, name: str) -> np.ndarray:
     value, deviation = getattr(identified.p, name), identified.deviations[name]
-    return np.linspace(max(value - SPAN * deviation, LEAST * value), value + SPAN * deviation, POINTS)
+    lower, upper = max(value - SPAN * deviation, LEAST * value), min(value + SPAN * deviation, MOST * value)
+    return np.linspace(lower, upper, POINTS)
 
 
 def ellipse(identified: Identified, x: str, y: str, size: float) -> np.ndarray:

@@ -136,7 +136,7 @@ def plot_innovations(identified: Identified, stem: Path, caption: str = "") -> l
 def _distribution(axes: Axes, size: np.ndarray) -> None:
     largest = max(NORMAL, float(abs(size).max()))
     x = np.linspace(-largest, largest, 401)
-    axes.hist(size, BARS, (-largest, largest), density=True, color=BLUE, alpha=0.5, label="innovations")
+    axes.hist(size, BARS, range=(-largest, largest), density=True, color=BLUE, alpha=0.5, label="innovations")
     axes.plot(x, norm.pdf(x), color=BLACK, label="normal")
     axes.set(xlabel="innovation over its standard deviation", ylabel="density", xlim=(-largest, largest))
     legend(axes)

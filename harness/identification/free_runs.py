@@ -53,4 +53,6 @@ def free_runs(identified: Identified, recording: Measurement, stretch: float) ->
 
 
 def _gear_torque(x: np.ndarray, p: Parameters) -> np.ndarray:
-    return np.asarray(gear_torque(ca.DM(x[:, 2]), ca.DM(x[:, 0] - x[:, 1]), p)).ravel()
+    phi, dphi = ca.SX.sym("phi", len(x)), ca.SX.sym("dphi", len(x))
+    T_gear = ca.Function("T_gear", [phi, dphi], [gear_torque(phi, dphi, p)])
+    return np.asarray(T_gear(x[:, 2], x[:, 0] - x[:, 1])).ravel()
