@@ -37,7 +37,7 @@ ROOMS = {
     | {"harness.linear", "models", "models.block", "models.controller"},
     "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
     | {"harness.linear", "models", "models.controller"},
-    "harness.identification": {"harness", "harness.recordings"},
+    "harness.identification": {"harness", "harness.recordings", "harness.reports"},
     "harness.tuning": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
     | {"harness.robustness"},

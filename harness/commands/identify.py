@@ -5,6 +5,7 @@ import json
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fmus.options import file
 
@@ -14,6 +15,10 @@ from .options import add_printing, add_replace
 from .printing import Printer
 from .recording_options import add_recording
 from .redesigning import redesign
+
+if TYPE_CHECKING:
+    from ..identification.identify import Identified
+    from ..recordings.measurement import Measurement
 
 FREE = ("J_1", "d", "g_T")
 
@@ -30,8 +35,9 @@ Where the model explains the recording, prediction error is used (the likelihood
 does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
 What is likely to be wrong with the recording, or is not determined by it, is said.
 
-Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it a JSON file
-with all that was found, and figures.
+Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it a JSON
+file with all that was found and four figures: measured and simulated signals, the innovations, the cost over
+each pair of parameters, the frequency response.
 """
 
 EXAMPLES = """\
@@ -118,9 +124,26 @@ def run(args: argparse.Namespace) -> int:
         everything = output.with_name(f"{output.stem}_identified.json")
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
-        made.files += [output, everything]
+        made.files += [output, everything, *draw(identified, recording, output.with_suffix(""))]
         if args.design:
             made.files += redesign(output, vehicle, args.replace, out)
     for path in (*made.files, record):
         out.say(f"written: {path}")
     return 0
+
+
+def draw(identified: "Identified", recording: "Measurement", stem: Path) -> list[Path]:
+    """The figures, STEM_simulation.png and so on."""
+    from ..identification.certainty_figures import plot_cost, plot_response
+    from ..identification.figures import plot_innovations, plot_simulation
+
+    def named(what: str) -> Path:
+        return stem.with_name(f"{stem.name}_{what}")
+
+    caption = f"{recording.name}, identified {identified.name}, by {identified.method}"
+    return [
+        *plot_simulation(identified, recording, named("simulation"), caption),
+        *plot_innovations(identified, named("innovations"), caption),
+        *plot_cost(identified, named("cost"), caption),
+        *plot_response(identified, named("response"), caption),
+    ]
