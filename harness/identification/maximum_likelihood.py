@@ -13,6 +13,10 @@ from .prediction import Innovations, Noise, Predictor
 SIGNED = {"d"}
 """Parameters that may be zero; they are searched as they are, in this unit."""
 
+UNKNOWN = 1e-4
+"""Information that is added about all that is searched. What the recording tells nothing of (a gap that is not crossed)
+so remains as it was, with a standard deviation of 100 times its value."""
+
 ENOUGH = 0.02
 """Step in standard deviations at which the search has ended."""
 
@@ -30,6 +34,17 @@ class Found:
     free: tuple[str, ...]
     innovations: Innovations
     passes: int
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of the free parameters, if the innovations are white."""
+        scale = scales(self.p, self.free)
+        return np.outer(scale, scale) * np.linalg.inv(_information(self.innovations, scale))
+
+
+def _information(innovations: Innovations, scale: np.ndarray) -> np.ndarray:
+    """Of what is searched."""
+    return innovations.information * np.outer(scale, scale) + UNKNOWN * np.eye(len(scale))
 
 
 def scales(p: Parameters, free: Sequence[str]) -> np.ndarray:
@@ -57,7 +72,7 @@ def maximise(
     passes = 1
     while passes < most:
         scale = scales(p, free)
-        H, g = best.information * np.outer(scale, scale), best.gradient * scale
+        H, g = _information(best, scale), best.gradient * scale
         step = -np.linalg.solve(H + trust * np.diag(np.diag(H)), g)
         step = np.clip(step, -0.7, 0.7)
         if np.sqrt(step @ H @ step / len(free)) < ENOUGH:

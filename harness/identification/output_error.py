@@ -13,7 +13,7 @@ import numpy as np
 
 from .drive_train import Parameters
 from .driven import Drive
-from .maximum_likelihood import ENOUGH, moved, scales
+from .maximum_likelihood import ENOUGH, UNKNOWN, moved, scales
 from .simulation import Simulator
 
 WITHIN = np.array([3.0, 10.0, 0.5])
@@ -99,7 +99,7 @@ class Segments:
         now, linear = self._descend(now, most - most // 2)
         inverse = np.linalg.inv(linear.H)
         n, m = linear.scores.shape
-        covariance = inverse @ (linear.scores.T @ linear.scores) @ inverse * n / (n - m)
+        covariance = inverse @ (linear.scores.T @ linear.scores) @ inverse * n / max(n - m, 1)
         error = SIGMA * np.sqrt(2.0 * linear.cost / (n * self.length))
         return Fitted(now.p, self.free, now.o_T, now.starts, covariance[1:, 1:], float(error))
 
@@ -142,8 +142,8 @@ class Segments:
 
     def _linear(self, at: _Point) -> _Linear:
         m = 1 + len(self.free)
-        H, scores, follow, cost = np.zeros((m, m)), [], [], 0.0
-        H[0, 0] = 1.0 / O_T**2
+        H = np.diag([1.0 / O_T**2, *(UNKNOWN / scales(at.p, self.free) ** 2)])
+        scores, follow, cost = [], [], 0.5 * (at.o_T / O_T) ** 2
         for k, start in enumerate(at.starts):
             r, A, B = self._residuals(self.simulator, k, start, at)
             E = np.linalg.solve(A.T @ A + np.diag(self.priors), A.T @ B)
