@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..recordings.measurement import Measurement
+from ..recordings.source import RecordingError
 from .doubts import LIKELY, late_or_early, of_demand, of_gain, undetermined
 from .drive_train import Parameters
 from .driven import Drive, driven
@@ -14,7 +15,7 @@ from .maximum_likelihood import Found, maximise
 from .noise import white_noise
 from .output_error import Fitted
 from .prediction import Noise, Predictor, filtered
-from .quality import Quality, judged, near_starts, segments
+from .quality import BURN_IN, SIMULATED, Quality, judged, near_starts, segments
 from .response import Tyre, resonance, tyre
 from .torque_loop import FittedLoop
 
@@ -134,9 +135,10 @@ def identify(
         said: gets a line about each step.
 
     Raises:
-        RecordingError: see `harness.identification.driven.driven`.
+        RecordingError: it is too short; see `harness.identification.driven.driven`.
     """
     drive, loop = driven(recording)
+    _require_long(recording.name, drive, (BURN_IN + SIMULATED) / HELD_OUT, "to judge the fit by the last quarter")
     measured = recording.T_load is not None
     noise = of_sensors(recording) if measured else LACKING
     answer = answered(drive, start, noise, measured, more, said)
@@ -172,6 +174,12 @@ def identify(
     )
 
 
+def _require_long(name: str, drive: Drive, least: float, reason: str) -> None:
+    """Refuses less than so many seconds."""
+    if (duration := len(drive) * drive.T_s) < least - 0.5 * drive.T_s:
+        raise RecordingError(f"{name} is {duration:.3g} s long; {least:.3g} s or more are needed {reason}")
+
+
 def of_sensors(recording: Measurement) -> Noise:
     """The noise that the recording shows."""
     T_mot = 0.0 if recording.T_ref is not None else white_noise(recording.T_mot)
@@ -181,7 +189,7 @@ def of_sensors(recording: Measurement) -> Noise:
 
 def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], said: Said) -> Answer:
     if not measured:
-        free = (*ALWAYS, "d", *more)
+        free = tuple(dict.fromkeys((*ALWAYS, "d", *more)))
         found = maximise(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise)
         _told(said, "predicted without load torque", found.p)
         return Answer("prediction error", found.p, sandwich(found), free, noise)
@@ -194,8 +202,7 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
     best = asked(drive, found, noise, more, said)
     doubts = late_or_early(drive, best, noise) if _size(best) > SUSPECT else []
     if _size(best) <= EXPLAINED:
-        covariance = np.linalg.inv(best.innovations.information)
-        return Answer("prediction error", best.p, covariance, best.free, noise, tuple(doubts))
+        return Answer("prediction error", best.p, best.covariance, best.free, noise, tuple(doubts))
     said("the model does not explain all of the recording: pieces of 0.5 s are simulated")
     fitted = simulated(drive, start, noise, more)
     _told(said, "simulated", fitted.p)
@@ -225,6 +232,8 @@ def simulated(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str]
     """By output error; with the gain of the motor torque if that is surely not 1."""
     known = tuple(dict.fromkeys((*ALWAYS, "g_L", "d", *more)))
     free = known if "J_1" in more else tuple(dict.fromkeys((*known, "g_T")))
+    least = BURN_IN + SIMULATED * (len(free) + 2)
+    _require_long("the recording", drive, least, f"for {len(free)} parameters of a car that two masses do not explain")
     wider = Noise(noise.omega_1, noise.T_mot, WIDER)
     begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), wider, most=FEW)
     pieces = segments(drive, free, WITHIN)
@@ -246,7 +255,7 @@ def again(drive: Drive, answer: Answer, measured: bool) -> Parameters:
 def sandwich(found: Found, block: int = 250) -> np.ndarray:
     """Covariance of the free parameters where the innovations are not white: their blocks speak for themselves."""
     seen = found.innovations
-    inverse = np.linalg.inv(seen.information)
+    inverse = found.covariance
     each = seen.d_size * seen.size[:, None] + 0.5 * seen.d_log_S
     scores = np.array([part.sum(axis=0) for part in np.array_split(each, max(len(each) // block, 2))])
     scores = scores - scores.mean(axis=0)
