@@ -112,7 +112,8 @@ def run(args: argparse.Namespace) -> int:
         "columns": dict(args.columns),
     }
     read = [args.recording, *args.aliases, args.vehicle]
-    with recorded(record, same, {}, read, [output], args.replace) as made:
+    everything = output.with_name(f"{output.stem}_identified.json")
+    with recorded(record, same, {}, read, [output, everything], args.replace) as made:
         J_v = plant.m * plant.r**2 / plant.i**2
         identified = identify(recording, start, motor.tau, J_v, list(dict.fromkeys(args.free)), out.say)
         for line in car_file.lines(identified):
@@ -121,7 +122,6 @@ def run(args: argparse.Namespace) -> int:
             out.say(f"warning: {warning}")
         made.begin()
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        everything = output.with_name(f"{output.stem}_identified.json")
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
         made.files += [output, everything, *draw(identified, recording, output.with_suffix(""))]

@@ -13,10 +13,9 @@ UNITS = {
     "C": "N.m/rad",
     "d": "N.m.s/rad",
     "phi_B": "rad",
-    "g_T": "1",
-    "g_L": "1",
     "tau": "s",
 }
+"""Of what has one."""
 
 MEANS = {
     WITH_LOAD: "J_2 is that of the wheels alone",
@@ -42,7 +41,8 @@ def lines(identified: Identified) -> list[str]:
     every = found(identified)
     width = max(len(name) for name, *_ in every)
     parameters = [
-        f"{name:{width}} = {value:.5g} +- {half:.2g} {UNITS[name]} ({100.0 * half / abs(value):.2g} %)"
+        f"{name:{width}} = {value:.5g} +- {half:.2g} {UNITS.get(name, '')}".rstrip()
+        + f" ({100.0 * half / abs(value):.2g} %)"
         for name, value, half in every
     ]
     meaning = MEANS.get(identified.name, MEANS[""])
