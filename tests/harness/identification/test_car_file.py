@@ -1,0 +1,107 @@
+"""What identification leaves behind: a vehicle file that every command takes, and a document with all of it."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fmus.parameter_files import read_vehicle
+from harness.identification import car_file
+from harness.identification.equivalent import equivalent
+from harness.identification.identify import WITH_LOAD, WITHOUT_LOAD, Identified
+from harness.identification.quality import Quality
+from harness.identification.response import Tyre
+from harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop
+from tests.harness.identification.simulated import NOISE, P, simulated
+
+FREE = ("J_2", "C", "phi_B", "g_L")
+LOOP = FittedLoop(TorqueLoop(0.0031234567, 1.01, 0.2, 0.0), dict.fromkeys(PARAMETERS, 1e-5), 0.3, 0.99)
+FOUND = Identified(
+    name=WITH_LOAD,
+    method="prediction error",
+    p=P,
+    covariance=np.diag(np.square([1e-3, 0.1, 2e-4, 3e-3])),
+    free=FREE,
+    noise=NOISE,
+    loop=LOOP,
+    tyre=Tyre(380.0, 4.0, 1.5, 0.97),
+    quality=Quality(97.0, 99.0, 96.0, 1.02, 0.03),
+    drive=simulated(seed=1, n=20),
+    warnings=("something is odd",),
+)
+GIVEN = {"m": 2100.0, "J_2": 0.31, "C": 90.0, "tau": 0.004}
+
+
+def test_the_vehicle_file_is_read_back(tmp_path: Path) -> None:
+    path = tmp_path / "car.toml"
+    path.write_text(car_file.text(FOUND, GIVEN, "The car of a drive."), encoding="utf-8")
+    assert read_vehicle(path) == car_file.car(FOUND, GIVEN)
+
+
+def test_what_was_identified_replaces_entries_and_the_others_stay() -> None:
+    entries = car_file.car(FOUND, GIVEN)
+    same = equivalent(P, FOUND.tyre, FOUND.resonance)
+    assert entries == pytest.approx({"m": 2100.0, "J_2": 0.31, "C": same.C, "phi_B": P.phi_B, "tau": 0.00312346}, 1e-5)
+    assert same.C != pytest.approx(P.C, rel=1e-2)
+
+
+def test_entries_of_every_type_stay(tmp_path: Path) -> None:
+    """true and false, as TOML has them."""
+    text = car_file.text(FOUND, {"m": 2100, "whatever": True, "other": False}, "A car.")
+    assert "\nm = 2100\nwhatever = true\nother = false\n" in text
+
+
+def test_what_was_not_free_is_not_written() -> None:
+    assert car_file.car(replace(FOUND, loop=None), {}).keys() == {"C", "phi_B"}
+    freed = replace(FOUND, free=("J_1", *FREE[1:]))
+    assert car_file.car(freed, {})["J_1"] == P.J_1
+
+
+def test_without_the_load_torque_the_stiffness_is_that_of_the_two_masses() -> None:
+    found = replace(FOUND, name=WITHOUT_LOAD, tyre=None)
+    assert car_file.car(found, {})["C"] == pytest.approx(P.C, rel=1e-6)
+    assert "effective, without load torque" in car_file.lines(found)[0]
+    assert "J_2 carries the vehicle" in car_file.lines(found)[0]
+
+
+def test_people_are_told_each_parameter_with_its_interval_and_unit() -> None:
+    lines = car_file.lines(FOUND)
+    assert lines[0] == (
+        "identified with load torque, by prediction error: J_2 is that of the wheels alone; 95 % intervals"
+    )
+    assert lines[1:6] == [
+        "  J_2   = 0.3 +- 0.002 kg.m2 (0.65 %)",
+        "  C     = 117.4 +- 0.2 N.m/rad (0.17 %)",
+        "  phi_B = 0.157 +- 0.00039 rad (0.25 %)",
+        "  g_L   = 0.99 +- 0.0059 (0.59 %)",
+        "  tau   = 0.0031235 +- 2e-05 s (0.63 %)",
+    ]
+    assert lines[6] == f"the car answers most at {FOUND.resonance:.2f} Hz"
+
+
+def test_the_file_tells_in_comments_what_was_found_and_what_is_odd() -> None:
+    head, _, body = car_file.text(FOUND, {}, "The car of a drive.").partition("\n\n")
+    assert head.startswith("# The car of a drive.\n#\n# identified with load torque")
+    assert "\n# warning: something is odd\n" in head
+    assert all(line.startswith("#") and len(line) <= 130 for line in head.splitlines())
+    assert [line.split(" = ")[0] for line in body.splitlines()] == ["C", "phi_B", "tau"]
+
+
+@pytest.mark.parametrize("found", [FOUND, replace(FOUND, loop=None, tyre=None, name=WITHOUT_LOAD)])
+def test_the_document_is_json_with_all_of_it(found: Identified) -> None:
+    read = json.loads(json.dumps(car_file.document(found), allow_nan=False))
+    assert read["identified"] == found.name
+    assert read["parameters"] == pytest.approx(P._asdict())
+    assert read["free"] == list(FREE)
+    assert read["standard_deviations"] == pytest.approx(dict(zip(FREE, (1e-3, 0.1, 2e-4, 3e-3), strict=True)))
+    np.testing.assert_allclose(read["covariance"], found.covariance)
+    assert read["resonance_Hz"] == pytest.approx(found.resonance)
+    assert read["fit"]["predicted"] == 96.0
+    assert read["warnings"] == ["something is odd"]
+    assert (read["tyre"] is None) == (read["torque_loop"] is None) == (found.loop is None)
+    if found.loop:
+        assert read["torque_loop"]["tau"] == LOOP.loop.tau
+        assert read["torque_loop"]["standard_deviations"]["delay"] == 1e-5
+        assert read["tyre"] == {"c_t": 380.0, "d_t": 4.0, "J_v": 1.5, "explained": 0.97}

@@ -1,0 +1,76 @@
+"""What drives the model between the samples."""
+
+import numpy as np
+import pytest
+
+from harness.identification.drive_train import STEPS
+from harness.identification.driven import UNEVEN, driven, parts
+from harness.recordings.measurement import Measurement
+from harness.recordings.source import RecordingError
+
+T_S = 0.002
+TIME = 0.5 + T_S * np.arange(400)
+
+
+def recording(
+    time: np.ndarray = TIME, T_ref: np.ndarray | None = None, T_load: np.ndarray | None = None
+) -> Measurement:
+    T_mot, omega = 10.0 + np.sin(20.0 * time), 130.0 + np.cos(9.0 * time)
+    return Measurement("drive", time, T_mot, omega, omega, None, None, T_load, T_ref, {}, (), ())
+
+
+def test_the_parts_of_a_cubic_are_exact() -> None:
+    cubic = np.polynomial.Polynomial([5.0, -2.0, 0.3, 0.01])
+    found, integral = parts(cubic(np.arange(31)), T_S), cubic.integ()
+    edges = np.arange(30 * STEPS + 1) / STEPS
+    np.testing.assert_allclose(found, np.diff(integral(edges)).reshape(30, STEPS) * STEPS, rtol=1e-11)
+
+
+def test_the_samples_have_their_torques_and_the_motor_speed_at_both_ends() -> None:
+    load = -10.0 + 3.0 * np.sin(5.0 * TIME)
+    drive, loop = driven(recording(T_load=load))
+    assert loop is None
+    assert drive.T_s == pytest.approx(T_S, rel=1e-9)
+    assert len(drive) == 399
+    assert len(drive.omega_1) == 400
+    middle = TIME[:-1, None] + T_S * (np.arange(STEPS) + 0.5) / STEPS
+    np.testing.assert_allclose(drive.T_mot[3:-3], (10.0 + np.sin(20.0 * middle))[3:-3], atol=2e-5)
+    np.testing.assert_allclose(drive.T_load[3:-3], (-10.0 + 3.0 * np.sin(5.0 * middle))[3:-3], atol=2e-5)
+
+
+def test_a_load_torque_that_was_not_recorded_is_zero() -> None:
+    assert not driven(recording())[0].T_load.any()
+
+
+def test_a_part_of_a_drive_is_that_of_its_samples() -> None:
+    drive, _ = driven(recording())
+    part = drive.between(100, 250)
+    assert len(part) == 150
+    np.testing.assert_array_equal(part.omega_1, drive.omega_1[100:251])
+    np.testing.assert_array_equal(part.T_mot, drive.T_mot[100:250])
+    np.testing.assert_array_equal(part.T_load, drive.T_load[100:250])
+
+
+def test_where_the_demand_is_known_the_motor_torque_has_no_noise() -> None:
+    time = T_S * np.arange(1500)
+    demand = 10.0 + 30.0 * np.sign(np.sin(40.0 * time + 0.1))
+    given = recording(time, demand)
+    drive, loop = driven(given)
+    assert loop is not None
+    np.testing.assert_array_equal(drive.T_mot, loop.loop.means(demand, drive.T_s, STEPS)[:-1])
+
+
+def test_uneven_samples_are_refused_with_the_place() -> None:
+    """A sample that comes late makes one interval long and the next short."""
+    for late in (0.9 * UNEVEN, -0.9 * UNEVEN):
+        time = TIME.copy()
+        time[200] += late * T_S
+        driven(recording(time))
+    time = TIME.copy()
+    time[200:] += 0.2 * T_S
+    with pytest.raises(RecordingError, match=r"drive: samples must be 0\.002001 s apart to within 5 %; after 0\.898 s"):
+        driven(recording(time))
+    time = TIME.copy()
+    time[200] += 1.1 * UNEVEN * T_S
+    with pytest.raises(RecordingError, match=r"after 0\.(898|9) s it is 0\.00(211|189) s"):
+        driven(recording(time))

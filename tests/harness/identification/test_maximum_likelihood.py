@@ -1,0 +1,80 @@
+"""The likeliest parameters are found, from wherever the search begins, and as well as their covariance says."""
+
+import numpy as np
+import pytest
+
+from harness.identification.drive_train import Parameters
+from harness.identification.identify import BROAD
+from harness.identification.maximum_likelihood import Found, maximise, moved, scales
+from harness.identification.prediction import Noise, Predictor
+from tests.harness.identification.simulated import NOISE, P, simulated
+
+FREE = ("J_2", "C", "phi_B", "g_L", "d")
+
+
+def found(start: Parameters, free: tuple[str, ...] = FREE, **drive: float) -> Found:
+    """As `driveline identify` does: through a wide filter first."""
+    given, predictor = simulated(**{"seed": 3, **drive}), Predictor(free)  # pyright: ignore[reportArgumentType]
+    broad = maximise(predictor, given, start, Noise(NOISE.omega_1, NOISE.T_mot, BROAD))
+    return maximise(predictor, given, broad.p, NOISE, most=12)
+
+
+def require_found(result: Found, p: Parameters = P) -> None:
+    """Within four standard deviations, which are small."""
+    deviations = np.sqrt(np.diag(result.covariance))
+    for name, deviation in zip(result.free, deviations, strict=True):
+        assert abs(getattr(result.p, name) - getattr(p, name)) < 4.0 * deviation, name
+        if name in ("J_1", "J_2", "C", "phi_B"):
+            assert deviation < 0.015 * getattr(p, name), name
+
+
+@pytest.mark.parametrize(("J_2", "C", "phi_B"), [(0.25, 420.0, 0.36), (1.8, 35.0, 0.01)])
+def test_from_wide_starts(J_2: float, C: float, phi_B: float) -> None:
+    require_found(found(P._replace(J_2=J_2, C=C, phi_B=phi_B, d=0.0, g_L=1.0)))
+
+
+def test_offsets_of_the_torques_do_not_bias_it() -> None:
+    require_found(found(P._replace(J_2=0.5, C=90.0, phi_B=0.1, d=0.0, g_L=1.0), o_T=1.0, o_L=-1.5))
+
+
+def test_the_motor_inertia_too() -> None:
+    require_found(found(P._replace(J_1=0.05, J_2=0.4, d=0.0, g_L=1.0), free=("J_1", *FREE)))
+
+
+def test_what_is_not_free_remains_and_the_search_ends_by_itself() -> None:
+    result = found(P._replace(J_2=0.5), free=("J_2",))
+    assert result.p._replace(J_2=P.J_2) == P
+    assert result.passes < 12
+
+
+def test_what_the_recording_tells_nothing_of_remains_and_is_unknown() -> None:
+    """A gap that is not crossed, as the torque only drives."""
+    drive = simulated(seed=3, n=1000, mean=120.0)
+    start = P._replace(J_2=0.4, phi_B=0.2)
+    result = maximise(Predictor(("J_2", "C", "phi_B")), drive, start, NOISE)
+    J_2, _, phi_B = np.sqrt(np.diag(result.covariance))
+    assert abs(result.p.J_2 - P.J_2) < 4.0 * J_2 < 0.1 * P.J_2
+    assert result.p.phi_B == pytest.approx(0.2, rel=1e-3)
+    assert phi_B > 10.0 * result.p.phi_B
+
+
+def test_the_covariance_is_the_inverse_of_the_information() -> None:
+    result = found(P)
+    np.testing.assert_allclose(result.covariance @ result.innovations.information, np.eye(len(FREE)), atol=1e-3)
+
+
+def test_no_more_passes_than_are_allowed() -> None:
+    start = P._replace(J_2=0.06, C=400.0, phi_B=0.35)
+    result = maximise(Predictor(FREE), simulated(seed=3, n=300), start, NOISE, most=3)
+    assert result.passes == 3
+
+
+def test_a_step_of_the_search_keeps_signs_and_scales_tell_it() -> None:
+    free = ("J_2", "d")
+    step = np.array([-5.0, -1.0])
+    there = moved(P, free, step)
+    assert there.J_2 > 0.0
+    assert there.d == pytest.approx(P.d - 1.0)
+    by = 1e-6
+    assert (moved(P, free, np.array([by, 0.0])).J_2 - P.J_2) / by == pytest.approx(scales(P, free)[0], rel=1e-5)
+    assert (moved(P, free, np.array([0.0, by])).d - P.d) / by == pytest.approx(scales(P, free)[1], rel=1e-5)

@@ -1,0 +1,119 @@
+"""Free runs over short segments: their derivatives, the starts, and the parameters with which they fit best."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.identification.driven import Drive
+from harness.identification.output_error import Segments, _Point
+from harness.identification.prediction import filtered
+from harness.identification.quality import near_starts
+from harness.identification.simulation import Simulator
+from tests.harness.identification.simulated import NOISE, P, simulated
+
+FREE = ("J_2", "C", "phi_B", "d")
+LENGTH = 125
+DRIFT = 1.0
+
+
+@pytest.fixture(scope="module")
+def drive() -> Drive:
+    return simulated(seed=4)
+
+
+@pytest.fixture(scope="module")
+def pieces(drive: Drive) -> Segments:
+    return Segments(drive, LENGTH, FREE, DRIFT, first=100)
+
+
+@pytest.fixture(scope="module")
+def starts(drive: Drive, pieces: Segments) -> np.ndarray:
+    return near_starts(pieces, filtered(drive, P, NOISE))
+
+
+def test_the_derivatives_of_a_free_run_are_those_of_its_states(drive: Drive) -> None:
+    simulator, start = Simulator(LENGTH, FREE), np.array([130.0, 129.0, 0.3, 0.2, -0.4])
+    states, d = simulator.run_with_derivatives(drive, 200, start, P)
+    np.testing.assert_allclose(states, simulator.run(drive, 200, start, P), atol=1e-9)
+    for k in range(len(start) + len(FREE)):
+        by = np.zeros(len(start) + len(FREE))
+        by[k] = 1e-6
+        ends = []
+        for sign in (1.0, -1.0):
+            step = sign * by
+            p = P._replace(**{name: getattr(P, name) + step[5 + j] for j, name in enumerate(FREE)})
+            ends.append(simulator.run(drive, 200, start + step[:5], p))
+        difference = (ends[0] - ends[1]) / 2e-6
+        np.testing.assert_allclose(d[:, :, k], difference, atol=1e-4 * np.abs(difference).max(), err_msg=str(k))
+
+
+def test_the_segments_are_those_that_fit_in(drive: Drive, pieces: Segments) -> None:
+    assert list(pieces.firsts) == list(range(100, 1500 - LENGTH + 1, LENGTH))
+    assert list(Segments(drive, 500, FREE, DRIFT).firsts) == [0, 500, 1000]
+
+
+def test_the_gradient_after_the_starts_are_eliminated_is_that_of_the_cost(pieces: Segments, starts: np.ndarray) -> None:
+    """Of the cost along the way on which the starts follow, which is that of the best starts. Away from the best
+    parameters, where both are large."""
+    point = _Point(P._replace(J_2=0.33, C=110.0, phi_B=0.15), 0.3, starts)
+    for _ in range(3):
+        point = replace(point, starts=pieces.found(point))
+    linear = pieces._linear(point)
+
+    def cost(name: str, step: float, follow: float = 1.0) -> float:
+        k = ("o_T", *FREE).index(name)
+        p = point.p if name == "o_T" else point.p._replace(**{name: getattr(point.p, name) + step})
+        o_T = point.o_T + step if name == "o_T" else point.o_T
+        return pieces._linear(_Point(p, o_T, point.starts + follow * step * linear.follow[:, :, k])).cost
+
+    for k, name in enumerate(("o_T", *FREE)):
+        size = 1.0 if name == "o_T" else getattr(point.p, name)
+        by = 1e-5 * size
+        gradient = (cost(name, by) - cost(name, -by)) / (2.0 * by)
+        assert linear.scores.sum(axis=0)[k] == pytest.approx(gradient, rel=2e-3), name
+        curvature = [cost(name, step) for step in (0.02 * size, -0.02 * size)]
+        stiff = [cost(name, step, follow=0.0) for step in (0.02 * size, -0.02 * size)]
+        assert sum(curvature) < sum(stiff), name
+
+
+def test_the_parameters_are_found_with_deviations_that_tell_how_far_off_they_are(drive: Drive) -> None:
+    """With another offset of the motor torque, which is found too."""
+    shifted = replace(drive, T_mot=drive.T_mot - P.g_T * 0.5)
+    pieces = Segments(shifted, LENGTH, FREE, DRIFT, first=100)
+    start = P._replace(J_2=0.36, C=108.0, phi_B=0.14, d=0.5)
+    found = pieces.fit(start, near_starts(pieces, filtered(shifted, start, NOISE)))
+    for name, deviation in zip(FREE, np.sqrt(np.diag(found.covariance)), strict=True):
+        assert abs(getattr(found.p, name) - getattr(P, name)) < 4.0 * deviation, name
+        assert deviation < (0.1 if name != "d" else 0.5) * getattr(P, name), name
+    assert found.o_T == pytest.approx(0.5, abs=0.3)
+    assert NOISE.omega_1 < found.error < 2.5 * NOISE.omega_1
+    assert found.free == FREE
+
+
+def test_the_covariance_is_what_the_segments_say_each_for_itself(pieces: Segments, starts: np.ndarray) -> None:
+    """Twice the noise, four times the variance; the Hessian knows nothing of it."""
+    found = pieces.fit(P, starts, most=2)
+    linear = pieces._linear(_Point(found.p, found.o_T, found.starts))
+    inverse, scores = np.linalg.inv(linear.H), linear.scores
+    n, m = scores.shape
+    expected = sum(np.outer(inverse @ one, inverse @ one) for one in scores) * n / (n - m)
+    np.testing.assert_allclose(found.covariance, expected[1:, 1:], rtol=1e-9)
+
+
+def test_a_start_on_the_wrong_flank_is_found(pieces: Segments, starts: np.ndarray) -> None:
+    right = pieces.found(_Point(P, 0.0, starts))
+    driving = right[:, 2] > P.phi_B + 0.05
+    assert 0 < driving.sum() < len(starts)
+    wrong = starts.copy()
+    wrong[driving, 2] *= -1.0
+    found = pieces.found(_Point(P, 0.0, wrong), anywhere=True)
+    np.testing.assert_allclose(found[driving, 2], right[driving, 2], atol=0.03)
+
+
+def test_free_runs_from_the_best_starts_are_off_by_little_more_than_the_noise(
+    drive: Drive, pieces: Segments, starts: np.ndarray
+) -> None:
+    simulated, recorded = Segments(drive, LENGTH, (), DRIFT, first=100).free_runs(P, starts)
+    np.testing.assert_array_equal(recorded[1], drive.omega_1[100 + LENGTH + 1 : 100 + 2 * LENGTH + 1])
+    assert NOISE.omega_1 * 0.9 < np.std(simulated - recorded) < 2.5 * NOISE.omega_1

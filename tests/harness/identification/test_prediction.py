@@ -1,0 +1,113 @@
+"""Innovations of the filter: their derivatives, and what they are where parameters and noise are true."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.identification.drive_train import Parameters
+from harness.identification.driven import Drive
+from harness.identification.prediction import Innovations, Noise, Predictor, filtered
+from tests.harness.identification.simulated import NOISE, P, simulated
+
+SETTLED = 100
+"""Samples until the filter has forgotten what it began with."""
+
+STEP = 1e-5
+"""Relative, of central differences."""
+
+
+@pytest.fixture(scope="module")
+def drive() -> Drive:
+    return simulated(seed=1)
+
+
+@pytest.fixture(scope="module")
+def innovations(drive: Drive) -> Innovations:
+    return Predictor(Parameters._fields).innovations(drive, P, NOISE)
+
+
+@pytest.mark.parametrize("name", Parameters._fields)
+def test_the_derivatives_are_those_of_the_innovations(name: str) -> None:
+    """Over the first half second, with teeth that meet and part."""
+    drive = simulated(seed=1, n=250)
+    found = Predictor([name]).innovations(drive, P, NOISE)
+    value = getattr(P, name)
+    more, less = (filtered(drive, P._replace(**{name: value * (1.0 + by)}), NOISE) for by in (STEP, -STEP))
+    for derivative, high, low in (
+        (found.d_size[:, 0], more.size, less.size),
+        (found.d_log_S[:, 0], more.log_S, less.log_S),
+    ):
+        difference = (high - low) / (2.0 * STEP * value)
+        largest = np.abs(difference).max()
+        assert largest > 0.0
+        np.testing.assert_allclose(derivative, difference, atol=1e-5 * largest)
+
+
+def test_size_and_log_S_are_those_without_derivatives(drive: Drive, innovations: Innovations) -> None:
+    alone = filtered(drive, P, NOISE)
+    np.testing.assert_allclose(innovations.size, alone.size, atol=1e-9)
+    np.testing.assert_allclose(innovations.log_S, alone.log_S, atol=1e-9)
+    assert innovations.cost == pytest.approx(alone.cost, rel=1e-12)
+
+
+def test_gradient_and_cost_belong_together(drive: Drive, innovations: Innovations) -> None:
+    for k, name in enumerate(Parameters._fields):
+        value = getattr(P, name)
+        more, less = (filtered(drive, P._replace(**{name: value * (1.0 + by)}), NOISE).cost for by in (STEP, -STEP))
+        assert innovations.gradient[k] == pytest.approx((more - less) / (2.0 * STEP * value), rel=1e-4), name
+
+
+def test_with_true_parameters_and_noise_the_innovations_are_white_and_of_size_1(drive: Drive) -> None:
+    size = filtered(drive, P, NOISE).size[SETTLED:]
+    n = len(size)
+    assert np.mean(size**2) == pytest.approx(1.0, abs=3.0 * np.sqrt(2.0 / n))
+    assert abs(size.mean()) < 3.0 / np.sqrt(n)
+    correlations = np.array([size[lag:] @ size[:-lag] / (size @ size) for lag in range(1, 26)])
+    assert np.abs(correlations).max() < 4.0 / np.sqrt(n)
+    assert n * np.sum(correlations**2) < 52.6, "chi-square of 25, once in a thousand"
+
+
+@pytest.mark.parametrize(
+    ("parameters", "noise"),
+    [
+        (P._replace(J_1=1.03 * P.J_1), NOISE),
+        (P._replace(C=1.03 * P.C), NOISE),
+        (P._replace(phi_B=1.1 * P.phi_B), NOISE),
+        (P, replace(NOISE, omega_1=0.8 * NOISE.omega_1)),
+    ],
+)
+def test_with_wrong_ones_they_are_larger(drive: Drive, parameters: Parameters, noise: Noise) -> None:
+    right = filtered(drive, P, NOISE).size[SETTLED:]
+    wrong = filtered(drive, parameters, noise).size[SETTLED:]
+    assert np.mean(wrong**2) > np.mean(right**2) + 0.1
+
+
+def test_the_errors_are_those_of_the_motor_speed(drive: Drive) -> None:
+    """What the filter knows after a sample lies between what it predicted and what was recorded."""
+    through = filtered(drive, P, NOISE)
+    after = drive.omega_1[1:] - through.states[:, 0]
+    share = after[SETTLED:] / through.errors[SETTLED:]
+    assert share.min() > 0.0
+    assert share.max() < 1.0
+
+
+def test_the_filter_finds_twist_wheel_speed_and_offsets() -> None:
+    drive = simulated(seed=2, noise=Noise(0.01, 0.01, 0.01), o_T=0.8, o_L=-1.2)
+    states = filtered(drive, P, Noise(0.01, 0.01, 0.01)).states[-1]
+    clean = simulated(seed=2, noise=Noise(0.0, 0.0, 0.0))
+    assert states[0] == pytest.approx(clean.omega_1[-1], abs=0.02)
+    assert states[3] == pytest.approx(0.8, abs=0.1)
+    assert states[4] == pytest.approx(-1.2, abs=0.1)
+
+
+def test_the_information_tells_how_the_gradient_scatters() -> None:
+    """Over seeds the gradient has mean 0 and the information as its covariance."""
+    free = ("J_1", "J_2", "C", "phi_B")
+    predictor = Predictor(free)
+    each = [predictor.innovations(simulated(seed, n=750), P, NOISE) for seed in range(24)]
+    information = np.mean([one.information for one in each], axis=0)
+    root = np.linalg.cholesky(np.linalg.inv(information))
+    scores = np.array([root.T @ one.gradient for one in each])
+    assert np.abs(scores.mean(axis=0)).max() < 4.0 / np.sqrt(24)
+    assert np.mean(scores**2) == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / scores.size))
