@@ -9,11 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, save, titled
 from .search import Evaluated, best, front
 from .space import Space
+
+COLORS_OF_LINES, DASHES = 6, ("-", "--", ":")
+"""Lines of different parameters."""
 
 CHOICES = np.linspace(0.0, 1.0, 41)
 COLORS = LinearSegmentedColormap.from_list("character", (VERMILION, "#CC79A7", BLUE))
@@ -34,7 +37,7 @@ def plot_front(
         The files written.
     """
     with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 3.2), layout=ConstrainedLayoutEngine(w_pad=0.08))
+        figure = Figure(figsize=(8.0, 3.2), layout=ConstrainedLayoutEngine(w_pad=0.08))
         left, right = figure.subplots(1, 2, width_ratios=(1.1, 1.0))
         titled(figure, title, caption)
         _costs(left, visited, character)
@@ -73,18 +76,24 @@ def _parameters(axes: Axes, visited: Sequence[Evaluated], space: Space, characte
     chosen = [best(visited, choice).values for choice in CHOICES]
     for k, each in enumerate(space.searched):
         share = [values[k] / each.start for values in chosen]
-        (line,) = axes.plot(CHOICES, share, color=f"C{k}", drawstyle="steps-mid")
-        line.set_label(_symbol(each.name))
+        color, dashes = f"C{k % COLORS_OF_LINES}", DASHES[k // COLORS_OF_LINES % len(DASHES)]
+        axes.plot(CHOICES, share, color=color, ls=dashes, drawstyle="steps-mid", label=_symbol(each.name))
     axes.axvline(character, color=BLACK, lw=0.6, ls="--")
     axes.set(
         yscale="log", xlim=(0.0, 1.0), xlabel="character, from sport to comfort", ylabel="parameter over its start"
     )
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    low, high = axes.get_ylim()
+    numbers = FuncFormatter(lambda value, _: f"{value:g}") if high < 10.0 * low else NullFormatter()
+    axes.yaxis.set_minor_formatter(numbers)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, handlelength=1.5)
 
 
 def _symbol(name: str) -> str:
-    """A parameter as in a formula: omega_w is $\\omega_{w}$."""
+    """A parameter as in a formula: omega_w is $\\omega_{w}$; a word stays a word."""
     letter, _, index = name.partition("_")
-    letter = letter if len(letter) == 1 else f"\\{letter}"
+    if letter == "omega":
+        letter = "\\omega"
+    elif len(letter) > 1:
+        return name
     return f"${letter}_{{{index}}}$" if index else f"${letter}$"
