@@ -1,9 +1,10 @@
 """Frequency response of the drive train in contact, from the motor torque to the motor speed.
 
 With the load torque measured, the model ends at the wheels. What hangs on them is needed to say how the car answers
-on its own: a tyre as spring and damper between the wheels and the inertia of the vehicle,
+on its own: a rolling tyre, which is a spring, its carcass, in series with a damper, its slip, between the wheels and the
+inertia of the vehicle,
 
-    T_load = -(c_t theta + d_t dtheta/dt),   dtheta/dt = omega_2 - omega_v,   J_v domega_v/dt = -T_load
+    omega_2 - omega_v = -(dT_load/dt/c_t + T_load/d_t),   J_v domega_v/dt = -T_load
 
 fitted to the load torque and the wheel speed of the filter. J_v = m r^2/i^2 is known. A model identified without the
 load torque has the vehicle in J_2 and ends there.
@@ -35,7 +36,7 @@ WINDOW = 1024
 class Tyre:
     """Attributes:
     c_t: stiffness in N.m/rad, motor side.
-    d_t: damping in N.m.s/rad, motor side.
+    d_t: torque over speed of slip in N.m.s/rad, motor side.
     J_v: inertia of the vehicle in kg.m2, motor side.
     explained: share of the power of the load torque.
     """
@@ -59,15 +60,15 @@ def tyre(T_load: np.ndarray, omega_2: np.ndarray, T_mot: np.ndarray, T_s: float,
     (f, load), (_, wheel) = (csd(T_mot, x, 1.0 / T_s, nperseg=length, detrend="linear") for x in (T_load, omega_2))
     at = (f >= TYRE[0]) & (f <= TYRE[1])
     s, load, wheel = 2j * np.pi * f[at], load[at], wheel[at]
-    # omega_2 - omega_v = -s T_load/(c_t + d_t s), as c_t + d_t s = joint
-    joint = -s / (wheel / load + 1.0 / (J_v * s))
-    weight = abs(load / joint)
-    A = np.concatenate([np.column_stack([weight, 0.0 * weight]), np.column_stack([0.0 * weight, weight * s.imag])])
-    b = np.concatenate([weight * joint.real, weight * joint.imag])
-    c_t, d_t = np.linalg.lstsq(A, b, rcond=None)[0]
-    missed = joint - c_t - d_t * s
-    explained = 1.0 - float(np.sum(abs(weight * missed) ** 2) / np.sum(abs(weight * joint) ** 2))
-    return Tyre(float(c_t), float(d_t), J_v, explained)
+    # (omega_2 - omega_v)/-T_load = s/c_t + 1/d_t
+    gives = -(wheel / load + 1.0 / (J_v * s))
+    weight = abs(load)
+    A = np.concatenate([np.column_stack([0.0 * weight, weight]), np.column_stack([weight * s.imag, 0.0 * weight])])
+    b = np.concatenate([weight * gives.real, weight * gives.imag])
+    spring, slip = np.linalg.lstsq(A, b, rcond=None)[0]
+    missed = gives - spring * s - slip
+    explained = 1.0 - float(np.sum(abs(weight * missed) ** 2) / np.sum(abs(weight * gives) ** 2))
+    return Tyre(1.0 / float(spring), 1.0 / float(slip), J_v, explained)
 
 
 def response(p: Parameters, frequencies: np.ndarray, behind: Tyre | None = None) -> np.ndarray:
@@ -75,7 +76,7 @@ def response(p: Parameters, frequencies: np.ndarray, behind: Tyre | None = None)
     s = 2j * np.pi * frequencies
     wheels = p.J_2 * s
     if behind:
-        joint = behind.c_t / s + behind.d_t
+        joint = 1.0 / (s / behind.c_t + 1.0 / behind.d_t)
         wheels = wheels + joint * behind.J_v * s / (joint + behind.J_v * s)
     shaft = p.C / s + p.d
     return 1.0 / (p.J_1 * s + shaft * wheels / (shaft + wheels))
