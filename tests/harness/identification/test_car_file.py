@@ -26,7 +26,7 @@ FOUND = Identified(
     free=FREE,
     noise=NOISE,
     loop=LOOP,
-    tyre=Tyre(380.0, 4.0, 1.5, 0.97),
+    tyre=Tyre(480.0, 30.0, 1.5, 0.97),
     quality=Quality(97.0, 99.0, 96.0, 1.02, 0.03),
     drive=simulated(seed=1, n=20),
     warnings=("something is odd",),
