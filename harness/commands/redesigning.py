@@ -48,9 +48,12 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
 
 def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]) -> Table:
     """The car, by the entries of its vehicle file, with what the controller was told before and after."""
-    table = Table(title="settling time in ms and overshoot in %: before and after, on this car")
-    for heading in ("plant", "manoeuvre", "settling", "", "overshoot", ""):
-        table.add_column(heading, justify="right" if heading not in ("plant", "manoeuvre") else "left")
+    table = Table(title="settling time in ms and overshoot in % on this car, before and after")
+    table.add_column("plant")
+    table.add_column("manoeuvre")
+    for what in ("settling", "overshoot"):
+        for when in ("before", "after"):
+            table.add_column(f"{what}\n{when}", justify="right")
     for plant in PLANTS:
         for manoeuvre in MANOEUVRES:
             both = [worth(plant, manoeuvre, car, told) for told in (before, after)]

@@ -1,0 +1,248 @@
+"""`driveline identify`: from a recording to the parameters of the car and to a controller for it."""
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+from fmpy import read_model_description
+from matplotlib.figure import Figure
+
+from fmus.parameter_files import read_parameters, read_vehicle
+from harness.analysis.design import design
+from harness.analysis.weights import PLANT, records
+from harness.cli import main
+from harness.commands import redesigning
+from harness.simulate import simulate
+
+FIGURES = {
+    f"car_{name}.{ending}" for name in ("simulation", "innovations", "cost", "response") for ending in ("png", "pdf")
+}
+FILES = {"car.toml", "car_identified.json", "car.json", *FIGURES}
+
+Identify = Callable[..., int]
+
+
+@pytest.fixture(scope="module")
+def recording(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """4 s of the design model."""
+    folder = tmp_path_factory.mktemp("recorded")
+    assert main(["record", "--duration", "4", "--fmus", str(both_built), "--output", str(folder), "--quiet"]) == 0
+    return folder / "TwoMassDriveline_prbs_off.csv"
+
+
+@pytest.fixture
+def identify(recording: Path, tmp_path: Path) -> Identify:
+    """Runs the command on the recording, into tmp_path/out."""
+    return lambda *more: main(["identify", str(recording), "--output", str(tmp_path / "out" / "car.toml"), *more])
+
+
+def found(folder: Path) -> dict:
+    return json.loads((folder / "car_identified.json").read_text(encoding="utf-8"))
+
+
+def require_close(document: dict, name: str, true: float, relative: float) -> None:
+    """Within four standard deviations, which are small."""
+    deviation = document["standard_deviations"][name]
+    assert abs(document["parameters"][name] - true) < 4.0 * deviation, name
+    assert deviation < relative * true, name
+
+
+def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_same(
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the figures show, and that they remain the same, is tested with them; here they are drawn but not saved."""
+    monkeypatch.setattr(Figure, "savefig", lambda _, path, **__: path.write_bytes(b"a figure"))
+    folder = tmp_path / "out"
+    assert identify() == 0
+    said = capsys.readouterr().out
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert {line.split(": ")[1] for line in said.splitlines() if line.startswith("written")} == {
+        str(folder / name) for name in FILES
+    }
+    assert "identified with load torque, by prediction error: J_2 is that of the wheels alone" in said
+    assert "warning" not in said
+    document = found(folder)
+    for name, true, relative in (("J_2", PLANT.J_2, 4e-3), ("C", PLANT.C, 1e-3), ("phi_B", PLANT.phi_B, 3e-3)):
+        require_close(document, name, true, relative)
+    assert document["torque_loop"]["tau"] == pytest.approx(0.003, rel=0.01)
+    assert min(document["fit"][name] for name in ("simulated", "one_step", "predicted")) > 99.0
+    assert read_vehicle(folder / "car.toml").keys() == {"C", "phi_B", "tau"}
+    assert json.loads((folder / "car.json").read_text(encoding="utf-8"))["files"]
+
+    monkeypatch.setattr("harness.commands.identify.draw", lambda *_: [])
+    before = {name: (folder / name).read_bytes() for name in ("car.toml", "car_identified.json")}
+    assert identify("--quiet") == 0
+    assert capsys.readouterr() == ("", "")
+    assert {name: (folder / name).read_bytes() for name in before} == before
+
+    assert identify("--free", "J_1") == 2, "another run"
+    assert "car.toml is of another run (free" in capsys.readouterr().err
+    assert {name: (folder / name).read_bytes() for name in before} == before
+
+
+def test_more_parameters_can_be_freed(identify: Identify, tmp_path: Path, without_figures: None) -> None:
+    """Each once, however often it is asked for; J_1 then stands in the vehicle file."""
+    assert identify("--free", "J_1", "--free", "d", "--free", "J_1", "--quiet") == 0
+    document = found(tmp_path / "out")
+    assert sorted(document["free"]) == ["C", "J_1", "J_2", "d", "g_L", "phi_B"]
+    require_close(document, "J_1", PLANT.J_1, 2e-3)
+    entries = read_vehicle(tmp_path / "out" / "car.toml")
+    assert entries["J_1"] == pytest.approx(document["parameters"]["J_1"], rel=1e-5)
+    assert "d" not in entries
+
+
+@pytest.fixture
+def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are drawn in another test."""
+    monkeypatch.setattr("harness.commands.identify.draw", lambda *_: [])
+
+
+def test_without_load_torque_and_demand_the_result_has_another_name(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], without_figures: None
+) -> None:
+    path = tmp_path / "less.csv"
+    table = pd.read_csv(recording).drop(columns=["Wheel Torque [N.m]", "Torque Demand [N.m]"])
+    table.to_csv(path, index=False)
+    assert main(["identify", str(path), "--output", str(tmp_path / "car.toml")]) == 0
+    assert "identified effective, without load torque" in capsys.readouterr().out
+    document = found(tmp_path)
+    assert document["torque_loop"] is None
+    assert document["tyre"] is None
+    assert document["parameters"]["J_2"] > 3.0 * PLANT.J_2, "the vehicle is in it"
+    assert read_vehicle(tmp_path / "car.toml").keys() == {"C", "phi_B"}
+
+
+def test_the_vehicle_file_that_is_given_is_what_is_known(
+    identify: Identify, tmp_path: Path, capsys: pytest.CaptureFixture[str], without_figures: None
+) -> None:
+    """Its J_1, 3 % wrong, is doubted; its other entries stay."""
+    car = tmp_path / "known.toml"
+    car.write_text(f"J_1 = {1.03 * PLANT.J_1}\nC = 100.0\nm = 1450.0\n", encoding="utf-8")
+    assert identify("--vehicle", str(car)) == 0
+    said = capsys.readouterr().out
+    assert "warning: the recorded motor torque looks 0.97" in said
+    assert f"or J_1 = {1.03 * PLANT.J_1:g} kg.m2 should be 0.05" in said
+    entries = read_vehicle(tmp_path / "out" / "car.toml")
+    assert entries.keys() == {"J_1", "C", "m", "phi_B", "tau"}
+    assert (entries["J_1"], entries["m"]) == (1.03 * PLANT.J_1, 1450.0)
+
+
+def test_design_writes_gains_and_both_builds_and_compares(
+    identify: Identify,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    without_figures: None,
+    native_builder: object,
+) -> None:
+    asked = []
+
+    def worth(plant: str, manoeuvre: str, car: dict, told: dict) -> tuple[float, float]:
+        asked.append((plant, manoeuvre, car, told))
+        return (0.123, 0.045) if "k_d" in told else (0.234, 0.056)
+
+    monkeypatch.setattr(redesigning, "worth", worth)
+    assert identify("--design") == 0
+    folder = tmp_path / "out"
+    car, gains = read_vehicle(folder / "car.toml"), read_parameters(folder / "car_gains.toml")
+    assert gains == pytest.approx(design(*records(car)), rel=1e-5)
+    fmus = [folder / "car_fmus" / where / "DampingController.fmu" for where in (".", "native")]
+    for fmu in fmus:
+        start = {variable.name: str(variable.start) for variable in read_model_description(str(fmu)).modelVariables}
+        assert float(start["k_d"]) == pytest.approx(gains["k_d"])
+        assert float(start["C"]) == pytest.approx(car["C"])
+    files = json.loads((folder / "car.json").read_text(encoding="utf-8"))["files"]
+    assert files.count("DampingController.fmu") == 2
+    said = capsys.readouterr().out
+    assert said.count("234") == said.count("123") == said.count("5.6") == said.count("4.5") == len(asked) / 2 == 8
+    assert all(of == car for _, _, of, _ in asked)
+
+
+def test_what_a_controller_is_worth_depends_on_the_car_and_on_what_it_is_told(
+    both_built: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = []
+
+    def quick(*args: Any, **options: Any) -> Any:
+        given.append(options["parameters"])
+        return simulate(*args, **options, folder=both_built)
+
+    monkeypatch.setattr("harness.simulate.simulate", quick)
+    car, gains = {"C": 90.0}, design(*records({"C": 90.0}))
+    settling, overshoot = redesigning.worth("TwoMassDriveline", "tipin15", car, {})
+    assert redesigning.worth("TwoMassDriveline", "tipin15", car, {**car, **gains}) != (settling, overshoot)
+    assert [parameters["plant.C"] for parameters in given] == [90.0, 90.0]
+    assert given[1]["controller.C"] == 90.0
+    assert given[1]["controller.k_d"] == gains["k_d"]
+    assert given[0].get("controller.C") != 90.0
+    assert 0.02 < settling < 0.5
+    assert 0.0 <= overshoot < 0.5
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--output", "car.json"], "--output car.json: a vehicle file is a .toml"),
+        (["--vehicle", "absent.toml"], "absent.toml"),
+        (["--free", "C"], "--free: C is unknown; known are: J_1, d, g_T"),
+        (["--column", "T_mot=Nothing"], "Nothing"),
+    ],
+)
+def test_wrong_use_is_refused_with_exit_code_2(
+    recording: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    options: list[str],
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(["identify", str(recording), *options])
+    except SystemExit as end:
+        code = end.code
+    assert code == 2
+    assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_recording_that_is_not_there_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["identify", str(tmp_path / "drive.csv"), "--output", str(tmp_path / "car.toml")]) == 2
+    assert f"there is no recording {tmp_path / 'drive.csv'}" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_recording_that_is_too_short_is_refused_and_nothing_written(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "short.csv"
+    path.write_text("".join(recording.read_text(encoding="utf-8").splitlines(keepends=True)[: 1 + 1251]))
+    assert main(["identify", str(path), "--output", str(tmp_path / "out" / "car.toml")]) == 2
+    assert "short is 2.5 s long; 2.8 s or more" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_files_of_another_origin_are_not_replaced(
+    identify: Identify, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "out"
+    folder.mkdir()
+    for name in ("car.toml", "car_identified.json"):
+        (folder / name).write_text("mine")
+        assert identify() == 2
+        assert f"{folder / name} is there" in capsys.readouterr().err
+        assert (folder / name).read_text() == "mine"
+        (folder / name).unlink()
+
+
+def test_without_casadi_the_extra_is_named(
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "casadi", None)
+    assert identify() == 2
+    assert "identifying a model needs the package casadi: install the extra `native`" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
