@@ -63,8 +63,8 @@ class Innovations:
 
     @property
     def information(self) -> np.ndarray:
-        """Fisher's, as these innovations show it."""
-        return self.d_size.T @ self.d_size + 0.5 * self.d_log_S.T @ self.d_log_S
+        """Fisher's, as these innovations show it. A half of what the variance tells is in d_size."""
+        return self.d_size.T @ self.d_size + 0.25 * self.d_log_S.T @ self.d_log_S
 
 
 class Predictor:

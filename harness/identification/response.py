@@ -1,8 +1,8 @@
 """Frequency response of the drive train in contact, from the motor torque to the motor speed.
 
 With the load torque measured, the model ends at the wheels. What hangs on them is needed to say how the car answers
-on its own: a rolling tyre, which is a spring, its carcass, in series with a damper, its slip, between the wheels and the
-inertia of the vehicle,
+on its own: a rolling tyre, which is a spring, its carcass, in series with a damper, its slip, between the wheels and
+the inertia of the vehicle,
 
     omega_2 - omega_v = -(dT_load/dt/c_t + T_load/d_t),   J_v domega_v/dt = -T_load
 

@@ -103,12 +103,13 @@ def test_the_covariance_is_what_the_segments_say_each_for_itself(pieces: Segment
 
 def test_a_start_on_the_wrong_flank_is_found(pieces: Segments, starts: np.ndarray) -> None:
     right = pieces.found(_Point(P, 0.0, starts))
-    driving = right[:, 2] > P.phi_B + 0.05
-    assert 0 < driving.sum() < len(starts)
-    wrong = starts.copy()
-    wrong[driving, 2] *= -1.0
+    driving, braking = (side * right[:, 2] > P.phi_B + 0.01 for side in (1.0, -1.0))
+    assert driving.any()
+    assert braking.any()
+    wrong = right.copy()
+    wrong[driving | braking, 2] *= -1.0
     found = pieces.found(_Point(P, 0.0, wrong), anywhere=True)
-    np.testing.assert_allclose(found[driving, 2], right[driving, 2], atol=0.03)
+    np.testing.assert_allclose(found[driving | braking, 2], right[driving | braking, 2], atol=0.03)
 
 
 def test_free_runs_from_the_best_starts_are_off_by_little_more_than_the_noise(

@@ -101,6 +101,15 @@ def test_the_filter_finds_twist_wheel_speed_and_offsets() -> None:
     assert states[4] == pytest.approx(-1.2, abs=0.1)
 
 
+def test_the_information_about_a_standard_deviation_is_that_of_the_textbook() -> None:
+    """2 n about its logarithm; and n about a mean, in standard deviations."""
+    n = 100_000
+    size = np.random.default_rng(1).standard_normal(n)
+    d_size, d_log_S = np.column_stack([-size, -np.ones(n)]), np.column_stack([np.full(n, 2.0), np.zeros(n)])
+    information = Innovations(size, np.zeros(n), d_size, d_log_S).information
+    np.testing.assert_allclose(information / n, [[2.0, 0.0], [0.0, 1.0]], atol=0.02)
+
+
 def test_the_information_tells_how_the_gradient_scatters() -> None:
     """Over seeds the gradient has mean 0 and the information as its covariance."""
     free = ("J_1", "J_2", "C", "phi_B")
