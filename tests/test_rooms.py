@@ -34,7 +34,8 @@ ROOMS = {
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis"},
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
-    | {"harness.linear", "models", "models.block", "models.controller"},
+    | {"harness.linear", "models", "models.block", "models.controller"}
+    | {"harness.recordings", "harness.identification"},
     "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
     | {"harness.linear", "models", "models.controller"},
     "harness.identification": {"harness", "harness.recordings", "harness.reports"},

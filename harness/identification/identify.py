@@ -28,8 +28,8 @@ BROAD = 5.0
 """Noise of the load torque in N.m with which the search begins: the filter then follows the motor speed whatever the
 parameters are, and the cost has one valley."""
 
-FEW = 12
-"""Passes from a start that is near."""
+FEW, FEWER = 12, 6
+"""Passes from a start that is near, and from one that is next to it."""
 
 WIDER = 20.0
 """The same where the model does not explain the recording."""
@@ -195,16 +195,16 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
         return Answer("prediction error", found.p, sandwich(found), free, noise)
     free = (*ALWAYS, "g_L", *more)
     broad = Noise(noise.omega_1, noise.T_mot, BROAD)
-    found = maximise(Predictor(free), drive, start._replace(d=0.0), broad)
-    _told(said, "predicted by a wide filter", found.p)
-    found = maximise(Predictor(free), drive, found.p, noise, most=FEW)
+    begun = maximise(Predictor(free), drive, start._replace(d=0.0), broad)
+    _told(said, "predicted by a wide filter", begun.p)
+    found = maximise(Predictor(free), drive, begun.p, noise, most=FEW)
     _told(said, "predicted with the noise of the sensors", found.p)
     best = asked(drive, found, noise, more, said)
     doubts = late_or_early(drive, best, noise) if _size(best) > SUSPECT else []
     if _size(best) <= EXPLAINED:
         return Answer("prediction error", best.p, best.covariance, best.free, noise, tuple(doubts))
     said("the model does not explain all of the recording: pieces of 0.5 s are simulated")
-    fitted = simulated(drive, start, noise, more)
+    fitted = simulated(drive, begun.p, noise, more)
     _told(said, "simulated", fitted.p)
     lacks = (
         f"the two masses do not explain all of this car (size of the innovations {_size(best):.2f}): parameters are "
@@ -221,7 +221,7 @@ def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: S
     for name in ASKED:
         if name in best.free or (name == "g_T" and "J_1" in more):
             continue
-        tried = maximise(Predictor((*best.free, name)), drive, best.p, noise, most=FEW)
+        tried = maximise(Predictor((*best.free, name)), drive, best.p, noise, most=FEWER)
         if 2.0 * (best.innovations.cost - tried.innovations.cost) > LIKELY:
             best = tried
             _told(said, f"the data ask for {name} = {getattr(best.p, name):.4g}", best.p)

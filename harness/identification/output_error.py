@@ -104,12 +104,13 @@ class Segments:
         return Fitted(now.p, self.free, now.o_T, now.starts, covariance[1:, 1:], float(error))
 
     def free_runs(self, p: Parameters, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Motor speed in rad/s of runs from the best starts, and the recorded one, shape (segments, length)."""
-        at = _Point(p, 0.0, starts)
-        found = self.found(at, anywhere=True)
-        errors = [SIGMA * self._residuals(self.starting, k, start, at)[0] for k, start in enumerate(found)]
+        """States of runs from the best starts, shape (segments, length, states), and the recorded motor speed in rad/s,
+        shape (segments, length)."""
+        found = self.found(_Point(p, 0.0, starts), anywhere=True)
+        begins = [np.array([*start[:3], 0.0, start[3]]) for start in found]
+        runs = [self.starting.run(self.drive, first, x, p) for first, x in zip(self.firsts, begins, strict=True)]
         recorded = [self.drive.omega_1[first + 1 : first + 1 + self.length] for first in self.firsts]
-        return np.array(recorded) + np.array(errors), np.array(recorded)
+        return np.array(runs), np.array(recorded)
 
     def _descend(self, now: _Point, most: int) -> tuple[_Point, _Linear]:
         linear, trust = self._linear(now), 1e-3

@@ -69,7 +69,7 @@ def judged(drive: Drive, p: Parameters, noise: Noise, drift: float) -> Quality:
     simulated, recorded = pieces.free_runs(p, near_starts(pieces, through))
     size = through.size[first:]
     return Quality(
-        nrmse(simulated - recorded, recorded),
+        nrmse(simulated[..., 0] - recorded, recorded),
         nrmse(through.errors[first:], drive.omega_1[first + 1 :]),
         nrmse(np.array(errors), drive.omega_1[first + after :]),
         float(np.sqrt(np.mean(size**2))),

@@ -1,23 +1,19 @@
 """Puts the tables of docs/recordings.md between their marks: `python -m harness.reports.recordings_page`."""
 
-import re
 from pathlib import Path
 
 from ..recordings import relations, signal_checks
 from ..recordings.quantities import QUANTITIES, Quantity, aliases
 from .files import write_text
 from .markdown import markdown_table
+from .marked import filled
 
 PATH = Path(__file__).parents[2] / "docs" / "recordings.md"
-
-MARK = re.compile(r"(<!-- (\w+), made by [^>]* -->\n).*?(<!-- end -->)", re.DOTALL)
-"""Of a table, with its name."""
 
 
 def recordings_page(text: str) -> str:
     """The page with the tables that the declarations in `harness/recordings` make."""
-    tables = {"columns": _columns(), "checks": _checks()}
-    return MARK.sub(lambda found: f"{found[1]}{tables[found[2]]}\n{found[3]}", text)
+    return filled(text, {"columns": _columns(), "checks": _checks()})
 
 
 def _columns() -> str:

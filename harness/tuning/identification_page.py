@@ -1,0 +1,183 @@
+"""Writes the tables of docs/identification.md: `python -m harness.tuning.identification_page`."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from statistics import NormalDist
+
+import numpy as np
+
+from ..analysis.identification import (
+    DESIGN_MODEL,
+    KNOWN,
+    TRAPS,
+    VEHICLE,
+    Found,
+    Judged,
+    Redesigned,
+    accuracy,
+    from_anywhere,
+    judged,
+    redesigned,
+    trapped,
+)
+from ..analysis.weights import MOTOR
+from ..many import run_many
+from ..reports.files import write_text
+from ..reports.markdown import markdown_table
+from ..reports.marked import filled
+from ..robustness.draws import draw
+from ..stopping import script
+
+PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
+
+FIRST = 101
+"""Seed of the first recording; none of these was used in development."""
+
+KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES = 60, 20, 30, 4, 5
+DRAWS = {DESIGN_MODEL: 20, VEHICLE: 8}
+"""How many recordings of each."""
+
+DRAWN = 9
+"""Seed of the cars by lot."""
+
+RIGHT = {"J_2": 0.004, "C": 0.001, "phi_B": 0.0035}
+"""Relative error below which a search from a wide start has found the right optimum."""
+
+TRUE = {**KNOWN._asdict(), "tau": MOTOR.tau}
+
+WITHIN_95 = NormalDist().inv_cdf(0.975)
+
+WORSE = 0.05
+"""By which a redesigned controller may be worse at most."""
+
+
+def main() -> None:
+    seeds = range(FIRST, FIRST + KNOWN_J_1)
+    known = run_many(accuracy, [(seed, ()) for seed in seeds], label="accuracy")
+    free = run_many(accuracy, [(seed, ("J_1",)) for seed in seeds[:FREE_J_1]], label="accuracy with J_1 free")
+    starts = run_many(from_anywhere, range(FIRST, FIRST + STARTS), label="wide starts")
+    traps = run_many(trapped, [(k, FIRST + n) for k in range(len(TRAPS)) for n in range(OF_A_TRAP)], label="bad data")
+    vehicles = run_many(judged, [(FIRST + n, load) for load in (True, False) for n in range(VEHICLES)], label="vehicle")
+    draws = [(plant, draw(n, DRAWN)) for plant, count in DRAWS.items() for n in range(1, count + 1)]
+    cars = run_many(redesigned, [(plant, d.number, d.deviation, d.noise) for plant, d in draws], label="redesigned")
+    right = sum(all(abs(_off(found, name)) < limit for name, limit in RIGHT.items()) for found in starts)
+    median = float(np.median([found.seconds for found in known]))
+    said = (
+        f"{len(known)} recordings, {len(free)} with J_1 free; {median:.1f} s each (median, two at a time). From "
+        f"{len(starts)} wide starts the right optimum was found {right} times."
+    )
+    tables = {
+        "accuracy": f"{_accuracy(known, free)}\n\n{said}",
+        "vehicle": f"{_vehicle(vehicles[:VEHICLES], vehicles[VEHICLES:])}\n\n{VEHICLES} recordings each.",
+        "traps": _traps([traps[k : k + OF_A_TRAP] for k in range(0, len(traps), OF_A_TRAP)]) + f"\n\n{OF_A_TRAP} each.",
+        "redesigned": _redesigned(cars),
+    }
+    write_text(filled(PAGE.read_text(encoding="utf-8"), tables), PAGE)
+
+
+def _off(found: Found, name: str) -> float:
+    """Relative error."""
+    return found.values[name] / TRUE[name] - 1.0
+
+
+def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> str:
+    bound = {"J_2": ".084", "C": ".016", "phi_B": ".066"}
+    goal = {"J_2": ".12 / .4", "C": ".025 / .1", "phi_B": ".09 / .35", "J_1": "- / .1", "tau": "- / .4"}
+    rows = []
+    for case, names, every in (("", ("J_2", "C", "phi_B", "tau"), known), (", J_1 free", ("J_1", "J_2", "C"), free)):
+        for name in names:
+            off = np.array([100.0 * _off(found, name) for found in every])
+            inside = np.mean([abs(found.z(name, TRUE[name])) < WITHIN_95 for found in every])
+            rows.append(
+                [
+                    name + case,
+                    bound.get(name, "") if not case else "",
+                    f"{np.sqrt(np.mean(off**2)):.3f}",
+                    f"{abs(off).max():.3f}",
+                    goal.get(name, "") if name != "J_2" or not case else "",
+                    f"{100.0 * inside:.0f}",
+                ]
+            )
+    headings = ["", "bound (sd)", "rms error", "worst", "goal (rms / worst)", "in the 95 % interval, %"]
+    return markdown_table(headings, rows, labels=1)
+
+
+def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> str:
+    def mean(values: Sequence[float], decimals: int = 1) -> str:
+        return "-" if np.isnan(values).any() else f"{np.mean(values):.{decimals}f}"
+
+    def spread(every: Sequence[Judged], name: str) -> str:
+        values = [one.found.values[name] for one in every]
+        return f"{np.mean(values):.4g} +- {100.0 * np.std(values, ddof=1) / np.mean(values):.1f} %"
+
+    def row(text: str, goal: str, of: Callable[[Judged], float], decimals: int = 1) -> list[str]:
+        return [text, goal, *(mean([of(one) for one in every], decimals) for every in (measured, alone))]
+
+    rows = [
+        *([name, goal, spread(measured, name), spread(alone, name)] for name, goal in SPREAD_GOALS.items()),
+        row("simulated 0.5 s: omega_1", "92", lambda one: one.simulated[0]),
+        row("simulated 0.5 s: omega_1 - omega_2", "77", lambda one: one.simulated[1]),
+        row("the same below 12 Hz: omega_1", "95", lambda one: one.slow[0]),
+        row("the same below 12 Hz: omega_1 - omega_2", "91", lambda one: one.slow[1]),
+        row("predicted 50 ms: omega_1", "94 / 90", lambda one: one.found.quality["predicted"]),
+        row("response 2 to 12 Hz with the true load, dB rms", "1", lambda one: one.response[0], 2),
+        row("response 2 to 12 Hz of the car on its own, dB rms", "2", lambda one: one.response[1], 2),
+        row("resonance, Hz (linearised vehicle at 40 N.m: 8.0)", "8.0 +- .15", lambda one: one.found.resonance, 2),
+        row("time, s", "30", lambda one: one.found.seconds, 0),
+    ]
+    return markdown_table(["", "goal", "with load torque", "without"], rows, labels=1)
+
+
+SPREAD_GOALS = {"J_2": "2.5 %", "C": "1 %", "phi_B": "0.6 %", "d": ""}
+"""Standard deviation of repeated recordings, with load torque."""
+
+
+def _traps(every: Sequence[Sequence[Found]]) -> str:
+    rows = []
+    for trap, found in zip(TRAPS, every, strict=True):
+        true = TRUE | {name.partition(".")[2]: value for name, value in trap.parameters.items() if name == "motor.tau"}
+        scale = trap.J_1 if trap.J_1 != 1.0 else 1.0
+        inside = [
+            all(abs(one.z(name, true[name])) < 3.0 for name in ("J_2", "C", "phi_B", "tau")) and scale == 1.0
+            for one in found
+        ]
+        named = [bool(trap.cause) and any(trap.cause in warning for warning in one.warnings) for one in found]
+        fine = [a or b for a, b in zip(inside, named, strict=True)]
+        rows.append([trap.name, *(f"{100.0 * np.mean(share):.0f}" for share in (inside, named, fine))])
+    return markdown_table(["", "right within 3 sd, %", "cause named, %", "either, %"], rows, labels=1)
+
+
+def _redesigned(every: Sequence[Redesigned]) -> str:
+    rows = []
+    for plant in DRAWS:
+        cars = [car for car in every if car.plant == plant]
+        designed = [car for car in cars if not car.problem]
+        change = np.array([_means(car.after) / _means(car.before) for car in designed])
+        points = np.array([_means(car.after)[1] - _means(car.before)[1] for car in designed])
+        both = np.mean((change <= 1.0).all(axis=1) if len(change) else [0.0])
+        rows.append(
+            [
+                plant,
+                f"{len(cars)}",
+                f"{len(cars) - len(designed)}",
+                *(f"{np.median(change[:, k]):.2f}" for k in range(2)),
+                *(f"{100.0 * np.mean(change[:, k] <= 1.0):.0f}" for k in range(2)),
+                f"{100.0 * both:.0f}",
+                f"{100.0 * np.mean(change[:, 0] <= 1.0 + WORSE):.0f}",
+                f"{100.0 * points.max():.1f}",
+            ]
+        )
+    headings = [
+        *("plant", "cars", "no controller", "settling, over before (median)", "overshoot, over before (median)"),
+        *("settling not worse, %", "overshoot not worse, %", "neither worse, %", "settling at most 5 % worse, %"),
+        "overshoot at most more, points of %",
+    ]
+    return markdown_table(headings, rows, labels=1)
+
+
+def _means(of: Mapping[str, tuple[float, float]]) -> np.ndarray:
+    return np.mean(list(of.values()), axis=0)
+
+
+if __name__ == "__main__":
+    script(main)
