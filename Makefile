@@ -64,6 +64,7 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/python -m harness.tuning.goals_page
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.reports.recordings_page
+	$(BIN)/python -m harness.tuning.identification_page
 	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline analyse --replace --quiet
 	cp results/analyse/analysis.md docs/
