@@ -36,6 +36,7 @@ from ..simulate import simulate
 from .box import Deviation, changed
 from .cars import loop_parameters, loop_records
 from .design import design
+from .kalman import DesignError
 from .weights import MOTOR, PLANT, records
 
 DESIGN_MODEL, VEHICLE = PLANTS
@@ -279,7 +280,7 @@ def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
     before = {name: _worth(plant, name, true, seed) for name in TIPS}
     try:
         gains = design(*records(told))
-    except Exception as reason:  # any reason is told
+    except DesignError as reason:
         return Redesigned(plant, number, before, {}, told, str(reason))
     controller = {
         name: value

@@ -110,6 +110,7 @@ def run(args: argparse.Namespace) -> int:
         "vehicle": vehicle,
         "free": sorted(set(args.free)),
         "columns": dict(args.columns),
+        "aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases],
     }
     read = [args.recording, *args.aliases, args.vehicle]
     everything = output.with_name(f"{output.stem}_identified.json")

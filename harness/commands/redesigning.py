@@ -27,16 +27,17 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
 
     Raises:
         DesignError: there is no controller for this car.
-        DrivelineError: there are other gains, or the controller cannot be built.
+        DrivelineError: there are other gains, the vehicle file has what the controller cannot be set to, or the
+            controller cannot be built.
     """
     from fmus.builds import build_fmus
     from fmus.errors import BuildError
     from fmus.parameter_files import read_files
 
     gains = car.with_name(f"{car.stem}_gains.toml")
-    write_gains(designed(car), gains, replace)
-    yield gains
     try:
+        write_gains(designed(car), gains, replace)
+        yield gains
         yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
     except BuildError as reason:
         raise DrivelineError(str(reason)) from reason
@@ -48,7 +49,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
 
 def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]) -> Table:
     """The car, by the entries of its vehicle file, with what the controller was told before and after."""
-    table = Table(title="settling time in ms and overshoot in % on this car, before and after")
+    table = Table(title="settling time in ms and overshoot in %; each plant with what the vehicle file has of it")
     table.add_column("plant")
     table.add_column("manoeuvre")
     for what in ("settling", "overshoot"):

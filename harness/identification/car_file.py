@@ -5,7 +5,7 @@ from typing import Any
 
 from .drive_train import Parameters
 from .equivalent import equivalent
-from .identify import WITH_LOAD, Identified
+from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
 
 UNITS = {
     "J_1": "kg.m2",
@@ -19,7 +19,7 @@ UNITS = {
 
 MEANS = {
     WITH_LOAD: "J_2 is that of the wheels alone",
-    "": "J_2 carries the vehicle",
+    WITHOUT_LOAD: "J_2 carries the vehicle",
 }
 
 Z_95 = 1.96
@@ -27,7 +27,7 @@ Z_95 = 1.96
 
 
 def found(identified: Identified) -> list[tuple[str, float, float]]:
-    """Name, value and half of the 95 % interval of each parameter, by which order they are told."""
+    """Name, value and half of the 95 % interval of each parameter that was identified."""
     half = {name: Z_95 * deviation for name, deviation in identified.deviations.items()}
     rows = [(name, float(value), half.get(name, 0.0)) for name, value in identified.p._asdict().items()]
     if identified.loop:
@@ -45,9 +45,8 @@ def lines(identified: Identified) -> list[str]:
         + f" ({100.0 * half / abs(value):.2g} %)"
         for name, value, half in every
     ]
-    meaning = MEANS.get(identified.name, MEANS[""])
     return [
-        f"identified {identified.name}, by {identified.method}: {meaning}; 95 % intervals",
+        f"identified {identified.name}, by {identified.method}: {MEANS[identified.name]}; 95 % intervals",
         *(f"  {line}" for line in parameters),
         f"the car answers most at {identified.resonance:.2f} Hz",
         f"fit to the last quarter, which was not used: simulated 0.5 s {quality.simulated:.1f} %, "

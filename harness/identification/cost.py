@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from .identify import Identified
-from .prediction import Predictor, filtered
+from .prediction import filtered
 
 SPAN = 4.0
 """Standard deviations to either side of the answer."""
@@ -43,9 +43,8 @@ def exact(identified: Identified) -> bool:
 
 
 def curvature(identified: Identified) -> np.ndarray:
-    """Second derivatives of the cost by the free parameters."""
-    if exact(identified):
-        return Predictor(identified.free).innovations(identified.drive, identified.p, identified.noise).information
+    """Second derivatives of the cost by the free parameters; next to nothing for one that the recording tells nothing
+    of."""
     return np.linalg.inv(identified.covariance)
 
 

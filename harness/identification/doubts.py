@@ -9,6 +9,7 @@ from .drive_train import Parameters
 from .driven import Drive
 from .maximum_likelihood import Found, maximise
 from .prediction import Noise, Predictor, filtered
+from .response import Tyre
 from .torque_loop import FittedLoop
 
 LIKELY = 10.8
@@ -25,6 +26,12 @@ DEMAND_LATE = 0.5
 
 LAG_OFF = 0.1
 """Share of tau that the vehicle file may be wrong by until it is said."""
+
+SURELY = 3.0
+"""Standard deviations by which the gain of the motor torque must be off to be spoken of."""
+
+EXPLAINS = 0.8
+"""Share that a tyre must explain of what the spectra of load torque and wheel speed tell."""
 
 FLANK = 0.02
 """Share of the time that the teeth must spend on either flank."""
@@ -46,9 +53,9 @@ def late_or_early(drive: Drive, found: Found, noise: Noise) -> list[str]:
     return [said] if gain > LIKELY else []
 
 
-def of_gain(p: Parameters) -> list[str]:
-    """What a gain of the motor torque that the data ask for may mean."""
-    if p.g_T == 1.0:
+def of_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """What a gain of the motor torque that is surely not 1 may mean."""
+    if abs(p.g_T - 1.0) <= SURELY * deviations.get("g_T", 0.0):
         return []
     return [
         f"the recorded motor torque looks {p.g_T:.4g} times the true one, or J_1 = {p.J_1:g} kg.m2 should be "
@@ -57,13 +64,9 @@ def of_gain(p: Parameters) -> list[str]:
 
 
 def undetermined(
-    drive: Drive, p: Parameters, noise: Noise, deviations: Mapping[str, float], messages: bool, free: Sequence[str]
+    drive: Drive, p: Parameters, noise: Noise, deviations: Mapping[str, float], free: Sequence[str]
 ) -> list[str]:
-    """What the excitation does not determine.
-
-    Args:
-        messages: whether the wheel speed came in messages.
-    """
+    """What the excitation does not determine."""
     said = []
     phi = filtered(drive, p, noise).states[:, 2]
     driving, braking = (float(np.mean(side * phi > p.phi_B)) for side in (1.0, -1.0))
@@ -74,14 +77,27 @@ def undetermined(
         )
     if "J_1" in free and "g_T" in free:
         said.append(
-            "J_1 and the gain of the motor torque are both free: only the gain of the load torque sets the scale"
+            "J_1 and the gain of the motor torque are both free, and nothing sets their scale: free one of them"
         )
     wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
     if wide:
         said.append(f"{', '.join(wide)}: standard deviation of more than {100.0 * CLOSE:g} %; excite more or longer")
-    if "d" in deviations and messages and deviations["d"] > CLOSE * abs(p.d):
-        said.append("d is determined poorly, as the wheel speed is known from messages only; a faster one would help")
+    if deviations.get("d", 0.0) > CLOSE * abs(p.d):
+        said.append(
+            f"d is known to {100.0 * deviations['d'] / abs(p.d or 1.0):.0f} % only: without a measured wheel motion "
+            "damping is hardly seen"
+        )
     return said
+
+
+def of_tyre(behind: Tyre) -> list[str]:
+    """Whether the load torque is that of a tyre."""
+    if behind.explained >= EXPLAINS and min(behind.c_t, behind.d_t) > 0.0:
+        return []
+    return [
+        f"the load torque is not that of a tyre with a vehicle behind it ({100.0 * behind.explained:.0f} % explained): "
+        "how the car answers on its own, and C in the vehicle file, are those of the drive train alone"
+    ]
 
 
 def of_demand(loop: FittedLoop, T_s: float, tau: float) -> list[str]:

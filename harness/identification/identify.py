@@ -8,7 +8,7 @@ import numpy as np
 
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
-from .doubts import LIKELY, late_or_early, of_demand, of_gain, undetermined
+from .doubts import LIKELY, late_or_early, of_demand, of_gain, of_tyre, undetermined
 from .drive_train import Parameters
 from .driven import Drive, driven
 from .maximum_likelihood import Found, maximise
@@ -148,16 +148,19 @@ def identify(
     without = again(used, answer, measured)
     drift = WITHIN if measured else UNMEASURED
     through = filtered(drive, answer.p, answer.noise)
-    behind = None
+    behind, odd = None, []
     if recording.T_load is not None:
         load = recording.T_load[1:] / answer.p.g_L
         behind = tyre(load, through.states[:, 1], drive.T_mot.mean(axis=1), drive.T_s, J_v)
+        odd = of_tyre(behind)
+        behind = None if odd else behind
     warnings = [
         *recording.warnings,
         *(of_demand(loop, drive.T_s, tau) if loop else ()),
-        *of_gain(answer.p),
+        *of_gain(answer.p, answer.deviations),
         *answer.warnings,
-        *undetermined(drive, answer.p, answer.noise, answer.deviations, recording.counter is not None, answer.free),
+        *odd,
+        *undetermined(drive, answer.p, answer.noise, answer.deviations, answer.free),
     ]
     return Identified(
         WITH_LOAD if measured else WITHOUT_LOAD,

@@ -94,7 +94,7 @@ def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> str:
                     bound.get(name, "") if not case else "",
                     f"{np.sqrt(np.mean(off**2)):.3f}",
                     f"{abs(off).max():.3f}",
-                    goal.get(name, "") if name != "J_2" or not case else "",
+                    goal.get(name, "") if name == "J_1" or not case else "",
                     f"{100.0 * inside:.0f}",
                 ]
             )
@@ -119,10 +119,15 @@ def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> str:
         row("simulated 0.5 s: omega_1 - omega_2", "77", lambda one: one.simulated[1]),
         row("the same below 12 Hz: omega_1", "95", lambda one: one.slow[0]),
         row("the same below 12 Hz: omega_1 - omega_2", "91", lambda one: one.slow[1]),
-        row("predicted 50 ms: omega_1", "94 / 90", lambda one: one.found.quality["predicted"]),
+        row("predicted 50 ms: omega_1 (the last quarter)", "94 / 90", lambda one: one.found.quality["predicted"]),
         row("response 2 to 12 Hz with the true load, dB rms", "1", lambda one: one.response[0], 2),
         row("response 2 to 12 Hz of the car on its own, dB rms", "2", lambda one: one.response[1], 2),
-        row("resonance, Hz (linearised vehicle at 40 N.m: 8.0)", "8.0 +- .15", lambda one: one.found.resonance, 2),
+        row(
+            f"resonance, Hz (true: {measured[0].peak:.2f})",
+            "8.0 +- .15",
+            lambda one: one.found.resonance,
+            2,
+        ),
         row("time, s", "30", lambda one: one.found.seconds, 0),
     ]
     return markdown_table(["", "goal", "with load torque", "without"], rows, labels=1)
@@ -143,7 +148,8 @@ def _traps(every: Sequence[Sequence[Found]]) -> str:
         ]
         named = [bool(trap.cause) and any(trap.cause in warning for warning in one.warnings) for one in found]
         fine = [a or b for a, b in zip(inside, named, strict=True)]
-        rows.append([trap.name, *(f"{100.0 * np.mean(share):.0f}" for share in (inside, named, fine))])
+        shares = [f"{100.0 * np.mean(share):.0f}" for share in (inside, named, fine)]
+        rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2]])
     return markdown_table(["", "right within 3 sd, %", "cause named, %", "either, %"], rows, labels=1)
 
 

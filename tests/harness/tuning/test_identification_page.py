@@ -40,7 +40,7 @@ def test_a_trap_is_passed_by_the_right_answer_or_by_naming_the_cause() -> None:
     every = [[RIGHT, RIGHT] for _ in TRAPS]
     every[late] = [wrong, named]
     assert row(_traps(every), TRAPS[late].name)[1:] == ["0", "50", "50"]
-    assert row(_traps(every), TRAPS[0].name)[1:] == ["100", "0", "100"]
+    assert row(_traps(every), TRAPS[0].name)[1:] == ["100", "-", "100"]
 
 
 def test_a_wrong_J_1_is_only_passed_if_it_is_named() -> None:
