@@ -31,6 +31,7 @@ from ..metrics.evaluate import at_samples, evaluate
 from ..record import MeasurementWheels, sensed
 from ..recordings.filters import low
 from ..recordings.measurement import Measurement, read_measurement
+from ..recordings.source import RecordingError
 from ..reports.csv_file import write_csv
 from ..simulate import simulate
 from .box import Deviation, changed
@@ -275,8 +276,11 @@ def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
     plant, number, deviation, seed = case
     blocks = {place: record()._asdict() for place, record in loop_records(plant).items()}
     true = changed(blocks, deviation)
-    recorded, _ = recording(plant, seed, true)
-    told = car(identified(recorded), {})
+    try:
+        recorded, _ = recording(plant, seed, true)
+        told = car(identified(recorded), {})
+    except RecordingError as reason:
+        return Redesigned(plant, number, {}, {}, {}, str(reason))
     before = {name: _worth(plant, name, true, seed) for name in TIPS}
     try:
         gains = design(*records(told))

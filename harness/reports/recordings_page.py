@@ -46,7 +46,7 @@ def _checks() -> str:
         ("constant", _each("{q.least_swing:g} {q.unit} or less"), "refused"),
         (
             "two channels exchanged",
-            f"a correlation of another torque and speed is the largest, and {relations.LINK:g} or more",
+            f"a correlation of another torque and speed is the largest, and {relations.OTHERS:g} or more",
             "refused",
         ),
         ("wrong sign of motor torque or speed", f"a correlation of -{relations.LINK:g} or less", "refused"),

@@ -33,8 +33,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
 
-KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES = 60, 20, 30, 4, 5
-DRAWS = {DESIGN_MODEL: 20, VEHICLE: 8}
+KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES = 40, 10, 20, 3, 4
+DRAWS = {DESIGN_MODEL: 24, VEHICLE: 8}
 """How many recordings of each."""
 
 DRAWN = 9

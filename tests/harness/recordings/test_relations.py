@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from harness.recordings.filters import band, low
-from harness.recordings.relations import FAST, LINK, OPPOSED, RATIO, SIZE, SLOW, links
+from harness.recordings.relations import FAST, LINK, OPPOSED, OTHERS, RATIO, SIZE, SLOW, links
 from harness.recordings.source import RecordingError
 
 from .car import drive
@@ -18,6 +18,16 @@ def test_exchanged_channels_are_named(read: Read, names: tuple[str, str]) -> Non
     one, (a, b) = drive(), names
     with pytest.raises(RecordingError, match=rf"are {a} \[.*\] and {b} \[.*\] exchanged\?"):
         read(one | {a: one[b], b: one[a]})
+
+
+def test_channels_are_only_exchanged_if_it_is_certain(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a wide gap the teeth hit hard, and the motor feels what the wheels feel."""
+    found = {("T_mot", "omega_1"): 0.4, ("T_load", "omega_1"): -0.99 * OTHERS}
+    monkeypatch.setattr("harness.recordings.relations.links", lambda *_: found)
+    read(drive())
+    found["T_load", "omega_1"] = -1.01 * OTHERS
+    with pytest.raises(RecordingError, match=r"exchanged\?"):
+        read(drive())
 
 
 @pytest.mark.parametrize("name", ["omega_1", "T_mot"])
