@@ -65,6 +65,10 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/python -m fmus.description.blocks_page
 	$(BIN)/python -m harness.reports.recordings_page
 	$(BIN)/python -m harness.tuning.identification_page
+	$(BIN)/driveline record --plant ValidationVehicle --replace --quiet
+	$(BIN)/driveline identify results/record/ValidationVehicle_prbs_off.csv --output results/identify/identification.toml \
+		--replace --quiet
+	cp results/identify/identification_simulation.png docs/figures/
 	$(BIN)/python -m benchmarks.target_cost
 	$(BIN)/driveline analyse --replace --quiet
 	cp results/analyse/analysis.md docs/

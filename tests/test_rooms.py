@@ -41,7 +41,7 @@ ROOMS = {
     "harness.identification": {"harness", "harness.recordings", "harness.reports"},
     "harness.tuning": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
-    | {"harness.robustness"},
+    | {"harness.robustness", "harness.identification"},
     "harness": COSIMULATION
     | {"harness.recordings", "harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
     | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it

@@ -6,6 +6,7 @@ from typing import Any
 from .drive_train import Parameters
 from .equivalent import equivalent
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
+from .quality import Z_95
 
 UNITS = {
     "J_1": "kg.m2",
@@ -21,9 +22,6 @@ MEANS = {
     WITH_LOAD: "J_2 is that of the wheels alone",
     WITHOUT_LOAD: "J_2 carries the vehicle",
 }
-
-Z_95 = 1.96
-"""Standard deviations of a 95 % interval."""
 
 
 def found(identified: Identified) -> list[tuple[str, float, float]]:

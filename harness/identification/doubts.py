@@ -15,8 +15,8 @@ from .torque_loop import FittedLoop
 LIKELY = 10.8
 """Twice the gain in likelihood of one more parameter from which on it is asked for: by chance once in a thousand."""
 
-LATE = 2
-"""Samples by which it is tried whether the load torque is late or early."""
+LATE = 0.004
+"""Time in s by which it is tried whether the load torque is late or early."""
 
 TRIAL = 4
 """Passes that a trial may take."""
@@ -43,12 +43,13 @@ CLOSE = 0.05
 def late_or_early(drive: Drive, found: Found, noise: Noise) -> list[str]:
     """Whether the recording is explained better if the load torque is shifted."""
     gains = []
-    for late, word in ((LATE, "late"), (-LATE, "early")):
+    samples = max(round(LATE / drive.T_s), 1)
+    for late, word in ((samples, "late"), (-samples, "early")):
         shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
         told = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
         gains.append((2.0 * (found.innovations.cost - told.innovations.cost), word))
     gain, word = max(gains)
-    by = 1e3 * drive.T_s * LATE
+    by = 1e3 * drive.T_s * samples
     said = f"the load torque looks {word}: shifted by {by:g} ms the recording is explained better"
     return [said] if gain > LIKELY else []
 

@@ -14,7 +14,7 @@ from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save,
 from .free_runs import FreeRuns, free_runs
 from .identify import Identified
 from .prediction import filtered
-from .quality import BURN_IN, SIMULATED
+from .quality import BURN_IN, SIMULATED, Z_95, autocorrelation
 
 STRETCH = 3.0
 """Of the recording, its end, in s."""
@@ -27,9 +27,6 @@ BARS = 51
 
 NORMAL = 4.0
 """Size up to which the normal density is drawn at least."""
-
-INSIDE = float(norm.ppf(0.975))
-"""Standard deviations within which 95 % are."""
 
 
 def plot_simulation(identified: Identified, recording: Measurement, stem: Path, caption: str = "") -> list[Path]:
@@ -143,10 +140,9 @@ def _distribution(axes: Axes, size: np.ndarray) -> None:
 
 
 def _autocorrelation(axes: Axes, size: np.ndarray, T_s: float) -> None:
-    x = size - size.mean()
     lags = np.arange(1, round(LAGS / T_s) + 1)
-    white = INSIDE / np.sqrt(len(x))
+    white = Z_95 / np.sqrt(len(size))
     axes.axhspan(-white, white, color=GREY, alpha=0.4, lw=0, label="95 % of white noise")
-    axes.vlines(lags * T_s, 0.0, [float(x[lag:] @ x[:-lag] / (x @ x)) for lag in lags], color=BLUE)
+    axes.vlines(lags * T_s, 0.0, [autocorrelation(size, int(lag)) for lag in lags], color=BLUE)
     axes.set(xlabel="lag in s", ylabel="autocorrelation", xlim=(0.0, LAGS))
     legend(axes)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import norm
 
 from .drive_train import Parameters
 from .driven import Drive
@@ -12,6 +13,9 @@ from .simulation import Simulator
 
 SIMULATED, PREDICTED = 0.5, 0.05
 """In s."""
+
+Z_95 = float(norm.ppf(0.975))
+"""Standard deviations within which 95 % of what is normal are."""
 
 BURN_IN = 0.2
 """Time in s until the filter has found its state."""
@@ -73,10 +77,11 @@ def judged(drive: Drive, p: Parameters, noise: Noise, drift: float) -> Quality:
         nrmse(through.errors[first:], drive.omega_1[first + 1 :]),
         nrmse(np.array(errors), drive.omega_1[first + after :]),
         float(np.sqrt(np.mean(size**2))),
-        max((_autocorrelation(size, lag) for lag in range(1, after + 1)), key=abs),
+        max((autocorrelation(size, lag) for lag in range(1, after + 1)), key=abs),
     )
 
 
-def _autocorrelation(x: np.ndarray, lag: int) -> float:
+def autocorrelation(x: np.ndarray, lag: int) -> float:
+    """Of samples so many apart; 1 if they are the same."""
     x = x - x.mean()
     return float(x[lag:] @ x[:-lag] / (x @ x))

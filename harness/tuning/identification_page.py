@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from statistics import NormalDist
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from ..analysis.identification import (
     trapped,
 )
 from ..analysis.weights import MOTOR
+from ..identification.quality import Z_95
 from ..many import run_many
 from ..reports.files import write_text
 from ..reports.markdown import markdown_table
@@ -44,8 +44,6 @@ RIGHT = {"J_2": 0.004, "C": 0.001, "phi_B": 0.0035}
 """Relative error below which a search from a wide start has found the right optimum."""
 
 TRUE = {**KNOWN._asdict(), "tau": MOTOR.tau}
-
-WITHIN_95 = NormalDist().inv_cdf(0.975)
 
 WORSE = 0.05
 """By which a redesigned controller may be worse at most."""
@@ -87,7 +85,7 @@ def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> str:
     for case, names, every in (("", ("J_2", "C", "phi_B", "tau"), known), (", J_1 free", ("J_1", "J_2", "C"), free)):
         for name in names:
             off = np.array([100.0 * _off(found, name) for found in every])
-            inside = np.mean([abs(found.z(name, TRUE[name])) < WITHIN_95 for found in every])
+            inside = np.mean([abs(found.z(name, TRUE[name])) < Z_95 for found in every])
             rows.append(
                 [
                     name + case,
