@@ -66,7 +66,7 @@ def test_redesigned_controllers_are_compared_car_by_car() -> None:
 
 
 def test_the_vehicle_is_told_with_and_without_load() -> None:
-    one = Judged(RIGHT, (95.0, 78.0), (98.0, 94.0), (0.2, 0.7), 8.0)
+    one = Judged(with_values(d=0.3), (95.0, 78.0), (98.0, 94.0), (0.2, 0.7), 8.0)
     alone = replace(one, response=(float("nan"), 1.1), simulated=(93.0, 50.0))
     table = _vehicle([one, one], [alone, alone])
     assert row(table, "simulated 0.5 s: omega_1 - omega_2")[2:] == ["78.0", "50.0"]
