@@ -95,15 +95,36 @@ def unswallowed() -> Iterator[None]:
 
 @contextmanager
 def uninterrupted_children() -> Iterator[None]:
-    """Processes and threads that are begun within it get nothing from the terminal: who began them ends them."""
-    if not hasattr(signal, "pthread_sigmask"):
+    """Processes and threads that are begun within it get nothing from the terminal: who began them ends them, and is
+    itself stopped only when they are all known to it."""
+    with _stopped_after():
+        if not hasattr(signal, "pthread_sigmask"):
+            yield
+            return
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _stopped_after() -> Iterator[None]:
+    """What ENDING do within it, they do at its end."""
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    come: list[int] = []
+    before = {number: handler for number in ENDING if callable(handler := signal.getsignal(number))}
+    for number in before:
+        signal.signal(number, lambda number, _: come.append(number))
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for number in come[:1]:
+            signal.raise_signal(number)
 
 
 def reopen_closed_streams() -> None:

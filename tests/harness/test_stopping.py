@@ -15,6 +15,7 @@ import pytest
 from harness.cli import main
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.simulate import simulate
+from harness.stopping import Stopped, stoppable, uninterrupted_children
 from tests import ROOT
 
 COMPARE = [sys.executable, "-m", "harness", "compare"]
@@ -79,6 +80,15 @@ MAINS = [
 @pytest.mark.parametrize("path", MAINS, ids=lambda path: path.stem)
 def test_every_module_that_is_run_is_stopped_so(path: Path) -> None:
     assert path.read_text(encoding="utf-8").endswith('\n\nif __name__ == "__main__":\n    script(main)\n')
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_stop_while_workers_begin_waits_until_they_are_known(number: signal.Signals) -> None:
+    known = False
+    with pytest.raises(Stopped), stoppable(), uninterrupted_children():
+        signal.raise_signal(number)
+        known = True
+    assert known
 
 
 class Ended(Exception):
