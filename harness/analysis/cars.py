@@ -57,6 +57,18 @@ def loop_parameters(values: Mapping[str, Any], plant: str, controller: str = PLA
     return for_instances(values, {place: record._fields for place, record in records.items()})
 
 
+def of_controller(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
+    """Those of the controller alone: what it is told, whatever the car is."""
+    return {name: value for name, value in loop_parameters(values, plant).items() if name.startswith("controller.")}
+
+
+def settled(plant: str, manoeuvre: str, parameters: Mapping[str, Any], seed: int = 1) -> tuple[float, float]:
+    """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value."""
+    driven = MANOEUVRES[manoeuvre]
+    metrics = evaluate(simulate(driven, plant, True, parameters=parameters, seed=seed), driven)
+    return metrics.settling_time, metrics.overshoot
+
+
 def parameters(trial: Trial) -> dict[str, Any]:
     """What a trial gives the loop."""
     values = read_vehicle(trial.vehicle) if trial.vehicle else {}

@@ -5,11 +5,11 @@ Each case drives the car, writes the recording as its sensors would, reads it an
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cache
 from math import log
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import monotonic
-from typing import Any
 
 import numpy as np
 
@@ -19,15 +19,14 @@ from ..control_loop import PLANTS
 from ..identification.car_file import car
 from ..identification.drive_train import Parameters
 from ..identification.driven import driven as driven_by
-from ..identification.identify import UNMEASURED, WITHIN, Identified, identify
+from ..identification.identify import UNMEASURED, WITHIN, Identified, identify, of_sensors, predicted, simulated, widely
 from ..identification.prediction import filtered
 from ..identification.quality import near_starts, nrmse, segments
 from ..identification.response import response
 from ..linear.driven import driven as linear
 from ..linear.point import Point
-from ..manoeuvres.catalogue import MANOEUVRES
-from ..manoeuvres.prbs import binary_torque
-from ..metrics.evaluate import at_samples, evaluate
+from ..manoeuvres.prbs import TEST_DRIVE, TEST_SPEED, binary_torque
+from ..metrics.evaluate import at_samples
 from ..record import MeasurementWheels, sensed
 from ..recordings.filters import low
 from ..recordings.measurement import Measurement, read_measurement
@@ -35,7 +34,7 @@ from ..recordings.source import RecordingError
 from ..reports.csv_file import write_csv
 from ..simulate import simulate
 from .box import Deviation, changed
-from .cars import loop_parameters, loop_records
+from .cars import loop_records, of_controller, settled
 from .design import design
 from .kalman import DesignError
 from .weights import MOTOR, PLANT, records
@@ -44,9 +43,6 @@ DESIGN_MODEL, VEHICLE = PLANTS
 
 WHEELS = MeasurementWheels()
 """With their errors."""
-
-TEST_DRIVE: Mapping[str, Any] = {"mean": 10.0, "amplitude": 30.0, "clock": 0.04, "order": 9, "duration": 10.0}
-V_0 = 15.0 / 3.6
 
 KNOWN = Parameters(PLANT.J_1, PLANT.J_2, PLANT.C, 0.0, PLANT.phi_B)
 """The default car, with which the search begins."""
@@ -62,7 +58,7 @@ def recording(
     plant: str, seed: int, parameters: Mapping[str, float] | None = None, wheels: MeasurementWheels | None = None
 ) -> tuple[Measurement, np.ndarray]:
     """A test drive as recorded, and the true signals."""
-    drive = binary_torque("prbs", **TEST_DRIVE, v_0=V_0)
+    drive = binary_torque("prbs", **TEST_DRIVE, v_0=TEST_SPEED / 3.6)
     results = simulate(drive, plant, False, parameters=parameters or {}, seed=seed)
     with TemporaryDirectory() as folder:
         path = Path(folder, f"{plant}_{seed}.csv")
@@ -152,6 +148,7 @@ class Trap:
 
 
 TRAPS = (
+    Trap("nothing", "", {}),
     Trap("wheel speed 25 ms later over CAN", "", {"can.d_min": 0.026, "can.d_max": 0.05}),
     Trap("load torque 4 ms late", "load torque looks late", {}, late=0.004),
     Trap("J_1 taken 3 % too large", "J_1", {}, J_1=1.03),
@@ -187,6 +184,41 @@ class Judged:
     slow: tuple[float, float]
     response: tuple[float, float]
     peak: float
+
+
+@dataclass(frozen=True)
+class Method:
+    """What a method makes of a recording.
+
+    Attributes:
+        p: the parameters.
+        simulated: NRMSE in % of the motor speed in free runs over 0.5 s of another recording.
+        seconds: that it took.
+    """
+
+    p: Parameters
+    simulated: float
+    seconds: float
+
+
+def both_methods(case: tuple[str, int]) -> tuple[Method, Method]:
+    """Prediction error and output error from the same start, on the same recording: plant, seed."""
+    plant, seed = case
+    recorded, _ = recording(plant, seed)
+    drive, loop = driven_by(recorded)
+    noise = of_sensors(recorded, loop)
+    other, _ = driven_by(recording(plant, seed + 1000)[0])
+    begun = widely(drive, KNOWN, noise)
+
+    def method(of: Callable[[], Parameters]) -> Method:
+        began = monotonic()
+        p = of()
+        seconds = monotonic() - began
+        pieces = segments(other, (), WITHIN)
+        runs, speed = pieces.free_runs(p, near_starts(pieces, filtered(other, p, noise)))
+        return Method(p, nrmse(runs[..., 0] - speed, speed), seconds)
+
+    return method(lambda: predicted(drive, begun, noise).p), method(lambda: simulated(drive, begun, noise).p)
 
 
 SLOW = 12.0
@@ -230,6 +262,7 @@ def judged(case: tuple[int, bool]) -> Judged:
     return Judged(_found(answer, seconds), fits(lambda x: x), fits(slow), _responses(answer), peak)
 
 
+@cache
 def _true_response() -> tuple[np.ndarray, np.ndarray]:
     """omega_1 and T_load over T_mot of the vehicle in contact, at RESPONSE."""
     car = linear(Point(plant=validation_vehicle.BLOCK, T=TEST_DRIVE["mean"] + TEST_DRIVE["amplitude"]))
@@ -281,21 +314,11 @@ def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
         told = car(identified(recorded), {})
     except RecordingError as reason:
         return Redesigned(plant, number, {}, {}, {}, str(reason))
-    before = {name: _worth(plant, name, true, seed) for name in TIPS}
+    before = {name: settled(plant, name, true, seed) for name in TIPS}
     try:
         gains = design(*records(told))
     except DesignError as reason:
         return Redesigned(plant, number, before, {}, told, str(reason))
-    controller = {
-        name: value
-        for name, value in loop_parameters({**told, **gains}, plant).items()
-        if name.startswith("controller.")
-    }
-    after = {name: _worth(plant, name, true | controller, seed) for name in TIPS}
+    controller = of_controller({**told, **gains}, plant)
+    after = {name: settled(plant, name, true | controller, seed) for name in TIPS}
     return Redesigned(plant, number, before, after, told)
-
-
-def _worth(plant: str, manoeuvre: str, parameters: Mapping[str, Any], seed: int) -> tuple[float, float]:
-    given = MANOEUVRES[manoeuvre]
-    metrics = evaluate(simulate(given, plant, True, parameters=parameters, seed=seed), given)
-    return metrics.settling_time, metrics.overshoot

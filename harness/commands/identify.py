@@ -117,6 +117,8 @@ def run(args: argparse.Namespace) -> int:
     with recorded(record, same, {}, read, [output, everything], args.replace) as made:
         J_v = plant.m * plant.r**2 / plant.i**2
         identified = identify(recording, start, motor.tau, J_v, list(dict.fromkeys(args.free)), out.say)
+        for delay in recording.delays:
+            out.say(f"delay: {delay}")
         for line in car_file.lines(identified):
             out.say(line)
         for warning in identified.warnings:

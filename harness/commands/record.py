@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ..control_loop import STEP_SIZE
-from ..manoeuvres.prbs import FEEDBACK, binary_torque
+from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED, binary_torque
 from .built import built
 from .options import add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
 from .printing import Printer
@@ -44,20 +44,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_plant(parser)
     parser.add_argument("--control", choices=("on", "off"), default="off", help="active damping (default: %(default)s)")
     torque = parser.add_argument_group("torque demand")
-    torque.add_argument(
-        "--amplitude", type=amount, default=30.0, metavar="N.m", help="about the mean (default: %(default)g)"
-    )
-    torque.add_argument("--mean", type=finite, default=10.0, metavar="N.m", help="of the demand (default: %(default)g)")
-    torque.add_argument(
-        "--clock", type=seconds, default=0.04, metavar="SECONDS", help="shortest pulse (default: %(default)g)"
-    )
-    torque.add_argument(
-        "--order", type=_order, default=9, help="of the shift register that makes the pulses (default: %(default)s)"
-    )
-    torque.add_argument("--speed", type=amount, default=15.0, metavar="km/h", help="of the car (default: %(default)g)")
-    torque.add_argument(
-        "--duration", type=seconds, default=10.0, metavar="SECONDS", help="of the drive (default: %(default)g)"
-    )
+    for name, kind, default, metavar, text in (
+        ("amplitude", amount, TEST_DRIVE["amplitude"], "N.m", "about the mean"),
+        ("mean", finite, TEST_DRIVE["mean"], "N.m", "of the demand"),
+        ("clock", seconds, TEST_DRIVE["clock"], "SECONDS", "shortest pulse"),
+        ("order", _order, TEST_DRIVE["order"], None, "of the shift register that makes the pulses"),
+        ("speed", amount, TEST_SPEED, "km/h", "of the car"),
+        ("duration", seconds, TEST_DRIVE["duration"], "SECONDS", "of the drive"),
+    ):
+        torque.add_argument(
+            f"--{name}", type=kind, default=default, metavar=metavar, help=f"{text} (default: %(default)g)"
+        )
     wheels = parser.add_argument_group("measurement wheels, both together")
     wheels.add_argument("--noise", type=amount, default=10.0, metavar="N.m", help="rms (default: %(default)g)")
     wheels.add_argument("--offset", type=finite, default=8.0, metavar="N.m", help="(default: %(default)g)")

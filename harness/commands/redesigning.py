@@ -63,22 +63,15 @@ def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[
     return table
 
 
-def worth(
-    plant: str, manoeuvre: str, car: Mapping[str, Any], told: Mapping[str, Any], seed: int = 1
-) -> tuple[float, float]:
+def worth(plant: str, manoeuvre: str, car: Mapping[str, Any], told: Mapping[str, Any]) -> tuple[float, float]:
     """Settling time in s and overshoot (1) of a car whose controller is told something else.
 
     Args:
         car: entries of a vehicle file, for plant, motor and bus.
         told: entries of a vehicle file and of gains, for the controller.
     """
-    from ..analysis.cars import loop_parameters
-    from ..manoeuvres.catalogue import MANOEUVRES as KNOWN
-    from ..metrics.evaluate import evaluate
-    from ..simulate import simulate
+    from ..analysis.cars import loop_parameters, of_controller, settled
 
-    true, believed = (loop_parameters(values, plant) for values in (car, told))
-    parameters = {name: value for name, value in true.items() if not name.startswith("controller.")}
-    parameters |= {name: value for name, value in believed.items() if name.startswith("controller.")}
-    metrics = evaluate(simulate(KNOWN[manoeuvre], plant, True, parameters=parameters, seed=seed), KNOWN[manoeuvre])
-    return metrics.settling_time, metrics.overshoot
+    true, of_car = loop_parameters(car, plant), of_controller(car, plant)
+    others = {name: value for name, value in true.items() if name not in of_car}
+    return settled(plant, manoeuvre, others | of_controller(told, plant))

@@ -49,7 +49,8 @@ def curvature(identified: Identified) -> np.ndarray:
 
 
 def cost_over(identified: Identified, x: str, y: str, H: np.ndarray) -> Surface:
-    """How much more it is than that of the answer, as the logarithm of a likelihood. The other free parameters follow:
+    """How much more it is than that of the answer, as the logarithm of a likelihood with noise as large as the
+    innovations are. The other free parameters follow:
     they are those with which it is least, to second order.
 
     Args:
@@ -61,14 +62,14 @@ def cost_over(identified: Identified, x: str, y: str, H: np.ndarray) -> Surface:
     others = [k for k in range(len(free)) if k not in pair]
     follow = np.eye(len(free))[:, pair]
     follow[others] = -np.linalg.solve(H[np.ix_(others, others)], H[np.ix_(others, pair)])
-    least = filtered(identified.drive, p, noise).cost
+    least = filtered(identified.drive, p, noise)
 
     def cost(value_x: float, value_y: float) -> float:
         away = follow @ [value_x - getattr(p, x), value_y - getattr(p, y)]
         if not exact(identified):
             return 0.5 * float(away @ H @ away)
         there = p._replace(**{name: getattr(p, name) + by for name, by in zip(free, away, strict=True)})
-        return filtered(identified.drive, there, noise).cost - least
+        return (filtered(identified.drive, there, noise).cost - least.cost) / least.rms**2
 
     at_x, at_y = _about(identified, x), _about(identified, y)
     return Surface(at_x, at_y, np.array([[cost(value_x, value_y) for value_y in at_y] for value_x in at_x]))

@@ -8,12 +8,13 @@ import numpy as np
 from .drive_train import Parameters
 from .driven import Drive
 from .maximum_likelihood import Found, maximise
-from .prediction import Noise, Predictor, filtered
+from .prediction import Noise, Predictor
 from .response import Tyre
 from .torque_loop import FittedLoop
 
-LIKELY = 10.8
-"""Twice the gain in likelihood of one more parameter from which on it is asked for: by chance once in a thousand."""
+LIKELY = 15.1
+"""Twice the gain in likelihood of one more parameter up to which it is not asked for: more comes by chance once in ten
+thousand."""
 
 LATE = 0.004
 """Time in s by which it is tried whether the load torque is late or early."""
@@ -47,7 +48,7 @@ def late_or_early(drive: Drive, found: Found, noise: Noise) -> list[str]:
     for late, word in ((samples, "late"), (-samples, "early")):
         shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
         told = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
-        gains.append((2.0 * (found.innovations.cost - told.innovations.cost), word))
+        gains.append((found.gain(told), word))
     gain, word = max(gains)
     by = 1e3 * drive.T_s * samples
     said = f"the load torque looks {word}: shifted by {by:g} ms the recording is explained better"
@@ -64,12 +65,13 @@ def of_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
     ]
 
 
-def undetermined(
-    drive: Drive, p: Parameters, noise: Noise, deviations: Mapping[str, float], free: Sequence[str]
-) -> list[str]:
-    """What the excitation does not determine."""
+def undetermined(phi: np.ndarray, p: Parameters, deviations: Mapping[str, float], free: Sequence[str]) -> list[str]:
+    """What the excitation does not determine.
+
+    Args:
+        phi: twist in rad as the filter sees it, shape (n,).
+    """
     said = []
-    phi = filtered(drive, p, noise).states[:, 2]
     driving, braking = (float(np.mean(side * phi > p.phi_B)) for side in (1.0, -1.0))
     if min(driving, braking) < FLANK:
         side = "never drive" if driving < FLANK else "never brake"
@@ -83,6 +85,8 @@ def undetermined(
     wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
     if wide:
         said.append(f"{', '.join(wide)}: standard deviation of more than {100.0 * CLOSE:g} %; excite more or longer")
+    if p.d < 0.0:
+        said.append(f"d = {p.d:.3g} N.m.s/rad is negative, which no damper is: something else is wrong")
     if deviations.get("d", 0.0) > CLOSE * abs(p.d):
         said.append(
             f"d is known to {100.0 * deviations['d'] / abs(p.d or 1.0):.0f} % only: without a measured wheel motion "
@@ -103,6 +107,11 @@ def of_tyre(behind: Tyre) -> list[str]:
 
 def of_demand(loop: FittedLoop, T_s: float, tau: float) -> list[str]:
     """What the torque demand tells against the recording or the vehicle file, where tau is the lag in s."""
+    if not loop.answers:
+        return [
+            f"the torque demand explains {100.0 * loop.explained:.0f} % of the motor torque only, so that it is not "
+            "that of motor control: the recorded motor torque is used, and tau is not identified"
+        ]
     said = []
     if abs(loop.loop.delay) > DEMAND_LATE * T_s:
         early = loop.loop.delay > 0.0

@@ -41,9 +41,9 @@ class Drive:
 def driven(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
     """The recording as the model takes it, and what motor control makes of the demand if that was recorded.
 
-    The motor torque is that of the torque loop where the demand is known, so that it has no noise; else, as the load
-    torque, the cubic spline through its samples. A straight line between them would bias J_2 by -.055 % at 2 ms. A
-    load torque that was not recorded is 0.
+    The motor torque is that of the torque loop where the demand is known and explains it, so that it has no noise;
+    else, as the load torque, the cubic spline through its samples. A straight line between them would bias J_2 by
+    -.055 % at 2 ms. A load torque that was not recorded is 0.
 
     Raises:
         RecordingError: the samples are not evenly spaced.
@@ -58,7 +58,7 @@ def driven(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
             f"after {time[k]:g} s it is {time[k + 1] - time[k]:.6g} s"
         )
     loop = None if recording.T_ref is None else fitted(recording.T_ref, recording.T_mot, T_s)
-    if loop is None or recording.T_ref is None:
+    if loop is None or recording.T_ref is None or not loop.answers:
         T_mot = parts(recording.T_mot, T_s)
     else:
         T_mot = loop.loop.means(recording.T_ref, T_s, STEPS)[:-1]

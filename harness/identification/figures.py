@@ -14,7 +14,7 @@ from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save,
 from .free_runs import FreeRuns, free_runs
 from .identify import Identified
 from .prediction import filtered
-from .quality import BURN_IN, SIMULATED, Z_95, autocorrelation
+from .quality import SIMULATED, Z_95, autocorrelation
 
 STRETCH = 3.0
 """Of the recording, its end, in s."""
@@ -115,8 +115,8 @@ def plot_innovations(identified: Identified, stem: Path, caption: str = "") -> l
         The files written.
     """
     drive = identified.drive
-    first = round(BURN_IN / drive.T_s)
-    size = filtered(drive, identified.p, identified.noise).size[first:]
+    through = filtered(drive, identified.p, identified.noise)
+    first, size = through.settled, through.size[through.settled :]
     t = drive.T_s * np.arange(first + 1, len(drive) + 1)
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 5.0), layout=ConstrainedLayoutEngine(h_pad=0.1, w_pad=0.1))

@@ -9,8 +9,7 @@ from ..recordings.measurement import Measurement
 from .drive_train import Parameters, gear_torque
 from .identify import UNMEASURED, WITHIN, Identified
 from .prediction import filtered
-from .quality import BURN_IN, near_starts, segments
-from .simulation import Simulator
+from .quality import near_starts, segments
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +38,13 @@ def free_runs(identified: Identified, recording: Measurement, stretch: float) ->
         stretch: how much of its end in s.
     """
     drive, p = identified.drive, identified.p
-    before = max(len(drive) - round((stretch + BURN_IN) / drive.T_s), 0)
-    end, time = drive.between(before, len(drive)), recording.time[before:]
-    pieces = segments(end, (), UNMEASURED if recording.T_load is None else WITHIN)
-    starts = pieces.fit(p, near_starts(pieces, filtered(end, p, identified.noise)), most=0).starts
-    simulator, runs = Simulator(pieces.length), []
-    for first, (omega_1, omega_2, phi, o_L) in zip(pieces.firsts, starts, strict=True):
-        x = simulator.run(end, first, np.array([omega_1, omega_2, phi, 0.0, o_L]), p)
+    time, first = recording.time, max(len(drive) - round(stretch / drive.T_s), 0)
+    pieces = segments(drive, (), UNMEASURED if recording.T_load is None else WITHIN, first)
+    states, recorded = pieces.free_runs(p, near_starts(pieces, filtered(drive, p, identified.noise)))
+    runs = []
+    for first, x, omega_1 in zip(pieces.firsts, states, recorded, strict=True):
         at = slice(first + 1, first + 1 + pieces.length)
-        runs.append(np.array([time[at], x[:, 0], x[:, 1], _gear_torque(x, p), x[:, 0] - end.omega_1[at]]))
+        runs.append(np.array([time[at], x[:, 0], x[:, 1], _gear_torque(x, p), x[:, 0] - omega_1]))
         runs.append(np.full((5, 1), np.nan))
     return FreeRuns(*np.hstack(runs))
 

@@ -1,7 +1,7 @@
 """From a recording of a test drive to the parameters of the drive train: prediction error where the model explains
 the recording, output error where it does not."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,28 +11,30 @@ from ..recordings.source import RecordingError
 from .doubts import LIKELY, late_or_early, of_demand, of_gain, of_tyre, undetermined
 from .drive_train import Parameters
 from .driven import Drive, driven
+from .global_start import best_start
 from .maximum_likelihood import Found, maximise
 from .noise import white_noise
 from .output_error import Fitted
-from .prediction import Noise, Predictor, filtered
-from .quality import BURN_IN, SIMULATED, Quality, judged, near_starts, segments
+from .prediction import BURN_IN, Noise, Predictor, filtered
+from .quality import SIMULATED, Quality, judged, near_starts, segments
 from .response import Tyre, resonance, tyre
 from .torque_loop import FittedLoop
 
-ALWAYS = ("J_2", "C", "phi_B")
+DAMPED = ("J_2", "C", "phi_B", "d")
+"""What is searched without the load torque."""
 
-ASKED = ("g_T", "d")
-"""What the data may ask for, in this order."""
+NEUTRAL = {"d": 0.0, "g_T": 1.0}
+"""What the data may ask for, and what it is if they do not."""
 
 BROAD = 5.0
 """Noise of the load torque in N.m with which the search begins: the filter then follows the motor speed whatever the
 parameters are, and the cost has one valley."""
 
-FEW, FEWER = 12, 6
-"""Passes from a start that is near, and from one that is next to it."""
-
 WIDER = 20.0
 """The same where the model does not explain the recording."""
+
+FEW, FEWER = 12, 6
+"""Passes from a start that is near, and from one that is next to it."""
 
 SUSPECT = 1.03
 """Size of the innovations from which on a cause is looked for; of 5000 it is 1 to within .01."""
@@ -44,7 +46,7 @@ EXPLAINED = 1.25
 """Size of the innovations up to which the model explains the recording."""
 
 DAMPING = 0.1
-"""Damping ratio with which output error begins."""
+"""Damping ratio with which a search begins."""
 
 LACKING = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0)
 """Without the load torque: what model and resistance are off by. Narrower, the parameters are those of the next few
@@ -62,60 +64,49 @@ Said = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Identified:
+class Answer:
     """Attributes:
-    name: WITH_LOAD: J_2 is that of the wheels; WITHOUT_LOAD: J_2 carries the vehicle.
     method: "prediction error" or "output error".
     p: the parameters.
     covariance: of the free ones, in their order.
     free: their names.
     noise: of the recording, or what the model lacks.
-    loop: motor control, if the demand was recorded.
+    warnings: what may be wrong, a sentence each.
+    """
+
+    method: str
+    p: Parameters
+    covariance: np.ndarray
+    free: tuple[str, ...]
+    noise: Noise
+    warnings: tuple[str, ...]
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of each free parameter, in its unit."""
+        return dict(zip(self.free, map(float, np.sqrt(np.diag(self.covariance))), strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Identified(Answer):
+    """Attributes:
+    name: WITH_LOAD: J_2 is that of the wheels; WITHOUT_LOAD: J_2 carries the vehicle.
+    loop: motor control, if its demand was recorded.
     tyre: what hangs on the wheels; None if J_2 carries it.
     quality: on the last quarter of the recording, with parameters found on the rest.
     drive: the recording.
     """
 
     name: str
-    method: str
-    p: Parameters
-    covariance: np.ndarray
-    free: tuple[str, ...]
-    noise: Noise
     loop: FittedLoop | None
     tyre: Tyre | None
     quality: Quality
     drive: Drive
-    warnings: tuple[str, ...]
-
-    @property
-    def deviations(self) -> Mapping[str, float]:
-        """Standard deviation of each free parameter, in its unit."""
-        return dict(zip(self.free, map(float, np.sqrt(np.diag(self.covariance))), strict=True))
 
     @property
     def resonance(self) -> float:
         """Frequency in Hz at which the car answers most on its own."""
         return resonance(self.p, self.tyre)
-
-
-@dataclass(frozen=True, eq=False)
-class Answer:
-    """Attributes:
-    method, p, covariance, free, noise: see `Identified`.
-    """
-
-    method: str
-    p: Parameters
-    covariance: np.ndarray
-    free: tuple[str, ...]
-    noise: Noise
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def deviations(self) -> dict[str, float]:
-        """Standard deviation of each free parameter, in its unit."""
-        return dict(zip(self.free, map(float, np.sqrt(np.diag(self.covariance))), strict=True))
 
 
 def identify(
@@ -137,15 +128,15 @@ def identify(
     Raises:
         RecordingError: it is too short; see `harness.identification.driven.driven`.
     """
-    drive, loop = driven(recording)
+    drive, demand = driven(recording)
+    loop = demand if demand and demand.answers else None
     _require_long(recording.name, drive, (BURN_IN + SIMULATED) / HELD_OUT, "to judge the fit by the last quarter")
     measured = recording.T_load is not None
-    noise = of_sensors(recording) if measured else LACKING
+    noise = of_sensors(recording, loop) if measured else LACKING
     answer = answered(drive, start, noise, measured, more, said)
     said("judging it by data that were not used")
     cut = round((1.0 - HELD_OUT) * len(drive))
-    used, held_out = drive.between(0, cut), drive.between(cut, len(drive))
-    without = again(used, answer, measured)
+    without = again(drive.between(0, cut), answer, measured)
     drift = WITHIN if measured else UNMEASURED
     through = filtered(drive, answer.p, answer.noise)
     behind, odd = None, []
@@ -154,26 +145,21 @@ def identify(
         behind = tyre(load, through.states[:, 1], drive.T_mot.mean(axis=1), drive.T_s, J_v)
         odd = of_tyre(behind)
         behind = None if odd else behind
-    warnings = [
+    warnings = (
         *recording.warnings,
-        *(of_demand(loop, drive.T_s, tau) if loop else ()),
+        *(of_demand(demand, drive.T_s, tau) if demand else ()),
         *of_gain(answer.p, answer.deviations),
         *answer.warnings,
         *odd,
-        *undetermined(drive, answer.p, answer.noise, answer.deviations, answer.free),
-    ]
+        *undetermined(through.states[:, 2], answer.p, answer.deviations, answer.free),
+    )
     return Identified(
-        WITH_LOAD if measured else WITHOUT_LOAD,
-        answer.method,
-        answer.p,
-        answer.covariance,
-        answer.free,
-        answer.noise,
-        loop,
-        behind,
-        judged(held_out, without, answer.noise, drift),
-        drive,
-        tuple(warnings),
+        **{**vars(answer), "warnings": warnings},
+        name=WITH_LOAD if measured else WITHOUT_LOAD,
+        loop=loop,
+        tyre=behind,
+        quality=judged(drive, without, answer.noise, drift, cut),
+        drive=drive,
     )
 
 
@@ -183,66 +169,85 @@ def _require_long(name: str, drive: Drive, least: float, reason: str) -> None:
         raise RecordingError(f"{name} is {duration:.3g} s long; {least:.3g} s or more are needed {reason}")
 
 
-def of_sensors(recording: Measurement) -> Noise:
-    """The noise that the recording shows."""
-    T_mot = 0.0 if recording.T_ref is not None else white_noise(recording.T_mot)
+def of_sensors(recording: Measurement, loop: FittedLoop | None) -> Noise:
+    """The noise that the recording shows; none of the motor torque if that is the answer of motor control."""
+    T_mot = 0.0 if loop else white_noise(recording.T_mot)
     T_load = 0.0 if recording.T_load is None else white_noise(recording.T_load)
     return Noise(white_noise(recording.omega_1), T_mot, T_load)
 
 
 def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], said: Said) -> Answer:
     if not measured:
-        free = tuple(dict.fromkeys((*ALWAYS, "d", *more)))
-        found = maximise(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise)
+        free = _names(*DAMPED, *more)
+        begun = best_start(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise)
+        found = maximise(Predictor(free), drive, begun, noise)
         _told(said, "predicted without load torque", found.p)
-        return Answer("prediction error", found.p, sandwich(found), free, noise)
-    free = (*ALWAYS, "g_L", *more)
-    broad = Noise(noise.omega_1, noise.T_mot, BROAD)
-    begun = maximise(Predictor(free), drive, start._replace(d=0.0), broad)
-    _told(said, "predicted by a wide filter", begun.p)
-    found = maximise(Predictor(free), drive, begun.p, noise, most=FEW)
-    _told(said, "predicted with the noise of the sensors", found.p)
-    best = asked(drive, found, noise, more, said)
-    doubts = late_or_early(drive, best, noise) if _size(best) > SUSPECT else []
-    if _size(best) <= EXPLAINED:
+        return Answer("prediction error", found.p, sandwich(found), free, noise, ())
+    begun = widely(drive, start, noise, more)
+    _told(said, "predicted by a wide filter", begun)
+    best = predicted(drive, begun, noise, more, said)
+    doubts = late_or_early(drive, best, noise) if best.innovations.rms > SUSPECT else []
+    if best.innovations.rms <= EXPLAINED:
         return Answer("prediction error", best.p, best.covariance, best.free, noise, tuple(doubts))
     said("the model does not explain all of the recording: pieces of 0.5 s are simulated")
-    fitted = simulated(drive, begun.p, noise, more)
+    fitted = simulated(drive, begun, noise, more)
     _told(said, "simulated", fitted.p)
     lacks = (
-        f"the two masses do not explain all of this car (size of the innovations {_size(best):.2f}): parameters are "
-        f"those with which free runs of 0.5 s fit best, to {fitted.error:.2g} rad/s",
+        f"the two masses do not explain all of this car (size of the innovations {best.innovations.rms:.2f}): "
+        f"parameters are those with which free runs of 0.5 s fit best, to {fitted.error:.2g} rad/s",
         *doubts,
     )
     of_model = Noise(fitted.error, noise.T_mot, noise.T_load)
     return Answer("output error", fitted.p, fitted.covariance, fitted.free, of_model, lacks)
 
 
+def widely(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str] = ()) -> Parameters:
+    """From anywhere, by a filter that follows the motor speed whatever the parameters are."""
+    broad, free = Noise(noise.omega_1, noise.T_mot, BROAD), _searched(more)
+    begun = best_start(Predictor(free), drive, start._replace(d=_damping(start)), broad)
+    return maximise(Predictor((*free, "g_L")), drive, begun, broad, most=FEWER).p
+
+
+def predicted(
+    drive: Drive, begun: Parameters, noise: Noise, more: Sequence[str] = (), said: Said = lambda _: None
+) -> Found:
+    """By prediction error, with no more than the data ask for."""
+    found = maximise(Predictor((*_searched(more), "g_L")), drive, begun, noise, most=FEW)
+    _told(said, "predicted with the noise of the sensors", found.p)
+    return asked(drive, found, noise, more, said)
+
+
 def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: Said) -> Found:
-    """With what the data ask for beside: the gain of the motor torque, structural damping."""
+    """Without structural damping and gain of the motor torque, unless the data ask for them.
+
+    Args:
+        found: with both.
+        more: what is to be free in any case.
+    """
     best = found
-    for name in ASKED:
-        if name in best.free or (name == "g_T" and "J_1" in more):
-            continue
-        tried = maximise(Predictor((*best.free, name)), drive, best.p, noise, most=FEWER)
-        if 2.0 * (best.innovations.cost - tried.innovations.cost) > LIKELY:
-            best = tried
-            _told(said, f"the data ask for {name} = {getattr(best.p, name):.4g}", best.p)
+    while optional := [name for name in NEUTRAL if name in best.free and name not in more]:
+        deviations = dict(zip(best.free, np.sqrt(np.diag(best.covariance)), strict=True))
+        told = {name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 for name in optional}
+        least = min(optional, key=lambda name: told[name])
+        if told[least] > LIKELY:
+            break
+        free = tuple(name for name in best.free if name != least)
+        best = maximise(Predictor(free), drive, best.p._replace(**{least: NEUTRAL[least]}), noise, most=FEWER)
+        _told(said, f"the data do not ask for {least}", best.p)
     return best
 
 
-def simulated(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str]) -> Fitted:
+def simulated(drive: Drive, begun: Parameters, noise: Noise, more: Sequence[str] = ()) -> Fitted:
     """By output error; with the gain of the motor torque if that is surely not 1."""
-    known = tuple(dict.fromkeys((*ALWAYS, "g_L", "d", *more)))
-    free = known if "J_1" in more else tuple(dict.fromkeys((*known, "g_T")))
+    free = (*_searched(more), "g_L")
+    known = free if "g_T" in more else tuple(name for name in free if name != "g_T")
     least = BURN_IN + SIMULATED * (len(free) + 2)
     _require_long("the recording", drive, least, f"for {len(free)} parameters of a car that two masses do not explain")
     wider = Noise(noise.omega_1, noise.T_mot, WIDER)
-    begun = maximise(Predictor(free), drive, start._replace(d=_damping(start)), wider, most=FEW)
+    p = maximise(Predictor(free), drive, begun._replace(d=_damping(begun)), wider, most=FEW).p
     pieces = segments(drive, free, WITHIN)
-    near = near_starts(pieces, filtered(drive, begun.p, wider))
-    fitted = pieces.fit(begun.p._replace(d=_damping(begun.p)), near)
-    if free == known or abs(fitted.p.g_T - 1.0) > SURELY * float(np.sqrt(fitted.covariance[-1, -1])):
+    fitted = pieces.fit(p._replace(d=_damping(p)), near_starts(pieces, filtered(drive, p, wider)))
+    if free == known or abs(fitted.p.g_T - 1.0) > SURELY * fitted.deviation("g_T"):
         return fitted
     return segments(drive, known, WITHIN).fit(fitted.p._replace(g_T=1.0), fitted.starts, most=FEW)
 
@@ -258,15 +263,21 @@ def again(drive: Drive, answer: Answer, measured: bool) -> Parameters:
 def sandwich(found: Found, block: int = 250) -> np.ndarray:
     """Covariance of the free parameters where the innovations are not white: their blocks speak for themselves."""
     seen = found.innovations
-    inverse = found.covariance
-    each = seen.d_size * seen.size[:, None] + 0.5 * seen.d_log_S
+    inverse = found.inverse_information
+    each = seen.scores
     scores = np.array([part.sum(axis=0) for part in np.array_split(each, max(len(each) // block, 2))])
     scores = scores - scores.mean(axis=0)
     return inverse @ (scores.T @ scores) @ inverse
 
 
-def _size(found: Found) -> float:
-    return float(np.sqrt(np.mean(found.innovations.size**2)))
+def _searched(more: Sequence[str]) -> tuple[str, ...]:
+    """What a search begins with; of J_1 and the gain of the motor torque one sets the scale."""
+    return _names(*DAMPED, *(() if "J_1" in more else ("g_T",)), *more)
+
+
+def _names(*names: str) -> tuple[str, ...]:
+    """Each once."""
+    return tuple(dict.fromkeys(names))
 
 
 def _damping(p: Parameters) -> float:

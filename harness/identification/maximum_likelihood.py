@@ -20,6 +20,9 @@ so remains as it was, with a standard deviation of 100 times its value."""
 ENOUGH = 0.02
 """Step in standard deviations at which the search has ended."""
 
+GAIN = 0.02
+"""The same as what a step has gained in likelihood, with noise as large as the innovations are."""
+
 
 @dataclass(frozen=True, eq=False)
 class Found:
@@ -36,10 +39,19 @@ class Found:
     passes: int
 
     @property
-    def covariance(self) -> np.ndarray:
-        """Of the free parameters, if the innovations are white."""
+    def inverse_information(self) -> np.ndarray:
+        """Of the free parameters."""
         scale = scales(self.p, self.free)
         return np.outer(scale, scale) * np.linalg.inv(_information(self.innovations, scale))
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of the free parameters, if the innovations are white, and noise as large as they are."""
+        return self.inverse_information * self.innovations.rms**2
+
+    def gain(self, other: "Found") -> float:
+        """Twice what another one gains in likelihood, with noise as large as these innovations are."""
+        return 2.0 * (self.innovations.cost - other.innovations.cost) / self.innovations.rms**2
 
 
 def _information(innovations: Innovations, scale: np.ndarray) -> np.ndarray:
@@ -81,7 +93,9 @@ def maximise(
         tried = predictor.innovations(drive, tried_p, noise)
         passes += 1
         if np.isfinite(tried.cost) and tried.cost < best.cost:
-            p, best, trust = tried_p, tried, max(trust / 10.0, 1e-9)
+            gain, p, best, trust = best.cost - tried.cost, tried_p, tried, max(trust / 10.0, 1e-9)
+            if gain < GAIN * best.rms**2:
+                break
         else:
-            trust = max(trust, 1e-4) * 10.0
+            trust = max(10.0 * trust, 1.0)
     return Found(p, free, best, passes)

@@ -13,11 +13,11 @@ import numpy as np
 
 from .drive_train import Parameters
 from .driven import Drive
-from .maximum_likelihood import ENOUGH, UNKNOWN, moved, scales
+from .maximum_likelihood import UNKNOWN, moved, scales
 from .simulation import Simulator
 
 WITHIN = np.array([3.0, 10.0, 0.5])
-"""Standard deviations within which speeds and twist at the start of a segment are looked for."""
+"""Standard deviations of speeds and twist at the start of a segment about what is expected there."""
 
 SIDES = (-1.0, 0.0, 1.0)
 """Twists at which the search for a start begins, in half gaps."""
@@ -30,6 +30,12 @@ OF_START = (0, 1, 2, 4)
 
 O_T = 1.5
 """Standard deviation in N.m within which the offset of the motor torque is looked for."""
+
+ENOUGH = 1e-4
+"""Share of its cost that a step must promise to gain for the search to go on."""
+
+ENOUGH_OF_START = 1e-5
+"""The same for the start of a segment."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +56,20 @@ class Fitted:
     covariance: np.ndarray
     error: float
 
+    def deviation(self, name: str) -> float:
+        """Standard deviation of a free parameter, in its unit."""
+        k = self.free.index(name)
+        return float(np.sqrt(self.covariance[k, k]))
+
 
 @dataclass(frozen=True, eq=False)
 class _Point:
+    """Where the search is, and the starts that are expected."""
+
     p: Parameters
     o_T: float
     starts: np.ndarray
+    expected: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,14 +103,14 @@ class Segments:
         """
         Args:
             p: to begin with.
-            starts: near those of the segments, shape (segments, 4).
+            starts: those that are expected of the segments, shape (segments, 4).
             most: steps.
         """
-        now = _Point(p, 0.0, starts)
+        now = _Point(p, 0.0, starts, starts)
         now = replace(now, starts=self.found(now, anywhere=True))
         now, linear = self._descend(now, most // 2)
-        now = replace(now, starts=self.found(now, anywhere=True))
-        now, linear = self._descend(now, most - most // 2)
+        starts = self.found(now, anywhere=True)
+        now, linear = self._descend(replace(now, starts=starts, expected=starts), most - most // 2)
         inverse = np.linalg.inv(linear.H)
         n, m = linear.scores.shape
         covariance = inverse @ (linear.scores.T @ linear.scores) @ inverse * n / max(n - m, 1)
@@ -106,7 +120,7 @@ class Segments:
     def free_runs(self, p: Parameters, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """States of runs from the best starts, shape (segments, length, states), and the recorded motor speed in rad/s,
         shape (segments, length)."""
-        found = self.found(_Point(p, 0.0, starts), anywhere=True)
+        found = self.found(_Point(p, 0.0, starts, starts), anywhere=True)
         begins = [np.array([*start[:3], 0.0, start[3]]) for start in found]
         runs = [self.starting.run(self.drive, first, x, p) for first, x in zip(self.firsts, begins, strict=True)]
         recorded = [self.drive.omega_1[first + 1 : first + 1 + self.length] for first in self.firsts]
@@ -118,17 +132,16 @@ class Segments:
             scale = np.concatenate([[1.0], scales(now.p, self.free)])
             H, g = linear.H * np.outer(scale, scale), linear.scores.sum(axis=0) * scale
             step = np.clip(-np.linalg.solve(H + trust * np.diag(np.diag(H)), g), -0.5, 0.5)
-            if np.sqrt(step @ H @ step / len(step)) < ENOUGH or trust > 1e4:
+            if -(g + 0.5 * H @ step) @ step < ENOUGH * linear.cost:
                 break
-            tried = _Point(
-                moved(now.p, self.free, step[1:]), now.o_T + step[0], now.starts + linear.follow @ (scale * step)
-            )
+            starts = now.starts + linear.follow @ (scale * step)
+            tried = _Point(moved(now.p, self.free, step[1:]), now.o_T + step[0], starts, now.expected)
             tried = replace(tried, starts=self.found(tried))
             after = self._linear(tried)
             if after.cost < linear.cost:
                 now, linear, trust = tried, after, max(trust / 5.0, 1e-9)
             else:
-                trust = max(10.0 * trust, 1e-3)
+                trust = max(10.0 * trust, 1.0)
         return now, linear
 
     def _residuals(
@@ -148,10 +161,11 @@ class Segments:
         for k, start in enumerate(at.starts):
             r, A, B = self._residuals(self.simulator, k, start, at)
             E = np.linalg.solve(A.T @ A + np.diag(self.priors), A.T @ B)
+            off = A.T @ r + self.priors * (start - at.expected[k])
             H += (B - A @ E).T @ B
-            scores.append((B - A @ E).T @ r + [at.o_T / O_T**2 / len(at.starts), *np.zeros(m - 1)])
+            scores.append(B.T @ r - E.T @ off + [at.o_T / O_T**2 / len(at.starts), *np.zeros(m - 1)])
             follow.append(-E)
-            cost += 0.5 * float(r @ r)
+            cost += self._cost(r, start, at.expected[k])
         return _Linear(cost, H, np.array(scores), np.array(follow))
 
     def found(self, at: _Point, anywhere: bool = False) -> np.ndarray:
@@ -165,17 +179,22 @@ class Segments:
             starts.append(best[0])
         return np.array(starts)
 
-    def _start(self, k: int, start: np.ndarray, at: _Point, most: int = 5) -> tuple[np.ndarray, float]:
-        origin, trust = start, 1e-3
+    def _start(self, k: int, start: np.ndarray, at: _Point, most: int = 8) -> tuple[np.ndarray, float]:
+        expected, trust = at.expected[k], 1e-3
         r, A, _ = self._residuals(self.starting, k, start, at)
+        cost = self._cost(r, start, expected)
         for _ in range(most):
-            H, g = A.T @ A + np.diag(self.priors), A.T @ r + self.priors * (start - origin)
+            H, g = A.T @ A + np.diag(self.priors), A.T @ r + self.priors * (start - expected)
             step = -np.linalg.solve(H + trust * np.diag(np.diag(H)), g)
-            if step @ H @ step < 4 * ENOUGH**2:
+            if -(g + 0.5 * H @ step) @ step < ENOUGH_OF_START * cost:
                 break
-            tried, A_tried, _ = self._residuals(self.starting, k, start + step, at)
-            if tried @ tried < r @ r:
-                start, r, A, trust = start + step, tried, A_tried, trust / 5.0
+            off, A_tried, _ = self._residuals(self.starting, k, start + step, at)
+            if (tried := self._cost(off, start + step, expected)) < cost:
+                start, r, A, cost, trust = start + step, off, A_tried, tried, trust / 5.0
             else:
-                trust = max(20.0 * trust, 1e-2)
-        return start, float(r @ r)
+                trust = max(10.0 * trust, 1.0)
+        return start, cost
+
+    def _cost(self, r: np.ndarray, start: np.ndarray, expected: np.ndarray) -> float:
+        """Of a segment."""
+        return 0.5 * float(r @ r + self.priors @ (start - expected) ** 2)

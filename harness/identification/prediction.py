@@ -8,10 +8,12 @@ they are white and of size 1 (L. Ljung, System Identification, 2nd ed., section 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
+from itertools import product
 
 import casadi as ca
 import numpy as np
 
+from .buffered import Buffered
 from .drive_train import STEPS, Parameters, State, sample
 from .driven import Drive
 
@@ -40,31 +42,52 @@ class Noise:
 
 
 @dataclass(frozen=True, eq=False)
-class Innovations:
+class Predicted:
     """Attributes:
     size: what each sample was predicted wrong by, over its standard deviation, shape (n,).
     log_S: logarithm of the variance in (rad/s)2 that the filter expects of it, shape (n,).
-    d_size, d_log_S: their derivatives by the free parameters, shape (n, parameters).
+    settled: sample from which on they count: a recording may begin in the middle of a swing.
     """
 
     size: np.ndarray
     log_S: np.ndarray
-    d_size: np.ndarray
-    d_log_S: np.ndarray
+    settled: int
 
     @property
     def cost(self) -> float:
         """Minus the logarithm of the likelihood, but for a constant."""
-        return 0.5 * float(np.sum(self.size**2 + self.log_S))
+        return 0.5 * float(np.sum((self.size**2 + self.log_S)[self.settled :]))
+
+    @property
+    def rms(self) -> float:
+        """Of size: 1 where model and noise are right."""
+        return float(np.sqrt(np.mean(self.size[self.settled :] ** 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Innovations(Predicted):
+    """Attributes:
+    d_size, d_log_S: derivatives by the free parameters, shape (n, parameters).
+    """
+
+    d_size: np.ndarray
+    d_log_S: np.ndarray
 
     @property
     def gradient(self) -> np.ndarray:
-        return self.d_size.T @ self.size + 0.5 * self.d_log_S.sum(axis=0)
+        return self.scores.sum(axis=0)
+
+    @property
+    def scores(self) -> np.ndarray:
+        """The share of each sample that counts in the gradient, shape (n - settled, parameters)."""
+        at = slice(self.settled, None)
+        return self.d_size[at] * self.size[at, None] + 0.5 * self.d_log_S[at]
 
     @property
     def information(self) -> np.ndarray:
         """Fisher's, as these innovations show it. A half of what the variance tells is in d_size."""
-        return self.d_size.T @ self.d_size + 0.25 * self.d_log_S.T @ self.d_log_S
+        d_size, d_log_S = self.d_size[self.settled :], self.d_log_S[self.settled :]
+        return d_size.T @ d_size + 0.25 * d_log_S.T @ d_log_S
 
 
 class Predictor:
@@ -76,28 +99,20 @@ class Predictor:
 
     def innovations(self, drive: Drive, p: Parameters, noise: Noise) -> Innovations:
         m, n = len(self.free), len(drive)
-        start, d_start = _start(drive, p, self.free)
+        start, d_start = _start(drive, p, noise, self.free)
         _, _, seen, d_seen = self._symbols.passed_with_derivatives(n)(start, d_start, *_given(drive, p, noise))
-        d_seen = np.asarray(d_seen).reshape(2, n, m)
-        size, log_S = np.asarray(seen)
-        return Innovations(size, log_S, d_seen[0], d_seen[1])
+        size, log_S = seen.copy()
+        d_size, d_log_S = d_seen.reshape(2, n, m).copy()
+        return Innovations(size, log_S, _settled(drive), d_size, d_log_S)
 
 
 @dataclass(frozen=True, eq=False)
-class Filtered:
+class Filtered(Predicted):
     """Attributes:
     states: after each sample, shape (n, states).
-    size, log_S: see `Innovations`.
     """
 
     states: np.ndarray
-    size: np.ndarray
-    log_S: np.ndarray
-
-    @property
-    def cost(self) -> float:
-        """See `Innovations`."""
-        return 0.5 * float(np.sum(self.size**2 + self.log_S))
 
     @property
     def errors(self) -> np.ndarray:
@@ -107,9 +122,14 @@ class Filtered:
 
 def filtered(drive: Drive, p: Parameters, noise: Noise) -> Filtered:
     """The filter without derivatives, in an eighth of the time."""
-    start, _ = _start(drive, p, ())
+    start, _ = _start(drive, p, noise, ())
     after, seen = _filter(()).passed(len(drive))(start, *_given(drive, p, noise))
-    return Filtered(np.asarray(after).T[:, :STATES], *np.asarray(seen))
+    size, log_S = seen.copy()
+    return Filtered(size, log_S, _settled(drive), after[:STATES].T.copy())
+
+
+def _settled(drive: Drive) -> int:
+    return min(round(BURN_IN / drive.T_s), len(drive) // 2)
 
 
 def _given(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, ...]:
@@ -118,20 +138,40 @@ def _given(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, ...]:
     return drive.T_mot.T, drive.T_load.T, drive.omega_1[None, 1:], *once
 
 
-START = (1.0, 1.0, 0.1, 2.0, 2.0)
+BURN_IN = 0.2
+"""Time in s until the filter has found its state."""
+
+START = (1.0, 5.0, 0.1, 2.0, 2.0)
 """Standard deviations of the state that the filter starts with, in the units of `State`."""
 
+SIDES, APART = (-1.0, 0.0, 1.0), (-15.0, 0.0, 15.0)
+"""Flanks, and speeds in rad/s by which the wheels turn faster, with which it may start."""
 
-def _start(drive: Drive, p: Parameters, free: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """State and covariance at the first sample, and their derivatives: the wheels as fast as the motor, the twist that
-    the torque makes at rest."""
-    T_0, sign = drive.T_mot[0, 0], np.sign(drive.T_mot[0, 0])
-    x = np.array([drive.omega_1[0], drive.omega_1[0], T_0 / p.C + sign * p.phi_B, 0.0, 0.0])
-    P = np.diag(np.square(START))
+COMPARED = 0.4
+"""Time in s by which these are compared."""
+
+
+def _start(drive: Drive, p: Parameters, noise: Noise, free: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """State and covariance at the first sample, and their derivatives: the likeliest of several, since a recording may
+    begin in the middle of a swing."""
+    piece = drive.between(0, min(round(COMPARED / drive.T_s), len(drive)))
+    run, given = _filter(()).passed(len(piece)), _given(piece, p, noise)
+    T_0 = abs(float(drive.T_mot[0, 0]))
+
+    def start(side: float, apart: float) -> np.ndarray:
+        x = [drive.omega_1[0], drive.omega_1[0] + apart, side * (p.phi_B + T_0 / p.C), 0.0, 0.0]
+        P = np.diag(np.square(START))
+        return np.concatenate([x, [P[at] for at in LOWER]])
+
+    def cost(begin: tuple[float, float]) -> float:
+        _, (size, log_S) = run(start(*begin), *given)
+        return float(np.sum(size**2 + log_S))
+
+    side, apart = min(product(SIDES, APART), key=cost)
     d = np.zeros((STATES + len(LOWER), len(free)))
     for k, name in enumerate(free):
-        d[2, k] = {"C": -T_0 / p.C**2, "phi_B": sign}.get(name, 0.0)
-    return np.concatenate([x, [P[at] for at in LOWER]]), d
+        d[2, k] = side * {"C": -T_0 / p.C**2, "phi_B": 1.0}.get(name, 0.0)
+    return start(side, apart), d
 
 
 class _Filter:
@@ -164,14 +204,14 @@ class _Filter:
         return ca.vertcat(x, *[P[at] for at in LOWER]), ca.vertcat(error / ca.sqrt(S), ca.log(S))
 
     @cache  # noqa: B019 filters are few, and remain
-    def passed(self, n: int) -> ca.Function:
+    def passed(self, n: int) -> Buffered:
         """Through n samples."""
-        return self.alone.mapaccum("predictions", n)
+        return Buffered(self.alone.mapaccum("predictions", n))
 
     @cache  # noqa: B019
-    def passed_with_derivatives(self, n: int) -> ca.Function:
+    def passed_with_derivatives(self, n: int) -> Buffered:
         """Through n samples, with derivatives."""
-        return self.with_derivatives.mapaccum("predictions", n, 2)
+        return Buffered(self.with_derivatives.mapaccum("predictions", n, 2))
 
     @cached_property
     def alone(self) -> ca.Function:

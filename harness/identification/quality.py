@@ -8,7 +8,7 @@ from scipy.stats import norm
 from .drive_train import Parameters
 from .driven import Drive
 from .output_error import Segments
-from .prediction import Filtered, Noise, filtered
+from .prediction import BURN_IN, Filtered, Noise, filtered
 from .simulation import Simulator
 
 SIMULATED, PREDICTED = 0.5, 0.05
@@ -16,9 +16,6 @@ SIMULATED, PREDICTED = 0.5, 0.05
 
 Z_95 = float(norm.ppf(0.975))
 """Standard deviations within which 95 % of what is normal are."""
-
-BURN_IN = 0.2
-"""Time in s until the filter has found its state."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +42,15 @@ def nrmse(error: np.ndarray, signal: np.ndarray) -> float:
     return 100.0 * (1.0 - float(np.sqrt(np.mean(error**2)) / signal.std()))
 
 
-def segments(drive: Drive, free: tuple[str, ...], drift: float) -> Segments:
+def segments(drive: Drive, free: tuple[str, ...], drift: float, first: int = 0) -> Segments:
     """The recording in pieces of SIMULATED.
 
     Args:
         drift: see `Segments`.
+        first: sample from which on; at least BURN_IN is left out.
     """
-    return Segments(drive, round(SIMULATED / drive.T_s), free, drift, first=round(BURN_IN / drive.T_s))
+    first = max(first, round(BURN_IN / drive.T_s))
+    return Segments(drive, round(SIMULATED / drive.T_s), free, drift, first)
 
 
 def near_starts(pieces: Segments, through: Filtered) -> np.ndarray:
@@ -59,17 +58,17 @@ def near_starts(pieces: Segments, through: Filtered) -> np.ndarray:
     return np.array([through.states[first - 1, [0, 1, 2, 4]] for first in pieces.firsts])
 
 
-def judged(drive: Drive, p: Parameters, noise: Noise, drift: float) -> Quality:
+def judged(drive: Drive, p: Parameters, noise: Noise, drift: float, first: int) -> Quality:
     """
     Args:
         drift: see `Segments`.
+        first: sample from which on it is judged; the filter begins before.
     """
-    through = filtered(drive, p, noise)
-    first, after = round(BURN_IN / drive.T_s), round(PREDICTED / drive.T_s)
+    through, after = filtered(drive, p, noise), round(PREDICTED / drive.T_s)
     ahead = Simulator(after)
     begins = range(first, len(drive) - after, max(after // 5, 1))
     errors = [ahead.run(drive, k, through.states[k - 1], p)[-1, 0] - drive.omega_1[k + after] for k in begins]
-    pieces = segments(drive, (), drift)
+    pieces = segments(drive, (), drift, first)
     simulated, recorded = pieces.free_runs(p, near_starts(pieces, through))
     size = through.size[first:]
     return Quality(

@@ -6,6 +6,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from .buffered import Buffered
 from .drive_train import STEPS, Parameters, State, sample
 from .driven import Drive
 
@@ -28,22 +29,24 @@ class Simulator:
         self._given, self._x, self._p, self._after = [T_mot, T_load, p, T_s], x, p, after
 
     @cached_property
-    def _alone(self) -> ca.Function:
-        return ca.Function("sample", [self._x, *self._given], [self._after]).mapaccum("run", self.n)
+    def _alone(self) -> Buffered:
+        return Buffered(ca.Function("sample", [self._x, *self._given], [self._after]).mapaccum("run", self.n))
 
     @cached_property
-    def _with_derivatives(self) -> ca.Function:
+    def _with_derivatives(self) -> Buffered:
         m = STATES + len(self.free)
         d_x = ca.SX.sym("d_x", STATES, m)
         d_p = np.zeros((len(Parameters._fields), m))
         for k, name in enumerate(self.free):
             d_p[Parameters._fields.index(name), STATES + k] = 1.0
         d = ca.jtimes(self._after, ca.vertcat(self._x, self._p), ca.vertcat(d_x, ca.DM(d_p)))
-        return ca.Function("sensitivity", [self._x, d_x, *self._given], [self._after, d]).mapaccum("runs", self.n, 2)
+        alone = ca.Function("sensitivity", [self._x, d_x, *self._given], [self._after, d])
+        return Buffered(alone.mapaccum("runs", self.n, 2))
 
     def run(self, drive: Drive, first: int, start: np.ndarray, p: Parameters) -> np.ndarray:
         """The states after each sample from `first` on, shape (n, states)."""
-        return np.asarray(self._alone(start, *self._inputs(drive, first, p))).T
+        (x,) = self._alone(start, *self._inputs(drive, first, p))
+        return x.T.copy()
 
     def run_with_derivatives(
         self, drive: Drive, first: int, start: np.ndarray, p: Parameters
@@ -51,7 +54,7 @@ class Simulator:
         """The same, and the derivatives by start and free parameters, shape (n, states, states + parameters)."""
         m = STATES + len(self.free)
         x, d = self._with_derivatives(start, np.eye(STATES, m), *self._inputs(drive, first, p))
-        return np.asarray(x).T, np.asarray(d).reshape(STATES, self.n, m).transpose(1, 0, 2)
+        return x.T.copy(), d.reshape(STATES, self.n, m).transpose(1, 0, 2).copy()
 
     def _inputs(self, drive: Drive, first: int, p: Parameters) -> tuple[np.ndarray, ...]:
         at = slice(first, first + self.n)

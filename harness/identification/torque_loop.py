@@ -26,6 +26,9 @@ SETTLED = 53.0
 START, SHORTEST, LONGEST = 0.003, 1e-4, 0.05
 """Lag in s with which the search begins, and between which it stays."""
 
+ANSWERS = 0.9
+"""Share of the power of the recorded torque that the demand must explain to be that of motor control."""
+
 UNKNOWN = 0.2
 """Time in s at the beginning that is not fitted: what was demanded before the recording may still act."""
 
@@ -133,6 +136,11 @@ class FittedLoop:
     noise: float
     explained: float
 
+    @property
+    def answers(self) -> bool:
+        """Whether the recorded torque is that of the demand."""
+        return self.explained >= ANSWERS
+
 
 def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
     """The torque loop by least squares, its delay between EARLIEST and LATEST.
@@ -166,7 +174,7 @@ def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
         x_scale="jac",
     )
     variance = 2.0 * found.cost / (len(T) - len(PARAMETERS))
-    deviations = np.sqrt(variance * np.diag(np.linalg.inv(found.jac.T @ found.jac)))
+    deviations = np.sqrt(variance) * np.linalg.norm(np.linalg.pinv(found.jac), axis=1)
     return FittedLoop(
         TorqueLoop(*map(float, found.x)),
         dict(zip(PARAMETERS, map(float, deviations), strict=True)),

@@ -18,6 +18,12 @@ FEEDBACK = {
 """Stages that are added to the last one, by order: of a primitive polynomial, so that 2^order - 1 bits come before the
 first ones come again (S. W. Golomb, Shift Register Sequences)."""
 
+TEST_DRIVE = {"mean": 10.0, "amplitude": 30.0, "clock": 0.04, "order": 9, "duration": 10.0}
+"""The usual demand: N.m, N.m, s, stages, s."""
+
+TEST_SPEED = 15.0
+"""Of the car in it, in km/h."""
+
 
 def shift_register(length: int, order: int = 9) -> list[int]:
     """The first bits of the sequence of maximum length, from a register of ones; of order 9 that of x^9 + x^5 + 1."""

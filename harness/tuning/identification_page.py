@@ -12,8 +12,10 @@ from ..analysis.identification import (
     VEHICLE,
     Found,
     Judged,
+    Method,
     Redesigned,
     accuracy,
+    both_methods,
     from_anywhere,
     judged,
     redesigned,
@@ -33,8 +35,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
 
-KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES = 40, 10, 20, 3, 4
-DRAWS = {DESIGN_MODEL: 24, VEHICLE: 8}
+KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES, METHODS = 120, 15, 60, 5, 5, 5
+DRAWS = {DESIGN_MODEL: 36, VEHICLE: 14}
 """How many recordings of each."""
 
 DRAWN = 9
@@ -57,6 +59,9 @@ def main() -> None:
     traps = run_many(trapped, [(k, FIRST + n) for k in range(len(TRAPS)) for n in range(OF_A_TRAP)], label="bad data")
     vehicles = run_many(judged, [(FIRST + n, load) for load in (True, False) for n in range(VEHICLES)], label="vehicle")
     draws = [(plant, draw(n, DRAWN)) for plant, count in DRAWS.items() for n in range(1, count + 1)]
+    methods = {
+        plant: run_many(both_methods, [(plant, seed) for seed in seeds[:METHODS]], label=plant) for plant in DRAWS
+    }
     cars = run_many(redesigned, [(plant, d.number, d.deviation, d.noise) for plant, d in draws], label="redesigned")
     right = sum(all(abs(_off(found, name)) < limit for name, limit in RIGHT.items()) for found in starts)
     median = float(np.median([found.seconds for found in known]))
@@ -68,6 +73,7 @@ def main() -> None:
         "accuracy": f"{_accuracy(known, free)}\n\n{said}",
         "vehicle": f"{_vehicle(vehicles[:VEHICLES], vehicles[VEHICLES:])}\n\n{VEHICLES} recordings each.",
         "traps": _traps([traps[k : k + OF_A_TRAP] for k in range(0, len(traps), OF_A_TRAP)]) + f"\n\n{OF_A_TRAP} each.",
+        "methods": f"{_methods(methods)}\n\n{METHODS} recordings each.",
         "redesigned": _redesigned(cars),
     }
     write_text(filled(PAGE.read_text(encoding="utf-8"), tables), PAGE)
@@ -135,13 +141,30 @@ SPREAD_GOALS = {"J_2": "2.5 %", "C": "1 %", "phi_B": "0.6 %", "d": ""}
 """Standard deviation of repeated recordings, with load torque."""
 
 
+def _methods(every: Mapping[str, Sequence[tuple[Method, Method]]]) -> str:
+    rows = []
+    for plant, pairs in every.items():
+        for k, name in enumerate(("prediction error", "output error")):
+            of = [pair[k] for pair in pairs]
+            values = [np.array([getattr(one.p, parameter) for one in of]) for parameter in ("J_2", "C", "phi_B", "d")]
+            means = [
+                f"{value.mean():.4g} +- {100.0 * value.std(ddof=1) / abs(value.mean()):.2g} %" for value in values[:3]
+            ]
+            fit, seconds = (np.mean([getattr(one, what) for one in of]) for what in ("simulated", "seconds"))
+            rows.append([plant, name, *means, f"{values[3].mean():.3f}", f"{fit:.1f}", f"{seconds:.0f}"])
+    headings = [
+        *("plant", "method", "J_2, kg.m2", "C, N.m/rad", "phi_B, rad", "d, N.m.s/rad"),
+        *("simulated 0.5 s: omega_1, %", "time, s"),
+    ]
+    return markdown_table(headings, rows, labels=2)
+
+
 def _traps(every: Sequence[Sequence[Found]]) -> str:
     rows = []
     for trap, found in zip(TRAPS, every, strict=True):
         true = TRUE | {name.partition(".")[2]: value for name, value in trap.parameters.items() if name == "motor.tau"}
-        scale = trap.J_1 if trap.J_1 != 1.0 else 1.0
         inside = [
-            all(abs(one.z(name, true[name])) < 3.0 for name in ("J_2", "C", "phi_B", "tau")) and scale == 1.0
+            all(abs(one.z(name, true[name])) < 3.0 for name in ("J_2", "C", "phi_B", "tau")) and trap.J_1 == 1.0
             for one in found
         ]
         named = [bool(trap.cause) and any(trap.cause in warning for warning in one.warnings) for one in found]

@@ -21,13 +21,17 @@ from harness.identification.doubts import (
 from harness.identification.driven import Drive
 from harness.identification.identify import asked
 from harness.identification.maximum_likelihood import maximise
-from harness.identification.prediction import Filtered, Predictor
+from harness.identification.prediction import Predictor, filtered
 from harness.identification.response import Tyre
-from harness.identification.torque_loop import FittedLoop, TorqueLoop
+from harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
 from tests.harness.identification.simulated import NOISE, T_S, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "g_L")
 SHARP = {"J_2": 1e-4, "C": 1e-2, "phi_B": 1e-4}
+
+
+def twist(drive: Drive) -> np.ndarray:
+    return filtered(drive, P, NOISE).states[:, 2]
 
 
 CAR = P._replace(g_T=1.0, d=0.0)
@@ -45,7 +49,7 @@ def looked_for(drive: Drive) -> list[str]:
 def test_nothing_is_said_of_a_drive_that_is_as_it_should_be() -> None:
     drive = simulated(seed=6)
     assert looked_for(drive) == []
-    assert undetermined(drive, P, NOISE, SHARP, FREE) == []
+    assert undetermined(twist(drive), P, SHARP, FREE) == []
 
 
 @pytest.mark.parametrize(("samples", "word"), [(2, "late"), (-2, "early")])
@@ -59,7 +63,7 @@ def test_it_is_named_from_a_gain_in_likelihood_on(monkeypatch: pytest.MonkeyPatc
     drive = shifted(simulated(seed=6), 2)
     late = maximise(Predictor(FREE), drive, P, NOISE, most=12)
     right = maximise(Predictor(FREE), shifted(drive, -2), late.p, NOISE, most=TRIAL)
-    gain = 2.0 * (late.innovations.cost - right.innovations.cost)
+    gain = late.gain(right)
     assert gain > LIKELY
     for threshold, named in ((0.999 * gain, True), (1.001 * gain, False)):
         monkeypatch.setattr("harness.identification.doubts.LIKELY", threshold)
@@ -71,7 +75,7 @@ def test_a_motor_inertia_that_is_3_percent_wrong_is_named(factor: float) -> None
     """As the gain of the motor torque, which the data ask for: both cannot be told apart."""
     drive = simulated(seed=6, p=CAR)
     wrong = CAR._replace(J_1=factor * CAR.J_1)
-    found = maximise(Predictor(FREE), drive, wrong, NOISE, most=12)
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, wrong, NOISE, most=12)
     best = asked(drive, found, NOISE, (), lambda _: None)
     p, surely = best.p, {"g_T": float(np.sqrt(best.covariance[best.free.index("g_T"), best.free.index("g_T")]))}
     assert p.g_T == pytest.approx(1.0 / factor, abs=0.005)
@@ -83,25 +87,45 @@ def test_a_motor_inertia_that_is_3_percent_wrong_is_named(factor: float) -> None
 
 def test_the_data_ask_for_neither_gain_nor_damping_where_there_is_none() -> None:
     drive = simulated(seed=6, p=CAR)
-    found = maximise(Predictor(FREE), drive, CAR, NOISE, most=12)
-    assert asked(drive, found, NOISE, (), lambda _: None) is found
-    assert of_gain(found.p, {}) == []
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, CAR, NOISE, most=12)
+    best = asked(drive, found, NOISE, (), lambda _: None)
+    assert best.free == FREE
+    assert best.p.d == 0.0
+    assert best.p.g_T == 1.0
+    assert asked(drive, found, NOISE, ("d", "g_T"), lambda _: None) is found
+    assert of_gain(best.p, {}) == []
     assert of_gain(P._replace(g_T=1.0029), {"g_T": 1e-3}) == []
     assert of_gain(P._replace(g_T=1.0031), {"g_T": 1e-3})
 
 
 def test_the_data_ask_for_damping_where_there_is_some() -> None:
     drive = simulated(seed=6, p=CAR._replace(d=P.d))
-    found = maximise(Predictor(FREE), drive, CAR, NOISE, most=12)
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, CAR, NOISE, most=12)
     damped = asked(drive, found, NOISE, (), lambda _: None)
     assert "d" in damped.free
     assert damped.p.d == pytest.approx(P.d, rel=0.1)
 
 
+@pytest.mark.parametrize(("name", "neutral"), [("d", 0.0), ("g_T", 1.0)])
+def test_damping_and_gain_are_asked_for_from_a_likelihood_on(
+    name: str, neutral: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each while the other is free in any case."""
+    drive, others = simulated(seed=6, p=CAR), {"d", "g_T"} - {name}
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, CAR, NOISE, most=12)
+    k = found.free.index(name)
+    told = (getattr(found.p, name) - neutral) ** 2 / found.covariance[k, k]
+    for threshold, asks in ((0.999 * told, True), (1.001 * told, False)):
+        monkeypatch.setattr("harness.identification.identify.LIKELY", threshold)
+        best = asked(drive, found, NOISE, tuple(others), lambda _: None)
+        assert (name in best.free) == asks
+        assert (getattr(best.p, name) == neutral) != asks
+
+
 @pytest.mark.parametrize(("mean", "side"), [(120.0, "brake"), (-120.0, "drive")])
 def test_a_drive_that_never_crosses_the_gap_is_named(mean: float, side: str) -> None:
     drive = simulated(seed=6, n=750, mean=mean)
-    (text,) = undetermined(drive, P, NOISE, SHARP, FREE)
+    (text,) = undetermined(twist(drive), P, SHARP, FREE)
     assert text == (
         f"phi_B is not determined: the teeth never {side}, so that the gap is not crossed; excite about zero torque"
     )
@@ -109,20 +133,14 @@ def test_a_drive_that_never_crosses_the_gap_is_named(mean: float, side: str) -> 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize(("samples", "named"), [(FLANK * 1000, False), (FLANK * 1000 - 1, True)])
-def test_teeth_must_spend_a_share_of_the_time_on_either_flank(
-    monkeypatch: pytest.MonkeyPatch, side: float, samples: float, named: bool
-) -> None:
+def test_teeth_must_spend_a_share_of_the_time_on_either_flank(side: float, samples: float, named: bool) -> None:
     twists = np.full(1000, 1.1 * P.phi_B)
     twists[: int(samples)] *= -1.0
-    states = np.zeros((1000, 5))
-    states[:, 2] = side * twists
-    through = Filtered(states, np.zeros(1000), np.zeros(1000))
-    monkeypatch.setattr("harness.identification.doubts.filtered", lambda *_: through)
-    assert bool(undetermined(simulated(seed=6, n=100), P, NOISE, SHARP, FREE)) == named
+    assert bool(undetermined(side * twists, P, SHARP, FREE)) == named
 
 
 def said(deviations: dict[str, float], free: tuple[str, ...] = FREE) -> list[str]:
-    return undetermined(simulated(seed=6, n=750), P, NOISE, {**SHARP, **deviations}, free)
+    return undetermined(twist(simulated(seed=6, n=750)), P, {**SHARP, **deviations}, free)
 
 
 @pytest.mark.parametrize("name", ["J_2", "C", "phi_B"])
@@ -158,8 +176,8 @@ def test_a_scale_that_only_the_load_torque_sets_is_named() -> None:
     assert text.startswith("J_1 and the gain of the motor torque are both free")
 
 
-def fitted(tau: float = 0.003, delay: float = 0.0) -> FittedLoop:
-    return FittedLoop(TorqueLoop(tau, delay=delay), {}, 0.3, 1.0)
+def fitted(tau: float = 0.003, delay: float = 0.0, explained: float = 1.0) -> FittedLoop:
+    return FittedLoop(TorqueLoop(tau, delay=delay), {}, 0.3, explained)
 
 
 @pytest.mark.parametrize(("sign", "word"), [(1.0, "after"), (-1.0, "before")])
@@ -177,3 +195,16 @@ def test_a_wrong_lag_is_named(sign: float) -> None:
     assert of_demand(fitted(tau), T_S, 0.003) == [
         f"tau = 0.003 s of the vehicle file looks wrong: motor control has {tau:.4g} s"
     ]
+
+
+def test_a_demand_that_is_not_that_of_the_motor_torque_is_named_alone() -> None:
+    assert of_demand(fitted(explained=1.001 * ANSWERS), T_S, 0.003) == []
+    (text,) = of_demand(fitted(0.03, 0.01, 0.999 * ANSWERS), T_S, 0.003)
+    assert text.startswith("the torque demand explains 90 % of the motor torque only")
+
+
+def test_a_damper_that_drives_is_named() -> None:
+    phi = twist(simulated(seed=6, n=750))
+    assert undetermined(phi, P._replace(d=0.0), SHARP, FREE) == []
+    (text,) = undetermined(phi, P._replace(d=-0.01), SHARP, FREE)
+    assert text == "d = -0.01 N.m.s/rad is negative, which no damper is: something else is wrong"

@@ -1,10 +1,14 @@
 """What drives the model between the samples."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from harness.identification.drive_train import STEPS
 from harness.identification.driven import UNEVEN, driven, parts
+from harness.identification.identify import of_sensors
+from harness.identification.torque_loop import TorqueLoop
 from harness.recordings.measurement import Measurement
 from harness.recordings.source import RecordingError
 
@@ -54,10 +58,24 @@ def test_a_part_of_a_drive_is_that_of_its_samples() -> None:
 def test_where_the_demand_is_known_the_motor_torque_has_no_noise() -> None:
     time = T_S * np.arange(1500)
     demand = 10.0 + 30.0 * np.sign(np.sin(40.0 * time + 0.1))
-    given = recording(time, demand)
+    given = replace(recording(time, demand), T_mot=TorqueLoop(0.004).torque(demand, T_S))
     drive, loop = driven(given)
     assert loop is not None
     np.testing.assert_array_equal(drive.T_mot, loop.loop.means(demand, drive.T_s, STEPS)[:-1])
+
+
+@pytest.mark.parametrize(("share", "used"), [(0.89, False), (0.91, True)])
+def test_a_demand_that_does_not_explain_the_torque_does_not_replace_it(share: float, used: bool) -> None:
+    time = T_S * np.arange(1500)
+    demand = 10.0 + 30.0 * np.sign(np.sin(40.0 * time + 0.1))
+    T = TorqueLoop(0.004).torque(demand, T_S)
+    other = np.random.default_rng(1).standard_normal(len(T))
+    given = replace(recording(time, demand), T_mot=T + other * T.std() * np.sqrt(1.0 / share - 1.0))
+    drive, loop = driven(given)
+    assert loop is not None
+    assert loop.explained == pytest.approx(share, abs=0.006)
+    assert loop.answers == used
+    assert np.array_equal(drive.T_mot, parts(given.T_mot, drive.T_s)) != used
 
 
 def test_uneven_samples_are_refused_with_the_place() -> None:
@@ -74,3 +92,14 @@ def test_uneven_samples_are_refused_with_the_place() -> None:
     time[200] += 1.1 * UNEVEN * T_S
     with pytest.raises(RecordingError, match=r"after 0\.(898|9) s it is 0\.00(211|189) s"):
         driven(recording(time))
+
+
+def test_the_motor_torque_has_its_noise_unless_it_is_the_answer_to_its_demand() -> None:
+    time = T_S * np.arange(1500)
+    demand, other = (10.0 + 30.0 * np.sign(np.sin(omega * time + 0.1)) for omega in (40.0, 17.0))
+    noisy = TorqueLoop(0.004).torque(demand, T_S) + 0.3 * np.random.default_rng(1).standard_normal(len(time))
+    right, wrong = (replace(recording(time, T_ref), T_mot=noisy) for T_ref in (demand, other))
+    assert of_sensors(right, driven(right)[1]).T_mot == 0.0
+    for given in (wrong, replace(right, T_ref=None)):
+        _, loop = driven(given)
+        assert of_sensors(given, loop if loop and loop.answers else None).T_mot == pytest.approx(0.3, rel=0.1)

@@ -24,31 +24,31 @@ from harness.manoeuvres.prbs import shift_register
 from harness.recordings.measurement import Measurement
 
 CAR = Parameters(J_1=0.055, J_2=0.3, C=117.4, d=0.3, phi_B=0.157)
-T_S, COUNT, SIGMA = 0.002, 1500, 0.15
+T_S, COUNT, SIGMA, SIGMA_LOAD = 0.002, 1500, 0.15, 0.5
 FREE = ("J_2", "C", "phi_B", "d")
 
 
 @cache
 def truth(p: Parameters = CAR, count: int = COUNT) -> tuple[Drive, np.ndarray]:
-    """A drive of the model itself with a noisy motor speed, and its states."""
+    """A drive of the model itself with noise of motor speed and load torque, and its states."""
     bits = np.repeat(shift_register(count // 20 + 1), 20)[:count]
     T_mot = np.repeat(10.0 + 30.0 * (2.0 * bits[:, None] - 1.0), STEPS, axis=1)
     drive = Drive(T_S, np.zeros(count + 1), T_mot, np.full((count, STEPS), -10.0))
     start = np.array([130.0, 130.0, p.phi_B + 10.0 / p.C, 0.0, 0.0])
     states = np.vstack([start, Simulator(count).run(drive, 0, start, p)])
-    noise = SIGMA * np.random.default_rng(1).standard_normal(count + 1)
-    return replace(drive, omega_1=states[:, 0] + noise), states
+    noise = np.random.default_rng(1).standard_normal((2, count + 1))
+    T_load = drive.T_load + SIGMA_LOAD * noise[1, 1:, None]
+    return replace(drive, omega_1=states[:, 0] + SIGMA * noise[0], T_load=T_load), states
 
 
 @cache
 def answer() -> Identified:
     drive, _ = truth()
-    noise = Noise(SIGMA, 0.0, 0.5)
+    noise = Noise(SIGMA, 0.0, SIGMA_LOAD)
     found = maximise(Predictor(FREE), drive, CAR, noise)
-    covariance = np.linalg.inv(found.innovations.information)
     tyre, quality = Tyre(480.0, 27.0, 1.5, 0.98), Quality(99.0, 99.0, 99.0, 1.0, 0.0)
     return Identified(
-        WITH_LOAD, "prediction error", found.p, covariance, FREE, noise, None, tyre, quality, drive, warnings=()
+        "prediction error", found.p, found.covariance, FREE, noise, (), WITH_LOAD, None, tyre, quality, drive
     )
 
 

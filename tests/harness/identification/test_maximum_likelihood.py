@@ -1,9 +1,12 @@
 """The likeliest parameters are found, from wherever the search begins, and as well as their covariance says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from harness.identification.drive_train import Parameters
+from harness.identification.global_start import best_start
 from harness.identification.identify import BROAD
 from harness.identification.maximum_likelihood import Found, maximise, moved, scales
 from harness.identification.prediction import Noise, Predictor
@@ -13,9 +16,10 @@ FREE = ("J_2", "C", "phi_B", "g_L", "d")
 
 
 def found(start: Parameters, free: tuple[str, ...] = FREE, **drive: float) -> Found:
-    """As `driveline identify` does: through a wide filter first."""
+    """As `driveline identify` does: from the best of many starts, through a wide filter first."""
     given, predictor = simulated(**{"seed": 3, **drive}), Predictor(free)  # pyright: ignore[reportArgumentType]
-    broad = maximise(predictor, given, start, Noise(NOISE.omega_1, NOISE.T_mot, BROAD))
+    wide = Noise(NOISE.omega_1, NOISE.T_mot, BROAD)
+    broad = maximise(predictor, given, best_start(predictor, given, start, wide), wide)
     return maximise(predictor, given, broad.p, NOISE, most=12)
 
 
@@ -42,7 +46,7 @@ def test_the_motor_inertia_too() -> None:
 
 
 def test_what_is_not_free_remains_and_the_search_ends_by_itself() -> None:
-    result = found(P._replace(J_2=0.5), free=("J_2",))
+    result = maximise(Predictor(("J_2",)), simulated(seed=3), P._replace(J_2=0.5), NOISE, most=12)
     assert result.p._replace(J_2=P.J_2) == P
     assert result.passes < 12
 
@@ -58,9 +62,26 @@ def test_what_the_recording_tells_nothing_of_remains_and_is_unknown() -> None:
     assert phi_B > 10.0 * result.p.phi_B
 
 
-def test_the_covariance_is_the_inverse_of_the_information() -> None:
+def test_the_covariance_is_the_inverse_of_the_information_times_the_noise_that_is_left() -> None:
     result = found(P)
-    np.testing.assert_allclose(result.covariance @ result.innovations.information, np.eye(len(FREE)), atol=1e-3)
+    assert result.innovations.rms == pytest.approx(np.sqrt(np.mean(result.innovations.size[100:] ** 2)))
+    inverse = result.covariance / result.innovations.rms**2
+    np.testing.assert_allclose(inverse @ result.innovations.information, np.eye(len(FREE)), atol=1e-3)
+    np.testing.assert_allclose(inverse, result.inverse_information)
+
+
+def test_noise_that_is_taken_for_half_is_found_in_the_innovations() -> None:
+    """All of it, so that neither intervals nor what one more parameter gains depend on it."""
+    half = replace(NOISE, **{name: 0.5 * value for name, value in vars(NOISE).items()})
+    drive = simulated(seed=3)
+    right, wrong = (maximise(Predictor(FREE), drive, P, noise) for noise in (NOISE, half))
+    assert wrong.innovations.rms == pytest.approx(2.0 * right.innovations.rms, rel=0.01)
+    np.testing.assert_allclose(np.diag(wrong.covariance), np.diag(right.covariance), rtol=0.03)
+    away = P._replace(J_2=1.01 * P.J_2)
+    near, near_too = (
+        Found(away, FREE, Predictor(FREE).innovations(drive, away, noise), passes=1) for noise in (NOISE, half)
+    )
+    assert near_too.gain(wrong) == pytest.approx(near.gain(right), rel=0.03)
 
 
 def test_no_more_passes_than_are_allowed() -> None:

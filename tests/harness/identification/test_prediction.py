@@ -106,7 +106,7 @@ def test_the_information_about_a_standard_deviation_is_that_of_the_textbook() ->
     n = 100_000
     size = np.random.default_rng(1).standard_normal(n)
     d_size, d_log_S = np.column_stack([-size, -np.ones(n)]), np.column_stack([np.full(n, 2.0), np.zeros(n)])
-    information = Innovations(size, np.zeros(n), d_size, d_log_S).information
+    information = Innovations(size, np.zeros(n), 0, d_size, d_log_S).information
     np.testing.assert_allclose(information / n, [[2.0, 0.0], [0.0, 1.0]], atol=0.02)
 
 
@@ -120,3 +120,13 @@ def test_the_information_tells_how_the_gradient_scatters() -> None:
     scores = np.array([root.T @ one.gradient for one in each])
     assert np.abs(scores.mean(axis=0)).max() < 4.0 / np.sqrt(24)
     assert np.mean(scores**2) == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / scores.size))
+
+
+def test_a_recording_that_begins_in_the_middle_of_a_swing_is_explained_as_well(drive: Drive) -> None:
+    """What the filter is off by until it has found its state does not count."""
+    for first in range(100, 700, 50):
+        through = filtered(drive.between(first, len(drive)), P, NOISE)
+        assert through.settled == SETTLED
+        assert through.rms == pytest.approx(1.0, abs=0.1)
+        counted = (through.size**2 + through.log_S)[SETTLED:]
+        assert through.cost == pytest.approx(0.5 * counted.sum())

@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
-from harness.analysis.identification import TRAPS, Found, Judged, Redesigned
+from harness.analysis.identification import TRAPS, Found, Judged, Method, Redesigned
 from harness.control_loop import PLANTS
-from harness.tuning.identification_page import PAGE, TRUE, _accuracy, _redesigned, _traps, _vehicle
+from harness.identification.drive_train import Parameters
+from harness.tuning.identification_page import PAGE, TRUE, _accuracy, _methods, _redesigned, _traps, _vehicle
 
 RIGHT = Found(
     values={**TRUE, "g_L": 1.0},
@@ -73,7 +74,26 @@ def test_the_vehicle_is_told_with_and_without_load() -> None:
     assert row(table, "response 2 to 12 Hz with the true load, dB rms")[2:] == ["0.20", "-"]
 
 
+def test_both_methods_are_told_with_their_scatter() -> None:
+    near, far = Parameters(0.055, 0.3, 117.4, 0.2, 0.157), Parameters(0.055, 0.1, 100.0, 0.1, 0.1)
+    pair = (Method(near, 99.0, 2.0), Method(far, 90.0, 20.0))
+    other = (Method(near._replace(C=119.4), 98.0, 4.0), Method(far, 90.0, 20.0))
+    table = _methods({PLANTS[0]: [pair, other]})
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+    assert cells[0] == [
+        PLANTS[0],
+        "prediction error",
+        "0.3 +- 0 %",
+        "118.4 +- 1.2 %",
+        "0.157 +- 0 %",
+        "0.200",
+        "98.5",
+        "3",
+    ]
+    assert cells[1][1:] == ["output error", "0.1 +- 0 %", "100 +- 0 %", "0.1 +- 0 %", "0.100", "90.0", "20"]
+
+
 def test_the_page_has_a_place_for_every_table() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    for name in ("accuracy", "vehicle", "traps", "redesigned"):
+    for name in ("accuracy", "vehicle", "methods", "traps", "redesigned"):
         assert f"<!-- {name}, made by python -m harness.tuning.identification_page -->" in text
