@@ -4,10 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup demo test mutation fuzz lint check cross bench docs clean
+.PHONY: help setup demo test test-target mutation fuzz lint check cross bench docs clean
 
 help: ## what can be made
-	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
 
 $(READY): pyproject.toml constraints.txt harness/cosimulation/steps.c
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -25,6 +25,10 @@ demo: $(READY) ## build the FMUs, compare with and without damping, replay a sho
 
 test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
+
+test-target: $(READY) ## the controller's C on an emulated processor; says what to apt-get install
+	$(BIN)/python -m fmus.target
+	$(BIN)/python -m pytest tests/fmus/target tests/harness/target
 
 mutation: $(READY) ## small faults put into the controller and the C core, one by one: do the tests find them?
 	$(BIN)/python tests/mutation
@@ -69,7 +73,9 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline identify results/record/ValidationVehicle_prbs_off.csv --output results/identify/identification.toml \
 		--replace --quiet
 	cp results/identify/identification_simulation.png docs/figures/
-	$(BIN)/python -m benchmarks.target_cost
+	$(BIN)/driveline target record --replace --quiet
+	cp results/target/target.md docs/
+	cp results/target/figures/target.png docs/figures/
 	$(BIN)/driveline analyse --replace --quiet
 	cp results/analyse/analysis.md docs/
 	cp results/analyse/figures/*.png docs/figures/

@@ -16,12 +16,14 @@ class Fmu:
         block: what it runs.
         stop_time, step_size: in s, of the experiment that a tool proposes.
         start_values: of the parameters whose start values are not those that the block was declared with.
+        image: program of the target that runs the functions of the block; none: they run here.
     """
 
     block: Block
     stop_time: float
     step_size: float = 0.001
     start_values: Mapping[str, Any] = field(default_factory=dict)
+    image: bytes = b""
 
     @property
     def name(self) -> str:

@@ -31,6 +31,7 @@ COMMANDS = {
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
     "analyse": "margins, poles and sensitivities of the loop",
+    "target": "the controller's C on its processor",
     "bound": "compute what no controller can beat, beside what ours reaches",
     "coupling": "measure coupling error and dead time of the master",
     "back-to-back": "compare both builds of each block with its functions",
@@ -105,12 +106,18 @@ class Completion(argparse.Action):
     def __call__(self, parser, namespace, values, option_string=None) -> NoReturn:
         import shtab
 
-        for action in parser._actions:
-            if isinstance(action, argparse._SubParsersAction):
-                for subparser in action.choices.values():
-                    subparser.add_command()
+        complete_commands(parser)
         print(shtab.complete(parser, str(values)))
         parser.exit()
+
+
+def complete_commands(parser: argparse.ArgumentParser) -> None:
+    """Adds the arguments of all commands, and of what they can be told to do."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for subparser in action.choices.values():
+                subparser.add_command()
+                complete_commands(subparser)
 
 
 def parser() -> Parser:

@@ -20,6 +20,7 @@ ROOMS = {
     "fmus.description": {"fmus", "models.block"},
     "fmus.python": {"fmus", "fmus.description", "models.block"},
     "fmus.native": {"fmus", "fmus.description", "models.block"},
+    "fmus.target": {"fmus", "fmus.description", "fmus.native", "fmus.python", "models.block"},
     "fmus": {"fmus.description", "fmus.python", "fmus.native", "models", "models.block", "models.comparators"},
     "": {"fmus"},
     "harness.cosimulation": {"harness"},
@@ -39,6 +40,9 @@ ROOMS = {
     "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
     | {"harness.linear", "models", "models.controller"},
     "harness.identification": {"harness", "harness.recordings", "harness.reports"},
+    "harness.target": COSIMULATION
+    | {"harness.manoeuvres", "harness.metrics", "harness.recordings", "harness.reports"}
+    | {"fmus", "fmus.native", "fmus.target"},
     "harness.tuning": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
     | {"harness.robustness", "harness.identification"},
@@ -55,6 +59,7 @@ ROOMS = {
         "harness.linear",
         "harness.tuning",
         "harness.robustness",
+        "harness.target",
     },
 }
 """Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only

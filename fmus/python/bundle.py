@@ -32,6 +32,19 @@ from .models.block.types import with_start_values
 {name}.block = with_start_values(BLOCK, {start_values})
 """
 
+ON_TARGET = """
+from pathlib import Path
+
+from .fmus.target.remote import OnTarget
+
+
+class {name}(OnTarget, {name}):
+    image = Path(__file__).with_name("{image}")
+"""
+
+IMAGE = "controller.elf"
+"""Name of the program of the target in the package."""
+
 SCRIPT_TEXT = '''"""Main script of the FMU {name}; its text is run once for every instance."""
 
 from {package} import {name}
@@ -48,12 +61,12 @@ def bundle(fmu: Fmu) -> dict[str, bytes]:
     A module's data, a file of its name beside it, comes along.
     """
     modules: set[str] = set()
-    waiting = {"fmus.python.slave", fmu.module}
+    waiting = {"fmus.python.slave", fmu.module} | ({"fmus.target.remote"} if fmu.image else set())
     while waiting:
         module = waiting.pop()
         modules.add(module)
         waiting |= {*imported(module), *packages_of(module)} - modules
-    files = {}
+    files = {IMAGE: fmu.image} if fmu.image else {}
     for module in modules:
         path = source_path(module)
         files[_place(path)] = relocated(module)
@@ -130,9 +143,9 @@ def package_name(fmu: Fmu, files: dict[str, bytes]) -> str:
 
 def package_text(fmu: Fmu, pythonfmu: str) -> bytes:
     """`__init__.py` of the package, which takes its base class from the package `pythonfmu`."""
-    text = PACKAGE_TEXT + OTHER_START_VALUES if fmu.start_values else PACKAGE_TEXT
-    start_values = dict(fmu.start_values)
-    return text.format(name=fmu.name, module=fmu.module, pythonfmu=pythonfmu, start_values=start_values).encode()
+    text = PACKAGE_TEXT + (OTHER_START_VALUES if fmu.start_values else "") + (ON_TARGET if fmu.image else "")
+    about = {"name": fmu.name, "module": fmu.module, "start_values": dict(fmu.start_values), "image": IMAGE}
+    return text.format(pythonfmu=pythonfmu, **about).encode()
 
 
 def script_text(fmu: Fmu, package: str) -> bytes:

@@ -30,13 +30,20 @@ On Linux also glibc 2.32 and libstdc++ with GLIBCXX_3.4.30 or later.
 No package needs to be installed in that Python.
 """
 
+EMULATOR = """\
+qemu-system-arm on the PATH, on Linux: the controller runs on the Cortex-M4F that it emulates.
+"""
+
+HTML_EMULATOR = """ The controller itself runs on a
+Cortex-M4F that qemu-system-arm emulates, which must be on the PATH (on Linux)."""
+
 SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
 """Modules of PythonFMU that an FMU needs when it runs."""
 
 
 def build(fmu: Fmu, folder: Path) -> Path:
     """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path."""
-    kind = python_kind()
+    kind = python_kind(on_target=bool(fmu.image))
     files = _resources_and_binaries(fmu)
     guid = guid_of(model_description(fmu, kind, ""), files)
     files |= documentation(fmu, kind) | _license_of_pythonfmu() | origin_entry(fmu)
@@ -46,8 +53,8 @@ def build(fmu: Fmu, folder: Path) -> Path:
     return target
 
 
-def python_kind() -> BuildKind:
-    """What the build with PythonFMU says of itself."""
+def python_kind(on_target: bool = False) -> BuildKind:
+    """What the build with PythonFMU says of itself; `on_target`: its functions run on an emulated target."""
     return BuildKind(
         tool=f"PythonFMU {version('pythonfmu')}",
         capabilities={
@@ -55,12 +62,14 @@ def python_kind() -> BuildKind:
             "maxOutputDerivativeOrder": "0",
             "canNotUseMemoryManagementFunctions": "true",
             "providesDirectionalDerivative": "false",
+            "needsExecutionTool": "true" if on_target else "false",
         },
         log_categories={LOG_DISCARD: LOG_CATEGORIES[LOG_DISCARD]},
         needs="""The model is Python code inside this file, on the
 standard library alone. The host process must be a Python of version 3.11 or later, or have loaded
-libpython with its symbols visible (on Linux: LD_PRELOAD).""",
-        external=EXTERNAL,
+libpython with its symbols visible (on Linux: LD_PRELOAD)."""
+        + (HTML_EMULATOR if on_target else ""),
+        external=EXTERNAL + (EMULATOR if on_target else ""),
     )
 
 

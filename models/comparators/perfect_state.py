@@ -46,9 +46,9 @@ def told(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
     Its twist is that which makes the true gear torque and, in the gap, the true one.
     """
     phi = u.T_gear / p.C + clip(u.phi, -p.phi_B, p.phi_B)
-    true = bounded(Estimate(u.omega_1, u.omega_2, phi, 0.0), p)
+    true = EstimatorState(0.0, bounded(Estimate(u.omega_1, u.omega_2, phi, 0.0), 0.0, p), expected.past, expected.share)
     known = is_finite(u.omega_1 + u.omega_2 + u.phi + u.T_gear)
-    return expected._replace(estimate=branch(known, lambda: true, lambda: expected.estimate))
+    return branch(known, lambda: true, lambda: expected)
 
 
 _CONTROLLER = Informed(MODEL, damping_law)

@@ -10,6 +10,10 @@ model is integrated by the leapfrog method. The measured motor speed corrects it
 the wheel speed when a message arrives, against the estimate of T_age before: so old is the message.
 The constant gains come from a Riccati equation (harness, design), one set for each mode; `share` fades
 from the set without (0) to the set with the wheel speed (1).
+
+The model looks the same from a train that rolls along: only differences of speeds are in it. So the speeds of the
+estimate are counted from the motor speed that was measured last. They are small numbers then, and single precision
+rounds them as little as the twist, which is the integral of their difference.
 """
 
 from typing import Annotated, Any, NamedTuple
@@ -50,10 +54,10 @@ class Parameters(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """State of the estimator's model, motor side."""
+    """State of the estimator's model, motor side; its speeds are counted from a base."""
 
-    omega_1: Annotated[float, Real("rad/s", "estimated speed of the motor")]
-    omega_2: Annotated[float, Real("rad/s", "estimated speed of the wheels, motor side")]
+    omega_1: Annotated[float, Real("rad/s", "estimated speed of the motor, from the base")]
+    omega_2: Annotated[float, Real("rad/s", "estimated speed of the wheels, motor side, from the base")]
     phi: Annotated[float, Real("rad", "estimated twist")]
     T_l: Annotated[float, Real("N.m", "estimated slow part of the load torque")]
 
@@ -61,18 +65,19 @@ class Estimate(NamedTuple):
 class EstimatorState(NamedTuple):
     """State of the torque estimator."""
 
+    base: Annotated[float, Real("rad/s", "motor speed measured last, from which the speeds of the estimate count")]
     estimate: Estimate
     past: Annotated[tuple[float, ...], Real("rad/s", "estimates of omega_2 of the last samples, newest first")]
     share: Annotated[float, Real("1", "share of the gains with wheel speed")]
 
 
 def start(omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> EstimatorState:
-    e = at_rest_with(omega_1, T_mot, p)
-    return EstimatorState(e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0))
+    e = at_rest_with(T_mot, p)
+    return EstimatorState(omega_1, e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0))
 
 
 def restart(x: EstimatorState, omega_1: Any, T_mot: Any, p: Any) -> EstimatorState:
-    return x._replace(estimate=at_rest_with(omega_1, T_mot, p))
+    return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p))
 
 
 def predict(x: EstimatorState, T_mot: Any, T_s: Any, p: Any) -> EstimatorState:
@@ -80,7 +85,8 @@ def predict(x: EstimatorState, T_mot: Any, T_s: Any, p: Any) -> EstimatorState:
 
 
 def take_motor_speed(x: EstimatorState, omega_1: Any, p: Any) -> EstimatorState:
-    return x._replace(estimate=bounded(corrected_by_motor_speed(x.estimate, omega_1, x.share, p), p))
+    e = counted_from(omega_1 - x.base, x.estimate)
+    return x._replace(base=omega_1, estimate=bounded(corrected_by_motor_speed(e, 0.0, x.share, p), omega_1, p))
 
 
 def take_wheel_speed(x: EstimatorState, omega_2: Any, T_s: Any, p: Any) -> EstimatorState:
@@ -89,25 +95,30 @@ def take_wheel_speed(x: EstimatorState, omega_2: Any, T_s: Any, p: Any) -> Estim
 
 def finish(x: EstimatorState, wheel: Any, T_s: Any, p: Any) -> EstimatorState:
     share = toward(x.share, where(wheel, 1.0, 0.0), T_s, p)
-    return x._replace(past=(x.estimate.omega_2, *x.past[:-1]), share=share)
+    return x._replace(past=(x.base + x.estimate.omega_2, *x.past[:-1]), share=share)
 
 
 def motion(x: EstimatorState, p: Any) -> Motion:
-    return seen(x.estimate, p)
+    return seen(x.estimate, x.base, p)
 
 
 def motion_after(x: EstimatorState, T_mot: Any, h: Any, p: Any) -> Motion:
-    return seen(integrated(x.estimate, T_mot, h, p), p)
+    return seen(integrated(x.estimate, T_mot, h, p), x.base, p)
 
 
-def seen(e: Estimate, p: Any) -> Motion:
-    return Motion(e.omega_1, e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
+def seen(e: Estimate, base: Any, p: Any) -> Motion:
+    return Motion(base + e.omega_1, base + e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
 
 
-def at_rest_with(omega_1: Any, T_mot: Any, p: Any) -> Estimate:
-    """Estimate before anything was measured: no twisting motion, the whole motor torque in the gear."""
+def counted_from(omega: Any, e: Estimate) -> Estimate:
+    """The estimate with its speeds counted from one that is omega (rad/s) above its base."""
+    return e._replace(omega_1=e.omega_1 - omega, omega_2=e.omega_2 - omega)
+
+
+def at_rest_with(T_mot: Any, p: Any) -> Estimate:
+    """Estimate before anything was measured but the base: no twisting motion, the whole motor torque in the gear."""
     flank = where(T_mot > 0.0, p.phi_B, where(T_mot < 0.0, -p.phi_B, 0.0))
-    return Estimate(omega_1, omega_1, T_mot / p.C + flank, 0.0)
+    return Estimate(0.0, 0.0, T_mot / p.C + flank, 0.0)
 
 
 def integrated(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
@@ -141,12 +152,12 @@ def corrected_by_message(x: EstimatorState, omega_2_can: Any, samples: Any, p: A
     )
 
 
-def bounded(e: Estimate, p: Any) -> Estimate:
+def bounded(e: Estimate, base: Any, p: Any) -> Estimate:
     """The estimate within what the drive train can bear, whatever was measured at the motor."""
     phi_max = p.phi_B + 4.0 * p.T_max / p.C
     return Estimate(
-        clip(e.omega_1, -p.omega_max, p.omega_max),
-        clip(e.omega_2, -p.omega_max, p.omega_max),
+        clip(e.omega_1, -p.omega_max - base, p.omega_max - base),
+        clip(e.omega_2, -p.omega_max - base, p.omega_max - base),
         clip(e.phi, -phi_max, phi_max),
         clip(e.T_l, -4.0 * p.T_max, 4.0 * p.T_max),
     )

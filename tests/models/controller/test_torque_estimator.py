@@ -18,7 +18,13 @@ IN_CONTACT = Estimate(omega_1=150.0, omega_2=148.0, phi=P.phi_B + 50.0 / P.C, T_
 
 
 def estimating(e: Estimate, share: float = 1.0) -> EstimatorState:
-    return EstimatorState(e, past=(e.omega_2,) * HISTORY, share=share)
+    """With the speeds of the estimate counted from 0."""
+    return EstimatorState(0.0, e, past=(e.omega_2,) * HISTORY, share=share)
+
+
+def estimate(x: EstimatorState) -> Estimate:
+    """With its speeds counted from 0."""
+    return estimator.counted_from(-x.base, x.estimate)
 
 
 def rates(e: Estimate, T_mot: float) -> Estimate:
@@ -51,14 +57,14 @@ def test_the_model_follows_its_equations_with_order_two() -> None:
 def test_it_starts_with_the_motor_torque_in_the_gear(T_mot: float, phi: float) -> None:
     """Against the flank that bears it, and without torque in the middle of the backlash."""
     p = P._replace(C=117.4, phi_B=0.157)
-    e = estimator.start(120.0, T_mot, True, p).estimate
+    e = estimate(estimator.start(120.0, T_mot, True, p))
     assert e == (120.0, 120.0, pytest.approx(phi, rel=1e-12), 0.0)
     assert estimator.motion(estimating(e), p).T_gear == pytest.approx(T_mot, rel=1e-12)
 
 
 def test_the_smallest_torque_bears_on_its_flank() -> None:
-    assert estimator.at_rest_with(0.0, 5e-324, P).phi == P.phi_B
-    assert estimator.at_rest_with(0.0, -5e-324, P).phi == -P.phi_B
+    assert estimator.at_rest_with(5e-324, P).phi == P.phi_B
+    assert estimator.at_rest_with(-5e-324, P).phi == -P.phi_B
 
 
 def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
@@ -68,9 +74,9 @@ def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
 
 
 def test_a_new_start_forgets_the_estimate_alone() -> None:
-    x = EstimatorState(IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25)
+    x = EstimatorState(140.0, IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25)
     again = estimator.restart(x, 90.0, -20.0, P)
-    assert again == x._replace(estimate=estimator.start(90.0, -20.0, True, P).estimate)
+    assert again == x._replace(base=90.0, estimate=estimator.start(90.0, -20.0, True, P).estimate)
 
 
 GAINS = P._replace(
@@ -93,7 +99,26 @@ E_0 = Estimate(omega_1=150.0, omega_2=148.0, phi=0.5, T_l=-3.0)
 def test_the_motor_speed_corrects_with_the_gains_of_the_mode(share: float, correction: tuple[float, ...]) -> None:
     """4 rad/s above the estimate."""
     x = estimator.take_motor_speed(estimating(E_0, share), 154.0, GAINS)
-    assert x == estimating(E_0, share)._replace(estimate=advanced(E_0, 1.0, Estimate(*correction)))
+    assert x.base == 154.0
+    corrected = estimating(advanced(E_0, 1.0, Estimate(*correction)), share)
+    assert x._replace(base=0.0, estimate=estimate(x)) == corrected._replace(past=x.past)
+
+
+@pytest.mark.parametrize("base", [-64.0, 0.0, 150.0, 4096.0])
+def test_what_the_speeds_are_counted_from_is_of_no_account(base: float) -> None:
+    x = estimating(E_0)
+    moved = x._replace(base=base, estimate=estimator.counted_from(base, E_0))
+    assert estimator.motion(moved, GAINS) == estimator.motion(x, GAINS)
+    assert estimator.take_motor_speed(moved, 154.0, GAINS) == estimator.take_motor_speed(x, 154.0, GAINS)
+    assert estimator.finish(moved, True, T_S, GAINS).past == estimator.finish(x, True, T_S, GAINS).past
+
+
+def test_after_a_sample_the_speeds_are_counted_from_the_measured_one() -> None:
+    """So they are small numbers, however fast the car is."""
+    x = estimator.take_motor_speed(estimating(E_0), 1000.0 + E_0.omega_1, P)
+    assert x.base == 1000.0 + E_0.omega_1
+    close = estimator.take_motor_speed(estimating(E_0), E_0.omega_1 + 0.5, P).estimate
+    assert max(abs(close.omega_1), abs(close.omega_2)) < 3.0
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
@@ -115,7 +140,7 @@ def test_a_message_is_compared_with_the_estimate_of_its_time(samples: float, est
 def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: int) -> None:
     """The innovation is that of the message's own age, 11.5 samples; a sample more shows."""
     p, x = P._replace(T_age=0.023), BLOCK.start(ROLLING, P)
-    true = [x.estimator.estimate]
+    true = [estimate(x.estimator)]
     for k in range(1, 400):
         true.append(estimator.integrated(true[-1], 50.0, T_S, p))
         u = ROLLING._replace(omega_1_meas=true[k].omega_1)
@@ -123,7 +148,7 @@ def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: i
             message = 0.5 * (true[k - 11 - late].omega_2 + true[k - 12 - late].omega_2)
             u = u._replace(omega_2_can=message, counter=k // 10)
         x = BLOCK.update(x, u, p)
-    e = x.estimator.estimate
+    e = estimate(x.estimator)
     error = max(abs(e.omega_2 - true[-1].omega_2), abs(e.phi - true[-1].phi))
     assert error > 1e-6 if late else error < 1e-9
 
@@ -167,8 +192,12 @@ def test_the_estimate_stays_within_what_the_drive_train_can_bear(name: str, side
     p = GAINS._replace(omega_max=800.0, T_max=100.0, C=128.0, phi_B=0.25)
     zero, bound = Estimate(0.0, 0.0, 0.0, 0.0), BOUNDS[name]
     below, beyond = (zero._replace(**{name: side * size}) for size in (bound - 0.125, bound + 0.125))
-    assert estimator.bounded(below, p) == below
-    assert estimator.bounded(beyond, p) == zero._replace(**{name: side * bound})
+    for base in (0.0, 512.0):
+        inside, outside, there = (
+            estimator.counted_from(base, e) for e in (below, beyond, zero._replace(**{name: side * bound}))
+        )
+        assert estimator.bounded(inside, base, p) == inside
+        assert estimator.bounded(outside, base, p) == there
 
 
 def test_a_correction_by_the_motor_speed_stays_within_the_bounds() -> None:
@@ -194,4 +223,4 @@ def test_the_estimate_follows_a_perfect_model() -> None:
         u = ROLLING._replace(omega_1_meas=true.omega_1, T_mot_est=T_mot, valid=False)
         x = BLOCK.update(x, u, P)
     assert x.estimator.estimate.phi == pytest.approx(true.phi, abs=0.02)
-    assert x.estimator.estimate.omega_2 == pytest.approx(true.omega_2, abs=0.5)
+    assert estimate(x.estimator).omega_2 == pytest.approx(true.omega_2, abs=0.5)

@@ -1,30 +1,28 @@
-"""Writes a controller as plain C for the processor it is meant for: `python -m fmus.native.target`.
+"""A controller as plain C for the processor it is meant for.
 
-Two files without any FMI in them, `damping_controller.h` and `damping_controller.c`: the same structs and
-arithmetic as in the FMU, but with names that stand alone in a project, and in single precision if wanted.
+Files without any FMI in them: the same structs and arithmetic as in the FMU, but with names that stand alone in a
+project, and in single precision if wanted.
 """
-
-import argparse
-from pathlib import Path
 
 from models.block.declaration import Enumeration, variables
 from models.block.types import SampledBlock
 
-from ..damping_controller import FMU
-from ..errors import ParameterFileError
+from ..catalogue import EVERY
 from ..fmu import Fmu
-from ..options import add_parameter_files
-from ..parameter_files import read_files
-from .records import Names, records_of, structs
-from .source import MEANINGS, function, head
-from .statements import DOUBLE, SINGLE, Precision, constant
-from .trace import trace
+from ..native.records import Names, records_of, structs
+from ..native.source import MEANINGS, function, head
+from ..native.statements import DOUBLE, SINGLE, Precision, constant
+from ..native.trace import trace
+
+CONTROLLERS = {name: fmu for name, fmu in EVERY.items() if "T_driver" in fmu.block.Input._fields}
+"""By name: what takes the driver's demand."""
 
 PRECISIONS = {"float": SINGLE, "double": DOUBLE}
+"""By the type of a real number in C."""
 
 HEADER = """/* {description}.
 
-Written by `python -m fmus.native.target` from {module}, which is its documentation:
+Written by `driveline target export` from {module}, which is its documentation:
 
 {equations}
 */
@@ -47,7 +45,7 @@ extern const {struct}Parameters {function}parameters;
 #endif
 """
 
-SOURCE = """/* Arithmetic of {file}.h, written by `python -m fmus.native.target` from {module}. */
+SOURCE = """/* Arithmetic of {file}.h, written by `driveline target export` from {module}. */
 #include "{file}.h"
 
 #include <math.h>
@@ -60,8 +58,31 @@ const {struct}Parameters {function}parameters = {{
 """
 
 
+ANY = """/* The controller under names that do not tell which it is, written by `driveline target export`. */
+#ifndef CONTROLLER_H
+#define CONTROLLER_H
+
+#include "{file}.h"
+
+typedef {real} ControllerReal;
+typedef {struct}Input ControllerInput;
+typedef {struct}Parameters ControllerParameters;
+typedef {struct}State ControllerState;
+typedef {struct}Output ControllerOutput;
+
+#define CONTROLLER_NAME "{struct}"
+#define CONTROLLER_SAMPLE_TIME {macro}_SAMPLE_TIME
+#define controller_parameters {function}parameters
+#define controller_start {function}start
+#define controller_output {function}output
+#define controller_update {function}update
+
+#endif
+"""
+
+
 def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
-    """Header and source of a sampled block by file name, in C99 that calls nothing but math.h.
+    """Headers and source of a sampled block by file name, in C99 that calls nothing but math.h.
 
     Raises:
         ValueError: the block is continuous.
@@ -90,7 +111,7 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
         ),
         functions="\n\n".join(function(each, records, precision, names) for each in traced),
     )
-    return {f"{file}.h": header, f"{file}.c": source}
+    return {f"{file}.h": header, f"{file}.c": source, "controller.h": ANY.format(**about, macro=file.upper())}
 
 
 def _enumerations(record: type, names: Names) -> list[str]:
@@ -110,26 +131,3 @@ def _enumeration(declaration: Enumeration, names: Names) -> str:
     width = max(len(row) for row, _ in rows)
     lines = "\n".join(f"    {row:{width}}  /* {meaning} */" for row, meaning in rows)
     return f"enum {names.struct}{declaration.name} {{ /* {declaration.description} */\n{lines}\n}};"
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="python -m fmus.native.target", description="Write the controller as plain C."
-    )
-    parser.add_argument("--output", type=Path, default=Path("build/target"), help="folder (default: build/target)")
-    parser.add_argument("--precision", choices=PRECISIONS, default="float", help="of its arithmetic (default: float)")
-    add_parameter_files(parser)
-    arguments = parser.parse_args()
-    try:
-        fmu = FMU.started_with(read_files(arguments.vehicle, arguments.parameters))
-    except ParameterFileError as refusal:
-        parser.error(str(refusal))
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    for name, text in target_sources(fmu, PRECISIONS[arguments.precision]).items():
-        path = arguments.output / name
-        path.write_text(text, encoding="utf-8")
-        print(path)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,11 @@
+"""`python -m fmus.target` says what is missing to run the controller on the emulated target, if anything."""
+
+import sys
+
+from ..native.compiler import CompilerError
+from .image import require_packages
+
+try:
+    require_packages()
+except CompilerError as reason:
+    sys.exit(str(reason))

@@ -1,0 +1,90 @@
+"""The program with the controller behind a link, compiled for the target and, to compare, for this machine."""
+
+import shutil
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..native.compiler import CompilerError, host_compiler
+from .link import EMULATOR
+
+C_FILES = Path(__file__).parent / "c"
+
+COMPILER = "arm-none-eabi-gcc"
+
+PACKAGES = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm")
+"""Of Debian and Ubuntu: the compiler, its C library, the emulator."""
+
+PROCESSOR = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
+
+FLAGS = (
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wdouble-promotion"),
+    # each operation rounds on its own, as on this machine; nothing looks at errno
+    *("-ffp-contract=off", "-fno-math-errno", "-O2"),
+)
+
+BARE = ("-nostartfiles", "--specs=nano.specs", "-Wl,--gc-sections", "-Wl,-Map=controller.map")
+
+LINK, SCHEDULER = "link.c", "scheduler.c"
+"""Programs with the controller: behind a link, and at every interrupt of a timer."""
+
+BOARD, HOST = ("board.h", "board_mps2.c", "mps2_an386.ld"), ("board.h", "board_host.c")
+
+
+def target_image(sources: Mapping[str, str], folder: Path, program: str = LINK) -> Path:
+    """The image for the emulated target, in the folder with its sources, the objects made of them (NAME.o), how much
+    stack these take (NAME.su), and controller.map.
+
+    Args:
+        sources: those of `fmus.target.sources`, in single precision.
+        program: LINK or SCHEDULER.
+
+    Raises:
+        CompilerError: there is no compiler, or it refuses the source.
+    """
+    require_packages()
+    files = _written(sources, (program, *BOARD), folder)
+    for name in files:
+        _run([COMPILER, *PROCESSOR, *FLAGS, "-fstack-usage", "-ffunction-sections", "-c", name], folder)
+    objects = [name.replace(".c", ".o") for name in files]
+    script = [f"-T{name}" for name in BOARD if name.endswith(".ld")]
+    _run([COMPILER, *PROCESSOR, *BARE, *script, *objects, "-o", "controller.elf"], folder)
+    return folder / "controller.elf"
+
+
+def host_program(sources: Mapping[str, str], folder: Path) -> Path:
+    """The same program for this machine, whose link is its standard input and output; errors as for `target_image`."""
+    files = _written(sources, (LINK, *HOST), folder)
+    _run([host_compiler(), *FLAGS, *files, "-lm", "-o", "controller"], folder)
+    return folder / "controller"
+
+
+def require_packages() -> None:
+    """
+    Raises:
+        CompilerError: the compiler, its library or the emulator is not installed; the text says what to install.
+    """
+    programs = (COMPILER, EMULATOR)
+    lacking = [program for program in programs if shutil.which(program) is None]
+    if not lacking and not Path(_said_by(COMPILER, "-print-file-name=nano.specs")).is_absolute():
+        lacking = ["nano.specs"]
+    if lacking:
+        raise CompilerError(f"there is no {' and no '.join(lacking)}: apt-get install {' '.join(PACKAGES)}")
+
+
+def _said_by(*command: str) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def _written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -> list[str]:
+    """Writes all files into the folder; returns the names of those that are compiled."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in {**sources, **{name: (C_FILES / name).read_text(encoding="utf-8") for name in others}}.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return [name for name in (*sources, *others) if name.endswith(".c")]
+
+
+def _run(command: list[str], folder: Path) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")

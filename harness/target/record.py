@@ -1,0 +1,103 @@
+"""The off-line test of the controller on the target: all cases, and what it writes."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..cosimulation.system import System
+from ..cosimulation.wiring import fit
+from ..metrics.evaluate import T_S
+from ..progress import progress
+from ..reports.csv_file import write_csv
+from ..reports.files import write_text
+from .cases import by_lot, driven, from_anywhere
+from .comparison import Comparison, compare
+from .exported import with_values
+from .figure import plot_comparison
+from .in_loop import InLoop, in_loop
+from .page import page
+from .programs import programs
+from .schedule import Schedule, schedule
+from .size import Size, size_of
+
+MANY = 31
+"""Cases, about: for the bar of the progress."""
+
+
+class Record(NamedTuple):
+    """What the target was found to do: off-line, in the loop, under a timer, and what it takes."""
+
+    comparisons: Sequence[Comparison]
+    loops: Sequence[InLoop]
+    schedule: Schedule
+    size: Size
+
+    @property
+    def passed(self) -> bool:
+        """Whether no bit differs, and the torque of every case that the loop gave is as near to double precision as
+        it must."""
+        near = all(each.margin <= 1.0 or each.case.drawn for each in self.comparisons)
+        same = not any(each.differing for each in (*self.comparisons, *self.loops))
+        return near and same and self.schedule.missed == 0 and all(each.finite for each in self.comparisons)
+
+
+def record(controller: str, system: System, plant: str, given: Mapping[str, Any]) -> Record:
+    """Runs all cases on the target and on this machine, and every manoeuvre with the target in the loop.
+
+    Args:
+        controller: its name.
+        system: the loop with it.
+        plant: its name or file.
+        given: settings of the loop, see `harness.commands.settings`.
+
+    Raises:
+        DrivelineError: a compiler or the emulator is missing.
+        SimulationError: the target was lost, hung or crashed.
+    """
+    interfaces = fit(system).interfaces
+    own = interfaces["controller"]
+    inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
+    values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
+    values |= {name: given["parameters"].get(f"controller.{name}", value) for name, value in values.items()}
+    with programs(controller, values) as made, progress(MANY, "target") as done:
+        comparisons: list[Comparison] = []
+        cases = list(driven(system, interfaces, plant, inputs, given))
+        cases += by_lot(cases, given["seed"])
+        for case in cases:
+            comparisons.append(compare(made, case, outputs))
+            done(len(comparisons))
+        states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
+        comparisons.append(compare(made, from_anywhere(cases[-2], states, given["seed"]), outputs))
+        loops = []
+        for loop in in_loop(made, controller, system, plant, inputs, given):
+            loops.append(loop)
+            done(len(comparisons) + len(loops))
+        with made.target() as link:
+            counts = (link.inputs, link.outputs, link.states, link.parameters)
+        timed = schedule(with_values(controller, "float", values))
+        return Record(comparisons, loops, timed, size_of(made.image, made.name, *counts))
+
+
+def write(found: Record, controller: str, plant: str, folder: Path) -> list[Path]:
+    """Writes page, figure and the cases; returns the files."""
+    files = [folder / "target.md"]
+    write_text(page(found.comparisons, found.loops, found.schedule, found.size, controller, plant), files[0])
+    title = f"{controller} on the emulated Cortex-M4F"
+    files += plot_comparison(found.comparisons, title, folder / "figures" / "target")
+    for each in found.comparisons:
+        files.append(folder / f"{each.case.name.replace(' ', '_')}.csv")
+        write_csv(signals(each), files[-1])
+    return files
+
+
+def signals(comparison: Comparison) -> np.ndarray:
+    """Time, inputs, and the torque on the target and in double precision, as columns of a file."""
+    case, (target, model) = comparison.case, comparison.traces
+    columns = {"time": T_S * np.arange(len(target)), **dict(zip(case.names, case.inputs.T, strict=True))}
+    columns |= {"target.T_ref": target, "model.T_ref": model}
+    table = np.empty(len(target), dtype=[(name, float) for name in columns])
+    for name, column in columns.items():
+        table[name] = column
+    return table

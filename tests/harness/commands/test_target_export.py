@@ -1,0 +1,84 @@
+"""`driveline target export`: the C of a controller for a car, complete, and never over that of another."""
+
+from pathlib import Path
+
+import pytest
+
+from harness.cli import main
+from tests import ROOT
+
+pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+EXPORT = ("target", "export", "--quiet")
+
+
+def exported(folder: Path, *options: str) -> int:
+    return main([*EXPORT, "--output", str(folder), *options])
+
+
+def test_it_writes_headers_and_source(tmp_path: Path) -> None:
+    assert exported(tmp_path / "c") == 0
+    files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "c").iterdir()}
+    assert sorted(files) == ["controller.h", "damping_controller.c", "damping_controller.h"]
+    assert not any("double" in text for text in files.values())
+
+
+def test_it_takes_the_car_and_its_gains(tmp_path: Path) -> None:
+    gains = tmp_path / "gains.toml"
+    gains.write_text("k_d = 4.0\n", encoding="utf-8")
+    car = ROOT / "examples" / "cars" / "van.toml"
+    assert exported(tmp_path, "--vehicle", str(car), "--parameters", str(gains)) == 0
+    text = (tmp_path / "damping_controller.c").read_text(encoding="utf-8")
+    for line in (".k_d = 4.0f,", ".T_max = 250.0f,", ".phi_B = 0.314f,", ".omega_w = 3.0f,"):
+        assert line in text
+
+
+@pytest.mark.parametrize(
+    ("entry", "controller", "said"),
+    [
+        ("J_1 = 0.05", "DampingController", "line 1: J_1 does not belong here"),
+        ("k_d = 1e9", "DampingController", "k_d = 1e+09"),
+        ("k_gap = 0.5", "SpeedWashout", "SpeedWashout has no parameter k_gap"),
+    ],
+)
+def test_what_does_not_belong_to_the_controller_is_refused(
+    entry: str, controller: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    gains = tmp_path / "gains.toml"
+    gains.write_text(f"{entry}\n", encoding="utf-8")
+    assert exported(tmp_path / "c", "--parameters", str(gains), "--controller", controller) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "c").exists()
+
+
+def test_the_c_of_another_controller_stays_unless_it_is_to_be_replaced(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exported(tmp_path) == exported(tmp_path) == 0
+    before = (tmp_path / "controller.h").read_bytes()
+    other = ("--controller", "SpeedWashout")
+    assert exported(tmp_path, *other) == 2
+    assert "controller.h is there with another content" in capsys.readouterr().err
+    assert (tmp_path / "controller.h").read_bytes() == before
+    assert not (tmp_path / "speed_washout.c").exists()
+    assert exported(tmp_path, *other, "--replace") == 0
+    assert "SpeedWashout" in (tmp_path / "controller.h").read_text(encoding="utf-8")
+
+
+def test_a_wrong_action_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["target", "exprt"])
+    assert end.value.code == 2
+    assert "did you mean export" in capsys.readouterr().err
+
+
+def test_every_action_teaches(capsys: pytest.CaptureFixture[str]) -> None:
+    from harness.commands.target import ACTIONS
+
+    for action in ACTIONS:
+        with pytest.raises(SystemExit) as end:
+            main(["target", action, "--help"])
+        assert end.value.code == 0
+        said = capsys.readouterr().out
+        assert f"driveline target {action}" in said
+        assert "examples:" in said
