@@ -84,11 +84,16 @@ def test_every_module_that_is_run_is_stopped_so(path: Path) -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_stop_while_workers_begin_waits_until_they_are_known(number: signal.Signals) -> None:
-    known = False
-    with pytest.raises(Stopped), stoppable(), uninterrupted_children():
-        signal.raise_signal(number)
-        known = True
-    assert known
+    known = []
+
+    def begin() -> None:
+        with stoppable(), uninterrupted_children():
+            signal.raise_signal(number)
+            known.append("worker")
+
+    with pytest.raises(Stopped):
+        begin()
+    assert known == ["worker"]
 
 
 class Ended(Exception):
