@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .manoeuvres.catalogue import MANOEUVRES
+from .manoeuvres.manoeuvre import Manoeuvre
 from .many import run_many
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
@@ -24,6 +25,10 @@ CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
 
 Settings = Mapping[str, Mapping[str, Any]]
 """By plant, further arguments of `harness.simulate.simulate`."""
+
+
+Manoeuvres = Mapping[str, Manoeuvre]
+"""By name."""
 
 
 class Case(NamedTuple):
@@ -79,22 +84,24 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(case: Case, output: Path, settings: Settings) -> Outcome:
+def run_case(case: Case, output: Path, settings: Settings, manoeuvres: Manoeuvres = MANOEUVRES) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
-    manoeuvre = MANOEUVRES[case.manoeuvre]
+    manoeuvre = manoeuvres[case.manoeuvre]
     results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings.get(case.plant, {}))
     write_csv(at_samples(results), output / f"{case.file_name}.csv")
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
-def run_cases(todo: Sequence[Case], output: Path, settings: Settings) -> list[Outcome]:
+def run_cases(
+    todo: Sequence[Case], output: Path, settings: Settings, manoeuvres: Manoeuvres = MANOEUVRES
+) -> list[Outcome]:
     """Runs the cases in parallel; their outcomes in the order of the cases.
 
     Args:
         output: folder for the CSV files.
         settings: of the runs with each plant.
     """
-    return run_many(partial(run_case, output=output, settings=settings), todo)
+    return run_many(partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres), todo)
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
@@ -105,8 +112,11 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
     return [table, metrics]
 
 
-def write_figures(outcomes: Sequence[Outcome], folder: Path, caption: str = "") -> list[Path]:
-    """Draws the test drive and the close-ups of the steps that were run; returns the files.
+def write_figures(
+    outcomes: Sequence[Outcome], folder: Path, caption: str = "", manoeuvres: Manoeuvres = MANOEUVRES
+) -> list[Path]:
+    """Draws the test drive and the close-ups of the steps that were run, and what else is not of the catalogue; returns
+    the files.
 
     Args:
         caption: what was set, in small below.
@@ -116,9 +126,11 @@ def write_figures(outcomes: Sequence[Outcome], folder: Path, caption: str = "") 
     files = []
     for off, on in zip(outcomes[::2], outcomes[1::2], strict=True):
         name = off.case.manoeuvre
-        plot = plot_drive if name == "drive" else plot_step if name in CLOSE_UPS else None
+        drawn = {"drive": plot_drive, **dict.fromkeys(CLOSE_UPS, plot_step)}
+        whole = plot_drive if manoeuvres[name].dT is None else plot_step
+        plot = drawn.get(name) if manoeuvres[name] is MANOEUVRES.get(name) else whole
         if plot:
             runs = (off.results, on.results)
             stem = folder / f"{off.case.plant_name}_{name}"
-            files += plot(runs, MANOEUVRES[name], off.case.plant_name, stem, caption)
+            files += plot(runs, manoeuvres[name], off.case.plant_name, stem, caption)
     return files

@@ -39,6 +39,9 @@ PLANTS = PLACES["plant"]
 STEP_SIZE = 1e-3
 """Communication step of the loop in s, unless another is asked for."""
 
+T_S = 2e-3
+"""Sample time of the controller in s."""
+
 NameOrFile = str | Path
 """What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""
 

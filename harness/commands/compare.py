@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from ..control_loop import PLANTS
-from ..manoeuvres.catalogue import COMPARED, MANOEUVRES
+from ..manoeuvres.catalogue import COMPARED
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
 from .built import built
+from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, settings
@@ -20,7 +21,10 @@ Runs every manoeuvre on every plant twice, with the damping off and on, and prin
 
 {LEGEND}
 
-It goes to table.md in the output folder, all metrics to metrics.csv, the figures beside them and the
+--manoeuvre also takes {OWN};
+metrics that make no sense for it, such as the settling of a pulse, are a dash.
+
+The table goes to table.md in the output folder, all metrics to metrics.csv, the figures beside them and the
 signals of every run to runs/.
 """
 
@@ -30,18 +34,14 @@ examples:
   driveline compare --plant ValidationVehicle --manoeuvre tipin15 --manoeuvre drive
   driveline compare --plant my_vehicle.fmu --seed 7 --output results/mine
   driveline compare --set controller.k_d=1.5 --output results/softer
+  driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --output results/overtaking
   driveline compare --json > comparison.json
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--manoeuvre",
-        action="append",
-        choices=MANOEUVRES,
-        metavar="NAME",
-        help=f"only this manoeuvre (repeatable); default: {', '.join(COMPARED)}",
-    )
+    names = ", ".join(COMPARED)
+    add_manoeuvre(parser, f"only this manoeuvre, or that of a file (repeatable); default: {names}", action="append")
     add_plant(parser, several=True)
     add_loop(parser)
     add_output(parser, "results/compare", "tables, figures and the signals of every run", of_a_run=True)
@@ -58,27 +58,33 @@ def run(args: argparse.Namespace) -> int:
     from ..simulate import looped
 
     out = Printer(args)
-    todo = cases(plants, list(dict.fromkeys(args.manoeuvre or COMPARED)))
+    asked = args.manoeuvre or COMPARED
+    manoeuvres = chosen(asked)
+    todo = cases(plants, list(manoeuvres))
     given = {plant: settings(args, plant, build) for plant, build in builds.items()}
     systems = {plant: looped(plant, given[plant]) for plant in plants}
     record, tables = args.output / "compare.json", [args.output / name for name in ("table.md", "metrics.csv")]
     same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
-    same["manoeuvres"] = list(dict.fromkeys(case.manoeuvre for case in todo))
-    by_name, read = {Path(plant).stem: system for plant, system in systems.items()}, [args.vehicle, args.parameters]
+    same |= {"manoeuvres": list(manoeuvres)} | digests(asked)
+    by_name = {Path(plant).stem: system for plant, system in systems.items()}
+    read = [*files(asked).values(), args.vehicle, args.parameters]
     signals = {case: args.output / "runs" / f"{case.file_name}.csv" for case in todo}
     with recorded(record, same, by_name, read, tables, args.replace) as made:
+        for plant in plants:
+            require_files_drivable(asked, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
         made.begin(*(path.with_suffix(".json") for path in signals.values()))
-        outcomes = run_cases(todo, args.output / "runs", given)
+        outcomes = run_cases(todo, args.output / "runs", given, manoeuvres)
         rows = [outcome.row for outcome in outcomes]
         if not out.silent:
             print_table(runs_table(rows))
         for reason in reasons(rows):
             out.say(reason)
         out.say(f"{LEGEND}\n")
-        tables, figures = write_tables(outcomes, args.output), write_figures(outcomes, args.output, caption(args))
+        tables = write_tables(outcomes, args.output)
+        figures = write_figures(outcomes, args.output, caption(args), manoeuvres)
         made.files += [*tables, *figures]
         for case, path in signals.items():
-            own = distinguishing(given[case.plant], systems[case.plant], MANOEUVRES[case.manoeuvre])
+            own = distinguishing(given[case.plant], systems[case.plant], manoeuvres[case.manoeuvre])
             one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
             write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
     out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")

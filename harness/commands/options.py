@@ -30,25 +30,32 @@ def add_plant(parser: argparse.ArgumentParser, several: bool = False, default: s
     action.complete = _names_or_fmus(PLANTS)  # type: ignore[attr-defined]
 
 
-def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
-    """What shtab is told to complete one of the names or the path of an FMU."""
+def names_or_files(names: Sequence[str], endings: Sequence[str], what: str) -> dict[str, Any]:
+    """What shtab is told to complete one of the names or the path of a file."""
     function = f"_driveline_{names[0]}"
+    patterns = " ".join(f"*.{ending}" for ending in endings)
+    files = "\n".join(f'  compgen -f -X "!*.{ending}" -- $1' for ending in endings)
     return {
         "bash": function,
         "zsh": function,
+        "tcsh": f"({' '.join(names)})",
         "preamble": {
             "bash": f"""\
 {function}() {{
   compgen -W "{" ".join(names)}" -- $1
-  compgen -f -X "!*.fmu" -- $1
+{files}
   compgen -d -- $1
 }}""",
             "zsh": f"""\
 {function}() {{
-  _alternative "names:block:({" ".join(names)})" "files:FMU:_files -g '*.fmu'"
+  _alternative "names:{what}:({" ".join(names)})" "files:file:_files -g '{patterns}'"
 }}""",
         },
     }
+
+
+def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
+    return names_or_files(names, ("fmu",), "block")
 
 
 def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None = None) -> None:

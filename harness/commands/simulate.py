@@ -8,6 +8,7 @@ from ..control_loop import STEP_SIZE
 from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
+from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, settings
@@ -35,19 +36,16 @@ examples:
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
   driveline simulate --step 0.0005 --scheme jacobi
   driveline simulate --manoeuvre launch --plot
+  driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot
 
 manoeuvres:
-""" + "\n".join(f"  {m.name:{WIDTH}}  {m.description} ({m.duration:g} s)" for m in MANOEUVRES.values())
+""" + "\n".join(
+    [*(f"  {m.name:{WIDTH}}  {m.description} ({m.duration:g} s)" for m in MANOEUVRES.values()), f"or {OWN}"]
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--manoeuvre",
-        choices=MANOEUVRES,
-        default="tipin15",
-        metavar="NAME",
-        help="one of those below (default: %(default)s)",
-    )
+    add_manoeuvre(parser, "one of those below, or a file (default: %(default)s)", default="tipin15")
     add_plant(parser)
     parser.add_argument("--control", choices=("on", "off"), default="on", help="active damping (default: %(default)s)")
     add_loop(parser)
@@ -76,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     from ..simulate import looped, simulate
 
     out = Printer(args)
-    manoeuvre = MANOEUVRES[args.manoeuvre]
+    (manoeuvre,) = chosen([args.manoeuvre]).values()
     require_steps(manoeuvre.duration, args.step)
     plant = Path(args.plant).stem
     name = f"{plant}_{manoeuvre.name}_{args.control}"
@@ -85,8 +83,10 @@ def run(args: argparse.Namespace) -> int:
     system = looped(args.plant, given)
     same = {"manoeuvre": manoeuvre.name, "damping": args.control, "step_size": args.step, "scheme": args.scheme}
     same |= distinguishing(given, system, manoeuvre)
-    read = [args.vehicle, args.parameters]
+    same |= digests([args.manoeuvre])
+    read = [*files([args.manoeuvre]).values(), args.vehicle, args.parameters]
     with recorded(record, same, {plant: system}, read, [signals], args.replace) as made:
+        require_files_drivable([args.manoeuvre], {manoeuvre.name: manoeuvre}, made.fits[plant], given["parameters"])
         began = perf_counter()
         results = simulate(
             manoeuvre,

@@ -85,17 +85,23 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
 def beyond(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
     """Which of the values that a run gives to parameters are beyond the bounds that an FMU declares."""
     for name, value in parameters.items():
-        variable, _ = find(name, "parameter", fitted.interfaces)
-        if variable is None:
-            continue
-        instance, _, own = name.partition(".")
-        interface = fitted.interfaces[instance]
-        factor = interface.factors.get(own, 1.0)
-        low = -inf if variable.min is None else factor * float(variable.min)
-        high = inf if variable.max is None else factor * float(variable.max)
-        if not low <= value <= high:
-            unit = unit_of(variable) or ""
-            yield f"{name} = {value:g}: {interface.path.name} takes {low:g} to {high:g} {unit}".rstrip()
+        if problem := beyond_bounds(fitted, "parameter", name, value):
+            yield f"{name} = {value:g}: {problem}"
+
+
+def beyond_bounds(fitted: Fit, causality: str, name: str, value: float) -> str | None:
+    """What to say of a value of the variable `instance.variable` that is beyond the bounds that its FMU declares."""
+    variable, _ = find(name, causality, fitted.interfaces)
+    if variable is None:
+        return None
+    instance, _, own = name.partition(".")
+    interface = fitted.interfaces[instance]
+    factor = interface.factors.get(own, 1.0)
+    low = -inf if variable.min is None else factor * float(variable.min)
+    high = inf if variable.max is None else factor * float(variable.max)
+    if low <= value <= high:
+        return None
+    return f"{interface.path.name} takes {low:g} to {high:g} {unit_of(variable) or ''}".rstrip()
 
 
 def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:

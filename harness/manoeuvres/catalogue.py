@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from .manoeuvre import Manoeuvre
 from .prbs import binary_torque
+from .shape import plateau_ends
 from .signals import FlatSine, lines
 
 KMH = 1.0 / 3.6
@@ -21,7 +22,6 @@ DRIVE = lines(
     (8.2, 110.0), (9.4, 110.0), (9.5, -24.0), (10.6, -24.0), (10.7, 70.0), (12.0, 70.0), (12.2, 130.0),
     (13.2, 130.0), (13.3, -28.0), (14.5, -28.0), (14.8, 45.0), (16.0, 45.0), (16.3, -24.0), (20.0, -24.0),
 )  # fmt: skip
-DRIVE_PLATEAU_ENDS = (2.0, 3.2, 4.5, 5.6, 7.0, 8.0, 9.4, 10.6, 12.0, 13.2, 14.5, 16.0)
 
 _PRBS = binary_torque("prbs", mean=8.0, amplitude=15.0, clock=0.04, order=9, duration=10.0, v_0=15 * KMH)
 
@@ -43,7 +43,7 @@ MANOEUVRES: dict[str, Manoeuvre] = {
             T_driver=DRIVE,
             T_brake=lines((16.2, 0.0), (16.6, 1300.0)),
             t_0=0.3,
-            plateau_ends=DRIVE_PLATEAU_ENDS,
+            plateau_ends=plateau_ends(DRIVE),
         ),
         Manoeuvre(
             name="creep",

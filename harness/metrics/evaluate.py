@@ -8,15 +8,13 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from ..control_loop import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
 from .oscillation import amplitude
 from .record import Metrics
 from .spectrum import TO_50_HZ, band_rms
 from .step_response import Response, height_of_step, response, settling_time
-
-T_S = 0.002
-"""Sample time of the controller in s."""
 
 STATIONARY, FADED = 0.6, 0.9
 """Length in s of the end of a run that counts as stationary, and of the time before it in which what the control adds

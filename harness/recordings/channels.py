@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -63,8 +64,12 @@ class Channels:
         """Whether there is a column for it."""
         return self._chooser.found(quantity) is not None
 
-    def read(self, *quantities: str) -> dict[str, Channel]:
+    def read(self, *quantities: str, drawn: bool = False) -> dict[str, Channel]:
         """The channels of these quantities.
+
+        Args:
+            drawn: the samples are corners of straight lines, so that two at one instant are a jump and no step of time
+                is a gap.
 
         Raises:
             RecordingError: a column is missing, doubled or of an unknown unit; a value is not a finite number, or
@@ -83,7 +88,7 @@ class Channels:
             if len(first.time) < LEAST:
                 raise RecordingError(f"{self.path}: {len(first.time)} samples; a drive needs at least two")
             gap = min(QUANTITIES[channel.quantity].gap for channel in together)
-            check_time(self.path, first.time, first.where, gap)
+            check_time(self.path, first.time, first.where, inf if drawn else gap, jumps=drawn)
         for channel in channels.values():
             check_limit(self.path, channel)
         return channels

@@ -29,7 +29,8 @@ class Quantity:
         written: a unit in which files have it.
         limit: largest magnitude that a car can have.
         also: a second SI unit that files may have it in and that no factor converts into the first: wheel speeds are
-            often given in m/s, and only the tyre radius makes rad/s of them. Whoever reads it does that.
+            often given in m/s, and only the tyre radius makes rad/s of them, slopes in %, the tangent. Whoever reads it
+            does that.
         slowest: longest interval in s from which a model can be identified.
         least_swing: by how much it must vary so that a model can be identified.
         gap: longest step of time that is still no gap, in median steps; messages come late and are lost.
@@ -61,6 +62,9 @@ QUANTITIES: dict[str, Quantity] = {
     "T_ref": Quantity(
         "motor torque as motor control is to make it", "N.m", "Nm", 10_000.0, slowest=0.1, least_swing=2.0, gap=10.0
     ),
+    "T_driver": Quantity("motor torque that the driver demands", "N.m", "Nm", 10_000.0),
+    "T_brake": Quantity("brake torque of the driven wheels", "N.m", "Nm", 100_000.0),
+    "slope": Quantity("slope of the road, positive uphill", "rad", "%", 1.0, also="1"),
     "omega_1": Quantity("motor speed", "rad/s", "rpm", 5_000.0, slowest=0.01, least_swing=1.0),
     "omega_2": Quantity("wheel speed times i", "rad/s", "rad/s", 5_000.0, slowest=0.1, gap=10.0),
     "omega_wheel": _wheel_speed("mean speed of the driven wheels"),

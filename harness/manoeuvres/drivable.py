@@ -1,0 +1,43 @@
+"""Whether a loop can be driven through a manoeuvre that somebody has written."""
+
+from collections.abc import Iterator, Mapping
+from math import inf
+
+from ..control_loop import INPUTS, PARAMETERS, STEP_SIZE
+from ..cosimulation.experiment import instants
+from ..cosimulation.wiring import Fit, beyond_bounds
+from .manoeuvre import Manoeuvre
+from .parts import ManoeuvreError
+
+
+def require_drivable(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float], told: str) -> None:
+    """
+    Args:
+        parameters: `instance.parameter` -> value, that the run sets.
+        told: what the manoeuvre is called.
+
+    Raises:
+        ManoeuvreError: names all that is beyond what an FMU takes, or the motor can make.
+    """
+    if problems := list(_problems(manoeuvre, fitted, parameters)):
+        raise ManoeuvreError("\n".join(f"{told}: {problem}" for problem in problems))
+
+
+def _problems(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
+    time = instants(manoeuvre.duration, min(STEP_SIZE, manoeuvre.duration))
+    for port in PARAMETERS:
+        if hasattr(manoeuvre, port.variable):
+            value = getattr(manoeuvre, port.variable)
+            if problem := beyond_bounds(fitted, "parameter", port.name, value):
+                yield f"{port.variable} = {value:g} {port.unit}: {problem}"
+    T_max = fitted.parameters(parameters)["motor"].get("T_max", inf)
+    for port in INPUTS:
+        if hasattr(manoeuvre, port.variable):
+            values = getattr(manoeuvre, port.variable)(time) + 0.0 * time
+            for k in (values.argmin(), values.argmax()):
+                problem = beyond_bounds(fitted, "input", port.name, values[k])
+                if port.variable == "T_driver" and abs(values[k]) > T_max:
+                    problem = f"the motor makes {-T_max:g} to {T_max:g} N.m (motor.T_max)"
+                if problem:
+                    yield f"{port.variable} = {values[k]:g} {port.unit} at {time[k]:g} s: {problem}"
+                    break

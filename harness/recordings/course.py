@@ -1,0 +1,48 @@
+"""The course of what a driver and a road do, as a manoeuvre takes it from a table."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .alignment import aligned
+from .channels import Channel, Channels
+
+OPTIONAL = ("T_brake", "slope")
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Corners of straight lines, in SI units.
+
+    Attributes:
+        time: in s from the first row on; two corners at one instant are a jump.
+        signals: T_driver in N.m and, where the file has them, T_brake in N.m and slope in rad, a value an instant.
+        v_0: speed of the vehicle at the start in m/s, 0 where the file has no speed.
+    """
+
+    time: np.ndarray
+    signals: Mapping[str, np.ndarray]
+    v_0: float
+
+
+def read_course(path: Path) -> Course:
+    """Reads a file that a manoeuvre is drawn from.
+
+    Raises:
+        RecordingError: see `harness.recordings.channels.Channels.read`; only T_driver must be there.
+    """
+    recording = Channels(path)
+    given = ["T_driver", *(quantity for quantity in (*OPTIONAL, "v") if recording.has(quantity))]
+    channels = recording.read(*given, drawn=True)
+    time, values = aligned(channels, base="T_driver")
+    v_0 = float(values.pop("v")[0]) if "v" in values else 0.0
+    if "slope" in values:
+        values["slope"] = _angle(channels["slope"], values["slope"])
+    return Course(time - time[0], values, v_0)
+
+
+def _angle(channel: Channel, values: np.ndarray) -> np.ndarray:
+    """A slope in rad, of one in rad or of its tangent."""
+    return values if channel.unit == "rad" else np.arctan(values)

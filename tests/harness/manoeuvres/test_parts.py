@@ -1,0 +1,81 @@
+"""Signals made up of parts."""
+
+import numpy as np
+import pytest
+
+from harness.manoeuvres.parts import ManoeuvreError, chirp, constant, points, prbs, pulse, ramp, sine, step, summed
+from harness.manoeuvres.prbs import shift_register
+from harness.manoeuvres.signals import Lines
+
+T = np.arange(6001) * 1e-3
+
+
+def test_the_parts_are_what_they_are_called():
+    assert step(1.0, 5.0)([0.0, 0.999, 1.0, 9.0]).tolist() == [0.0, 0.0, 5.0, 5.0]
+    assert ramp(1.0, 3.0, 5.0)([0.0, 1.0, 2.0, 3.0, 9.0]).tolist() == [0.0, 0.0, 2.5, 5.0, 5.0]
+    assert pulse(1.0, 2.0, 5.0)([0.999, 1.0, 1.999, 2.0]).tolist() == [0.0, 5.0, 5.0, 0.0]
+    assert points([(1.0, 2.0), (2.0, 4.0), (2.0, 8.0)])([0.0, 1.5, 2.0, 9.0]).tolist() == [2.0, 3.0, 8.0, 8.0]
+    assert constant(3.0)(T).tolist() == [3.0] * len(T)
+
+
+def test_a_sine_begins_at_zero_and_is_zero_outside():
+    x = sine(2.0, 1.0, begin=1.0, end=3.0)(T)
+    assert x[[0, 999, 1000, 3000, 6000]].tolist() == [0.0] * 5
+    np.testing.assert_allclose(x[[1250, 1750, 2250]], [2.0, -2.0, 2.0])
+
+
+def test_a_chirp_goes_through_the_frequencies_along_a_line():
+    begin, end, first, last = 1.0, 5.0, 2.0, 12.0
+    x = chirp(1.0, first, last, begin, end)(T)
+    crossings = T[np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))]
+    whole = crossings[(crossings > begin + 0.01) & (crossings < end - 0.01)]
+    middle, measured = 0.5 * (whole[1:] + whole[:-1]), 1.0 / np.diff(whole)
+    np.testing.assert_allclose(measured, first + (last - first) * (middle - begin) / (end - begin), rtol=0.02)
+    assert not x[T < begin].any()
+    assert not x[T >= end].any()
+
+
+def test_a_prbs_is_that_of_the_test_drive_and_begins_again():
+    x = prbs(3.0, clock=0.002, order=5, begin=1.0, end=1.5)(T)
+    bits = 3.0 * (2.0 * np.array(shift_register(250, 5)) - 1.0)
+    np.testing.assert_array_equal(x[1000:1500:2], bits)
+    assert not x[:1000].any()
+    assert not x[1500:].any()
+
+
+def test_a_sum_is_the_sum_at_every_instant_and_of_lines_again_lines():
+    drawn = [
+        constant(5.0),
+        step(1.0, 10.0),
+        ramp(0.5, 3.3, 7.0),
+        pulse(2.5, 4.0, -1.0),
+        points([(2.0, 1.0), (3.0, -2.0)]),
+    ]
+    others = [sine(1.0, 2.0), prbs(2.0)]
+    assert isinstance(summed(drawn), Lines)
+    np.testing.assert_allclose(summed(drawn)(T), sum(one(T) for one in drawn), atol=1e-12)
+    np.testing.assert_allclose(summed([*drawn, *others])(T), sum(one(T) for one in [*drawn, *others]), atol=1e-12)
+    assert summed([])(T).tolist() == [0.0] * len(T)
+
+
+@pytest.mark.parametrize(
+    ("part", "said"),
+    [
+        (lambda: step(float("nan"), 1.0), "at = nan: it must be a finite number"),
+        (lambda: step(-0.1, 1.0), "at = -0.1: it must be 0 to 3600 s"),
+        (lambda: pulse(2.0, 2.0, 1.0), "end = 2: it must come after begin, 2 s"),
+        (lambda: sine(1.0, 250.1), "frequency = 250.1: it must be 0 to 250 Hz"),
+        (lambda: prbs(1.0, clock=0.0019), "clock = 0.0019: it must be 0.002 to 3600 s"),
+        (lambda: prbs(1.0, order=4), "order = 4: it must be one of 5, 6"),
+        (lambda: points([(1.0, 0.0), (0.9, 0.0)]), "the point at 0.9 s comes after that at 1 s"),
+        (lambda: points([(0.0, float("inf"))]), "point 1: its value inf must be a finite number"),
+    ],
+)
+def test_a_part_that_cannot_be_is_refused(part, said):
+    with pytest.raises(ManoeuvreError, match=said):
+        part()
+
+
+def test_what_is_just_allowed_is_taken():
+    for part in (sine(1.0, 250.0), prbs(1.0, clock=0.002), step(0.0, 1.0), step(3600.0, 1.0)):
+        assert np.isfinite(part(T)).all()
