@@ -17,7 +17,7 @@ from .many import run_many
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
 from .names import require_different
-from .reports.csv_file import write_csv
+from .reports.signals_file import Units, write_signals
 from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
 
@@ -84,24 +84,39 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
     ]
 
 
-def run_case(case: Case, output: Path, settings: Settings, manoeuvres: Manoeuvres = MANOEUVRES) -> Outcome:
+def run_case(
+    case: Case,
+    output: Path,
+    settings: Settings,
+    manoeuvres: Manoeuvres = MANOEUVRES,
+    format: str = "csv",
+    units: Mapping[str, Units] | None = None,
+) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
     manoeuvre = manoeuvres[case.manoeuvre]
     results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings.get(case.plant, {}))
-    write_csv(at_samples(results), output / f"{case.file_name}.csv")
+    write_signals(at_samples(results), (units or {}).get(case.plant_name, {}), output / case.file_name, format)
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
 def run_cases(
-    todo: Sequence[Case], output: Path, settings: Settings, manoeuvres: Manoeuvres = MANOEUVRES
+    todo: Sequence[Case],
+    output: Path,
+    settings: Settings,
+    manoeuvres: Manoeuvres = MANOEUVRES,
+    format: str = "csv",
+    units: Mapping[str, Units] | None = None,
 ) -> list[Outcome]:
     """Runs the cases in parallel; their outcomes in the order of the cases.
 
     Args:
-        output: folder for the CSV files.
+        output: folder for the files of signals.
         settings: of the runs with each plant.
+        format: of those files, one of `harness.reports.signals_file.FORMATS`.
+        units: of their columns, by the names of the plants.
     """
-    return run_many(partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres), todo)
+    one = partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres, format=format, units=units)
+    return run_many(one, todo)
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:

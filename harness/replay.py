@@ -18,7 +18,7 @@ from .metrics.damage import damage, require_counting
 from .metrics.declaration import given, measured
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
-from .reports.csv_file import write_csv
+from .reports.signals_file import Units, write_signals
 from .reports.table import values, write_metrics, write_rides
 from .simulate import simulate
 
@@ -36,8 +36,8 @@ KEPT = [
 ]
 """Columns that are kept of a ride; a trip of half an hour with all of them would not fit in memory."""
 
-CSV_STRIDE = 5
-"""Every so many samples of the controller go to the CSV file: 10 ms."""
+STRIDE = 5
+"""Every so many samples of the controller go to the file of signals: 10 ms."""
 
 CLOSE = 0.1
 """Speed error in m/s, rms, of a car without control from which on the force along the road is good enough."""
@@ -165,16 +165,28 @@ def records(rides: Sequence[Ride], track: Track, plant: str) -> list[dict[str, A
     ]
 
 
-def write(rides: Sequence[Ride], track: Track, plant: str, folder: Path, caption: str = "") -> list[Path]:
-    """Writes metrics, table, signals (every 10 ms) and the figure of a replay, with its caption; returns the files."""
+def write(
+    rides: Sequence[Ride],
+    track: Track,
+    plant: str,
+    folder: Path,
+    caption: str = "",
+    format: str = "csv",
+    units: Units | None = None,
+) -> list[Path]:
+    """Writes metrics, table, signals (every 10 ms) and the figure of a replay, with its caption; returns the files.
+
+    Args:
+        format, units: of the signals, see `harness.reports.signals_file`.
+    """
     from .reports.replay_figure import plot_replay  # not for the workers, which draw nothing
 
     files = [folder / f"{track.name}{end}" for end in ("_metrics.csv", "_table.md")]
     write_metrics(records(rides, track, plant), files[0])
     write_rides({ride.controller: ride.metrics for ride in rides}, f"{track.name} on {plant}", files[1])
     for ride in rides:
-        files.append(folder / f"{track.name}_{ride.suffix}.csv")
-        write_csv(ride.signals[::CSV_STRIDE], files[-1])
+        stem = folder / f"{track.name}_{ride.suffix}"
+        files.append(write_signals(ride.signals[::STRIDE], units or {}, stem, format))
     drawn = {ride.controller: ride.signals for ride in rides}
     title = f"{plant} on the recorded drive {track.name}"
     return files + plot_replay(drawn, (track.t, track.v), title, folder / track.name, caption)

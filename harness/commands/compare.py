@@ -10,9 +10,9 @@ from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
 from .built import built
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_loop, add_output, add_plant, add_printing
+from .options import add_format, add_loop, add_output, add_plant, add_printing
 from .printing import Printer
-from .settings import blocks, caption, distinguishing, settings
+from .settings import blocks, caption, distinguishing, other_format, settings
 
 LEGEND = legend(Metrics)
 
@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_plant(parser, several=True)
     add_loop(parser)
     add_output(parser, "results/compare", "tables, figures and the signals of every run", of_a_run=True)
+    add_format(parser)
     add_printing(parser, table=True)
 
 
@@ -53,7 +54,8 @@ def run(args: argparse.Namespace) -> int:
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
-    from ..provenance import recorded, write_record
+    from ..provenance import recorded, units, write_record
+    from ..reports.signals_file import require_format, signals_path
     from ..reports.terminal import print_table, runs_table
     from ..simulate import looped
 
@@ -65,15 +67,17 @@ def run(args: argparse.Namespace) -> int:
     systems = {plant: looped(plant, given[plant]) for plant in plants}
     record, tables = args.output / "compare.json", [args.output / name for name in ("table.md", "metrics.csv")]
     same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
-    same |= {"manoeuvres": list(manoeuvres)} | digests(asked)
+    same |= {"manoeuvres": list(manoeuvres)} | digests(asked) | other_format(args)
     by_name = {Path(plant).stem: system for plant, system in systems.items()}
     read = [*files(asked).values(), args.vehicle, args.parameters]
-    signals = {case: args.output / "runs" / f"{case.file_name}.csv" for case in todo}
+    signals = {case: signals_path(args.output / "runs" / case.file_name, args.format) for case in todo}
+    require_format(args.format)
     with recorded(record, same, by_name, read, tables, args.replace) as made:
         for plant in plants:
             require_files_drivable(asked, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
+        of_columns = {plant: units(fit) for plant, fit in made.fits.items()}
         made.begin(*(path.with_suffix(".json") for path in signals.values()))
-        outcomes = run_cases(todo, args.output / "runs", given, manoeuvres)
+        outcomes = run_cases(todo, args.output / "runs", given, manoeuvres, args.format, of_columns)
         rows = [outcome.row for outcome in outcomes]
         if not out.silent:
             print_table(runs_table(rows))
@@ -92,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
     for figure in figures:
         if figure.suffix == ".png":
             out.say(f"figure:  {figure} (and .pdf)")
-    out.say(f"signals: {args.output / 'runs'}/*.csv ({len(outcomes)} runs)")
+    out.say(f"signals: {args.output / 'runs'}/*{next(iter(signals.values())).suffix} ({len(outcomes)} runs)")
     out.say(f"made by: {record} (version, FMUs, parameters, units), and one beside the signals of every run")
     out.document({"runs": [outcome.record for outcome in outcomes], "files": made.files})
     return 0

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Mapping, Sequence
 from math import ceil, isfinite
+from pathlib import Path
 from typing import Any
 
 from fmus.options import add_parameter_files, folder, output_folder
@@ -11,6 +12,7 @@ from ..control_loop import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..cosimulation.limits import USUAL
 from ..numbers import real, whole
 from ..plain import quoted
+from ..reports.signals_file import FORMATS
 
 OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
 """The blocks of the loop beside the plant, and what they are."""
@@ -135,7 +137,7 @@ def add_output(parser: argparse.ArgumentParser, default: str, files: str, of_a_r
     """
     action = parser.add_argument(
         "--output",
-        type=output_folder,
+        type=_output,
         default=default,
         metavar="FOLDER",
         help=f"for {files} (default: %(default)s)",
@@ -143,6 +145,22 @@ def add_output(parser: argparse.ArgumentParser, default: str, files: str, of_a_r
     action.complete = "directory"  # type: ignore[attr-defined]
     if of_a_run:
         add_replace(parser)
+
+
+def _output(text: str) -> Path:
+    """A folder; the name of a file of signals is a slip."""
+    path = Path(text)
+    if path.suffix in {form.ending for form in FORMATS.values()} and not path.exists():
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is to be a folder, for all files that are written")
+    return output_folder(text)
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """--format, of the files of signals."""
+    meanings = "; ".join(f"{name}: {form.meaning}" for name, form in FORMATS.items())
+    parser.add_argument(
+        "--format", choices=FORMATS, default="csv", help=f"of the signals (default: %(default)s); {meanings}"
+    )
 
 
 def add_replace(parser: argparse.ArgumentParser) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 from ..control_loop import STEP_SIZE
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED, binary_torque
 from .built import built
-from .options import add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
+from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
 from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import blocks, distinguishing, other_format, settings
 
 DESCRIPTION = """\
 Drives the car with a pseudo-random binary torque demand, on a road on which it about keeps its speed, and
@@ -35,6 +35,7 @@ examples:
   driveline record --control on --output results/closed
   driveline record --noise 0 --offset 0 --gain-error 0 --set motor.sigma_T=0 --set motor.g_T=1.03
   driveline record --vehicle examples/cars/van.toml
+  driveline record --format mf4
 
 orders: {", ".join(map(str, FEEDBACK))}; the demand repeats after 2^order - 1 clocks
 """
@@ -61,6 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     wheels.add_argument("--gain-error", type=finite, default=0.01, metavar="SHARE", help="(default: %(default)g)")
     add_loop(parser)
     add_output(parser, "results/record", "the recording", of_a_run=True)
+    add_format(parser)
     add_printing(parser)
 
 
@@ -76,13 +78,14 @@ def run(args: argparse.Namespace) -> int:
     from ..manoeuvres.road import RoadLoad, torque_limit
     from ..provenance import recorded
     from ..record import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed
-    from ..reports.csv_file import write_csv
+    from ..reports.signals_file import require_format, signals_path, write_signals
     from ..simulate import looped, simulate, start
 
     out = Printer(args)
     plant = Path(args.plant).stem
     name = f"{plant}_prbs_{args.control}"
-    recording, record = args.output / f"{name}.csv", args.output / f"{name}.json"
+    recording, record = signals_path(args.output / name, args.format), args.output / f"{name}.json"
+    require_format(args.format)
     given = settings(args, args.plant, build)
     system = looped(args.plant, given)
     fitted = fit(system)
@@ -97,11 +100,11 @@ def run(args: argparse.Namespace) -> int:
     require(beyond(fitted, start(manoeuvre) | given["parameters"]))
     wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
     same = {"demand": demand | {"speed": args.speed, "slope": slope}, "damping": args.control}
-    same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, system, manoeuvre)
+    same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, system, manoeuvre) | other_format(args)
     with recorded(record, same, {plant: system}, [args.vehicle, args.parameters], [recording], args.replace) as made:
         results = simulate(manoeuvre, plant=args.plant, control=args.control == "on", **given)
         made.begin()
-        write_csv(sensed(results, load.i, wheels, given["seed"]), recording)
+        write_signals(sensed(results, load.i, wheels, given["seed"]), {}, args.output / name, args.format)
         made.files.append(recording)
     out.say(
         f"{manoeuvre.description}, {args.duration:g} s on {plant}, {build} FMUs, damping {args.control}, "

@@ -8,10 +8,10 @@ from ..control_loop import PLACES, PLANTS
 from ..metrics.record import RideMetrics
 from ..recordings.quantities import aliases, example
 from ..reports.table import legend
-from .options import add_loop, add_output, add_plant, add_printing, seconds
+from .options import add_format, add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
 from .recording_options import add_recording
-from .settings import caption, distinguishing, settings_of_each
+from .settings import caption, distinguishing, other_format, settings_of_each
 
 LEGEND = legend(RideMetrics)
 
@@ -32,7 +32,8 @@ found by driving without damping and are then the same for all; nothing in them 
 {LEGEND}
 
 in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
-folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv, the figure to RECORDING.png and RECORDING.pdf.
+folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
+RECORDING.pdf.
 """
 
 EXAMPLES = """\
@@ -56,6 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_loop(parser, several={"controller": PLACES["controller"][0]})
     add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
+    add_format(parser)
     add_printing(parser, table=True)
 
 
@@ -64,14 +66,16 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.follower import require_held
     from ..manoeuvres.road import RoadLoad, Track, torque_limit
-    from ..provenance import recorded
+    from ..provenance import recorded, units
     from ..recordings.drive import read_drive
     from ..replay import by_name, records, replay, write
+    from ..reports.signals_file import require_format
     from ..reports.terminal import print_table, rides_reasons, rides_table
     from ..simulate import looped
 
     out = Printer(args)
     require_held(args.held)
+    require_format(args.format)
     recording = read_drive(args.recording, dict(args.columns), args.aliases)
     if recording.elevation is None:
         out.say(f"{args.recording} has no elevation: the road is level")
@@ -85,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
     track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
-    same |= {"columns": dict(args.columns)}
+    same |= {"columns": dict(args.columns)} | other_format(args)
     same |= {f"with {name}": distinguishing(given[name], system, None) for name, system in systems.items()}
     read = [args.recording, *args.aliases, args.vehicle, args.parameters]
     with recorded(record, same, systems, read, [metrics], args.replace) as made:
@@ -101,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
-        made.files += write(rides, track, plant, args.output, caption(args))
+        made.files += write(rides, track, plant, args.output, caption(args), args.format, units(made.fits[first]))
     for file in (*made.files, record):
         out.say(f"written: {file}")
     out.document({"runs": records(rides, track, plant), "files": made.files})

@@ -80,6 +80,11 @@ class NotTaken(DrivelineError):
     """A file of parameters names some that a controller does not have."""
 
 
+def other_format(args: argparse.Namespace) -> dict[str, Any]:
+    """What distinguishes a run by the format of its signals: nothing, if it is the usual one."""
+    return {} if args.format == "csv" else {"format": args.format}
+
+
 def as_given(args: argparse.Namespace) -> str:
     """The options that make a run what it is, as they are given."""
     given = [

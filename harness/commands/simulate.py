@@ -9,14 +9,14 @@ from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_loop, add_output, add_plant, add_printing, seconds
+from .options import add_format, add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
-from .settings import blocks, caption, distinguishing, settings
+from .settings import blocks, caption, distinguishing, other_format, settings
 
 DESCRIPTION = """\
 Runs the closed loop of controller, motor, plant and CAN bus through one manoeuvre and writes every
-output of every FMU as CSV, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the
-output folder.
+output of every FMU, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the
+output folder, or to Parquet or ASAM MDF 4 (--format).
 
 The instances are controller, motor, plant and can. An FMU of your own takes the place of any of them by
 one word, its path. The plant has the inputs and outputs of ours and the parameters v_0 and T_0; what an
@@ -36,6 +36,7 @@ examples:
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
   driveline simulate --step 0.0005 --scheme jacobi
   driveline simulate --manoeuvre launch --plot
+  driveline simulate --manoeuvre launch --format mf4
   driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot
 
 manoeuvres:
@@ -60,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "docs/coupling.md shows what that does (default: %(default)s)",
     )
     add_output(parser, "results/simulate", "the signals and the figure", of_a_run=True)
+    add_format(parser)
     parser.add_argument("--plot", action="store_true", help="draw speeds, torques and the motion of the body")
     add_printing(parser)
 
@@ -69,8 +71,8 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps
     from ..cosimulation.schedule import described, transfers
-    from ..provenance import recorded
-    from ..reports.csv_file import write_csv
+    from ..provenance import recorded, units
+    from ..reports.signals_file import require_format, signals_path, write_signals
     from ..simulate import looped, simulate
 
     out = Printer(args)
@@ -78,12 +80,13 @@ def run(args: argparse.Namespace) -> int:
     require_steps(manoeuvre.duration, args.step)
     plant = Path(args.plant).stem
     name = f"{plant}_{manoeuvre.name}_{args.control}"
-    signals, record = args.output / f"{name}.csv", args.output / f"{name}.json"
+    signals, record = signals_path(args.output / name, args.format), args.output / f"{name}.json"
+    require_format(args.format)
     given = settings(args, args.plant, build)
     system = looped(args.plant, given)
     same = {"manoeuvre": manoeuvre.name, "damping": args.control, "step_size": args.step, "scheme": args.scheme}
     same |= distinguishing(given, system, manoeuvre)
-    same |= digests([args.manoeuvre])
+    same |= digests([args.manoeuvre]) | other_format(args)
     read = [*files([args.manoeuvre]).values(), args.vehicle, args.parameters]
     with recorded(record, same, {plant: system}, read, [signals], args.replace) as made:
         require_files_drivable([args.manoeuvre], {manoeuvre.name: manoeuvre}, made.fits[plant], given["parameters"])
@@ -102,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
         if Scheme(args.scheme) is Scheme.PROPAGATED:
             out.say(described(transfers(made.fits[plant].system, made.fits[plant].interfaces)))
         made.begin()
-        write_csv(results, signals)
+        write_signals(results, units(made.fits[plant]), args.output / name, args.format)
         made.files.append(signals)
         out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
         if args.plot:

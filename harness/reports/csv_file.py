@@ -23,12 +23,15 @@ def write_rows(headings: Sequence[str], rows: Iterable[Sequence[object]], path: 
         writer.writerows(rows)
 
 
-def write_csv(results: np.ndarray, path: Path) -> None:
+def write_csv(results: np.ndarray, path: Path, headings: Sequence[str] | None = None) -> None:
     """Writes a structured array in the layout that `fmpy.util.read_csv` opens.
 
     One column a field; numbers are written so that reading gives the same ones, truth values as 0 and 1.
+
+    Args:
+        headings: of the columns; None: the names of the fields.
     """
-    write_rows(results.dtype.names or (), _rows(results), path)
+    write_rows(headings or results.dtype.names or (), _rows(results), path)
 
 
 def _rows(results: np.ndarray) -> Iterator[tuple[object, ...]]:
