@@ -7,6 +7,7 @@ import casadi as ca
 import numpy as np
 
 from .buffered import Buffered
+from .compiled import compiled
 from .drive_train import STEPS, Parameters, State, sample
 from .driven import Drive
 
@@ -30,7 +31,7 @@ class Simulator:
 
     @cached_property
     def _alone(self) -> Buffered:
-        return Buffered(ca.Function("sample", [self._x, *self._given], [self._after]).mapaccum("run", self.n))
+        return Buffered(compiled(ca.Function("sample", [self._x, *self._given], [self._after])).mapaccum("run", self.n))
 
     @cached_property
     def _with_derivatives(self) -> Buffered:
@@ -40,7 +41,7 @@ class Simulator:
         for k, name in enumerate(self.free):
             d_p[Parameters._fields.index(name), STATES + k] = 1.0
         d = ca.jtimes(self._after, ca.vertcat(self._x, self._p), ca.vertcat(d_x, ca.DM(d_p)))
-        alone = ca.Function("sensitivity", [self._x, d_x, *self._given], [self._after, d])
+        alone = compiled(ca.Function("sensitivity", [self._x, d_x, *self._given], [self._after, d]))
         return Buffered(alone.mapaccum("runs", self.n, 2))
 
     def run(self, drive: Drive, first: int, start: np.ndarray, p: Parameters) -> np.ndarray:

@@ -35,7 +35,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
 
-KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES, METHODS = 120, 15, 60, 5, 5, 5
+KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES, METHODS = 200, 40, 200, 20, 5, 5
 DRAWS = {DESIGN_MODEL: 36, VEHICLE: 14}
 """How many recordings of each."""
 
