@@ -37,6 +37,7 @@ from .box import Deviation, changed
 from .cars import loop_records, of_controller, settled
 from .design import design
 from .kalman import DesignError
+from .redesign import MANOEUVRES, softened
 from .weights import MOTOR, PLANT, records
 
 DESIGN_MODEL, VEHICLE = PLANTS
@@ -49,9 +50,6 @@ KNOWN = Parameters(PLANT.J_1, PLANT.J_2, PLANT.C, 0.0, PLANT.phi_B)
 
 WIDE = {"J_2": (0.05, 2.0), "C": (30.0, 450.0), "phi_B": (1e-3, 0.4)}
 """Between which wide starts are drawn, by the logarithm."""
-
-TIPS = ("tipin15", "tipout", "launch")
-"""Manoeuvres of the redesigned controllers."""
 
 
 def recording(
@@ -314,11 +312,11 @@ def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
         told = car(identified(recorded), {})
     except RecordingError as reason:
         return Redesigned(plant, number, {}, {}, {}, str(reason))
-    before = {name: settled(plant, name, true, seed) for name in TIPS}
+    before = {name: settled(plant, name, true, seed) for name in MANOEUVRES}
     try:
-        gains = design(*records(told))
+        gains = design(*records(told), weights=softened(told, {}))
     except DesignError as reason:
         return Redesigned(plant, number, before, {}, told, str(reason))
     controller = of_controller({**told, **gains}, plant)
-    after = {name: settled(plant, name, true | controller, seed) for name in TIPS}
+    after = {name: settled(plant, name, true | controller, seed) for name in MANOEUVRES}
     return Redesigned(plant, number, before, after, told)

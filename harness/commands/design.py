@@ -3,6 +3,7 @@
 import argparse
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fmus.options import file
 
@@ -10,6 +11,9 @@ from ..errors import DrivelineError
 from .options import add_printing, add_replace
 from .printing import Printer
 from .searching import add_search, require_search, run_search, write_gains
+
+if TYPE_CHECKING:
+    from ..analysis.weights import Weights
 
 DESCRIPTION = """\
 Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its
@@ -67,8 +71,11 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def designed(vehicle: Path | None = None) -> str:
+def designed(vehicle: Path | None = None, weights: "Weights | None" = None) -> str:
     """The file of gains for the car of a vehicle file, by default for the default car.
+
+    Args:
+        weights: of the design (default: those of the default gains).
 
     Raises:
         ParameterFileError: the vehicle file is refused.
@@ -78,11 +85,11 @@ def designed(vehicle: Path | None = None) -> str:
 
     from ..analysis.design import design, gains_file
     from ..analysis.kalman import DesignError
-    from ..analysis.weights import records
+    from ..analysis.weights import WEIGHTS, records
     from ..linear.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
-    gains = design(plant, motor, can)
+    gains = design(plant, motor, can, weights or WEIGHTS)
     alone, damped = swing(plant, motor, gains)
     if damped.damping_ratio <= alone.damping_ratio:
         raise DesignError(

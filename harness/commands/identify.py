@@ -14,7 +14,7 @@ from ..extra import required
 from .options import add_printing, add_replace
 from .printing import Printer
 from .recording_options import add_recording
-from .redesigning import redesign
+from .redesigning import redesign, require_fmus
 
 if TYPE_CHECKING:
     from ..identification.identify import Identified
@@ -99,6 +99,8 @@ def run(args: argparse.Namespace) -> int:
         raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases)
     required("casadi", "identifying a model", "native")
+    if args.design:
+        require_fmus()
     from ..identification import car_file
     from ..identification.drive_train import Parameters
     from ..identification.identify import identify

@@ -6,14 +6,22 @@ from typing import Any
 
 from rich.table import Table
 
-from ..control_loop import PLACES, PLANTS
+from ..control_loop import BUILD, PLACES, PLANTS
 from ..errors import DrivelineError
+from .built import built
 from .design import designed
 from .printing import Printer
 from .searching import write_gains
 
-MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
-"""In which the controllers are compared."""
+
+def require_fmus() -> None:
+    """Builds the FMUs in which controllers are compared, where they are missing or stale.
+
+    Raises:
+        DrivelineError: they cannot be built.
+    """
+    for plant in PLANTS:
+        built(plant, BUILD)
 
 
 def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer) -> Iterator[Path]:
@@ -32,11 +40,20 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
     """
     from fmus.builds import build_fmus
     from fmus.errors import BuildError
-    from fmus.parameter_files import read_files
+    from fmus.parameter_files import read_files, read_vehicle
+
+    from ..analysis.redesign import softened
+    from ..analysis.weights import WEIGHTS
 
     gains = car.with_name(f"{car.stem}_gains.toml")
+    weights = softened(read_vehicle(car), vehicle)
+    if weights != WEIGHTS:
+        share = weights.washout / WEIGHTS.washout
+        out.say(
+            f"washout at {share:.2f} of its frequency, for no more overshoot than before: torque is withheld longer"
+        )
     try:
-        write_gains(designed(car), gains, replace)
+        write_gains(designed(car, weights), gains, replace)
         yield gains
         yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
     except BuildError as reason:
@@ -49,6 +66,8 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
 
 def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]) -> Table:
     """The car, by the entries of its vehicle file, with what the controller was told before and after."""
+    from ..analysis.redesign import MANOEUVRES, worth
+
     table = Table(title="settling time in ms and overshoot in %; each plant with what the vehicle file has of it")
     table.add_column("plant")
     table.add_column("manoeuvre")
@@ -61,17 +80,3 @@ def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[
             cells = [f"{1e3 * settling:.0f}" for settling, _ in both] + [f"{1e2 * over:.1f}" for _, over in both]
             table.add_row(plant, manoeuvre, *cells)
     return table
-
-
-def worth(plant: str, manoeuvre: str, car: Mapping[str, Any], told: Mapping[str, Any]) -> tuple[float, float]:
-    """Settling time in s and overshoot (1) of a car whose controller is told something else.
-
-    Args:
-        car: entries of a vehicle file, for plant, motor and bus.
-        told: entries of a vehicle file and of gains, for the controller.
-    """
-    from ..analysis.cars import loop_parameters, of_controller, settled
-
-    true, of_car = loop_parameters(car, plant), of_controller(car, plant)
-    others = {name: value for name, value in true.items() if name not in of_car}
-    return settled(plant, manoeuvre, others | of_controller(told, plant))

@@ -153,8 +153,8 @@ COMPARED = 0.4
 
 
 def _start(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, np.ndarray]:
-    """State and covariance at the first sample, and their derivatives by all parameters: the likeliest of several, since
-    a recording may begin in the middle of a swing."""
+    """State and covariance at the first sample, and their derivatives by all parameters: the likeliest of several,
+    since a recording may begin in the middle of a swing."""
     piece = drive.between(0, min(round(COMPARED / drive.T_s), len(drive)))
     run, given = _filter().passed(len(piece)), _given(piece, p, noise)
     T_0 = abs(float(drive.T_mot[0, 0]))
