@@ -13,7 +13,7 @@ $(READY): pyproject.toml constraints.txt harness/cosimulation/steps.c
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[recordings,replay,design,bound,native,cluster,dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[recordings,replay,design,bound,native,cluster,report,dev]'
 	@touch $@
 
 setup: $(READY) ## the virtual environment alone

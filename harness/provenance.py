@@ -150,7 +150,14 @@ def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
 def write_record(
     record: Path, run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
 ) -> None:
-    """Writes what made the files of a run.
+    """Writes what made the files of a run; the arguments are those of `content`."""
+    write_text(_text(content(run, fits, files, inputs)), record)
+
+
+def content(
+    run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
+) -> dict[str, Any]:
+    """What made the files of a run.
 
     Args:
         run: all that distinguishes it.
@@ -158,7 +165,7 @@ def write_record(
         files: that it has written.
         inputs: files beside the FMUs that it has read.
     """
-    content = {
+    return {
         "program": f"driveline-damping {version('driveline-damping')}",
         "commit": commit(),
         "command_line": shlex.join(sys.argv),
@@ -171,7 +178,6 @@ def write_record(
         "files": [path.name for path in files],
         "units": {name: unit for fit in fits.values() for name, unit in units(fit).items()},
     }
-    write_text(_text(content), record)
 
 
 def units(fit: Fit) -> dict[str, str]:

@@ -28,18 +28,19 @@ ROOMS = {
     "harness.manoeuvres": COSIMULATION | {"harness.recordings"},
     "harness.metrics": {"harness", "harness.manoeuvres"},
     "harness.reports": {"harness", "harness.recordings", "harness.manoeuvres", "harness.metrics"},
+    "harness.html": {"harness", "harness.manoeuvres", "harness.metrics", "harness.reports"},
     "harness.compliance": COSIMULATION,
     "harness.linear": {"harness", "harness.metrics", "harness.reports", "models", "models.block", "models.controller"},
-    "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports"},
+    "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.html"},
     "harness.robustness": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis"},
+    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "harness.html"},
     "harness.analysis": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
     | {"harness.linear", "models", "models.block", "models.controller"}
     | {"harness.recordings", "harness.identification"},
     "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
     | {"harness.linear", "models", "models.controller"},
-    "harness.identification": {"harness", "harness.recordings", "harness.reports"},
+    "harness.identification": {"harness", "harness.recordings", "harness.metrics", "harness.reports", "harness.html"},
     "harness.target": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.recordings", "harness.reports"}
     | {"fmus", "fmus.native", "fmus.target"},
@@ -56,6 +57,7 @@ ROOMS = {
         "harness.identification",
         "harness.bound",
         "harness.faults",
+        "harness.html",
         "harness.linear",
         "harness.tuning",
         "harness.robustness",

@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from ..control_loop import PLANTS
+from ..html.page import require_report
 from ..manoeuvres.catalogue import COMPARED
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
 from .built import built
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_format, add_loop, add_output, add_plant, add_printing
+from .options import add_format, add_loop, add_output, add_plant, add_printing, add_report
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, other_format, settings
 
@@ -36,6 +37,7 @@ examples:
   driveline compare --set controller.k_d=1.5 --output results/softer
   driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --output results/overtaking
   driveline compare --json > comparison.json
+  driveline compare --report comparison.html
 """
 
 
@@ -46,15 +48,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_loop(parser)
     add_output(parser, "results/compare", "tables, figures and the signals of every run", of_a_run=True)
     add_format(parser)
+    add_report(parser)
     add_printing(parser, table=True)
 
 
 def run(args: argparse.Namespace) -> int:
+    require_report(args.report)
     plants = list(dict.fromkeys(args.plant or PLANTS))
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
-    from ..provenance import recorded, units, write_record
+    from ..provenance import content, recorded, units, write_record
     from ..reports.signals_file import require_format, signals_path
     from ..reports.terminal import print_table, runs_table
     from ..simulate import looped
@@ -72,7 +76,8 @@ def run(args: argparse.Namespace) -> int:
     read = [*files(asked).values(), args.vehicle, args.parameters]
     signals = {case: signals_path(args.output / "runs" / case.file_name, args.format) for case in todo}
     require_format(args.format)
-    with recorded(record, same, by_name, read, tables, args.replace) as made:
+    report = [args.report] if args.report else []
+    with recorded(record, same, by_name, read, [*tables, *report], args.replace) as made:
         for plant in plants:
             require_files_drivable(asked, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
         of_columns = {plant: units(fit) for plant, fit in made.fits.items()}
@@ -91,12 +96,20 @@ def run(args: argparse.Namespace) -> int:
             own = distinguishing(given[case.plant], systems[case.plant], manoeuvres[case.manoeuvre])
             one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
             write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
+        if args.report:
+            from ..html import compare as page
+
+            runs = [(outcome.row, outcome.results) for outcome in outcomes]
+            page.report(runs, manoeuvres, content(same, made.fits, [], read), args.report)
+            made.files += report
     out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
     out.say(f"tables:  {' '.join(map(str, tables))}")
     for figure in figures:
         if figure.suffix == ".png":
             out.say(f"figure:  {figure} (and .pdf)")
     out.say(f"signals: {args.output / 'runs'}/*{next(iter(signals.values())).suffix} ({len(outcomes)} runs)")
+    for path in report:
+        out.say(f"report:  {path}")
     out.say(f"made by: {record} (version, FMUs, parameters, units), and one beside the signals of every run")
     out.document({"runs": [outcome.record for outcome in outcomes], "files": made.files})
     return 0

@@ -9,9 +9,10 @@ from typing import Any
 
 from ..control_loop import BUILD, NATIVE, PLANTS
 from ..errors import DrivelineError
+from ..html.page import require_report
 from ..names import require_different
 from .built import built
-from .options import add_loop, add_output, add_plant, add_printing, count
+from .options import add_loop, add_output, add_plant, add_printing, add_report, count
 from .printing import Printer
 from .settings import as_given, blocks, caption, distinguishing, settings
 
@@ -49,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_plant(parser, several=True)
     add_loop(parser)
     add_output(parser, "results/faults", "the cases, the page and the figures", of_a_run=True)
+    add_report(parser)
     add_printing(parser, table=True)
 
 
@@ -57,14 +59,15 @@ def _number(text: str) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
+    require_report(args.report)
     plants = list(dict.fromkeys(args.plant or PLANTS))
     require_different(plants)
     given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from ..faults.bench import with_faults
+    from ..faults.bench import Bench, with_faults
     from ..faults.campaign import campaign
     from ..faults.report import announce, write, write_case
-    from ..provenance import recorded
+    from ..provenance import content, recorded
     from ..simulate import looped
 
     out = Printer(args)
@@ -73,10 +76,11 @@ def run(args: argparse.Namespace) -> int:
     same |= {"cases": args.cases} if args.case is None else {"case": args.case}
     name, first = ("faults", "faults.csv") if args.case is None else (f"case_{args.case}", f"case_{args.case}.csv")
     record = args.output / f"{name}.json"
+    report = [args.report] if args.report else []
     with _injector(args.fmus) as injector:
         tried = {Path(plant).stem: with_faults(system, injector) for plant, system in systems.items()}
         read = [args.vehicle, args.parameters]
-        with recorded(record, same, tried, read, [args.output / first], args.replace) as made:
+        with recorded(record, same, tried, read, [args.output / first, *report], args.replace) as made:
             if args.case is not None:
                 made.begin()
                 outcome, files = write_case(args.case, args.seed, injector, given, args.output, caption(args))
@@ -86,7 +90,11 @@ def run(args: argparse.Namespace) -> int:
                 outcomes = campaign(range(1, args.cases + 1), args.seed, injector, given)
                 made.begin()
                 files = write(outcomes, f" {as_given(args)}", args.output)
-            made.files += files
+            if args.report:
+                from ..faults import html
+
+                html.report(outcomes, Bench(injector, given), content(same, made.fits, [], read), args.report)
+            made.files += [*files, *report]
     if not out.silent:
         announce(outcomes)
     for file in (*made.files, record):

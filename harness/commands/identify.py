@@ -11,7 +11,8 @@ from fmus.options import file
 
 from ..errors import DrivelineError
 from ..extra import required
-from .options import add_printing, add_replace
+from ..html.page import require_report
+from .options import add_printing, add_replace, add_report
 from .printing import Printer
 from .recording_options import add_recording
 from .redesigning import redesign, require_fmus
@@ -75,6 +76,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="compute the gains for this car, build the controller with them, compare before and after on both plants",
     )
     add_replace(parser)
+    add_report(parser)
     add_printing(parser)
 
 
@@ -84,10 +86,11 @@ def run(args: argparse.Namespace) -> int:
     from fmus.parameter_files import read_vehicle
 
     from ..analysis.weights import records
-    from ..provenance import recorded
+    from ..provenance import content, recorded
     from ..recordings.measurement import read_measurement
     from ..reports.files import write_text
 
+    require_report(args.report)
     try:
         vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     except ParameterFileError as refusal:
@@ -115,8 +118,9 @@ def run(args: argparse.Namespace) -> int:
         "aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases],
     }
     read = [args.recording, *args.aliases, args.vehicle]
+    report = [args.report] if args.report else []
     everything = output.with_name(f"{output.stem}_identified.json")
-    with recorded(record, same, {}, read, [output, everything], args.replace) as made:
+    with recorded(record, same, {}, read, [output, everything, *report], args.replace) as made:
         J_v = plant.m * plant.r**2 / plant.i**2
         identified = identify(recording, start, motor.tau, J_v, list(dict.fromkeys(args.free)), out.say)
         for delay in recording.delays:
@@ -130,6 +134,11 @@ def run(args: argparse.Namespace) -> int:
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
         made.files += [output, everything, *draw(identified, recording, output.with_suffix(""))]
+        if args.report:
+            from ..identification import html
+
+            html.report(identified, recording, content(same, {}, [], read), args.report)
+            made.files += report
         if args.design:
             made.files += redesign(output, vehicle, args.replace, out)
     for path in (*made.files, record):

@@ -163,6 +163,17 @@ def add_format(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_report(parser: argparse.ArgumentParser) -> None:
+    """--report, one page with all that the command has found."""
+    action = parser.add_argument(
+        "--report",
+        type=Path,
+        metavar="FILE.html",
+        help="one page to send to others: verdict, tables, figures to zoom, what made it (docs/report.md)",
+    )
+    action.complete = "file"  # type: ignore[attr-defined]
+
+
 def add_replace(parser: argparse.ArgumentParser) -> None:
     """--replace, without which results of another run stay."""
     parser.add_argument("--replace", action="store_true", help="replace results that are those of another run")

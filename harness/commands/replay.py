@@ -5,10 +5,11 @@ from hashlib import sha256
 from pathlib import Path
 
 from ..control_loop import PLACES, PLANTS
+from ..html.page import require_report
 from ..metrics.record import RideMetrics
 from ..recordings.quantities import aliases, example
 from ..reports.table import legend
-from .options import add_format, add_loop, add_output, add_plant, add_printing, seconds
+from .options import add_format, add_loop, add_output, add_plant, add_printing, add_report, seconds
 from .printing import Printer
 from .recording_options import add_recording
 from .settings import caption, distinguishing, other_format, settings_of_each
@@ -58,6 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_loop(parser, several={"controller": PLACES["controller"][0]})
     add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
     add_format(parser)
+    add_report(parser)
     add_printing(parser, table=True)
 
 
@@ -66,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.follower import require_held
     from ..manoeuvres.road import RoadLoad, Track, torque_limit
-    from ..provenance import recorded, units
+    from ..provenance import content, recorded, units
     from ..recordings.drive import read_drive
     from ..replay import by_name, records, replay, write
     from ..reports.signals_file import require_format
@@ -74,6 +76,7 @@ def run(args: argparse.Namespace) -> int:
     from ..simulate import looped
 
     out = Printer(args)
+    require_report(args.report)
     require_held(args.held)
     require_format(args.format)
     recording = read_drive(args.recording, dict(args.columns), args.aliases)
@@ -92,7 +95,8 @@ def run(args: argparse.Namespace) -> int:
     same |= {"columns": dict(args.columns)} | other_format(args)
     same |= {f"with {name}": distinguishing(given[name], system, None) for name, system in systems.items()}
     read = [args.recording, *args.aliases, args.vehicle, args.parameters]
-    with recorded(record, same, systems, read, [metrics], args.replace) as made:
+    report = [args.report] if args.report else []
+    with recorded(record, same, systems, read, [metrics, *report], args.replace) as made:
         out.say(
             f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {given[first]['build']} FMUs, without damping and "
             f"with {', '.join(given)}"
@@ -101,11 +105,19 @@ def run(args: argparse.Namespace) -> int:
         shown = {ride.controller: ride.metrics for ride in rides}
         if not out.silent:
             print_table(rides_table(shown, f"{plant} on {recording.name}"))
-        for reason in rides_reasons(shown):
+        reasons = rides_reasons(shown)
+        for reason in reasons:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
         made.files += write(rides, track, plant, args.output, caption(args), args.format, units(made.fits[first]))
+        if args.report:
+            from ..html import replay as page
+
+            drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
+            title = f"{plant} on the recorded drive {track.name}"
+            page.report(drawn, (track.t, track.v), title, reasons, content(same, made.fits, [], read), args.report)
+            made.files += report
     for file in (*made.files, record):
         out.say(f"written: {file}")
     out.document({"runs": records(rides, track, plant), "files": made.files})

@@ -1,17 +1,20 @@
 """`driveline robustness`: the Monte-Carlo of cars and sensors, the same draws for every controller."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..control_loop import PLACES, PLANTS
 from ..errors import DrivelineError
-from .options import add_loop, add_output, add_plant, add_printing, count
+from ..html.page import require_report
+from .options import add_loop, add_output, add_plant, add_printing, add_report, count
 from .printing import Printer
 from .settings import as_given, caption, distinguishing, settings_of_each
 
 if TYPE_CHECKING:
     from ..robustness.bench import Bench, Given
+    from ..robustness.outcome import Outcome
 
 DESCRIPTION = """\
 Draws cars with their sensors from the box of parameters (docs/robustness.md), of which no controller is told, and
@@ -43,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_plant(parser, several=True)
     add_loop(parser, several={"controller": "all of these"})
     add_output(parser, "results/robustness", "the runs, the page and the figures", of_a_run=True)
+    add_report(parser)
     add_printing(parser, table=True)
 
 
@@ -56,6 +60,7 @@ def run(args: argparse.Namespace) -> int:
     from ..replay import by_name
     from ..robustness.bench import Bench
 
+    require_report(args.report)
     plants = list(dict.fromkeys(args.plant or PLANTS))
     require_different(plants)
     controllers = by_name(args.controller or PLACES["controller"])
@@ -70,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
     from ..cosimulation.wiring import fit
-    from ..provenance import require_same_run, write_record
+    from ..provenance import content, require_same_run, write_record
     from ..reports.files import alone, remove
     from ..robustness.archive import Archive
     from ..robustness.campaign import campaign, cases
@@ -81,7 +86,7 @@ def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
     record, runs, read = args.output / "robustness.json", args.output / "runs.csv", [args.vehicle, args.parameters]
     with alone(args.output):
         try:
-            require_same_run(record, same, [runs])
+            require_same_run(record, same, [runs, *_report(args)])
         except DrivelineError:
             if not args.replace:
                 raise
@@ -93,6 +98,7 @@ def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
         known = cases(bench.loops, range(1, max(case.number for case in archive) + 1))
         archive.write([archive[case] for case in known if case in archive])
         files = [runs, *write(outcomes, bench, _as_given(args), caption(args), args.output)]
+        files += _reported(args, outcomes, bench, content(same, fits, [], read))
         write_record(record, same, fits, files, read)
     if not out.silent:
         announce(outcomes)
@@ -104,25 +110,39 @@ def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
 
 def _one(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
     """One draw again."""
-    from ..provenance import recorded
+    from ..provenance import content, recorded
     from ..robustness.campaign import campaign
     from ..robustness.draws import draw
     from ..robustness.report import announce, write_draw
     from ..robustness.summary import summaries
 
-    out, name = Printer(args), f"draw_{args.case}"
+    out, name, read = Printer(args), f"draw_{args.case}", [args.vehicle, args.parameters]
     record, same = args.output / f"{name}.json", _distinguishing(bench, given) | {"case": args.case}
-    with recorded(record, same, _systems(given), [args.vehicle, args.parameters], [], args.replace) as made:
+    with recorded(record, same, _systems(given), read, _report(args), args.replace) as made:
         out.say(f"draw {draw(args.case, args.seed)}")
         outcomes = campaign(bench, [args.case], scheduler=args.scheduler)
         made.begin()
         made.files += write_draw(outcomes, bench, caption(args), args.output)
+        made.files += _reported(args, outcomes, bench, content(same, made.fits, [], read))
     if not out.silent:
         announce(outcomes)
     for file in (*made.files, record):
         out.say(f"written: {file}")
     out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": made.files})
     return 0
+
+
+def _report(args: argparse.Namespace) -> list[Path]:
+    return [args.report] if args.report else []
+
+
+def _reported(args: argparse.Namespace, outcomes: Sequence["Outcome"], bench: "Bench", provenance: Any) -> list[Path]:
+    """Writes the report if one is asked for; returns the file."""
+    for path in _report(args):
+        from ..robustness import html
+
+        html.report(outcomes, bench, provenance, path)
+    return _report(args)
 
 
 def _as_given(args: argparse.Namespace) -> str:

@@ -11,12 +11,13 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from scipy.stats import chi2
 
+from ..metrics.spectrum import decibels
 from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
 from .cost import POINTS, cost_over, curvature, ellipse, exact
 from .figures import said
 from .identify import Identified
 from .response import FREQUENCIES, Tyre, response
-from .response_band import drawn_responses, recorded_response
+from .response_band import PERCENTILES, drawn_responses, recorded_response
 
 LABELS = {"J_2": r"$J_2$ in kg·m²", "C": r"$C$ in N·m/rad", "phi_B": r"$\varphi_B$ in rad"}
 """The parameters whose pairs are drawn."""
@@ -35,8 +36,6 @@ RESPONSE = np.linspace(FREQUENCIES[0], FREQUENCIES[-1], 951)
 
 ABOVE = 6.0
 """In dB above the highest of what is finite, the end of the axis; a model without damping has no highest."""
-
-PERCENTILES = (2.5, 97.5)
 
 BAND = "bands: 95 % by the covariance, the tyre as it is; the recording crosses the gap, the models do not"
 
@@ -111,7 +110,7 @@ def plot_response(identified: Identified, stem: Path, caption: str = "", seed: i
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 5.6), layout=ConstrainedLayoutEngine(h_pad=0.1))
         amplitude, phase = rows = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        for axes, of in ((amplitude, _decibels), (phase, _degrees)):
+        for axes, of in ((amplitude, decibels), (phase, _degrees)):
             f, recorded = recorded_response(identified)
             at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
             axes.plot(f[at], of(recorded[at]), ".", color="0.4", ms=4, label="recording")
@@ -135,13 +134,9 @@ def _model(
     """The response and its band."""
     answer = response(identified.p, RESPONSE, behind)
     drawn = drawn_responses(identified, RESPONSE, behind, seed)
-    for axes, of in zip(rows, (_decibels, _degrees), strict=True):
+    for axes, of in zip(rows, (decibels, _degrees), strict=True):
         axes.plot(RESPONSE, of(answer), color=colour, label=name)
         axes.fill_between(RESPONSE, *np.percentile(of(drawn), PERCENTILES, axis=0), color=colour, alpha=0.3, lw=0)
-
-
-def _decibels(answer: np.ndarray) -> np.ndarray:
-    return 20.0 * np.log10(np.abs(answer))
 
 
 def _degrees(answer: np.ndarray) -> np.ndarray:

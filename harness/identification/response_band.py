@@ -8,6 +8,9 @@ from .response import WINDOW, Tyre, response
 
 DRAWS = 500
 
+PERCENTILES = (2.5, 97.5)
+"""Between which the band lies."""
+
 
 def drawn_responses(identified: Identified, frequencies: np.ndarray, behind: Tyre | None, seed: int) -> np.ndarray:
     """omega_1/T_mot of parameters drawn from the covariance, the tyre as it is, shape (DRAWS, frequencies).

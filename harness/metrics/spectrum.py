@@ -46,3 +46,8 @@ def band_parts(
     if band[0] * n * T_s < 1.0 and band[0] > 0.0:
         raise Absent(f"the run is shorter than a period of {band[0]:g} Hz")
     return np.sqrt(2.0) / n * X[within]
+
+
+def decibels(answer: np.ndarray) -> np.ndarray:
+    """Of an amplitude, complex or not."""
+    return 20.0 * np.log10(np.abs(answer))

@@ -16,6 +16,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 from ..manoeuvres.manoeuvre import Manoeuvre
+from .colours import BLACK, BLUE, GREEN, GREY, VERMILION
 from .files import complete
 
 STYLE = {
@@ -34,8 +35,6 @@ STYLE = {
     "mathtext.fontset": "dejavuserif",
     "pdf.fonttype": 42,  # TrueType; publishers refuse Type 3
 }
-# colours of Okabe and Ito, which the colour-blind can tell apart
-BLACK, BLUE, VERMILION, GREEN, GREY = "black", "#0072B2", "#D55E00", "#009E73", "0.6"
 
 METADATA = {
     "png": {"Software": None},

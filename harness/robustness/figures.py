@@ -11,14 +11,12 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ..manoeuvres.catalogue import MANOEUVRES as CATALOGUE
-from ..reports.figures import BLACK, BLUE, GREEN, GREY, STYLE, VERMILION, plot_step, save, titled
+from ..reports.colours import COLOURS
+from ..reports.figures import STYLE, plot_step, save, titled
 from .bench import Bench
 from .draws import draw
 from .outcome import SHOWN, Case
 from .summary import Summary
-
-COLORS = (BLACK, GREY, BLUE, "#E69F00", VERMILION, GREEN, "#CC79A7")
-"""Of the controllers, in turn."""
 
 DRAWN = {
     "settling_time": (0.05, 5.0),
@@ -59,7 +57,7 @@ def _distribution(axes: Axes, summaries: Sequence[Summary], metric: str, bounds:
             np.concatenate(([low], np.clip(values, low, None), values[-1:])),
             np.concatenate(([0.0], shares, shares[-1:])),
             where="post",
-            color=COLORS[k % len(COLORS)],
+            color=COLOURS[k % len(COLOURS)],
             lw=1.6 if k == 0 else 0.9,
             label=summary.controller,
         )
