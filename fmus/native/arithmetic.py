@@ -2,35 +2,38 @@
 
 CasADi writes `where` as the sum of two products with a truth value, so that both values are always
 computed. Here it becomes a choice again, and what only one side of a choice needs is found, so that
-costly operations can be put into a branch.
+it can be put into a branch. A choice between equal values is that value, and one among the elements of an
+array, by the whole part of a number, is a look-up.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import casadi
 
-ARITHMETIC = ("ADD", "SUB", "MUL", "DIV", "NEG", "SQ", "TWICE", "INV", "FABS", "SIGN", "FLOOR", "CEIL", "SQRT")
-
-TRANSCENDENTAL = ("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SINH", "COSH", "TANH", "EXP", "LOG")
-
-COSTLY = ("FMOD", "POW", "CONSTPOW", *TRANSCENDENTAL)
-"""Operations worth a branch."""
-
 TRUTH_VALUES = ("LT", "LE", "EQ", "NE", "NOT", "AND", "OR")
 
-OPERATIONS = {
-    getattr(casadi, f"OP_{name}"): name
-    for name in (*ARITHMETIC, *COSTLY, *TRUTH_VALUES, "FMIN", "FMAX", "COPYSIGN", "IF_ELSE_ZERO")
-}
+NUMBERS = (
+    *("ADD", "SUB", "MUL", "DIV", "NEG", "SQ", "TWICE", "INV", "FABS", "SIGN", "FLOOR", "CEIL", "SQRT", "FMOD"),
+    *("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SINH", "COSH", "TANH", "EXP", "LOG", "POW", "CONSTPOW"),
+    *("FMIN", "FMAX", "COPYSIGN", "IF_ELSE_ZERO"),
+)
+
+OPERATIONS = {getattr(casadi, f"OP_{name}"): name for name in (*NUMBERS, *TRUTH_VALUES)}
 """Names of CasADi's operations by their numbers."""
+
+
+LOOKED_UP = 4
+"""Choices by the whole part of a number that are worth a look-up."""
 
 
 class Node(NamedTuple):
     """One operation.
 
     Attributes:
-        operation: a name in OPERATIONS, "CHOICE" (condition, value, otherwise), "INPUT" or "CONSTANT".
+        operation: a name in OPERATIONS, "CHOICE" (condition, value, otherwise), "INPUT", "CONSTANT", "INDEX" (the
+            whole part of a number, not less than 0 and not more than the value), "WHOLE" (an index as a real number)
+            or "ELEMENT" (of an array, by an index from its element in `value`).
         operands: numbers of other nodes.
         value: number of the input and of its element, or the constant.
     """
@@ -44,17 +47,36 @@ Guard = tuple[int, bool]
 """A condition (number of its node) and the value that it must have."""
 
 
+class Ladder(NamedTuple):
+    """Choices by the whole part of a number: n <= position ? v[n] : (... 1 <= position ? v[1] : v[0]).
+
+    Attributes:
+        position: node of the number.
+        first: v[0].
+        count: n.
+    """
+
+    position: int
+    first: Node
+    count: int
+
+
 class Graph:
     """All operations that the outputs need; equal ones are one.
+
+    Args:
+        inputs: for every input of the function and each of its elements what C calls it.
 
     Attributes:
         nodes: each after its operands.
         outputs: for every element of the output its node.
     """
 
-    def __init__(self, function: casadi.Function) -> None:
+    def __init__(self, function: casadi.Function, inputs: Sequence[Sequence[str]]) -> None:
+        self.inputs = inputs
         self.nodes: list[Node] = []
         self._numbers: dict[Node, int] = {}
+        self._ladders: dict[int, Ladder] = {}
         self.outputs: dict[int, int] = {}
         held: dict[int, int] = {}
         for k in range(function.n_instructions()):
@@ -81,10 +103,47 @@ class Graph:
             if value.operation == otherwise.operation == "CHOICE":
                 condition, negated = value.operands[0], self.nodes[otherwise.operands[0]]
                 if negated == Node("NOT", (condition,)):
-                    return self._number(Node("CHOICE", (condition, value.operands[1], otherwise.operands[1])))
+                    return self._choice(condition, value.operands[1], otherwise.operands[1])
         if operation == "IF_ELSE_ZERO":
             return self._number(Node("CHOICE", (*operands, self._number(Node("CONSTANT", (), 0.0)))))
         return self._number(Node(operation, operands))
+
+    def _choice(self, condition: int, value: int, otherwise: int) -> int:
+        if value == otherwise:
+            return value
+        ladder = self._ladder(condition, value, otherwise)
+        if ladder and ladder.count >= LOOKED_UP:
+            index = self._number(Node("INDEX", (ladder.position,), float(ladder.count)))
+            whole = ladder.first.operation == "CONSTANT"
+            number = self._number(Node("WHOLE", (index,)) if whole else Node("ELEMENT", (index,), ladder.first.value))
+        else:
+            number = self._number(Node("CHOICE", (condition, value, otherwise)))
+        if ladder:
+            self._ladders[number] = ladder
+        return number
+
+    def _ladder(self, condition: int, value: int, otherwise: int) -> Ladder | None:
+        """That of a choice, if it is one."""
+        comparison = self.nodes[condition]
+        if comparison.operation != "LE" or self.nodes[comparison.operands[0]].operation != "CONSTANT":
+            return None
+        position, count = comparison.operands[1], self.nodes[comparison.operands[0]].value
+        below = Ladder(position, self.nodes[otherwise], 0) if count == 1.0 else self._ladders.get(otherwise)
+        if below is None or (below.position, below.count + 1.0) != (position, count):
+            return None
+        ladder = below._replace(count=below.count + 1)
+        return ladder if self.nodes[value] == self._after(ladder.first, ladder.count) else None
+
+    def _after(self, first: Node, count: int) -> Node | None:
+        """The value so many places after the first of a ladder: a whole number or an element of an array."""
+        if first == Node("CONSTANT"):
+            return Node("CONSTANT", (), float(count))
+        if first.operation != "INPUT":
+            return None
+        vector, element = first.value  # pyright: ignore[reportGeneralTypeIssues]
+        names = self.inputs[vector][element : element + count + 1]
+        is_array = names[0].endswith("]") and len({name.rpartition("[")[0] for name in names}) == 1
+        return Node("INPUT", (), (vector, element + count)) if is_array and len(names) > count else None
 
     def users(self) -> dict[int, list[tuple[int, Guard | None]]]:
         """For every node that the outputs need: who uses it, and on which side of a choice."""
@@ -99,10 +158,10 @@ class Graph:
         return users
 
     def guards(self) -> dict[int, frozenset[Guard]]:
-        """For every needed node under which conditions alone it is; only what saves something costly."""
+        """For every needed node under which conditions alone it is; only those that save an operation."""
         guards = self._guards(None)
-        worth = {g for k, of in guards.items() if self.nodes[k].operation in COSTLY for g in of}
-        return self._guards({condition for condition, _ in worth})
+        worth = {condition for k, of in guards.items() if self.nodes[k].operands for condition, _ in of}
+        return self._guards(worth)
 
     def _guards(self, conditions: Iterable[int] | None) -> dict[int, frozenset[Guard]]:
         users, guards = self.users(), {}

@@ -106,7 +106,7 @@ def function(each: Traced, records: dict[str, Any], precision: Precision, names:
     inputs = [_lvalues(name, records) for name in each.arguments]
     size = each.function.size1_out(0)
     outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
-    lines = Statements(Graph(each.function), inputs, outputs, precision).lines
+    lines = Statements(Graph(each.function, inputs), outputs, precision).lines
     text = "\n".join(lines)
     unused = [f"    (void){name};" for name in each.arguments if not re.search(rf"\b{name}->", text)]
     return "\n".join([head(each, names), "{", *unused, *lines, "}"])

@@ -49,29 +49,26 @@ CALLED = {"FABS": "fabs", "FMIN": "fmin", "FMAX": "fmax", "CONSTPOW": "pow"}
 
 
 class Text(NamedTuple):
-    """An expression in C and how strongly it holds together."""
+    """An expression in C and the kind of its outermost operator. Between operators of different kinds are parentheses,
+    even where C needs none (MISRA C, rule 12.1)."""
 
     text: str
     strength: int = ATOM
 
     def within(self, strength: int) -> str:
-        """Itself, in parentheses where an operator of that strength would tear it apart."""
-        return self.text if self.strength >= strength else f"({self.text})"
+        """Itself as an operand, in parentheses unless it is a chain of operators of that strength or needs none."""
+        return self.text if self.strength == strength or self.strength >= max(strength, SIGN) else f"({self.text})"
 
 
 class Statements:
     """Writes the operations of a graph in the order in which the outputs need them.
 
     Args:
-        inputs: for every input of the function and each of its elements what C calls it.
         outputs: for each element of the output what is assigned to.
     """
 
-    def __init__(
-        self, graph: Graph, inputs: Sequence[Sequence[str]], outputs: Sequence[str], precision: Precision = DOUBLE
-    ) -> None:
+    def __init__(self, graph: Graph, outputs: Sequence[str], precision: Precision = DOUBLE) -> None:
         self._graph = graph
-        self._inputs = inputs
         self._precision = precision
         self._guards = graph.guards()
         self._uses = Counter(graph.outputs.values())
@@ -92,6 +89,11 @@ class Statements:
         """Makes the text of a node available, and with it those of the nodes that it needs."""
         if k in self._texts:
             return
+        taken = self._taken(k, context)
+        if taken != k:
+            self._need(taken, context)
+            self._texts[k] = self._number(taken)
+            return
         node = self._graph.nodes[k]
         if node.operation == "CHOICE" and node.operands[0] in self._conditions:
             self._branch(k, context)
@@ -100,8 +102,24 @@ class Statements:
             self._need(operand, context)
         text = self._expression(node)
         if node.operands and (self._uses[k] > 1 or len(text.text) > LONGEST):
-            text = self._name(text, "int" if node.operation in TRUTH_VALUES else self._precision.real)
+            text = self._name(text, self._type(node))
         self._texts[k] = text
+
+    def _taken(self, k: int, context: frozenset[Guard]) -> int:
+        """The node itself, or, if it is a choice that has been made, what was chosen."""
+        node = self._graph.nodes[k]
+        while node.operation == "CHOICE":
+            made = [place for place in (1, 2) if (node.operands[0], place == 1) in context]
+            if not made:
+                break
+            k = node.operands[made[0]]
+            node = self._graph.nodes[k]
+        return k
+
+    def _type(self, node: Node) -> str:
+        if node.operation in TRUTH_VALUES:
+            return "bool"
+        return "int" if node.operation == "INDEX" else self._precision.real
 
     def _name(self, text: Text, kind: str) -> Text:
         self._named += 1
@@ -113,7 +131,7 @@ class Statements:
         condition = self._graph.nodes[k].operands[0]
         self._need(condition, context)
         chosen: list[int] = []
-        for choice in [k, *self._alike(k)]:
+        for choice in [k, *self._alike(k, context)]:
             around = self._around(choice, context)
             if choice not in self._texts and not self._depends(around, chosen):
                 for operand in around:
@@ -121,7 +139,8 @@ class Statements:
                 chosen.append(choice)
         names = [f"a{self._named + n}" for n in range(1, len(chosen) + 1)]
         self._named += len(chosen)
-        self._line(f"{self._precision.real} {', '.join(names)};")
+        for name in names:
+            self._line(f"{self._precision.real} {name};")
         for opening, place in ((f"if ({self._truth(condition).text}) {{", 1), ("} else {", 2)):
             self._line(opening)
             self._side(condition, place, chosen, names, context)
@@ -138,9 +157,11 @@ class Statements:
             self._line(f"{name} = {self._number(value).text};")
         self._texts, self._indent = texts, indent
 
-    def _alike(self, k: int) -> Iterable[int]:
-        """Other choices with the condition of choice k that are needed where it is, and not made yet."""
+    def _alike(self, k: int, context: frozenset[Guard]) -> Iterable[int]:
+        """Other choices with the condition of choice k that are needed where it is."""
         condition, guards = self._graph.nodes[k].operands[0], self._guards[k]
+        if not guards <= context:
+            return
         for other, node in enumerate(self._graph.nodes):
             alike = node.operation == "CHOICE" and node.operands[0] == condition
             if alike and other != k and self._guards.get(other) == guards:
@@ -153,7 +174,7 @@ class Statements:
             inside = context | {(node.operands[0], place == 1)}
             waiting = [node.operands[place]]
             while waiting:
-                k = waiting.pop()
+                k = self._taken(waiting.pop(), inside)
                 if k in seen:
                     continue
                 seen.add(k)
@@ -179,38 +200,53 @@ class Statements:
         text = self._texts[k]
         if self._graph.nodes[k].operation not in TRUTH_VALUES:
             return text
-        return Text(f"{text.within(OR)} ? {self._constant(1.0)} : {self._constant(0.0)}", CHOICE)
+        return Text(f"{text.within(SIGN)} ? {self._constant(1.0)} : {self._constant(0.0)}", CHOICE)
 
     def _truth(self, k: int) -> Text:
         text = self._texts[k]
         if self._graph.nodes[k].operation in TRUTH_VALUES:
             return text
-        return Text(f"{text.within(SUM)} != {self._constant(0.0)}", COMPARISON)
+        return Text(f"{text.within(SIGN)} != {self._constant(0.0)}", COMPARISON)
 
     def _constant(self, value: float) -> str:
         return constant(value, self._precision)
+
+    def _index(self, position: Text, most: int) -> Text:
+        """The whole part of a position; of one that is not a number it is 0, as every comparison with that fails."""
+        text = position.within(ATOM)
+        beyond = f"({self._constant(float(most))} <= {text})"
+        within = f"({self._constant(1.0)} <= {text})"
+        return Text(f"{beyond} ? {most} : ({within} ? (int){text} : 0)", CHOICE)
 
     def _expression(self, node: Node) -> Text:
         operation, operands = node.operation, node.operands
         match operation:
             case "INPUT":
                 vector, element = node.value  # pyright: ignore[reportGeneralTypeIssues]
-                return Text(self._inputs[vector][element])
+                return Text(self._graph.inputs[vector][element])
             case "CONSTANT":
                 return Text(self._constant(node.value), SIGN if node.value < 0.0 else ATOM)  # pyright: ignore
             case "CHOICE":
                 condition, value, otherwise = self._truth(operands[0]), *map(self._number, operands[1:])
-                return Text(f"{condition.within(OR)} ? {value.within(OR)} : {otherwise.within(OR)}", CHOICE)
+                return Text(f"{condition.within(SIGN)} ? {value.within(SIGN)} : {otherwise.within(SIGN)}", CHOICE)
+            case "INDEX":
+                return self._index(self._number(operands[0]), int(node.value))  # pyright: ignore[reportArgumentType]
+            case "WHOLE":
+                return Text(f"({self._precision.real}){self._number(operands[0]).within(ATOM)}", SIGN)
+            case "ELEMENT":
+                vector, element = node.value  # pyright: ignore[reportGeneralTypeIssues]
+                array, _, place = self._graph.inputs[vector][element].rpartition("[")
+                further = "" if place == "0]" else f" + {place.removesuffix(']')}"
+                return Text(f"{array}[{self._texts[operands[0]].text}{further}]")
             case "NOT":
                 return Text(f"!{self._truth(operands[0]).within(ATOM)}", SIGN)
             case "AND" | "OR":
                 sign, strength = INFIX[operation]
-                return Text(f" {sign} ".join(self._truth(k).within(COMPARISON) for k in operands), strength)
+                return Text(f" {sign} ".join(self._truth(k).within(SIGN) for k in operands), strength)
         numbers = [self._number(k) for k in operands]
         if operation in INFIX:
             sign, strength = INFIX[operation]
-            left, right = (text.within(strength + place) for place, text in enumerate(numbers))
-            return Text(f"{left} {sign} {right}", strength)
+            return Text(f"{numbers[0].within(strength)} {sign} {numbers[1].within(SIGN)}", strength)
         match operation:
             case "NEG":
                 return Text(f"-{numbers[0].within(ATOM)}", SIGN)

@@ -43,7 +43,7 @@ def trace(block: Block) -> tuple[Traced, ...]:
     x0 = block.start(block.Input(), block.Parameters())
     symbols = {"x": _symbols("x", x0), "u": _symbols("u", block.Input()), "p": _symbols("p", block.Parameters())}
     x, u, p = symbols.values()
-    with _exact():
+    with exact():
         results = {"start": ("up", "x", block.start(u, p)), "output": ("xup", "y", block.output(x, u, p))}
         if isinstance(block, ContinuousBlock):
             results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
@@ -65,7 +65,7 @@ def trace(block: Block) -> tuple[Traced, ...]:
 
 
 @contextmanager
-def _exact() -> Iterator[None]:
+def exact() -> Iterator[None]:
     """While it lasts CasADi keeps every operation as it is written."""
     before = casadi.GlobalOptions.getSimplificationOnTheFly()
     casadi.GlobalOptions.setSimplificationOnTheFly(False)

@@ -17,11 +17,16 @@ PACKAGES = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm")
 
 PROCESSOR = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
 
-FLAGS = (
-    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wdouble-promotion"),
+WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wdouble-promotion")
+
+CODE = (
     # each operation rounds on its own, as on this machine; nothing looks at errno
-    *("-ffp-contract=off", "-fno-math-errno", "-O2"),
+    *("-ffp-contract=off", "-fno-math-errno"),
+    # small, and no choice is written as two conditional moves, which is longer than a branch
+    *("-Os", "-fno-if-conversion", "-fno-if-conversion2"),
 )
+
+FLAGS = (*WARNINGS, *CODE)
 
 BARE = ("-nostartfiles", "--specs=nano.specs", "-Wl,--gc-sections", "-Wl,-Map=controller.map")
 

@@ -49,6 +49,7 @@ SOURCE = """/* Arithmetic of {file}.h, written by `driveline target export` from
 #include "{file}.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 const {struct}Parameters {function}parameters = {{
 {parameters}
@@ -64,7 +65,6 @@ ANY = """/* The controller under names that do not tell which it is, written by 
 
 #include "{file}.h"
 
-typedef {real} ControllerReal;
 typedef {struct}Input ControllerInput;
 typedef {struct}Parameters ControllerParameters;
 typedef {struct}State ControllerState;

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fmus.target.image import FLAGS, PACKAGES, PROCESSOR
+from fmus.target.image import CODE, PACKAGES, PROCESSOR
 from fmus.target.link import LIMIT
 
 from ..manoeuvres.catalogue import MANOEUVRES
@@ -179,7 +179,7 @@ def page(
         manoeuvres=len(MANOEUVRES),
         wider=WIDER,
         compiler="arm-none-eabi-gcc",
-        flags=" ".join((*PROCESSOR, *FLAGS[-3:])),
+        flags=" ".join((*PROCESSOR, *CODE)),
         identity=identity,
         cases=cases_table(comparisons),
         absolute=ABSOLUTE,

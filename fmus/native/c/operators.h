@@ -5,6 +5,7 @@
 #include "block.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #if defined OLD_GLIBC && defined __x86_64__ && defined __gnu_linux__
 /* The first versions of these functions: the later ones, of glibc 2.29 and 2.38, differ in errno alone, and would

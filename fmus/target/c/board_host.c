@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-int board_receive(void *bytes, uint32_t count)
+bool board_receive(void *bytes, uint32_t count)
 {
     return fread(bytes, 1, count, stdin) == count;
 }

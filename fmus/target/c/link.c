@@ -14,9 +14,11 @@ enum {
 };
 
 /* What the calibration engineer sets. */
-ControllerParameters calibration;
+static ControllerParameters calibration;
 
-static ControllerState states[2], *x = &states[0], *next = &states[1];
+static ControllerState states[2];
+static ControllerState *x = &states[0];
+static ControllerState *next = &states[1];
 static ControllerInput u;
 static ControllerOutput y;
 
@@ -47,7 +49,8 @@ static void answer(void (*what)(void))
 {
     uint32_t taken[2];
     (void)board_stack();
-    const uint32_t first = board_count(), second = board_count();
+    const uint32_t first = board_count();
+    const uint32_t second = board_count();
     what();
     taken[0] = board_count() - second - (second - first);
     taken[1] = board_stack();
@@ -67,43 +70,68 @@ static void *at(uint32_t address)
     return (void *)(uintptr_t)address;
 }
 
+/* Takes what belongs to a command and carries it out. False: there is no such command, or the link was closed. */
+static bool obeyed(uint8_t command)
+{
+    uint32_t place[2]; /* address and count */
+    bool known = true;
+    switch (command) {
+    case SIZES:
+        send_sizes();
+        break;
+    case START:
+        known = board_receive(&u, sizeof u);
+        if (known) {
+            answer(start);
+        }
+        break;
+    case UPDATE:
+        known = board_receive(&u, sizeof u);
+        if (known) {
+            answer(sample);
+        }
+        break;
+    case STATE:
+        known = board_receive(x, sizeof *x);
+        if (known) {
+            answer(outputs);
+        }
+        break;
+    case PARAMETERS:
+        known = board_receive(&calibration, sizeof calibration);
+        if (known) {
+            answer(outputs);
+        }
+        break;
+    case READ:
+        known = board_receive(place, sizeof place);
+        if (known) {
+            board_send(at(place[0]), place[1]);
+        }
+        break;
+    case WRITE:
+        known = board_receive(place, sizeof place);
+        if (known) {
+            known = board_receive(at(place[0]), place[1]);
+        }
+        if (known) {
+            answer(outputs);
+        }
+        break;
+    default:
+        known = false;
+        break;
+    }
+    return known;
+}
+
 int main(void)
 {
-    uint8_t command;
-    uint32_t place[2]; /* address and count */
+    uint8_t command = SIZES;
+    bool known = true;
     calibration = controller_parameters;
-    while (board_receive(&command, 1)) {
-        switch (command) {
-        case SIZES:
-            send_sizes();
-            break;
-        case START:
-            if (board_receive(&u, sizeof u))
-                answer(start);
-            break;
-        case UPDATE:
-            if (board_receive(&u, sizeof u))
-                answer(sample);
-            break;
-        case STATE:
-            if (board_receive(x, sizeof *x))
-                answer(outputs);
-            break;
-        case PARAMETERS:
-            if (board_receive(&calibration, sizeof calibration))
-                answer(outputs);
-            break;
-        case READ:
-            if (board_receive(place, sizeof place))
-                board_send(at(place[0]), place[1]);
-            break;
-        case WRITE:
-            if (board_receive(place, sizeof place) && board_receive(at(place[0]), place[1]))
-                answer(outputs);
-            break;
-        default:
-            return 1;
-        }
+    while (known && board_receive(&command, 1)) {
+        known = obeyed(command);
     }
-    return 0;
+    return known ? 0 : 1;
 }

@@ -1,0 +1,76 @@
+"""What the traced arithmetic becomes in C: look-ups, branches, and parentheses that leave nothing to know."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+casadi = pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+from fmus.native.arithmetic import LOOKED_UP, Graph
+from fmus.native.statements import Statements
+from fmus.native.symbol import CasadiSymbol
+from fmus.native.trace import exact
+from models.block.operators import interpolate, where
+
+NAMES = [f"a[{k}]" for k in range(6)]
+
+
+def written(of: Callable[..., Any], names: list[str]) -> list[str]:
+    """The C of a function of so many numbers."""
+    symbols = [casadi.SX.sym("x") for _ in names]
+    with exact():
+        result = of(*map(CasadiSymbol, symbols)).expression
+    function = casadi.Function("f", [casadi.vertcat(*symbols)], [result])
+    return [line.strip() for line in Statements(Graph(function, [names]), ["y"]).lines]
+
+
+def test_an_interpolation_in_an_array_looks_its_neighbours_up() -> None:
+    lines = written(lambda *v: interpolate(v[:-1], v[-1]), [*NAMES, "position"])
+    index = next(line for line in lines if line.startswith("const int "))
+    assert index.endswith("4 : ((1.0 <= a2) ? (int)a2 : 0);")
+    assert not any("a[2]" in line for line in lines)
+    assert lines[-1] == "y = a4 + ((a2 - (double)a3) * (a[a3 + 1] - a4));"
+
+
+def test_numbers_that_are_no_array_are_chosen_one_by_one() -> None:
+    lines = written(lambda *v: interpolate(v[:-1], v[-1]), [*"abcdef", "position"])
+    assert not any("[" in line for line in lines)
+
+
+def test_few_choices_are_not_looked_up() -> None:
+    few = LOOKED_UP
+    lines = written(lambda *v: interpolate(v[:-1], v[-1]), [*NAMES[:few], "position"])
+    assert not any("(int)" in line for line in lines)
+
+
+def test_a_choice_between_equal_values_is_that_value() -> None:
+    assert written(lambda x, y: where(x < y, x + y, x + y), ["x", "y"]) == ["y = x + y;"]
+
+
+def test_what_only_one_side_of_a_choice_needs_is_computed_there() -> None:
+    lines = written(lambda x, y: where(x < y, x * y, x), ["x", "y"])
+    assert lines == ["double a1;", "if (x < y) {", "a1 = x * y;", "} else {", "a1 = x;", "}", "y = a1;"]
+
+
+def test_a_choice_that_has_been_made_is_not_made_again() -> None:
+    lines = written(lambda x, y: where(x < y, 2.0 * where(x < y, x, x * y), y), ["x", "y"])
+    assert sum(line.startswith("if") for line in lines) == 1
+    assert "a2 = 2.0 * x;" in lines
+
+
+@pytest.mark.parametrize(
+    ("of", "text"),
+    [
+        (lambda x, y: x + y + x, "x + y + x"),
+        (lambda x, y: x - (y - x), "x - (y - x)"),
+        (lambda x, y: x + y * x, "x + (y * x)"),
+        (lambda x, y: x * y / x, "x * y / x"),
+        (lambda x, y: -x * y, "-x * y"),
+        (lambda x, y: where(x < y, x, y), "(x < y) ? x : y"),
+        (lambda x, y: where((x < y).logical_and(y < 1.0), x, y), "((x < y) && (y < 1.0)) ? x : y"),
+        (lambda x, y: where((x < y).logical_not(), x, y), "!(x < y) ? x : y"),
+    ],
+)
+def test_operators_of_different_kinds_are_kept_apart(of: Callable[..., Any], text: str) -> None:
+    assert written(of, ["x", "y"]) == [f"y = {text};"]
