@@ -32,6 +32,7 @@ COMMANDS = {
     "design": "compute the gains of the controller",
     "analyse": "margins, poles and sensitivities of the loop",
     "target": "the controller's C on its processor",
+    "bus": "write the database of the bus (DBC)",
     "bound": "compute what no controller can beat, beside what ours reaches",
     "coupling": "measure coupling error and dead time of the master",
     "back-to-back": "compare both builds of each block with its functions",

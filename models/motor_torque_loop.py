@@ -9,6 +9,7 @@ gives it. The noise is held for T_s; sample k of it is a pure function of the se
 from typing import Annotated, NamedTuple
 
 from .block.declaration import Integer, Real
+from .block.frame import Content, Frame
 from .block.noise import normals
 from .block.operators import clip, floor, maximum, where
 from .block.types import ContinuousBlock
@@ -73,6 +74,30 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
+FRAMES = (
+    Frame(
+        identifier=0x1A1,
+        name="MotorState",
+        meaning="what motor control says of the motor",
+        sender="Motor",
+        receiver="Controller",
+        cycle=lambda p: p.T_s,
+        contents=(
+            Content("Motor_Torque", "T_mot_est", "Nm", bits=32, resolution=None),
+            Content("Motor_Speed", "omega_1_meas", "rad/s", bits=32, resolution=None),
+        ),
+    ),
+    Frame(
+        identifier=0x1A2,
+        name="TorqueDemand",
+        meaning="what motor control is to make",
+        sender="Controller",
+        receiver="Motor",
+        cycle=lambda p: p.T_s,
+        contents=(Content("Torque_Demand", "T_ref", "Nm", bits=32, resolution=None),),
+    ),
+)
+
 BLOCK = ContinuousBlock(
     name="MotorTorqueLoop",
     description="Torque-controlled motor with the errors of its torque and speed signals",
@@ -85,4 +110,5 @@ BLOCK = ContinuousBlock(
     output=output,
     derivative=derivative,
     step_size=0.001,
+    frames=FRAMES,
 )

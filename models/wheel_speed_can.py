@@ -9,6 +9,7 @@ from typing import Annotated, Any, NamedTuple
 
 from . import tooth_wheel
 from .block.declaration import Boolean, Integer, Real
+from .block.frame import Content, Frame
 from .block.noise import uniform
 from .block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
 from .block.types import SampledBlock
@@ -28,6 +29,10 @@ LEAST_SPACING = 1e-4
 """Shortest time in s between two arrivals."""
 
 TOOTH_L, TOOTH_R, PHASE, DELAY, LOSS = 10.0, 20.0, 30.0, 31.0, 32.0
+
+
+OMEGA_MAX = 500.0
+"""Largest speed of a wheel in rad/s."""
 
 
 class Message(NamedTuple):
@@ -54,8 +59,8 @@ class Parameters(NamedTuple):
 
 
 class Input(NamedTuple):
-    omega_wheel_L: Annotated[float, Real("rad/s", "speed of the left driven wheel", -500.0, 500.0, 50.0)] = 0.0
-    omega_wheel_R: Annotated[float, Real("rad/s", "speed of the right driven wheel", -500.0, 500.0, 50.0)] = 0.0
+    omega_wheel_L: Annotated[float, Real("rad/s", "speed of the left driven wheel", -OMEGA_MAX, OMEGA_MAX, 50.0)] = 0.0
+    omega_wheel_R: Annotated[float, Real("rad/s", "speed of the right driven wheel", -OMEGA_MAX, OMEGA_MAX, 50.0)] = 0.0
 
 
 class State(NamedTuple):
@@ -166,6 +171,30 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     return Output(omega_2_can=x.omega_2_can, valid=x.valid, counter=x.counter)
 
 
+FRAME = Frame(
+    identifier=0x1A0,
+    name="WheelSpeed",
+    meaning="what the ABS unit says of the driven wheels",
+    sender="ABS",
+    receiver="Controller",
+    cycle=lambda p: cycle(p) * T_S,
+    contents=(
+        Content(
+            "Wheel_Speed",
+            "omega_2_can",
+            "km/h",
+            bits=16,
+            resolution=lambda p: 0.5 * p.q_v * 3.6,  # the mean of two wheels, each rounded to q_v
+            factor=lambda p: 3.6 * p.r / (p.g_w2 * p.i),
+            largest=lambda p: 3.6 * p.r * OMEGA_MAX,
+            meaning="mean speed of the driven wheels over ground",
+        ),
+        Content("Wheel_Speed_Valid", "valid", "", bits=1),
+        Content("Wheel_Speed_Counter", "counter", "", bits=8),
+    ),
+    counter="counter",
+)
+
 BLOCK = SampledBlock(
     name="WheelSpeedCan",
     description="Wheel speed from the ABS over CAN: coarse, late, absent at low speed",
@@ -178,4 +207,5 @@ BLOCK = SampledBlock(
     output=output,
     update=update,
     sample_time=T_S,
+    frames=(FRAME,),
 )

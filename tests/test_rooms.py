@@ -41,6 +41,7 @@ ROOMS = {
     "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
     | {"harness.linear", "models", "models.controller"},
     "harness.identification": {"harness", "harness.recordings", "harness.metrics", "harness.reports", "harness.html"},
+    "harness.bus": {"harness", "harness.reports", "fmus", "models.block"},
     "harness.target": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.recordings", "harness.reports"}
     | {"fmus", "fmus.native", "fmus.target"},
@@ -56,6 +57,7 @@ ROOMS = {
         "harness.recordings",
         "harness.identification",
         "harness.bound",
+        "harness.bus",
         "harness.faults",
         "harness.html",
         "harness.linear",

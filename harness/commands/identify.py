@@ -14,7 +14,7 @@ from ..extra import required
 from ..html.page import require_report
 from .options import add_printing, add_replace, add_report
 from .printing import Printer
-from .recording_options import add_recording
+from .recording_options import add_recording, of_databases
 from .redesigning import redesign, require_fmus
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ examples:
   driveline record && driveline identify results/record/TwoMassDriveline_prbs_off.csv --output car.toml
   driveline identify drive.mf4 --vehicle examples/cars/van.toml --output my_van.toml
   driveline identify drive.csv --free J_1 --column T_mot='M_em [Nm]'
+  driveline identify drive.blf --dbc drive_train.dbc
   driveline identify drive.csv --design
 """
 
@@ -100,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     if output.suffix != ".toml":
         raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
-    recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases)
+    recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
     required("casadi", "identifying a model", "native")
     if args.design:
         require_fmus()
@@ -116,8 +117,9 @@ def run(args: argparse.Namespace) -> int:
         "free": sorted(set(args.free)),
         "columns": dict(args.columns),
         "aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases],
+        **of_databases(args),
     }
-    read = [args.recording, *args.aliases, args.vehicle]
+    read = [args.recording, *args.databases, *args.aliases, args.vehicle]
     report = [args.report] if args.report else []
     everything = output.with_name(f"{output.stem}_identified.json")
     with recorded(record, same, {}, read, [output, everything, *report], args.replace) as made:

@@ -7,6 +7,7 @@ from pathlib import Path
 from ..control_loop import STEP_SIZE
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED, binary_torque
 from .built import built
+from .frames import add_frames, require_frames, write_frames
 from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
 from .printing import Printer
 from .settings import blocks, distinguishing, other_format, settings
@@ -63,6 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_loop(parser)
     add_output(parser, "results/record", "the recording", of_a_run=True)
     add_format(parser)
+    add_frames(parser)
     add_printing(parser)
 
 
@@ -90,6 +92,7 @@ def run(args: argparse.Namespace) -> int:
     system = looped(args.plant, given)
     fitted = fit(system)
     require_sensors(fitted.interfaces)
+    require_frames(args, system.own)
     require_steps(args.duration, STEP_SIZE)
     require_demand(args.mean, args.amplitude, args.clock, torque_limit(fitted.interfaces["motor"], given["parameters"]))
     load = RoadLoad.of_plant(fitted.interfaces["plant"], given["parameters"])
@@ -105,7 +108,7 @@ def run(args: argparse.Namespace) -> int:
         results = simulate(manoeuvre, plant=args.plant, control=args.control == "on", **given)
         made.begin()
         write_signals(sensed(results, load.i, wheels, given["seed"]), {}, args.output / name, args.format)
-        made.files.append(recording)
+        made.files += [recording, *write_frames(args, results, fitted, given["parameters"], args.output / name)]
     out.say(
         f"{manoeuvre.description}, {args.duration:g} s on {plant}, {build} FMUs, damping {args.control}, "
         f"slope {100.0 * slope:.2f} %"

@@ -1,7 +1,9 @@
 """The recording that a command reads: the file, and what its columns are called."""
 
 import argparse
+from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 from ..names import nearest
 from ..plain import quoted
@@ -9,9 +11,19 @@ from ..recordings.quantities import QUANTITIES
 
 
 def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
-    """RECORDING, --column and --aliases; `what` says what is recorded."""
+    """RECORDING, --dbc, --column and --aliases; `what` says what is recorded."""
     file = parser.add_argument("recording", type=Path, metavar="RECORDING", help=f"{what} (docs/recordings.md)")
     file.complete = "file"  # type: ignore[attr-defined]
+    action = parser.add_argument(
+        "--dbc",
+        action="append",
+        default=[],
+        type=Path,
+        dest="databases",
+        metavar="FILE.dbc",
+        help="of a log of a bus (BLF, ASC): what its frames mean (repeatable)",
+    )
+    action.complete = "file"  # type: ignore[attr-defined]
     parser.add_argument(
         "--column",
         action="append",
@@ -31,6 +43,12 @@ def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
         help="more names of quantities, as in omega_1 = ['n_EM1'] (repeatable)",
     )
     action.complete = "file"  # type: ignore[attr-defined]
+
+
+def of_databases(args: argparse.Namespace) -> dict[str, Any]:
+    """What distinguishes a run by the databases of the bus; nothing if there are none."""
+    digests = [sha256(path.read_bytes()).hexdigest() for path in args.databases]
+    return {"databases": digests} if digests else {}
 
 
 def column(text: str) -> tuple[str, str]:

@@ -11,7 +11,7 @@ from ..recordings.quantities import aliases, example
 from ..reports.table import legend
 from .options import add_format, add_loop, add_output, add_plant, add_printing, add_report, seconds
 from .printing import Printer
-from .recording_options import add_recording
+from .recording_options import add_recording, of_databases
 from .settings import caption, distinguishing, other_format, settings_of_each
 
 LEGEND = legend(RideMetrics)
@@ -42,6 +42,7 @@ examples:
   driveline replay harness/manoeuvres/data/town_drive.csv
   driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
   driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
+  driveline replay my_trip.blf --dbc drive_train.dbc
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
   driveline replay my_trip.csv --set plant.m=1900
 """
@@ -79,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
     require_report(args.report)
     require_held(args.held)
     require_format(args.format)
-    recording = read_drive(args.recording, dict(args.columns), args.aliases)
+    recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
     if recording.elevation is None:
         out.say(f"{args.recording} has no elevation: the road is level")
     controllers = by_name(args.controller or PLACES["controller"][:1])
@@ -92,9 +93,9 @@ def run(args: argparse.Namespace) -> int:
     track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
-    same |= {"columns": dict(args.columns)} | other_format(args)
+    same |= {"columns": dict(args.columns)} | of_databases(args) | other_format(args)
     same |= {f"with {name}": distinguishing(given[name], system, None) for name, system in systems.items()}
-    read = [args.recording, *args.aliases, args.vehicle, args.parameters]
+    read = [args.recording, *args.databases, *args.aliases, args.vehicle, args.parameters]
     report = [args.report] if args.report else []
     with recorded(record, same, systems, read, [metrics, *report], args.replace) as made:
         out.say(

@@ -8,6 +8,7 @@ from ..control_loop import STEP_SIZE
 from ..cosimulation.system import Scheme
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
+from .frames import add_frames, require_frames, write_frames
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_format, add_loop, add_output, add_plant, add_printing, seconds
 from .printing import Printer
@@ -37,6 +38,7 @@ examples:
   driveline simulate --step 0.0005 --scheme jacobi
   driveline simulate --manoeuvre launch --plot
   driveline simulate --manoeuvre launch --format mf4
+  driveline simulate --manoeuvre drive --frames blf
   driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot
 
 manoeuvres:
@@ -62,6 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_output(parser, "results/simulate", "the signals and the figure", of_a_run=True)
     add_format(parser)
+    add_frames(parser)
     parser.add_argument("--plot", action="store_true", help="draw speeds, torques and the motion of the body")
     add_printing(parser)
 
@@ -84,6 +87,7 @@ def run(args: argparse.Namespace) -> int:
     require_format(args.format)
     given = settings(args, args.plant, build)
     system = looped(args.plant, given)
+    require_frames(args, system.own)
     same = {"manoeuvre": manoeuvre.name, "damping": args.control, "step_size": args.step, "scheme": args.scheme}
     same |= distinguishing(given, system, manoeuvre)
     same |= digests([args.manoeuvre]) | other_format(args)
@@ -108,6 +112,9 @@ def run(args: argparse.Namespace) -> int:
         write_signals(results, units(made.fits[plant]), args.output / name, args.format)
         made.files.append(signals)
         out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
+        for file in write_frames(args, results, made.fits[plant], given["parameters"], args.output / name):
+            made.files.append(file)
+            out.say(f"bus:     {file}")
         if args.plot:
             from ..reports.run_figure import plot_run
 

@@ -14,6 +14,18 @@ import numpy as np
 from .channels import Channel
 from .source import RecordingError
 
+SLOWER = 1.5
+"""Times the interval of the base from which on a wheel speed is taken as sent in messages, and held between them."""
+
+
+def is_slower(channel: Channel, base: Channel) -> bool:
+    """Whether a channel has a sample only from time to time."""
+    return _interval(channel) > SLOWER * _interval(base)
+
+
+def _interval(channel: Channel) -> float:
+    return float(np.median(np.diff(channel.time)))
+
 
 def aligned(
     channels: Mapping[str, Channel], base: str, received: Collection[str] = ()

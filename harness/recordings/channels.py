@@ -46,18 +46,25 @@ class Channels:
         names: by which quantities are found.
     """
 
-    def __init__(self, path: Path, columns: Mapping[str, str] | None = None, names: Sequence[Path] = ()) -> None:
+    def __init__(
+        self,
+        path: Path,
+        columns: Mapping[str, str] | None = None,
+        names: Sequence[Path] = (),
+        databases: Sequence[Path] = (),
+    ) -> None:
         """
         Args:
             columns: the headings of quantities that are not to be found by name, see `Chooser`.
             names: files of aliases beside ours.
+            databases: of the bus, if the file is a log of its frames.
 
         Raises:
             RecordingError: there is no such file; it is of no kind that can be read; a file of aliases is refused.
         """
         self.path = path
         self.names = aliases(*names)
-        self._source = opened(path)
+        self._source = opened(path, databases)
         self._chooser = Chooser(self._source, self.names, columns or {})
 
     def has(self, quantity: str) -> bool:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from .alignment import aligned
+from .alignment import aligned, is_slower
 from .channels import Channels
+from .source import RecordingError
 
-QUANTITIES = ("v", "elevation", "T_mot")
-"""What a drive consists of beside the time."""
+WHEELS = "omega_wheel"
+"""Whose speed over ground is that of the vehicle where it was not recorded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,16 +33,29 @@ class Drive:
     T_mot: np.ndarray
 
 
-def read_drive(path: Path, columns: Mapping[str, str] | None = None, names: Sequence[Path] = ()) -> Drive:
+def read_drive(
+    path: Path,
+    columns: Mapping[str, str] | None = None,
+    names: Sequence[Path] = (),
+    databases: Sequence[Path] = (),
+) -> Drive:
     """Reads a recorded drive. Columns are found by name and converted by unit; others are ignored.
 
     Args:
-        columns, names: see `harness.recordings.channels.Channels`.
+        columns, names, databases: see `harness.recordings.channels.Channels`.
 
     Raises:
-        RecordingError: see `harness.recordings.channels.Channels.read`; the elevation may be missing.
+        RecordingError: see `harness.recordings.channels.Channels.read`; the elevation may be missing, and in the place
+            of the speed of the vehicle there may be that of the wheels over ground, in km/h for example.
     """
-    recording = Channels(path, columns, names)
-    present = [quantity for quantity in QUANTITIES if quantity != "elevation" or recording.has(quantity)]
-    time, channels = aligned(recording.read(*present), base="T_mot")
-    return Drive(path.stem, time, channels["v"], channels.get("elevation"), channels["T_mot"])
+    recording = Channels(path, columns, names, databases)
+    speed = "v" if recording.has("v") or not recording.has(WHEELS) else WHEELS
+    elevation = [quantity for quantity in ("elevation",) if recording.has(quantity)]
+    channels = recording.read(speed, *elevation, "T_mot")
+    if speed == WHEELS and channels[speed].unit != "m/s":
+        raise RecordingError(
+            f"{path}: no speed of the vehicle, and {channels[speed].heading} is none over ground, in km/h for example"
+        )
+    received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
+    time, values = aligned(channels, "T_mot", received)
+    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"])

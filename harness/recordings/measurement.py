@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .alignment import aligned
+from .alignment import aligned, is_slower
 from .channels import Channel, Channels
 from .delays import Delay, estimated
 from .quantities import example
@@ -25,9 +25,6 @@ MESSAGE = ("valid", "counter")
 
 HELD = (*MESSAGE, "T_ref")
 """What a recording may have beside them, and what holds until the next sample."""
-
-SLOWER = 1.5
-"""Times the interval of the base from which on a wheel speed is taken as sent in messages, and held between them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +61,12 @@ class Measurement:
 
 
 def read_measurement(
-    path: Path, i: float, r: float, columns: Mapping[str, str] | None = None, names: Sequence[Path] = ()
+    path: Path,
+    i: float,
+    r: float,
+    columns: Mapping[str, str] | None = None,
+    names: Sequence[Path] = (),
+    databases: Sequence[Path] = (),
 ) -> Measurement:
     """Reads a recording to identify a model from. Columns are found by name and converted by unit; others are ignored.
 
@@ -75,13 +77,13 @@ def read_measurement(
     Args:
         i: gear ratio.
         r: radius of the tyre in m.
-        columns, names: see `harness.recordings.channels.Channels`.
+        columns, names, databases: see `harness.recordings.channels.Channels`.
 
     Raises:
         RecordingError: see `harness.recordings.channels.Channels.read`, `harness.recordings.signal_checks` and
             `harness.recordings.relations`.
     """
-    recording = Channels(path, columns, names)
+    recording = Channels(path, columns, names, databases)
     wheels, loads = _present(recording, WHEEL_SPEEDS), _present(recording, LOADS)
     if not wheels:
         raise RecordingError(f"{path}: no wheel speed, such as {example('omega_wheel', recording.names)}")
@@ -92,7 +94,7 @@ def read_measurement(
         check_signal(path, channel)
     received = {
         *held,
-        *(wheel for wheel in wheels if _interval(channels[wheel]) > SLOWER * _interval(channels[BASE])),
+        *(wheel for wheel in wheels if is_slower(channels[wheel], channels[BASE])),
     }
     time, values = aligned(channels, BASE, received)
     signals = {"T_mot": values["T_mot"], BASE: values[BASE], "omega_2": _wheel_speed(channels, values, wheels, i, r)}
@@ -125,10 +127,6 @@ def read_measurement(
 def _present(recording: Channels, forms: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
     """The first form in which the file has it; none."""
     return next((form for form in forms if all(recording.has(quantity) for quantity in form)), ())
-
-
-def _interval(channel: Channel) -> float:
-    return float(np.median(np.diff(channel.time)))
 
 
 def _wheel_speed(

@@ -1,8 +1,10 @@
 """Which kind of file a recording is, by its content and not by its name."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from .arrow_file import FEATHER, PARQUET, ArrowFile
+from .bus_log import ASC, BLF, BusLog
 from .mdf_file import MARKS, MdfFile
 from .source import RecordingError, Source
 from .text_file import TextFile
@@ -11,16 +13,28 @@ KINDS = dict.fromkeys(MARKS, MdfFile) | {PARQUET: ArrowFile, FEATHER: ArrowFile}
 """By the bytes with which the file begins; what begins otherwise is text."""
 
 
-def opened(path: Path) -> Source:
+LOOKED_AT = 200
+"""Bytes at the beginning that tell what a file is."""
+
+
+def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
     """The file, ready to be read.
 
+    Args:
+        databases: of the bus, if it is a log of its frames.
+
     Raises:
-        RecordingError: there is no such file, or it is of no kind that can be read.
+        RecordingError: there is no such file, or it is of no kind that can be read; it is a log without a database, or
+            there is one and it is none.
         MissingExtra: the package that reads this kind is not installed.
     """
     if not path.is_file():
         raise RecordingError(f"there is no recording {path}")
     with path.open("rb") as file:
-        begin = file.read(max(map(len, KINDS)))
+        begin = file.read(LOOKED_AT)
+    if begin.startswith(BLF) or ASC.match(begin):
+        return BusLog(path, databases)
+    if databases:
+        raise RecordingError(f"{path} is no log of a bus (BLF, ASC), which {databases[0]} is for")
     kind = next((kind for mark, kind in KINDS.items() if begin.startswith(mark)), TextFile)
     return kind(path)

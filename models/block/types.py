@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from .declaration import with_defaults
+from .frame import Frame
 
 
 def no_event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
@@ -36,6 +37,7 @@ class _Block:
         start: (u, p) -> x, the state at t = 0 with the inputs of that instant.
         output: (x, u, p) -> y; a sampled block that uses u passes it on within the instant (native only).
         tolerates_bad_input: inputs are not refused; the block itself copes with NaN and the absurd.
+        frames: on a bus, that carry its quantities.
         gives_bad_output: NaN among the outputs is no mistake, but what the block is for (native build only).
     """
 
@@ -48,6 +50,7 @@ class _Block:
     Output: type[Any]
     start: Callable[[Any, Any], Any]
     output: Callable[[Any, Any, Any], Any]
+    frames: tuple[Frame, ...] = ()
     tolerates_bad_input: bool = False
     gives_bad_output: bool = False
 

@@ -1,0 +1,47 @@
+"""`driveline bus`: the database of the bus."""
+
+import argparse
+
+from ..control_loop import PLACES
+from ..errors import DrivelineError
+from .options import add_output, add_printing
+from .printing import Printer
+
+DESCRIPTION = """\
+Writes the database of the bus, driveline.dbc, from what the blocks declare of their frames: the wheel speed as the
+ABS unit sends it (identifier, cycle, resolution, range), and what motor control says of the motor and is asked to make.
+With it other tools, and `driveline replay --dbc`, read logs of that bus; `driveline simulate --frames blf` writes some.
+
+The cycle and the resolution are those of the car of a vehicle file (T_cyc, q_v). Needs the extra `recordings`.
+"""
+
+EXAMPLES = """\
+examples:
+  driveline bus
+  driveline bus --vehicle examples/cars/van.toml --output results/van_bus
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    from fmus.options import file
+
+    action = parser.add_argument("--vehicle", type=file, metavar="FILE.toml", help="what belongs to the car")
+    action.complete = "file"  # type: ignore[attr-defined]
+    add_output(parser, "results/bus", "the database")
+    add_printing(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from fmus.errors import ParameterFileError
+    from fmus.parameter_files import read_vehicle
+
+    from ..bus.database import telegrams, write_dbc
+
+    try:
+        car = read_vehicle(args.vehicle) if args.vehicle else {}
+    except ParameterFileError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+    path = args.output / "driveline.dbc"
+    write_dbc(telegrams(dict.fromkeys(PLACES, car)), path)
+    Printer(args).say(f"written: {path}")
+    return 0

@@ -1,0 +1,180 @@
+"""Logs of a bus, BLF and ASC, read by python-can, whose frames are decoded by cantools with databases (DBC, ...)."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..extra import required
+from ..plain import plain
+from ..progress import progress
+from .source import Column, RecordingError, Samples, samples
+
+BLF = b"LOGG"
+"""With which such files begin."""
+
+ASC = re.compile(rb"\s*date [^\n]*\n\s*base\s+(hex|dec)", re.IGNORECASE)
+"""And how these do."""
+
+IDENTIFIERS_SHOWN = 5
+
+AT_ONCE = 1000
+"""Frames between which progress is shown."""
+
+
+class Kind(NamedTuple):
+    """Of frames: those of one identifier on one channel."""
+
+    channel: Any
+    identifier: int
+    extended: bool
+
+
+class Frames(NamedTuple):
+    """The frames of one kind: times in s from the first frame of the log on, and their bytes."""
+
+    times: list[float]
+    data: list[bytes]
+
+
+class BusLog:
+    """A Source. A signal whose name several messages have is told by its message, and by its channel if need be:
+    `Speed, ABS_1`, `Speed, ABS_1, channel 2`."""
+
+    own_time = True
+
+    def __init__(self, path: Path, databases: Sequence[Path]) -> None:
+        """
+        Args:
+            databases: what says what the frames mean.
+
+        Raises:
+            RecordingError: there is no database; a file is damaged; none of the frames is in a database.
+            MissingExtra: python-can or cantools is not installed.
+        """
+        self.path = path
+        self.headings = str(path)
+        if not databases:
+            raise RecordingError(
+                f"{path} holds frames of a bus; give the database that says what they mean, --dbc FILE"
+            )
+        known = {key: message for database in databases for key, message in _messages(database).items()}
+        self._frames = _read(path, known, databases)
+        self._places = [
+            (kind, known[kind.identifier, kind.extended], signal)
+            for kind in self._frames
+            for signal in known[kind.identifier, kind.extended].signals
+        ]
+        self.columns: Sequence[Column] = _columns(self._places)
+
+    def read(self, places: Sequence[int]) -> list[Samples]:
+        """See `harness.recordings.source.Source.read`; signals of a message have the same array of times."""
+        decoded: dict[Kind, tuple[np.ndarray, list[Mapping[str, Any]]]] = {}
+        return [self._samples(place, decoded) for place in places]
+
+    def _samples(self, place: int, decoded: dict[Kind, tuple[np.ndarray, list[Mapping[str, Any]]]]) -> Samples:
+        kind, message, signal = self._places[place]
+        if kind not in decoded:
+            decoded[kind] = np.array(self._frames[kind].times), self._decoded(kind, message)
+        time, contents = decoded[kind]
+        there = [k for k, content in enumerate(contents) if signal.name in content]  # others may be multiplexed
+        if len(there) < len(contents):
+            time = time[there]
+        values = np.array([contents[k][signal.name] for k in there])
+        if len(values) and values.dtype.kind not in "biuf":
+            raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers")
+
+        def where(k: int) -> str:
+            return f"frame at {time[k]:g} s"
+
+        return samples(self.path, self.columns[place], values.astype(float), time, where)
+
+    def _decoded(self, kind: Kind, message: Any) -> list[Mapping[str, Any]]:
+        times, data = self._frames[kind]
+        contents = []
+        with progress(len(data), f"decoding {message.name}") as done:
+            for k, one in enumerate(data):
+                if k % AT_ONCE == 0:
+                    done(k)
+                try:
+                    contents.append(message.decode(one, decode_choices=False))
+                except Exception as error:
+                    raise RecordingError(
+                        f"{self.path}, frame at {times[k]:g} s: {one.hex(' ') or 'nothing'} is no {message.name} "
+                        f"(0x{kind.identifier:X}) of {message.length} bytes: {plain(error, 200)}"
+                    ) from error
+        return contents
+
+
+def _messages(path: Path) -> Mapping[tuple[int, bool], Any]:
+    """The messages of a database by identifier, and whether that is an extended one."""
+    cantools = required("cantools", "decoding the frames of a bus", "recordings")
+    if not path.is_file():
+        raise RecordingError(f"there is no database {path}")
+    try:
+        database = cantools.database.load_file(path, strict=False)
+        return {(message.frame_id, message.is_extended_frame): message for message in database.messages}
+    except Exception as error:
+        raise RecordingError(f"{path} is no database of a bus (DBC, KCD, SYM, ARXML): {plain(error, 200)}") from error
+
+
+def _read(path: Path, known: Mapping[tuple[int, bool], Any], databases: Sequence[Path]) -> dict[Kind, Frames]:
+    """The frames that are in a database."""
+    frames: dict[Kind, Frames] = {}
+    others: set[int] = set()
+    begin = None
+    with _opened(path) as log, progress(path.stat().st_size, f"reading {path.name}") as done:
+        position = getattr(log.file, "buffer", log.file).tell  # a text file that is read by lines does not tell its own
+        for number, message in enumerate(log):
+            if number % AT_ONCE == 0:
+                done(position())
+            begin = message.timestamp if begin is None else begin
+            if message.is_error_frame or message.is_remote_frame:
+                continue
+            if (message.arbitration_id, message.is_extended_id) not in known:
+                others.add(message.arbitration_id)
+                continue
+            kind = Kind(message.channel, message.arbitration_id, message.is_extended_id)
+            times, data = frames.setdefault(kind, Frames([], []))
+            times.append(message.timestamp - begin)
+            data.append(bytes(message.data))
+    if begin is None:
+        raise RecordingError(f"{path} has no frames")
+    if not frames:
+        shown = ", ".join(f"0x{identifier:X}" for identifier in sorted(others)[:IDENTIFIERS_SHOWN])
+        raise RecordingError(f"{path}: no frame is in {', '.join(map(str, databases))}; there are {shown}, ...")
+    return frames
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """The log, while it is read; whatever python-can meets in a damaged one is a RecordingError."""
+    can = required("can", "reading logs of a bus", "recordings")
+    with path.open("rb") as file:
+        blf = file.read(len(BLF)) == BLF
+    try:
+        with can.BLFReader(path) if blf else can.ASCReader(path) as log:
+            yield log
+    except RecordingError:
+        raise
+    except Exception as error:
+        said = plain(error, 200) or type(error).__name__
+        raise RecordingError(f"{path} is a damaged log of a bus: {said}") from error
+
+
+def _columns(places: Sequence[tuple[Kind, Any, Any]]) -> list[Column]:
+    """The signals, each by as much of name, message and channel as tells it from all others."""
+    levels = [
+        [signal.name, f"{signal.name}, {message.name}", f"{signal.name}, {message.name}, channel {kind.channel}"]
+        for kind, message, signal in places
+    ]
+    often = [Counter(names) for names in zip(*levels, strict=True)]
+    headings = [next((n for n, c in zip(names, often, strict=True) if c[n] == 1), names[-1]) for names in levels]
+    return [
+        Column(plain(heading, 60), plain(signal.name, 60), plain(signal.unit or "", 60) or None)
+        for heading, (_, _, signal) in zip(headings, places, strict=True)
+    ]

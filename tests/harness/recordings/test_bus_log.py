@@ -1,0 +1,178 @@
+"""Logs of buses that others have recorded."""
+
+import sys
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.errors import MissingExtra
+from harness.recordings.channels import Channels
+from harness.recordings.drive import read_drive
+from harness.recordings.opening import opened
+from harness.recordings.source import RecordingError
+
+DBC = """VERSION ""
+BU_: ECU
+BO_ 256 Motor: 4 ECU
+ SG_ Motor_Torque : 0|16@1- (0.1,0) [0|0] "Nm" ECU
+ SG_ State : 16|8@1+ (1,0) [0|0] "" ECU
+BO_ 2566848786 Brake: 8 ECU
+ SG_ Vehicle_Speed : 7|16@0+ (0.01,-10) [0|0] "km/h" ECU
+BO_ 257 Many: 3 ECU
+ SG_ Which M : 0|8@1+ (1,0) [0|0] "" ECU
+ SG_ Elevation m1 : 8|16@1+ (0.5,-1000) [0|0] "m" ECU
+ SG_ Other m2 : 8|16@1+ (1,0) [0|0] "" ECU
+VAL_ 256 State 1 "on" 0 "off" ;
+"""
+BRAKE = 2566848786 - (1 << 31)
+
+
+def message(time: float, identifier: int, data: bytes, **others):
+    import can
+
+    return can.Message(
+        timestamp=1.7e9 + time, arbitration_id=identifier, data=data, is_extended_id=identifier > 0x7FF, **others
+    )
+
+
+def drive(samples: int = 100) -> list:
+    """Torque at 100 Hz, speed at 50 Hz, elevation in every fourth frame of many, in the order of their times."""
+    frames = []
+    for k in range(samples):
+        torque = int(10 * (20 + k)).to_bytes(2, "little", signed=True)
+        frames.append(message(0.01 * k, 256, torque + b"\x01\x00"))
+        if k % 2 == 0:
+            frames.append(message(0.01 * k + 0.001, BRAKE, (100 * (36 + 10)).to_bytes(2, "big") + bytes(6)))
+        which = 1 if k % 4 == 0 else 2
+        frames.append(message(0.01 * k + 0.002, 257, bytes([which]) + int(2 * 1500 + k).to_bytes(2, "little")))
+        frames.append(message(0.01 * k + 0.003, 0x7FF, b"\x00"))
+    return frames
+
+
+def write(folder: Path, frames: Iterable, ending: str = "blf") -> tuple[Path, list[Path]]:
+    import can
+
+    path = folder / f"log.{ending}"
+    with can.Logger(path) as log:
+        for frame in frames:
+            log.on_message_received(frame)
+    (folder / "bus.dbc").write_text(DBC, encoding="ascii")
+    return path, [folder / "bus.dbc"]
+
+
+@pytest.mark.parametrize("ending", ["blf", "asc"])
+def test_a_drive_is_read_from_a_log(tmp_path: Path, ending: str) -> None:
+    path, databases = write(tmp_path, drive(), ending)
+    found = read_drive(path, databases=databases)
+    np.testing.assert_allclose(found.T_mot, 20.0 + np.round(100.0 * found.time), rtol=1e-12)
+    np.testing.assert_allclose(found.v, 10.0)
+    assert found.elevation is not None
+    np.testing.assert_allclose(found.elevation[::4], 500.0 + 50.0 * found.time[::4] - 0.1, atol=0.11)
+
+
+def test_what_the_file_is_called_does_not_matter(tmp_path: Path) -> None:
+    path, databases = write(tmp_path, drive())
+    path.rename(tmp_path / "log.csv")
+    assert len(read_drive(tmp_path / "log.csv", databases=databases).time) > 50
+
+
+def test_a_table_whose_first_column_is_a_date_is_no_log(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("date of day;Velocity [km/h]\n0;1\n1;2\n", encoding="utf-8")
+    assert [column.name for column in opened(path).columns] == ["date of day", "Velocity"]
+
+
+def test_values_with_names_are_numbers_and_multiplexed_signals_have_their_own_times(tmp_path: Path) -> None:
+    path, databases = write(tmp_path, drive())
+    source = opened(path, databases)
+    names = [column.name for column in source.columns]
+    state, elevation, other = source.read([names.index(name) for name in ("State", "Elevation", "Other")])
+    assert set(state.values) == {1.0}
+    assert (len(elevation.values), len(other.values)) == (25, 75)
+    assert elevation.time is not None
+    np.testing.assert_allclose(np.diff(elevation.time), 0.04, atol=1e-6)
+
+
+def test_signals_of_two_channels_are_told_apart(tmp_path: Path) -> None:
+    frames = [message(0.01 * k, 256, bytes([k, 0, 0, 0]), channel=c) for k in range(50) for c in (0, 1)]
+    path, databases = write(tmp_path, frames)
+    assert [column.heading for column in opened(path, databases).columns][::2] == [
+        "Motor_Torque, Motor, channel 0",
+        "Motor_Torque, Motor, channel 1",
+    ]
+    with pytest.raises(RecordingError, match=r"could each be T_mot .*--column T_mot="):
+        Channels(path, databases=databases).read("T_mot")
+    given = {"T_mot": "Motor_Torque, Motor, channel 1"}
+    assert len(Channels(path, given, databases=databases).read("T_mot")["T_mot"].time) == 50
+
+
+def test_error_frames_and_remote_frames_hold_no_signals(tmp_path: Path) -> None:
+    odd = [message(0.5, 256, b"", is_remote_frame=True), message(0.51, 256, b"", is_error_frame=True)]
+    path, databases = write(tmp_path, [*drive(50), *odd, message(0.52, 256, bytes(4))])
+    assert len(opened(path, databases).read([0])[0].values) == 51
+
+
+@pytest.mark.parametrize(
+    ("frames", "said"),
+    [
+        ([], "has no frames"),
+        ([message(0.0, 0x123, b"\x00")], r"no frame is in .*bus\.dbc; there are 0x123"),
+        ([*drive(20), message(0.2, 256, b"\x01")], r"frame at 0\.2 s: 01 is no Motor \(0x100\) of 4 bytes"),
+        ([*drive(20), *drive(3)], "does not come after"),
+        ([*drive(20), message(0.9, 256, bytes(4))], "gap of"),
+    ],
+    ids=["empty", "unknown", "short", "backwards", "gap"],
+)
+def test_a_bad_log_is_refused_in_one_line(tmp_path: Path, frames: list, said: str) -> None:
+    path, databases = write(tmp_path, frames)
+    with pytest.raises(RecordingError, match=said) as refusal:
+        Channels(path, databases=databases).read("T_mot")
+    assert str(path) in str(refusal.value)
+    assert str(refusal.value).isprintable()
+
+
+@pytest.mark.parametrize("ending", ["blf", "asc"])
+def test_a_log_that_was_cut_off_is_refused_or_ends_there(tmp_path: Path, ending: str) -> None:
+    path, databases = write(tmp_path, drive(), ending)
+    whole = path.read_bytes()
+    for size in (50, 150, 300, len(whole) // 2, len(whole) - 9):
+        path.write_bytes(whole[:size])
+        with suppress(RecordingError):
+            assert read_drive(path, databases=databases).time[-1] < 1.0
+
+
+@pytest.mark.parametrize("text", ["", "BO_ 1 x", "\x00\x01", "VERSION"])
+def test_a_bad_database_is_named(tmp_path: Path, text: str) -> None:
+    path, databases = write(tmp_path, drive(20))
+    databases[0].write_text(text, encoding="ascii")
+    with pytest.raises(RecordingError, match=r"bus\.dbc"):
+        opened(path, databases)
+    with pytest.raises(RecordingError, match=r"there is no database nothing\.dbc"):
+        opened(path, [Path("nothing.dbc")])
+
+
+def test_a_database_is_for_a_log_alone(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("Time [s],Velocity [km/h]\n0,1\n1,2\n", encoding="utf-8")
+    with pytest.raises(RecordingError, match=r"is no log of a bus \(BLF, ASC\), which bus\.dbc is for"):
+        opened(path, [Path("bus.dbc")])
+
+
+@pytest.mark.parametrize("package", ["can", "cantools"])
+def test_without_the_extra_it_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, package: str) -> None:
+    path, databases = write(tmp_path, drive(20))
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(MissingExtra, match=r"the extra `recordings`, as in pip install"):
+        opened(path, databases)
+
+
+def test_a_drive_without_the_speed_of_the_vehicle_takes_that_of_the_wheels_over_ground(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("t [s],Torque [Nm],Wheel Speed [km/h]\n" + "".join(f"{k},1,{3.6 * k}\n" for k in range(5)))
+    np.testing.assert_allclose(read_drive(path).v, range(5))
+    path.write_text("t [s],Torque [Nm],Wheel Speed [rad/s]\n0,1,2\n1,1,2\n")
+    with pytest.raises(RecordingError, match=r"no speed of the vehicle, and Wheel Speed \[rad/s\] is none over ground"):
+        read_drive(path)
