@@ -63,7 +63,7 @@ def test_messages_may_stay_away_for_longer_unless_they_share_the_time_of_a_senso
     times = [with_one_longer_step(motor), with_one_longer_step(wheels)]
     names = [Column(f"{name} [rad/s]", name, "rad/s") for name in ("omega_1", "Wheel Speed")]
     logger = Logger([times[0]] * 2 if together else times, names)
-    monkeypatch.setattr(channels, "opened", lambda _: logger)
+    monkeypatch.setattr(channels, "opened", lambda *_: logger)
     if refused:
         with pytest.raises(RecordingError, match="sample 10: gap of"):
             Channels(logger.path).read("omega_1", "omega_wheel")
