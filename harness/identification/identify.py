@@ -36,9 +36,6 @@ WIDER = 20.0
 FEW, FEWER = 12, 6
 """Passes from a start that is near, and from one that is next to it."""
 
-SUSPECT = 1.03
-"""Size of the innovations from which on a cause is looked for; of 5000 it is 1 to within .01."""
-
 SURELY = 4.0
 """Standard deviations by which the gain of the motor torque must be off where the model does not explain all."""
 
@@ -186,7 +183,7 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
     begun = widely(drive, start, noise, more)
     _told(said, "predicted by a wide filter", begun)
     best = predicted(drive, begun, noise, more, said)
-    doubts = late_or_early(drive, best, noise) if best.innovations.rms > SUSPECT else []
+    doubts = late_or_early(drive, best, noise)
     if best.innovations.rms <= EXPLAINED:
         return Answer("prediction error", best.p, best.covariance, best.free, noise, tuple(doubts))
     said("the model does not explain all of the recording: pieces of 0.5 s are simulated")

@@ -1,5 +1,6 @@
-"""Writes the tables of docs/identification.md: `python -m harness.tuning.identification_page`."""
+"""Writes the tables of docs/identification.md: `python -m harness.tuning.identification_page`, or some of them."""
 
+import argparse
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -52,31 +53,61 @@ WORSE = 0.05
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"one of {', '.join(TABLES)} (default: all)")
+    names = parser.parse_args().tables or list(TABLES)
+    if unknown := set(names) - TABLES.keys():
+        parser.error(f"there is no table {', '.join(sorted(unknown))}; there are {', '.join(TABLES)}")
+    tables = {name: TABLES[name]() for name in names}
+    write_text(filled(PAGE.read_text(encoding="utf-8"), tables), PAGE)
+
+
+def accuracy_table() -> str:
     seeds = range(FIRST, FIRST + KNOWN_J_1)
     known = run_many(accuracy, [(seed, ()) for seed in seeds], label="accuracy")
     free = run_many(accuracy, [(seed, ("J_1",)) for seed in seeds[:FREE_J_1]], label="accuracy with J_1 free")
     starts = run_many(from_anywhere, range(FIRST, FIRST + STARTS), label="wide starts")
-    traps = run_many(trapped, [(k, FIRST + n) for k in range(len(TRAPS)) for n in range(OF_A_TRAP)], label="bad data")
-    vehicles = run_many(judged, [(FIRST + n, load) for load in (True, False) for n in range(VEHICLES)], label="vehicle")
-    draws = [(plant, draw(n, DRAWN)) for plant, count in DRAWS.items() for n in range(1, count + 1)]
-    methods = {
-        plant: run_many(both_methods, [(plant, seed) for seed in seeds[:METHODS]], label=plant) for plant in DRAWS
-    }
-    cars = run_many(redesigned, [(plant, d.number, d.deviation, d.noise) for plant, d in draws], label="redesigned")
     right = sum(all(abs(_off(found, name)) < limit for name, limit in RIGHT.items()) for found in starts)
     median = float(np.median([found.seconds for found in known]))
-    said = (
+    return (
+        f"{_accuracy(known, free)}\n\n"
         f"{len(known)} recordings, {len(free)} with J_1 free; {median:.1f} s each (median, two at a time). From "
         f"{len(starts)} wide starts the right optimum was found {right} times."
     )
-    tables = {
-        "accuracy": f"{_accuracy(known, free)}\n\n{said}",
-        "vehicle": f"{_vehicle(vehicles[:VEHICLES], vehicles[VEHICLES:])}\n\n{VEHICLES} recordings each.",
-        "traps": _traps([traps[k : k + OF_A_TRAP] for k in range(0, len(traps), OF_A_TRAP)]) + f"\n\n{OF_A_TRAP} each.",
-        "methods": f"{_methods(methods)}\n\n{METHODS} recordings each.",
-        "redesigned": _redesigned(cars),
-    }
-    write_text(filled(PAGE.read_text(encoding="utf-8"), tables), PAGE)
+
+
+def vehicle_table() -> str:
+    cases = [(FIRST + n, load) for load in (True, False) for n in range(VEHICLES)]
+    found = run_many(judged, cases, label="vehicle")
+    return f"{_vehicle(found[:VEHICLES], found[VEHICLES:])}\n\n{VEHICLES} recordings each."
+
+
+def traps_table() -> str:
+    cases = [(k, FIRST + n) for k in range(len(TRAPS)) for n in range(OF_A_TRAP)]
+    found = run_many(trapped, cases, label="bad data")
+    return _traps([found[k : k + OF_A_TRAP] for k in range(0, len(found), OF_A_TRAP)]) + f"\n\n{OF_A_TRAP} each."
+
+
+def methods_table() -> str:
+    cases = {plant: [(plant, FIRST + n) for n in range(METHODS)] for plant in DRAWS}
+    found = {plant: run_many(both_methods, of, label=plant) for plant, of in cases.items()}
+    return f"{_methods(found)}\n\n{METHODS} recordings each."
+
+
+def redesigned_table() -> str:
+    draws = [(plant, draw(n, DRAWN)) for plant, count in DRAWS.items() for n in range(1, count + 1)]
+    cases = [(plant, drawn.number, drawn.deviation, drawn.noise) for plant, drawn in draws]
+    return _redesigned(run_many(redesigned, cases, label="redesigned"))
+
+
+TABLES = {
+    "accuracy": accuracy_table,
+    "vehicle": vehicle_table,
+    "traps": traps_table,
+    "methods": methods_table,
+    "redesigned": redesigned_table,
+}
+"""By their names in the page."""
 
 
 def _off(found: Found, name: str) -> float:
@@ -151,7 +182,7 @@ def _methods(every: Mapping[str, Sequence[tuple[Method, Method]]]) -> str:
                 f"{value.mean():.4g} +- {100.0 * value.std(ddof=1) / abs(value.mean()):.2g} %" for value in values[:3]
             ]
             fit, seconds = (np.mean([getattr(one, what) for one in of]) for what in ("simulated", "seconds"))
-            rows.append([plant, name, *means, f"{values[3].mean():.3f}", f"{fit:.1f}", f"{seconds:.0f}"])
+            rows.append([plant, name, *means, f"{values[3].mean():.3f}", f"{fit:.1f}", f"{seconds:.1f}"])
     headings = [
         *("plant", "method", "J_2, kg.m2", "C, N.m/rad", "phi_B, rad", "d, N.m.s/rad"),
         *("simulated 0.5 s: omega_1, %", "time, s"),

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+import casadi
 import pytest
-
-casadi = pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
 from fmus.native.arithmetic import LOOKED_UP, Graph
 from fmus.native.statements import Statements

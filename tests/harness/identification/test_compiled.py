@@ -1,4 +1,4 @@
-"""A function of CasADi becomes machine code that gives the same; it is kept, and done without where it cannot be had."""
+"""A function of CasADi becomes machine code that gives the same; it is kept, or done without."""
 
 from pathlib import Path
 

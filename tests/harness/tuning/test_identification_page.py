@@ -5,7 +5,7 @@ from dataclasses import replace
 from harness.analysis.identification import TRAPS, Found, Judged, Method, Redesigned
 from harness.control_loop import PLANTS
 from harness.identification.drive_train import Parameters
-from harness.tuning.identification_page import PAGE, TRUE, _accuracy, _methods, _redesigned, _traps, _vehicle
+from harness.tuning.identification_page import PAGE, TABLES, TRUE, _accuracy, _methods, _redesigned, _traps, _vehicle
 
 RIGHT = Found(
     values={**TRUE, "g_L": 1.0},
@@ -88,12 +88,12 @@ def test_both_methods_are_told_with_their_scatter() -> None:
         "0.157 +- 0 %",
         "0.200",
         "98.5",
-        "3",
+        "3.0",
     ]
-    assert cells[1][1:] == ["output error", "0.1 +- 0 %", "100 +- 0 %", "0.1 +- 0 %", "0.100", "90.0", "20"]
+    assert cells[1][1:] == ["output error", "0.1 +- 0 %", "100 +- 0 %", "0.1 +- 0 %", "0.100", "90.0", "20.0"]
 
 
 def test_the_page_has_a_place_for_every_table() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    for name in ("accuracy", "vehicle", "methods", "traps", "redesigned"):
+    for name in TABLES:
         assert f"<!-- {name}, made by python -m harness.tuning.identification_page -->" in text
