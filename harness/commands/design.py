@@ -97,4 +97,6 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None) -> s
             f"the damping ratio would be {damped.damping_ratio:.2f}, it is {alone.damping_ratio:.2f} without damping"
         )
     car = vehicle.name if vehicle else "the default car"
+    if weights and weights.washout != WEIGHTS.washout:
+        car += f", with the washout at {weights.washout / WEIGHTS.washout:.2f} of its frequency"
     return gains_file(gains, COMMENT.format(car=car, version=version("driveline-damping"), alone=alone, damped=damped))

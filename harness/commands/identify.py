@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
@@ -101,6 +102,9 @@ def run(args: argparse.Namespace) -> int:
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     if output.suffix != ".toml":
         raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
+    require_folder(output)
+    if {"J_1", "g_T"} <= set(args.free):
+        raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
     required("casadi", "identifying a model", "native")
     if args.design:
@@ -133,9 +137,10 @@ def run(args: argparse.Namespace) -> int:
             out.say(f"warning: {warning}")
         made.begin()
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
+        figures = draw(identified, recording, output.with_suffix(""))
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
-        made.files += [output, everything, *draw(identified, recording, output.with_suffix(""))]
+        made.files += [output, everything, *figures]
         if args.report:
             from ..identification import html
 
@@ -146,6 +151,13 @@ def run(args: argparse.Namespace) -> int:
     for path in (*made.files, record):
         out.say(f"written: {path}")
     return 0
+
+
+def require_folder(output: Path) -> None:
+    """Refuses a file whose folder is not there and cannot be made."""
+    there = next(folder for folder in output.absolute().parents if folder.exists())
+    if not (there.is_dir() and os.access(there, os.W_OK)):
+        raise DrivelineError(f"--output {output}: {there} is no folder that can be written to")
 
 
 def draw(identified: "Identified", recording: "Measurement", stem: Path) -> list[Path]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 from rich.table import Table
@@ -50,7 +51,8 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
     if weights != WEIGHTS:
         share = weights.washout / WEIGHTS.washout
         out.say(
-            f"washout at {share:.2f} of its frequency, for no more overshoot than before: torque is withheld longer"
+            f"washout at {share:.2f} of its frequency, for less overshoot in the mean than before: "
+            "torque is withheld longer"
         )
     try:
         write_gains(designed(car, weights), gains, replace)
@@ -58,6 +60,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
         yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
     except BuildError as reason:
         raise DrivelineError(str(reason)) from reason
+    out.say(f"to drive with them: driveline simulate --vehicle {quote(str(car))} --parameters {quote(str(gains))}")
     if not out.silent:
         from ..reports.terminal import print_table
 

@@ -30,7 +30,7 @@ def compiled(function: ca.Function) -> ca.Function:
     key = sha256("\n".join([source, compiler, *FLAGS]).encode()).hexdigest()
     library = platformdirs.user_cache_path("driveline-damping") / f"{function.name()}-{key[:32]}.so"
     try:
-        if not library.is_file():
+        if not _whole(library):
             _compile(source, compiler, library)
         return ca.external(function.name(), str(library))
     except (OSError, subprocess.CalledProcessError, RuntimeError) as error:
@@ -45,3 +45,15 @@ def _compile(source: str, compiler: str, library: Path) -> None:
         written.write_text(source, encoding="utf-8")
         subprocess.run([compiler, *FLAGS, str(written), "-o", str(made), "-lm"], check=True, capture_output=True)
         made.replace(library)
+    _sum(library).write_text(sha256(library.read_bytes()).hexdigest(), encoding="utf-8")
+
+
+def _whole(library: Path) -> bool:
+    """Whether it is there as it was made: one that is cut off would end the process that loads it."""
+    if not (library.is_file() and _sum(library).is_file()):
+        return False
+    return _sum(library).read_text(encoding="utf-8", errors="replace") == sha256(library.read_bytes()).hexdigest()
+
+
+def _sum(library: Path) -> Path:
+    return library.with_suffix(".sha256")

@@ -19,7 +19,11 @@ thousand."""
 LATE = 0.004
 """Time in s by which it is tried whether the load torque is late or early."""
 
-TRIAL = 4
+LEFT, SCATTER = 0.5, 0.05
+"""Share of what the innovations are too large by that a shift of the load torque may leave, and what they are too large
+by with some chance."""
+
+TRIAL = 8
 """Passes that a trial may take."""
 
 DEMAND_LATE = 0.5
@@ -30,6 +34,13 @@ LAG_OFF = 0.1
 
 SURELY = 3.0
 """Standard deviations by which the gain of the motor torque must be off to be spoken of."""
+
+UNKNOWN_GAIN, LOAD_GAIN = 0.3, 0.1
+"""Relative standard deviation of the gain of the load torque from which on it tells nothing, and what the gain may be
+off by: measurement wheels are right to some per cent."""
+
+WHITE = 0.25
+"""Autocorrelation of the innovations up to which they count as white; of a good recording it is about 0.07."""
 
 EXPLAINS = 0.8
 """Share that a tyre must explain of what the spectra of load torque and wheel speed tell."""
@@ -42,14 +53,16 @@ CLOSE = 0.05
 
 
 def late_or_early(drive: Drive, found: Found, noise: Noise) -> list[str]:
-    """Whether the recording is explained better if the load torque is shifted."""
+    """Whether the recording is explained better if the load torque is shifted: if half of what the innovations are too
+    large by is gone then, or all but chance. Whatever else is wrong, some shift makes it a little better."""
     gains = []
     samples = max(round(LATE / drive.T_s), 1)
     for late, word in ((samples, "late"), (-samples, "early")):
         shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
         told = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
-        gains.append((found.gain(told), word))
-    gain, word = max(gains)
+        if told.innovations.rms - 1.0 < max(LEFT * (found.innovations.rms - 1.0), SCATTER):
+            gains.append((found.gain(told), word))
+    gain, word = max(gains, default=(0.0, ""))
     by = 1e3 * drive.T_s * samples
     said = f"the load torque looks {word}: shifted by {by:g} ms the recording is explained better"
     return [said] if gain > LIKELY else []
@@ -62,6 +75,31 @@ def of_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
     return [
         f"the recorded motor torque looks {p.g_T:.4g} times the true one, or J_1 = {p.J_1:g} kg.m2 should be "
         f"{p.J_1 * p.g_T:.4g} (--free J_1); in the latter case J_2, C and d are {p.g_T:.4g} times as large too"
+    ]
+
+
+def of_load_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """What a gain of the load torque that is not about 1 may mean."""
+    deviation = deviations.get("g_L", 0.0)
+    if deviation > UNKNOWN_GAIN * p.g_L:
+        return [
+            "the load torque tells nothing (its gain is not determined), so that J_2 is not that of the wheels: "
+            "leave its channel away"
+        ]
+    if abs(p.g_L - 1.0) <= max(LOAD_GAIN, SURELY * deviation):
+        return []
+    return [
+        f"the recorded load torque looks {p.g_L:.3g} times the true one: its unit, its gain or the gear ratio is wrong"
+    ]
+
+
+def of_innovations(correlation: float) -> list[str]:
+    """Whether the intervals hold, by the largest autocorrelation of the innovations."""
+    if abs(correlation) <= WHITE:
+        return []
+    return [
+        f"the innovations are not white (correlation {correlation:.2f}): the intervals are too narrow; the recording "
+        "may be sampled too slowly, filtered or interpolated"
     ]
 
 
@@ -85,7 +123,7 @@ def undetermined(phi: np.ndarray, p: Parameters, deviations: Mapping[str, float]
     wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
     if wide:
         said.append(f"{', '.join(wide)}: standard deviation of more than {100.0 * CLOSE:g} %; excite more or longer")
-    if p.d < 0.0:
+    if p.d < -SURELY * deviations.get("d", 0.0):
         said.append(f"d = {p.d:.3g} N.m.s/rad is negative, which no damper is: something else is wrong")
     if deviations.get("d", 0.0) > CLOSE * abs(p.d):
         said.append(
@@ -99,8 +137,13 @@ def of_tyre(behind: Tyre) -> list[str]:
     """Whether the load torque is that of a tyre."""
     if behind.explained >= EXPLAINS and min(behind.c_t, behind.d_t) > 0.0:
         return []
+    why = (
+        f"{100.0 * behind.explained:.0f} % explained"
+        if behind.explained < EXPLAINS
+        else "spring or damper would be negative"
+    )
     return [
-        f"the load torque is not that of a tyre with a vehicle behind it ({100.0 * behind.explained:.0f} % explained): "
+        f"the load torque is not that of a tyre with a vehicle behind it ({why}): "
         "how the car answers on its own, and C in the vehicle file, are those of the drive train alone"
     ]
 
@@ -115,9 +158,10 @@ def of_demand(loop: FittedLoop, T_s: float, tau: float) -> list[str]:
     said = []
     if abs(loop.loop.delay) > DEMAND_LATE * T_s:
         early = loop.loop.delay > 0.0
+        when, why = ("after", "") if early else ("before", ", or the two exchanged")
         said.append(
-            f"the motor torque comes {1e3 * abs(loop.loop.delay):.2f} ms {'after' if early else 'before'} its demand, "
-            "beside the lag of motor control: one of the two channels looks shifted"
+            f"the motor torque comes {1e3 * abs(loop.loop.delay):.2f} ms {when} its demand, "
+            f"beside the lag of motor control: one of the two channels looks shifted{why}"
         )
     if abs(loop.loop.tau / tau - 1.0) > LAG_OFF:
         said.append(f"tau = {tau:g} s of the vehicle file looks wrong: motor control has {loop.loop.tau:.4g} s")

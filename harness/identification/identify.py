@@ -8,7 +8,16 @@ import numpy as np
 
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
-from .doubts import LIKELY, late_or_early, of_demand, of_gain, of_tyre, undetermined
+from .doubts import (
+    LIKELY,
+    late_or_early,
+    of_demand,
+    of_gain,
+    of_innovations,
+    of_load_gain,
+    of_tyre,
+    undetermined,
+)
 from .drive_train import Parameters
 from .driven import Drive, driven
 from .global_start import best_start
@@ -142,11 +151,15 @@ def identify(
         behind = tyre(load, through.states[:, 1], drive.T_mot.mean(axis=1), drive.T_s, J_v)
         odd = of_tyre(behind)
         behind = None if odd else behind
+    quality = judged(drive, without, answer.noise, drift, cut)
+    explained = measured and answer.method == "prediction error"
     warnings = (
         *recording.warnings,
         *(of_demand(demand, drive.T_s, tau) if demand else ()),
         *of_gain(answer.p, answer.deviations),
+        *of_load_gain(answer.p, answer.deviations),
         *answer.warnings,
+        *(of_innovations(quality.correlation) if explained else ()),
         *odd,
         *undetermined(through.states[:, 2], answer.p, answer.deviations, answer.free),
     )
@@ -155,7 +168,7 @@ def identify(
         name=WITH_LOAD if measured else WITHOUT_LOAD,
         loop=loop,
         tyre=behind,
-        quality=judged(drive, without, answer.noise, drift, cut),
+        quality=quality,
         drive=drive,
     )
 

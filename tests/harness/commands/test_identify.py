@@ -129,6 +129,34 @@ def test_the_vehicle_file_that_is_given_is_what_is_known(
     assert (entries["J_1"], entries["m"]) == (1.03 * PLANT.J_1, 1450.0)
 
 
+def test_j_1_and_the_gain_of_the_motor_torque_together_are_refused(
+    identify: Identify, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert identify("--free", "J_1", "--free", "g_T") == 2
+    assert "free one of them" in capsys.readouterr().err
+
+
+def test_a_file_whose_folder_cannot_be_made_is_refused_before_the_search(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").touch()
+    assert main(["identify", str(recording), "--output", str(tmp_path / "file" / "more" / "car.toml")]) == 2
+    said = capsys.readouterr()
+    assert f"{tmp_path / 'file'} is no folder that can be written to" in said.err
+    assert "predicted" not in said.out
+
+
+def test_stopped_while_figures_are_drawn_it_leaves_no_vehicle_file(
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Figure, "savefig", stopped)
+    assert identify("--quiet") == 130
+    assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()] == []
+
+
 def test_design_writes_gains_and_both_builds_and_compares(
     identify: Identify,
     tmp_path: Path,

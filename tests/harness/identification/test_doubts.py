@@ -15,6 +15,8 @@ from harness.identification.doubts import (
     late_or_early,
     of_demand,
     of_gain,
+    of_innovations,
+    of_load_gain,
     of_tyre,
     undetermined,
 )
@@ -68,6 +70,56 @@ def test_it_is_named_from_a_gain_in_likelihood_on(monkeypatch: pytest.MonkeyPatc
     for threshold, named in ((0.999 * gain, True), (1.001 * gain, False)):
         monkeypatch.setattr("harness.identification.doubts.LIKELY", threshold)
         assert bool(late_or_early(drive, late, NOISE)) == named
+
+
+@pytest.mark.parametrize("name", ["LEFT", "SCATTER"])
+def test_a_shift_that_leaves_most_of_the_innovations_is_not_spoken_of(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another fault is made a little smaller by some shift."""
+    drive = shifted(simulated(seed=6), 2)
+    late = maximise(Predictor(FREE), drive, P, NOISE, most=12)
+    right = maximise(Predictor(FREE), shifted(drive, -2), late.p, NOISE, most=TRIAL)
+    left = right.innovations.rms - 1.0
+    if name == "LEFT":
+        left /= late.innovations.rms - 1.0
+    monkeypatch.setattr("harness.identification.doubts.LEFT", 0.0)
+    monkeypatch.setattr("harness.identification.doubts.SCATTER", -1.0)
+    for threshold, named in ((left + 1e-6, True), (left - 1e-6, False)):
+        monkeypatch.setattr(f"harness.identification.doubts.{name}", threshold)
+        assert bool(late_or_early(drive, late, NOISE)) == named
+
+
+@pytest.mark.parametrize(
+    ("g_L", "deviation", "said"),
+    [
+        (1.09, 0.01, ""),
+        (1.11, 0.01, "1.11 times the true one"),
+        (0.5, 0.01, "0.5 times the true one"),
+        (1.25, 0.09, ""),
+        (1.0, 0.29, ""),
+        (1.0, 0.31, "tells nothing"),
+        (1097.0, 1e5, "tells nothing"),
+    ],
+)
+def test_a_load_torque_that_is_scaled_or_tells_nothing_is_named(g_L: float, deviation: float, said: str) -> None:
+    texts = of_load_gain(P._replace(g_L=g_L), {"g_L": deviation})
+    assert [said in text for text in texts] == ([True] if said else [])
+
+
+def test_without_a_load_torque_its_gain_is_not_spoken_of() -> None:
+    assert of_load_gain(P._replace(g_L=1.0), {}) == []
+
+
+@pytest.mark.parametrize(("correlation", "said"), [(0.24, False), (-0.24, False), (0.26, True), (-0.26, True)])
+def test_innovations_that_are_not_white_are_named(correlation: float, said: bool) -> None:
+    assert bool(of_innovations(correlation)) == said
+
+
+@pytest.mark.parametrize(("d", "said"), [(-2.9, False), (-3.1, True)])
+def test_negative_damping_is_named_if_it_is_surely_so(d: float, said: bool) -> None:
+    texts = undetermined(np.tile([-1.0, 1.0], 50), P._replace(d=d), {"d": 1.0}, FREE)
+    assert any("negative" in text for text in texts) == said
 
 
 @pytest.mark.parametrize("factor", [1.03, 0.97])
