@@ -3,9 +3,10 @@
 import sys
 
 from ..native.compiler import CompilerError
+from .deviations import CHECKER
 from .image import require_packages
 
 try:
-    require_packages()
+    require_packages(CHECKER)
 except CompilerError as reason:
     sys.exit(str(reason))

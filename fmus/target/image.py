@@ -12,8 +12,8 @@ C_FILES = Path(__file__).parent / "c"
 
 COMPILER = "arm-none-eabi-gcc"
 
-PACKAGES = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm")
-"""Of Debian and Ubuntu: the compiler, its C library, the emulator."""
+PACKAGES = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm", "cppcheck")
+"""Of Debian and Ubuntu: the compiler, its C library, the emulator, and what checks the C for MISRA."""
 
 PROCESSOR = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
 
@@ -48,7 +48,7 @@ def target_image(sources: Mapping[str, str], folder: Path, program: str = LINK) 
         CompilerError: there is no compiler, or it refuses the source.
     """
     require_packages()
-    files = _written(sources, (program, *BOARD), folder)
+    files = written(sources, (program, *BOARD), folder)
     for name in files:
         _run([COMPILER, *PROCESSOR, *FLAGS, "-fstack-usage", "-ffunction-sections", "-c", name], folder)
     objects = [name.replace(".c", ".o") for name in files]
@@ -59,18 +59,21 @@ def target_image(sources: Mapping[str, str], folder: Path, program: str = LINK) 
 
 def host_program(sources: Mapping[str, str], folder: Path) -> Path:
     """The same program for this machine, whose link is its standard input and output; errors as for `target_image`."""
-    files = _written(sources, (LINK, *HOST), folder)
+    files = written(sources, (LINK, *HOST), folder)
     _run([host_compiler(), *FLAGS, *files, "-lm", "-o", "controller"], folder)
     return folder / "controller"
 
 
-def require_packages() -> None:
+def require_packages(*others: str) -> None:
     """
+    Args:
+        others: programs that are needed as well.
+
     Raises:
-        CompilerError: the compiler, its library or the emulator is not installed; the text says what to install.
+        CompilerError: the compiler, its library, the emulator or another is not installed; the text says what to
+            install.
     """
-    programs = (COMPILER, EMULATOR)
-    lacking = [program for program in programs if shutil.which(program) is None]
+    lacking = [program for program in (COMPILER, EMULATOR, *others) if shutil.which(program) is None]
     if not lacking and not Path(_said_by(COMPILER, "-print-file-name=nano.specs")).is_absolute():
         lacking = ["nano.specs"]
     if lacking:
@@ -81,7 +84,7 @@ def _said_by(*command: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
-def _written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -> list[str]:
+def written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -> list[str]:
     """Writes all files into the folder; returns the names of those that are compiled."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in {**sources, **{name: (C_FILES / name).read_text(encoding="utf-8") for name in others}}.items():

@@ -19,7 +19,7 @@ infinities, denormal numbers) and random states. Instructions are counted by the
 manoeuvre in the loop, see `driveline target build`.
 
 The output folder gets the page target.md, the figure and, for every case, inputs and torques as CSV. It needs
-`apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm`.
+`apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
 """
 
 EXAMPLES = """\

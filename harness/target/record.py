@@ -1,46 +1,37 @@
 """The off-line test of the controller on the target: all cases, and what it writes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from fmus.native.compiler import CompilerError
+from fmus.target.deviations import findings
+
 from ..cosimulation.system import System
 from ..cosimulation.wiring import fit
+from ..errors import DrivelineError
 from ..metrics.evaluate import T_S
 from ..progress import progress
 from ..reports.csv_file import write_csv
 from ..reports.files import write_text
-from .cases import by_lot, driven, from_anywhere
-from .comparison import Comparison, compare
+from .cases import Case, by_lot, driven, from_anywhere
+from .comparison import Comparison, compare, responses
 from .exported import with_values
 from .figure import plot_comparison
-from .in_loop import InLoop, in_loop
+from .in_loop import in_loop
 from .page import page
 from .programs import programs
-from .schedule import Schedule, schedule
-from .size import Size, size_of
+from .results import TYPICAL, Part, Record
+from .schedule import schedule
+from .size import size_of
 
 MANY = 31
 """Cases, about: for the bar of the progress."""
 
-
-class Record(NamedTuple):
-    """What the target was found to do: off-line, in the loop, under a timer, and what it takes."""
-
-    comparisons: Sequence[Comparison]
-    loops: Sequence[InLoop]
-    schedule: Schedule
-    size: Size
-
-    @property
-    def passed(self) -> bool:
-        """Whether no bit differs, and the torque of every case that the loop gave is as near to double precision as
-        it must."""
-        near = all(each.margin <= 1.0 or each.case.drawn for each in self.comparisons)
-        same = not any(each.differing for each in (*self.comparisons, *self.loops))
-        return near and same and self.schedule.missed == 0 and all(each.finite for each in self.comparisons)
+PARTS = ("NoDamping", "LinearObserver", "PaperObserver")
+"""Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
 
 
 def record(controller: str, system: System, plant: str, given: Mapping[str, Any]) -> Record:
@@ -61,6 +52,11 @@ def record(controller: str, system: System, plant: str, given: Mapping[str, Any]
     inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
     values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
     values |= {name: given["parameters"].get(f"controller.{name}", value) for name, value in values.items()}
+    sources = with_values(controller, "float", values)
+    try:
+        found = findings(sources)
+    except CompilerError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
     with programs(controller, values) as made, progress(MANY, "target") as done:
         comparisons: list[Comparison] = []
         cases = list(driven(system, interfaces, plant, inputs, given))
@@ -75,15 +71,24 @@ def record(controller: str, system: System, plant: str, given: Mapping[str, Any]
             loops.append(loop)
             done(len(comparisons) + len(loops))
         with made.target() as link:
-            counts = (link.inputs, link.outputs, link.states, link.parameters)
-        timed = schedule(with_values(controller, "float", values))
-        return Record(comparisons, loops, timed, size_of(made.image, made.name, *counts))
+            size = size_of(made.image, made.name, link)
+        typical = next(each for each in comparisons if each.case.name == TYPICAL)
+        parts = [_part(name, typical.case) for name in PARTS if name != controller]
+        parts.append(Part(controller, typical.instructions[1], size.flash))
+        return Record(comparisons, loops, schedule(sources), size, found, parts)
+
+
+def _part(controller: str, case: Case) -> Part:
+    with programs(controller, {}) as made:
+        most = max(answer.count for answer in responses(made.target(), case)[1:])
+        with made.target() as link:
+            return Part(controller, most, size_of(made.image, made.name, link).flash)
 
 
 def write(found: Record, controller: str, plant: str, folder: Path) -> list[Path]:
     """Writes page, figure and the cases; returns the files."""
     files = [folder / "target.md"]
-    write_text(page(found.comparisons, found.loops, found.schedule, found.size, controller, plant), files[0])
+    write_text(page(found, controller, plant), files[0])
     title = f"{controller} on the emulated Cortex-M4F"
     files += plot_comparison(found.comparisons, title, folder / "figures" / "target")
     for each in found.comparisons:

@@ -5,6 +5,8 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
+from fmus.target.link import Link
+
 FLASH_SECTIONS = re.compile(r"^\.(?:text|rodata|data)\S*\s+(\d+)", re.MULTILINE)
 
 
@@ -28,20 +30,20 @@ class Size(NamedTuple):
     library: tuple[str, ...]
 
 
-def size_of(image: Path, name: str, inputs: int, outputs: int, states: int, parameters: int) -> Size:
+def size_of(image: Path, name: str, link: Link) -> Size:
     """
     Args:
         image: of `fmus.target.image`, with what was made with it beside it.
         name: of the controller's files.
-        inputs, outputs, states, parameters: how many numbers of 4 bytes.
+        link: to the program in it, which says how many numbers of 4 bytes its records have.
     """
     stacks = (image.parent / f"{name}.su").read_text(encoding="utf-8").splitlines()
     members = re.findall(r"^\S+\(lib_a-(\w+)\.o\)", image.with_suffix(".map").read_text(encoding="utf-8"), re.MULTILINE)
     return Size(
         flash=_flash(image.parent / f"{name}.o"),
         image=_flash(image),
-        ram=4 * (2 * states + inputs + outputs),
-        calibration=4 * parameters,
+        ram=4 * (2 * link.states + link.inputs + link.outputs),
+        calibration=4 * link.parameters,
         stack=max(int(line.split("\t")[1]) for line in stacks),
         library=tuple(sorted(set(members))),
     )

@@ -3,8 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
-import casadi
 import pytest
+
+pytest.importorskip("casadi", reason="the extra `native` is not installed")
+
+import casadi
 
 from fmus.native.arithmetic import LOOKED_UP, Graph
 from fmus.native.statements import Statements
