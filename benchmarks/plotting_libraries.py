@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.table import Table
 
 from harness.stopping import script
-from tests.harness.html.browser import browser
+from tests.browser import browser
 
 PANELS, CURVES, POINTS = 8, 4, 3000
 

@@ -28,6 +28,7 @@ COMMANDS = {
     "identify": "identify the drive train from a recorded test drive",
     "faults": "put faults on the controller's signals and judge what it makes of them",
     "robustness": "drive cars and sensors by lot with every controller",
+    "explore": "turn knobs in a browser and see what becomes of the runs",
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
     "analyse": "margins, poles and sensitivities of the loop",

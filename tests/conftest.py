@@ -9,6 +9,7 @@ from hypothesis import settings
 from fmus.builds import NotPossible, builders
 from fmus.catalogue import FMUS
 from fmus.python.packaging import build
+from tests.browser import browser
 
 # the same examples in every run, and nothing timed
 settings.register_profile("driveline", deadline=None, derandomize=True)
@@ -58,3 +59,10 @@ def unpacked(tmp_path, monkeypatch):
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
     return folder
+
+
+@pytest.fixture(scope="session")
+def chromium(tmp_path_factory):
+    """A browser for the tests of pages."""
+    with browser(tmp_path_factory.mktemp("profile")) as opened:
+        yield opened

@@ -40,11 +40,16 @@ class Panel(NamedTuple):
     scale: str = "linear"
 
 
+def as_drawn(columns: Columns) -> dict[str, Any]:
+    """The columns in single precision, which is more than a screen shows."""
+    return {name: np.asarray(column, dtype=np.float32) for name, column in columns.items()}
+
+
 def source_of(columns: Columns) -> "ColumnDataSource":
-    """The columns as they go into the page: in single precision, which is more than a screen shows."""
+    """The columns as they go into the page."""
     from bokeh.models import ColumnDataSource
 
-    return ColumnDataSource({name: np.asarray(column, dtype=np.float32) for name, column in columns.items()})
+    return ColumnDataSource(as_drawn(columns))
 
 
 def window(start: float, end: float) -> "Range1d":

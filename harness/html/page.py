@@ -44,7 +44,16 @@ def require_report(path: Path | None) -> None:
         return
     if path.suffix.lower() not in (".html", ".htm"):
         raise DrivelineError(f"--report {path}: a report is a .html file")
-    required("bokeh", "a report", EXTRA)
+    require_drawing("a report")
+
+
+def require_drawing(what: str) -> None:
+    """Refuses what is to be drawn where nothing can draw it.
+
+    Raises:
+        MissingExtra: it is not installed.
+    """
+    required("bokeh", what, EXTRA)
 
 
 def write_report(

@@ -72,10 +72,10 @@ class Pair(NamedTuple):
 
 def pair_sections(pairs: Mapping[str, Pair]) -> Iterator[Section]:
     """The figures of runs, by their names."""
-    signals = {name: _signals(pair) for name, pair in pairs.items()}
+    signals = {name: pair_signals(pair.off, pair.on) for name, pair in pairs.items()}
     columns = max(len(each) for each in signals.values())
     thin = {name: _thinned(each, stride(len(each["time"]), len(pairs), columns)) for name, each in signals.items()}
-    windows = {name: _shown(pair.manoeuvre) for name, pair in pairs.items()}
+    windows = {name: shown_at_first(pair.manoeuvre) for name, pair in pairs.items()}
     x_range = window(*next(iter(windows.values())))
     control, (time, spectrum) = chosen(
         "Run", {name: (thin[name], _spectra(signals[name])) for name in signals}, windows, x_range
@@ -90,14 +90,16 @@ def pair_sections(pairs: Mapping[str, Pair]) -> Iterator[Section]:
     yield Section("Over frequency", text, figures=[stacked(figures)])
 
 
-def _shown(manoeuvre: Manoeuvre) -> tuple[float, float]:
+def shown_at_first(manoeuvre: Manoeuvre) -> tuple[float, float]:
+    """From and to when in s: the step, or else the whole manoeuvre."""
     if manoeuvre.dT is None:
         return 0.0, manoeuvre.duration
     return max(manoeuvre.t_0 - BEFORE, 0.0), min(manoeuvre.t_0 + AFTER, manoeuvre.duration)
 
 
-def _signals(pair: Pair) -> Columns:
-    off, on = at_samples(pair.off), at_samples(pair.on)
+def pair_signals(off: np.ndarray, on: np.ndarray) -> Columns:
+    """The columns of TIME, at the samples of the controller, of results without and with damping."""
+    off, on = at_samples(off), at_samples(on)
     T_driver, T_ref = on["controller.T_driver"], on["controller.T_ref"]
     return {
         "time": on["time"],

@@ -8,8 +8,7 @@ from harness.cli import main
 from harness.html.page import CHOICE
 from harness.reports.colours import BLUE, GREY, VERMILION
 from tests import ROOT
-
-from .browser import Browser
+from tests.browser import Browser
 
 LARGEST = 6_000_000
 """Bytes of a report."""

@@ -113,7 +113,7 @@ class Browser:
         """Addresses that the page has asked for."""
         events = [json.loads(entry["message"])["message"] for entry in self.chrome.get_log("performance")]
         asked = (each["params"]["request"]["url"] for each in events if each["method"] == "Network.requestWillBeSent")
-        return [address for address in asked if not address.startswith("data:")]
+        return [address for address in asked if not address.startswith(("data:", "chrome"))]
 
 
 FIND = """

@@ -1,0 +1,65 @@
+"""How soon the explorer's curves follow a move: `python -m benchmarks.explorer`.
+
+From the change of a slider in Chromium to the second frame after the new curves have come, with the native builds.
+"""
+
+import argparse
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+
+from rich.console import Console
+from rich.table import Table
+
+from harness.control_loop import PLANTS
+from harness.stopping import script
+from tests.browser import browser
+
+MOVES = {"a gain": ("k_d", 2.0, 0.02), "the car": ("phi_B", 0.1, 0.002)}
+"""Slider, where it begins, and how far it goes at a time."""
+
+MOVE = """
+const [name, start, step, moves, done] = arguments
+const control = Bokeh.documents[0].get_model_by_name(name), took = []
+const [curve] = [...Bokeh.index.query((view) => view.model.type === "GlyphRenderer")]
+let began = 0
+const move = () => { began = performance.now(); control.value = start + step * (took.length + 1) }
+curve.model.data_source.properties.data.change.connect(() => requestAnimationFrame(() => requestAnimationFrame(() => {
+  took.push(performance.now() - began)
+  if (took.length < moves) setTimeout(move, 100); else done(took)
+})))
+move()
+"""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.explorer", description=__doc__)
+    parser.add_argument("--moves", type=int, default=30, help="of each slider (default: %(default)s)")
+    moves = parser.parse_args().moves
+    table = Table("", "least, ms", "median, ms", "most, ms", title="from a move to the curves")
+    with TemporaryDirectory() as folder, browser(Path(folder) / "profile") as opened:
+        opened.chrome.set_script_timeout(120)
+        for plant in PLANTS:
+            command = ["explore", "--plant", plant, "--port", "0", "--output", folder, "--build", "native"]
+            served = subprocess.Popen([sys.executable, "-m", "harness", *command], stdout=subprocess.PIPE, text=True)
+            try:
+                assert served.stdout is not None
+                found = re.match(r"\S+", served.stdout.readline())
+                assert found
+                for what, given in MOVES.items():
+                    opened.open(found[0])
+                    opened.until("Bokeh.documents[0].get_model_by_name('metrics').text")
+                    took = opened.chrome.execute_async_script(MOVE, *given, moves)
+                    table.add_row(f"{plant}, {what}", *(f"{f(took):.0f}" for f in (min, median, max)))
+            finally:
+                served.send_signal(signal.SIGTERM)
+                served.wait()
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    script(main)

@@ -1,0 +1,94 @@
+"""`driveline explore`: knobs to turn in a browser."""
+
+import argparse
+import sys
+from argparse import ArgumentTypeError
+from pathlib import Path
+
+from ..control_loop import PLACES, PLANTS
+from ..html.page import require_drawing
+from .options import add_loop, add_output, add_plant, add_printing, assignment, count
+from .printing import Printer
+from .settings import settings_of_each
+
+DESCRIPTION = """\
+Serves a page on this machine alone, for a browser: plant, manoeuvre, backlash, stiffness, mass, delay, gains, sport to
+comfort, control on and off, and the other controllers beside ours. Curves and metrics follow; the run without control
+stands behind in grey.
+
+A click saves the car and the gains as files for --vehicle and --parameters of the other commands, another one a report
+(docs/explorer.md). Ctrl-C ends it.
+"""
+
+EXAMPLES = """\
+examples:
+  driveline explore
+  driveline explore --vehicle examples/cars/van.toml --parameters van_gains.toml
+  driveline explore --plant my_vehicle.fmu --controller my_controller.fmu
+  driveline explore --port 8000
+"""
+
+PORT = 5006
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_plant(parser, several=True)
+    add_loop(parser, several={"controller": "all of these"})
+    parser.add_argument(
+        "--port",
+        type=_port,
+        default=PORT,
+        metavar="NUMBER",
+        help="of the page (default: %(default)s; 0: any that is free)",
+    )
+    add_output(parser, "results/explore", "what a click saves")
+    add_printing(parser)
+
+
+def _port(text: str) -> int:
+    return count(text, 0, 65535)
+
+
+def run(args: argparse.Namespace) -> int:
+    # here and not above: mistakes and help are answered without them
+    from ..names import require_different
+    from ..replay import by_name
+
+    require_drawing("the explorer")
+    plants = list(dict.fromkeys(args.plant or PLANTS))
+    require_different(plants)
+    controllers = by_name(args.controller or PLACES["controller"])
+    given = {
+        (Path(plant).stem, name): (plant, settings)
+        for plant in plants
+        for name, settings in settings_of_each(args, plant, controllers).items()
+    }
+    from fmus.parameter_files import read_parameters, read_vehicle
+
+    from ..explorer.bench import Answer, Bench
+    from ..explorer.saving import save_files, save_report
+    from ..explorer.server import serve
+
+    bench, out = Bench(given), Printer(args)
+    car = read_vehicle(args.vehicle) if args.vehicle else {}
+    gains = read_parameters(args.parameters) if args.parameters else {}
+
+    def files(answer: Answer) -> list[Path]:
+        return save_files(bench, answer.wanted, gains, car, args.output)
+
+    def report(answer: Answer) -> list[Path]:
+        return [save_report(bench, answer, [args.vehicle, args.parameters], args.output)]
+
+    def said(address: str) -> None:
+        out.say(f"{address} (Ctrl-C ends it)")
+        sys.stdout.flush()
+
+    serve(bench, {"save car and gains": files, "save report": report}, _typed, args.port, said)
+    return 0
+
+
+def _typed(text: str) -> tuple[str, float]:
+    try:
+        return assignment(text)
+    except ArgumentTypeError as refusal:
+        raise ValueError(str(refusal)) from refusal

@@ -1,0 +1,69 @@
+"""What can be turned: parameters by the names of parameter files, with the limits that the FMUs declare."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from ..cosimulation.interface import unit_of
+from ..cosimulation.wiring import Fit
+
+CAR = ("phi_B", "C", "k_s", "m", "J_1", "J_2", "c_slip", "tau", "d_max")
+"""Of the car: each is one for all blocks that have it. C is the stiffness of the design model and of the controller's,
+k_s that of the validation vehicle's half shafts; d_max is the longest delay of the wheel speed on the bus."""
+
+GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "brake", "haste", "t_return")
+"""Of the controller."""
+
+FAR = 5.0
+"""A slider goes to so many times the value at the start, and down to this part of it, within what FMUs declare; further
+values can be typed."""
+
+STEPS = 200
+"""Of a slider."""
+
+
+class Knob(NamedTuple):
+    """A parameter.
+
+    Attributes:
+        low, high: ends of its slider.
+        value: at the start.
+        unit: "" for none.
+        meaning: as the FMU declares it.
+    """
+
+    name: str
+    low: float
+    high: float
+    value: float
+    unit: str
+    meaning: str
+
+    @property
+    def step(self) -> float:
+        return (self.high - self.low) / STEPS
+
+
+def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float]) -> Iterator[Knob]:
+    """Those of the names that some instance has.
+
+    Args:
+        fits: of the loops that can be chosen.
+        given: `instance.name` -> value, where it is not the start value that the FMU declares.
+    """
+    for name in names:
+        owners = [
+            (f"{instance}.{name}", interface.variables[name])
+            for fit in fits
+            for instance, interface in fit.interfaces.items()
+            if name in interface.variables and interface.variables[name].causality == "parameter"
+        ]
+        if not owners:
+            continue
+        key, variable = owners[0]
+        value = float(given.get(key, variable.start or 0.0))
+        least = max(float(each.min) for _, each in owners if each.min is not None)
+        most = min(float(each.max) for _, each in owners if each.max is not None)
+        low = max(least, value / FAR) if least > 0.0 else max(least, 0.0)
+        unit = unit_of(variable) or ""
+        high = min(most, FAR * value if value > 0.0 else most)
+        yield Knob(name, low, high, value, "" if unit == "1" else unit, str(variable.description))

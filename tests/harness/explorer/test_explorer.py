@@ -1,0 +1,244 @@
+"""`driveline explore` in a browser: a process of its own, as a user has it."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from http.client import HTTPConnection
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fmus.parameter_files import read_parameters, read_vehicle
+from harness.cli import main
+from harness.reports.colours import BLUE, GREY, VERMILION
+from tests import ROOT
+from tests.browser import Browser
+
+PATIENCE = 60.0
+"""In s, for what takes milliseconds on a machine that has nothing else to do."""
+
+
+class Served:
+    """An explorer that runs."""
+
+    def __init__(self, fmus: Path, folder: Path) -> None:
+        self.folder = folder
+        blocks = ["--controller", "DampingController", "--controller", "SpeedWashout"]
+        command = ["explore", *blocks, "--fmus", str(fmus), "--output", str(folder), "--port", "0", "--build", "native"]
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "harness", *command],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        assert self.process.stdout is not None
+        line = self.process.stdout.readline()
+        found = re.match(r"http://127\.0\.0\.1:(\d+)/ ", line)
+        assert found, line
+        self.port = int(found[1])
+
+    @property
+    def address(self) -> str:
+        return f"http://127.0.0.1:{self.port}/"
+
+    def stop(self, number: int = signal.SIGINT) -> tuple[int, str]:
+        """Its exit code and what it wrote to stderr."""
+        self.process.send_signal(number)
+        _, errors = self.process.communicate(timeout=PATIENCE)
+        return self.process.returncode, errors
+
+
+@pytest.fixture(scope="module")
+def running(with_washout: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    served = Served(with_washout, tmp_path_factory.mktemp("explored"))
+    try:
+        yield served
+        code, errors = served.stop()
+        assert (code, errors) == (130, "driveline explore: stopped\n")
+    finally:
+        served.process.kill()
+
+
+@pytest.fixture
+def desk(chromium: Browser, running: Served) -> Browser:
+    chromium.open(running.address)
+    eventually(lambda: "without control" in metrics(chromium))
+    return chromium
+
+
+def eventually(true: Callable[[], Any]) -> None:
+    """Waits until it is."""
+    end = time.monotonic() + PATIENCE
+    while not true():
+        assert time.monotonic() < end, "in vain"
+        time.sleep(0.05)
+
+
+def model(name: str) -> str:
+    return f"Bokeh.documents[0].get_model_by_name({json.dumps(name)})"
+
+
+def put(desk: Browser, name: str, value: Any, property_: str = "value") -> None:
+    """What a move of the control of that name does."""
+    desk.js(f"void ({model(name)}.{property_} = {json.dumps(value)})")
+
+
+def metrics(desk: Browser) -> str:
+    return desk.js(f"{model('metrics')}.text")
+
+
+def status(desk: Browser) -> str:
+    return desk.js(f"{model('status')}.text")
+
+
+def test_curves_follow_a_slider_and_the_run_without_control_stays(desk: Browser) -> None:
+    torque = desk.figure("gear torque, N·m")
+    eventually(lambda: torque.pixels(BLUE) > 300)
+    assert torque.pixels(GREY) > 300
+    before = metrics(desk)
+    put(desk, "k_d", 1.0)
+    eventually(lambda: metrics(desk) != before)
+    rows = [re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in metrics(desk).split("<tr>")]
+    earlier = [re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in before.split("<tr>")]
+    assert rows[2] == earlier[2]  # without control
+    assert float(rows[3][2]) > 2.0 * float(earlier[3][2])  # overshoot with half of the damping
+    assert not [line for line in desk.console() if "ERROR" in line]
+
+
+def test_a_slider_can_be_dragged(desk: Browser) -> None:
+    before = metrics(desk)
+    handle = desk.js(
+        "(() => { const view = [...Bokeh.index.query((view) => view.model.name === 'phi_B')][0];"
+        " const r = view.shadow_el.querySelector('.noUi-handle').getBoundingClientRect();"
+        " return [r.left + r.width / 2, r.top + r.height / 2] })()"
+    )
+    desk.drag((handle[0], handle[1]), (handle[0] + 60, handle[1]))
+    eventually(lambda: metrics(desk) != before)
+    assert desk.js(f"{model('phi_B')}.value") > 0.2
+
+
+def test_control_can_be_switched_off_and_others_stand_beside(desk: Browser) -> None:
+    torque = desk.figure("gear torque, N·m")
+    put(desk, "control", False, "active")
+    eventually(lambda: "DampingController" not in metrics(desk))
+    desk.painted()
+    eventually(lambda: torque.pixels(BLUE) == 0)
+    put(desk, "others", [0], "active")
+    eventually(lambda: "SpeedWashout" in metrics(desk))
+    eventually(lambda: torque.pixels(VERMILION) > 100)
+
+
+def test_plant_and_manoeuvre_are_chosen(desk: Browser) -> None:
+    before = metrics(desk)
+    put(desk, "plant", "ValidationVehicle")
+    eventually(lambda: metrics(desk) != before)
+    put(desk, "manoeuvre", "creep")
+    eventually(lambda: desk.figure("gear torque, N·m").x() == (0.0, 12.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("plant.m=10", "takes 300 to 10000 kg"),
+        ("plant.mass=1000", "there is no parameter plant.mass"),
+        ("heavy", "is not of the form"),
+        ("plant.m=nan", "a parameter is a finite number"),
+        ("<img src=x onerror=alert(1)>=1", "&lt;img"),
+    ],
+)
+def test_a_bad_value_is_told_and_the_next_good_one_runs(desk: Browser, text: str, told: str) -> None:
+    put(desk, "more", text)
+    eventually(lambda: told in status(desk))
+    before = metrics(desk)
+    put(desk, "more", "plant.m=3000")
+    eventually(lambda: metrics(desk) != before)
+    assert status(desk) == ""
+
+
+def test_what_a_page_of_ones_own_sends_is_kept_within_the_slider(desk: Browser) -> None:
+    before = metrics(desk)
+    put(desk, "m", 1e9)
+    eventually(lambda: metrics(desk) != before)
+    assert "takes" not in status(desk)
+
+
+def test_two_tabs_do_not_see_each_other_and_one_that_vanishes_disturbs_nobody(desk: Browser, running: Served) -> None:
+    first, before = desk.chrome.current_window_handle, metrics(desk)
+    desk.chrome.switch_to.new_window("tab")
+    desk.open(running.address)
+    eventually(lambda: metrics(desk) == before)
+    for k in range(20):
+        put(desk, "k_d", 1.0 + 0.05 * k)
+    desk.chrome.close()
+    desk.chrome.switch_to.window(first)
+    assert metrics(desk) == before
+    put(desk, "k_d", 1.0)
+    eventually(lambda: metrics(desk) != before)
+    assert running.process.poll() is None
+
+
+def test_clicks_save_the_car_the_gains_and_a_report(desk: Browser, running: Served) -> None:
+    put(desk, "phi_B", 0.3)
+    put(desk, "k_d", 2.0)
+    press(desk, "save car and gains")
+    eventually(lambda: "gains_1.toml" in status(desk))
+    assert read_vehicle(running.folder / "car_1.toml") == {"phi_B": 0.3}
+    assert read_parameters(running.folder / "gains_1.toml")["k_d"] == 2.0
+    press(desk, "save report")
+    eventually(lambda: "report_1.html" in status(desk))
+    desk.open((running.folder / "report_1.html").as_uri())
+    assert desk.figure("gear torque, N·m").pixels(BLUE) > 300
+
+
+def press(desk: Browser, name: str) -> None:
+    box = desk.js(
+        "(() => { const view = [...Bokeh.index.query((view) => view.model.name === arguments[0])][0];"
+        " view.el.scrollIntoView({block: 'center'}); const r = view.el.getBoundingClientRect();"
+        " return [r.left + r.width / 2, r.top + r.height / 2] })()",
+        name,
+    )
+    desk.click(tuple(box))
+
+
+def test_only_this_machine_is_answered_and_no_page_of_another_origin(running: Served) -> None:
+    with socket.create_connection(("127.0.0.1", running.port), 10.0):
+        pass
+    with (
+        pytest.raises(OSError, match=r"refused|reachable"),
+        socket.create_connection(("127.0.0.2", running.port), 10.0),
+    ):
+        pass
+    connection = HTTPConnection("127.0.0.1", running.port, timeout=10.0)
+    upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
+    connection.request(
+        "GET", "/ws", headers={**upgrade, "Sec-WebSocket-Key": "a" * 24, "Origin": "http://evil.example"}
+    )
+    assert connection.getresponse().status == 403
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_stop_leaves_no_process_and_no_traceback(with_washout: Path, tmp_path: Path, number: int) -> None:
+    served = Served(with_washout, tmp_path)
+    group = os.getpgid(served.process.pid)
+    code, errors = served.stop(number)
+    assert (code, errors) == (128 + number, "driveline explore: stopped\n")
+    with pytest.raises(ProcessLookupError):
+        os.killpg(group, 0)
+
+
+def test_a_port_that_is_taken_is_told_in_one_line(both_built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        blocks = ["--controller", "DampingController", "--fmus", str(both_built)]
+        assert main(["explore", *blocks, "--port", port]) == 2
+    error = capsys.readouterr().err
+    assert error == f"driveline explore: port {port} cannot be used (Address already in use); choose another --port\n"
