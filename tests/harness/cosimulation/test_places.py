@@ -112,7 +112,8 @@ def test_a_motor_without_noise_has_no_seed(built, tmp_path):
 
 def test_the_page_says_what_each_place_needs():
     page = (ROOT / "docs" / "simulate.md").read_text(encoding="utf-8")
-    rows = [line.split("|")[1:-1] for line in page.splitlines() if line.startswith("| `")]
+    table = page.partition("| place |")[2].partition("\n\n")[0]
+    rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| `")]
     told = {}
     for place, *cells in rows:
         for causality, cell in zip(("input", "output", "parameter"), cells, strict=True):
