@@ -1,6 +1,7 @@
 """How soon the explorer's curves follow a move: `python -m benchmarks.explorer`.
 
-From the change of a slider in Chromium to the second frame after the new curves have come, with the native builds.
+From the change of a slider in Chromium to the second frame after the new curves have come, with the native builds;
+beside it the time of a core that the runs and their metrics take, which the rest of the machine hardly changes.
 """
 
 import argparse
@@ -11,16 +12,24 @@ import sys
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
+from time import process_time
 
 from rich.console import Console
 from rich.table import Table
 
-from harness.control_loop import PLANTS
+from harness.control_loop import BUILD, NATIVE, PLACES, PLANTS
+from harness.cosimulation.runs import kept_loaded
+from harness.explorer.bench import Bench
+from harness.explorer.wanted import Wanted
 from harness.stopping import script
 from tests.browser import browser
 
+OURS = PLACES["controller"][0]
+
 MOVES = {"a gain": ("k_d", 2.0, 0.02), "the car": ("phi_B", 0.1, 0.002)}
 """Slider, where it begins, and how far it goes at a time."""
+
+KINDS = {"k_d": "gains", "phi_B": "car"}
 
 MOVE = """
 const [name, start, step, moves, done] = arguments
@@ -36,11 +45,25 @@ move()
 """
 
 
+def computing(plant: str, name: str, start: float, step: float, moves: int) -> float:
+    """Median time of a core in ms from what is wanted to the answer."""
+    settings = {"parameters": {}, "controller": OURS, "folder": BUILD, "build": NATIVE}
+    bench, wanted = Bench({(plant, OURS): (plant, settings)}), Wanted(plant, "tipin15")
+    took = []
+    with kept_loaded():
+        bench.answer(wanted)
+        for k in range(moves):
+            began = process_time()
+            bench.answer(wanted.but(**{KINDS[name]: {name: start + step * k}}))
+            took.append(1e3 * (process_time() - began))
+    return median(took)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.explorer", description=__doc__)
     parser.add_argument("--moves", type=int, default=30, help="of each slider (default: %(default)s)")
     moves = parser.parse_args().moves
-    table = Table("", "least, ms", "median, ms", "most, ms", title="from a move to the curves")
+    table = Table("", "least, ms", "median, ms", "most, ms", "computing, ms", title="from a move to the curves")
     with TemporaryDirectory() as folder, browser(Path(folder) / "profile") as opened:
         opened.chrome.set_script_timeout(120)
         for plant in PLANTS:
@@ -53,8 +76,9 @@ def main() -> None:
                 for what, given in MOVES.items():
                     opened.open(found[0])
                     opened.until("Bokeh.documents[0].get_model_by_name('metrics').text")
+                    cost = f"{computing(plant, *given, moves):.0f}"
                     took = opened.chrome.execute_async_script(MOVE, *given, moves)
-                    table.add_row(f"{plant}, {what}", *(f"{f(took):.0f}" for f in (min, median, max)))
+                    table.add_row(f"{plant}, {what}", *(f"{f(took):.0f}" for f in (min, median, max)), cost)
             finally:
                 served.send_signal(signal.SIGTERM)
                 served.wait()

@@ -101,7 +101,6 @@ class Desk:
             *(self._slider(knob, "gains") for knob in bench.gains),
             more,
             row(*buttons),
-            self._status,
             width=330,
         )
 
@@ -134,7 +133,11 @@ class Desk:
         torque, *rest = TIME
         panels = [torque._replace(curves=(*torque.curves, *others)), *rest]
         figures = linked(panels, self._source, self._x_range, "time, s")
-        return column(self._table, stacked(figures), sizing_mode="stretch_width")
+        entries: Any = figures[0].legend[0].items[len(torque.curves) :]
+        self._beside: dict[str, Any] = dict(zip(self._bench.controllers[1:], entries, strict=True))
+        for entry in entries:
+            entry.visible = entry.renderers[0].visible = False
+        return column(self._status, self._table, stacked(figures), sizing_mode="stretch_width")
 
     def _turn(self, kind: str, knob: Knob, value: float) -> None:
         value = self._within(value, knob.low, knob.high)
@@ -213,6 +216,9 @@ class Desk:
             beside = pair_signals(empty, run.results)["T_gear_on"] if run else np.full(len(signals["time"]), np.nan)
             signals[f"T_gear {name}"] = beside
         self._source.data = as_drawn({name: signal[::STRIDE] for name, signal in signals.items()})
+        for name, entry in self._beside.items():
+            if entry.visible != (name in answer.runs):  # else a click in the legend stays
+                entry.visible = entry.renderers[0].visible = name in answer.runs
         self._table.text = metrics_table(answer)
         self._status.text = ""
         if self._shown != answer.wanted.manoeuvre:
