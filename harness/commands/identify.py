@@ -33,13 +33,15 @@ things:
   with load torque                  measurement wheels were recorded: J_2 is that of the wheels
   effective, without load torque    J_2 carries the vehicle
 
+g_T and g_L are the gains of the recorded motor and load torque, 1 if they are right; d is structural damping.
+
 Where the model explains the recording, prediction error is used (the likelihood of an extended Kalman filter); where it
 does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
 What is likely to be wrong with the recording, or is not determined by it, is said.
 
-Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it a JSON
-file with all that was found and four figures: measured and simulated signals, the innovations, the cost over
-each pair of parameters, the frequency response.
+Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it all that was
+found (NAME_identified.json), what made it (NAME.json) and four figures: measured and simulated signals, the
+innovations, the cost over each pair of parameters, the frequency response.
 """
 
 EXAMPLES = """\

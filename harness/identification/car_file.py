@@ -38,6 +38,8 @@ def lines(identified: Identified) -> list[str]:
     quality = identified.quality
     every = found(identified)
     width = max(len(name) for name, *_ in every)
+    explained = identified.method == "prediction error"
+    expected = "1 if all is right" if explained else "over what the free runs are off by"
     parameters = [
         f"{name:{width}} = {value:.5g} +- {half:.2g} {UNITS.get(name, '')}".rstrip()
         + f" ({100.0 * half / abs(value):.2g} %)"
@@ -49,7 +51,7 @@ def lines(identified: Identified) -> list[str]:
         f"the car answers most at {identified.resonance:.2f} Hz",
         f"fit to the last quarter, which was not used: simulated 0.5 s {quality.simulated:.1f} %, "
         f"predicted 50 ms {quality.predicted:.1f} %, one step {quality.one_step:.1f} %",
-        f"innovations: size {quality.size:.2f} (1 if all is right), correlation {quality.correlation:.2f} (0 if white)",
+        f"innovations: size {quality.size:.2f} ({expected}), correlation {quality.correlation:.2f} (0 if white)",
     ]
 
 

@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.signal import welch
 
 from .drive_train import Parameters
 from .driven import Drive
 from .maximum_likelihood import Found, maximise
-from .prediction import Noise, Predictor
+from .prediction import Filtered, Noise, Predictor
 from .response import Tyre
 from .torque_loop import FittedLoop
 
@@ -41,6 +42,19 @@ off by: measurement wheels are right to some per cent."""
 
 WHITE = 0.25
 """Autocorrelation of the innovations up to which they count as white; of a good recording it is about 0.07."""
+
+ZERO = 5.0
+"""Offset of a recorded torque in N.m from which on it is spoken of; smaller ones are found and do no harm."""
+
+OUTLIER, LONELY = 10.0, 3.0
+"""Size of the innovation of an outlier, and over the median of the CROWD largest: where a model is wrong, many are
+large."""
+
+CROWD = 20
+
+COLOURED = 0.3
+"""Power of the motor speed in the last quarter of its band over that in the second, from which on it counts as white;
+0.5 and more as sampled, 0.25 and less interpolated or held."""
 
 EXPLAINS = 0.8
 """Share that a tyre must explain of what the spectra of load torque and wheel speed tell."""
@@ -100,6 +114,45 @@ def of_innovations(correlation: float) -> list[str]:
     return [
         f"the innovations are not white (correlation {correlation:.2f}): the intervals are too narrow; the recording "
         "may be sampled too slowly, filtered or interpolated"
+    ]
+
+
+def of_offset(through: Filtered, p: Parameters) -> list[str]:
+    """What zeros of the recorded torques are off, as the filter has found at the end."""
+    motor, load = -through.states[-1, 3:5] * (p.g_T, p.g_L)
+    return [
+        f"the recorded {which} torque looks {abs(offset):.3g} N.m too {'large' if offset > 0.0 else 'small'}: "
+        "its zero, or that of the other torque, is off"
+        for which, offset in (("motor", motor), ("load", load))
+        if abs(offset) > ZERO
+    ]
+
+
+def of_outliers(through: Filtered, T_s: float) -> list[str]:
+    """Samples of the motor speed that are off alone."""
+    size = np.abs(through.size[through.settled :])
+    largest = np.sort(size)[-CROWD:]
+    at = np.flatnonzero(size > max(OUTLIER, LONELY * float(np.median(largest)))) + through.settled
+    if not len(at):
+        return []
+    k = int(at[np.argmax(np.abs(through.size[at]))])
+    others = f" and {len(at) - 1} more" if len(at) > 1 else ""
+    return [
+        f"the motor speed {(k + 1) * T_s:.4g} s after the start is {through.errors[k]:+.3g} rad/s off{others}: "
+        "an outlier, which moves what is found; correct it"
+    ]
+
+
+def of_spectrum(omega_1: np.ndarray) -> list[str]:
+    """Whether the motor speed has the white noise that a sensor has."""
+    f, power = welch(np.diff(omega_1), nperseg=min(1024, len(omega_1) - 1))
+    f, power = f[1:-1], power[1:-1] / np.sin(np.pi * f[1:-1]) ** 2  # of the speed, not of its differences
+    last, second = (float(np.median(power[(f > low) & (f < low + 0.125)])) for low in (0.375, 0.125))
+    if last >= COLOURED * second:
+        return []
+    return [
+        "the motor speed has no white noise (it looks interpolated, filtered or calculated): "
+        "the intervals do not hold, and J_2, C and phi_B may be wrong; give it as it was sampled"
     ]
 
 

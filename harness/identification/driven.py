@@ -55,7 +55,8 @@ def driven(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
         k = int(off.argmax())
         raise RecordingError(
             f"{recording.name}: samples must be {T_s:.6g} s apart to within {100.0 * UNEVEN:g} %; "
-            f"after {time[k]:g} s it is {time[k + 1] - time[k]:.6g} s"
+            f"after {time[k]:g} s it is {time[k + 1] - time[k]:.6g} s; record at a fixed rate, or give the time "
+            "at which the samples were taken and not the one at which they arrived (--column time=NAME)"
         )
     loop = None if recording.T_ref is None else fitted(recording.T_ref, recording.T_mot, T_s)
     if loop is None or recording.T_ref is None or not loop.answers:

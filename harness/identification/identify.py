@@ -15,6 +15,9 @@ from .doubts import (
     of_gain,
     of_innovations,
     of_load_gain,
+    of_offset,
+    of_outliers,
+    of_spectrum,
     of_tyre,
     undetermined,
 )
@@ -156,6 +159,9 @@ def identify(
     warnings = (
         *recording.warnings,
         *(of_demand(demand, drive.T_s, tau) if demand else ()),
+        *of_spectrum(recording.omega_1),
+        *of_outliers(through, drive.T_s),
+        *(of_offset(through, answer.p) if measured else ()),
         *of_gain(answer.p, answer.deviations),
         *of_load_gain(answer.p, answer.deviations),
         *answer.warnings,
@@ -203,7 +209,8 @@ def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more
     fitted = simulated(drive, begun, noise, more)
     _told(said, "simulated", fitted.p)
     lacks = (
-        f"the two masses do not explain all of this car (size of the innovations {best.innovations.rms:.2f}): "
+        "the two masses do not explain all of this car (with the noise of the sensors alone the innovations have the "
+        f"size {best.innovations.rms:.2f}): "
         f"parameters are those with which free runs of 0.5 s fit best, to {fitted.error:.2g} rad/s",
         *doubts,
     )

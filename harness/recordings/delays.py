@@ -44,7 +44,8 @@ class Delay:
     explained: float
 
     def __str__(self) -> str:
-        return f"{self.of} comes {1e3 * self.time:.1f} +- {1e3 * self.deviation:.1f} ms after {self.behind}"
+        part = ", of which wheels and tyres take a part" if self.of == "T_load" else ""
+        return f"{self.of} comes {1e3 * self.time:.2f} +- {1e3 * self.deviation:.2f} ms after {self.behind}{part}"
 
 
 def estimated(interval: float, signals: Mapping[str, np.ndarray]) -> list[Delay]:

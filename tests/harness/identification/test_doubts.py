@@ -7,23 +7,31 @@ import pytest
 
 from harness.identification.doubts import (
     CLOSE,
+    COLOURED,
+    CROWD,
     DEMAND_LATE,
     FLANK,
     LAG_OFF,
     LIKELY,
+    LONELY,
+    OUTLIER,
     TRIAL,
+    ZERO,
     late_or_early,
     of_demand,
     of_gain,
     of_innovations,
     of_load_gain,
+    of_offset,
+    of_outliers,
+    of_spectrum,
     of_tyre,
     undetermined,
 )
 from harness.identification.driven import Drive
 from harness.identification.identify import asked
 from harness.identification.maximum_likelihood import maximise
-from harness.identification.prediction import Predictor, filtered
+from harness.identification.prediction import Filtered, Predictor, filtered
 from harness.identification.response import Tyre
 from harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
 from tests.harness.identification.simulated import NOISE, T_S, P, simulated
@@ -37,6 +45,7 @@ def twist(drive: Drive) -> np.ndarray:
 
 
 CAR = P._replace(g_T=1.0, d=0.0)
+TRUE = P._replace(g_T=1.0, g_L=1.0)
 
 
 def shifted(drive: Drive, samples: int) -> Drive:
@@ -260,3 +269,67 @@ def test_a_damper_that_drives_is_named() -> None:
     assert undetermined(phi, P._replace(d=0.0), SHARP, FREE) == []
     (text,) = undetermined(phi, P._replace(d=-0.01), SHARP, FREE)
     assert text == "d = -0.01 N.m.s/rad is negative, which no damper is: something else is wrong"
+
+
+def through(size: np.ndarray, *offsets: float) -> Filtered:
+    states = np.zeros((len(size), 5))
+    states[-1, 3:] = offsets or (0.0, 0.0)
+    return Filtered(size, np.zeros(len(size)), 100, states)
+
+
+def test_a_zero_that_is_off_is_named_from_its_threshold_on() -> None:
+    size = np.ones(1000)
+    assert of_offset(through(size, 0.99 * ZERO, -0.99 * ZERO), TRUE) == []
+    (motor,) = of_offset(through(size, -1.01 * ZERO, 0.0), TRUE)
+    (load,) = of_offset(through(size, 0.0, 1.01 * ZERO), TRUE)
+    assert "motor torque looks 5.05 N.m too large" in motor
+    assert "load torque looks 5.05 N.m too small" in load
+
+
+def test_the_filter_finds_an_offset_as_recorded() -> None:
+    drive = simulated(seed=6)
+    asked = [of_offset(filtered(replace(drive, T_mot=drive.T_mot + zero), P, NOISE), P) for zero in (20.0, 50.0)]
+    first, second = (float(said.removeprefix("the recorded motor torque looks ").split()[0]) for (said,) in asked)
+    assert second - first == pytest.approx(30.0, abs=0.11)
+
+
+@pytest.mark.parametrize("others", [1.0, 2.0 * OUTLIER / LONELY])
+def test_a_sample_that_is_off_alone_is_named_with_its_time(others: float) -> None:
+    least = max(OUTLIER, LONELY * others)
+    size = np.full(1000, others)
+    for factor, named in ((0.99, False), (1.01, True)):
+        size[499] = -factor * least
+        said = of_outliers(through(size), T_S)
+        assert bool(said) == named
+    assert f"{500 * T_S:.4g} s after the start is {-1.01 * least:+.3g} rad/s off:" in said[0]
+
+
+def test_two_outliers_are_counted_and_a_crowd_is_none() -> None:
+    size = np.ones(1000)
+    size[[300, 700]] = 50.0, 60.0
+    (said,) = of_outliers(through(size), T_S)
+    assert f"{701 * T_S:.4g} s after the start is +60 rad/s off and 1 more:" in said
+    size[: 100 + CROWD] = 50.0
+    assert of_outliers(through(size), T_S) == []
+
+
+def test_what_comes_before_the_filter_has_settled_is_no_outlier() -> None:
+    size = np.ones(1000)
+    size[99] = 100.0
+    assert of_outliers(through(size), T_S) == []
+
+
+def test_a_motor_speed_that_was_interpolated_is_named() -> None:
+    sampled = simulated(seed=6).omega_1
+    at = np.arange(0.0, len(sampled) - 1, 0.25)
+    assert of_spectrum(sampled) == []
+    assert of_spectrum(np.interp(at, np.arange(len(sampled)), sampled))
+    assert of_spectrum(np.repeat(sampled, 4))
+
+
+def test_noise_counts_as_white_down_to_its_threshold() -> None:
+    """White noise, and in the last quarter of its band so much of it as is asked for."""
+    spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
+    for share, named in ((0.8 * COLOURED, True), (1.2 * COLOURED, False)):
+        shaped = spectrum * np.where(np.arange(len(spectrum)) > 0.7 * len(spectrum), np.sqrt(share), 1.0)
+        assert bool(of_spectrum(np.fft.irfft(shaped))) == named
