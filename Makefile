@@ -2,23 +2,36 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+DEMO := $(VENV)/demo
 READY := $(VENV)/ready
 
-.PHONY: help setup demo test test-target mutation fuzz lint check cross bench docs clean
+.PHONY: help setup demo test test-target mutation fuzz lint check cross bench docs dist clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
 
-$(READY): pyproject.toml constraints.txt harness/cosimulation/steps.c
+INSTALLED := pyproject.toml setup.py constraints.txt harness/cosimulation/steps.c
+
+define environment
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[recordings,replay,design,bound,native,cluster,report,dev]'
+endef
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
+
+$(DEMO): $(INSTALLED)
+	$(environment)
+	$(INSTALL) '.[native,replay]'
 	@touch $@
 
-setup: $(READY) ## the virtual environment alone
+$(READY): $(INSTALLED)
+	$(environment)
+	$(INSTALL) '.[recordings,replay,design,bound,native,cluster,report,dev]'
+	@touch $(DEMO) $@
 
-demo: $(READY) ## build the FMUs, compare with and without damping, replay a short drive
+setup: $(READY) ## the virtual environment alone, with all that the other targets need
+
+demo: $(DEMO) ## build the FMUs, compare with and without damping, replay a short drive
 	$(BIN)/driveline build
 	$(BIN)/driveline compare --replace
 	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv --replace
@@ -46,7 +59,7 @@ check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline check build/*.fmu build/native/*.fmu
 
 cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[cross]'
+	$(INSTALL) '.[cross]'
 	$(BIN)/driveline build --build native --platform all
 
 bench: $(READY) ## cost per communication step, side by side and in other hosts, and of the start of a command
@@ -95,5 +108,14 @@ docs: cross ## the pages of the documentation that are computed
 		cat results/compare/table.md; } > docs/results.md
 	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
 
+dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked
+	$(INSTALL) '.[publish]'
+	rm -rf dist
+	$(BIN)/python -m build --no-isolation
+	PATH="$(BIN):$$PATH" auditwheel repair --wheel-dir dist dist/*-linux_*.whl
+	rm dist/*-linux_*.whl
+	$(BIN)/twine check --strict dist/*
+	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
+
 clean: ## everything that was made
-	rm -rf $(VENV) build results *.egg-info harness/cosimulation/_steps.*
+	rm -rf $(VENV) build dist results *.egg-info harness/cosimulation/_steps.*

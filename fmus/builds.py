@@ -160,7 +160,10 @@ def builders(builds: str | None, platform: str = "host") -> list[Builder]:
 
 def _native_builder(platform: str) -> Builder:
     if find_spec("casadi") is None:
-        raise NotPossible("the native build needs CasADi: install the extra `native` (pip install '.[native]')")
+        raise NotPossible(
+            "the native build needs the package casadi: "
+            "install the extra `native`, as in pip install 'driveline-damping[native]'"
+        )
     from .native import compiler
     from .native.packaging import build_native
 

@@ -8,7 +8,7 @@ from .errors import BuildError
 VERSION = "0.1.0"
 """Of the sources. The installer reads this line without running it, so it stands alone."""
 
-DATE = "2026-11-21"
+DATE = "2026-11-23"
 """Goes with the version, so that the same sources give the same bytes on any day."""
 
 AUTHOR = "the driveline-damping authors"

@@ -3,6 +3,7 @@
 import textwrap
 from collections.abc import Iterator
 from html import escape
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 from models.block.declaration import Enumeration
@@ -12,8 +13,6 @@ from ..fmu import Fmu
 from .build_kind import BuildKind
 from .picture import picture
 from .variables import Variable, interface
-
-LICENSE = Path(__file__).parents[2] / "LICENSE"
 
 PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -55,9 +54,17 @@ def documentation(fmu: Fmu, kind: BuildKind) -> dict[str, bytes]:
     files = {"documentation/index.html": page(fmu, kind).encode(), "model.png": picture(fmu.block)}
     if kind.external:
         files["documentation/externalDependencies.txt"] = kind.external.encode()
-    if LICENSE.exists():
-        files["documentation/licenses/license.txt"] = LICENSE.read_bytes()
+    files["documentation/licenses/license.txt"] = licence().encode()
     return files
+
+
+def licence() -> str:
+    """That of the project: an installed package has it among its metadata, a checkout beside the packages."""
+    try:
+        text = distribution("driveline-damping").read_text("licenses/LICENSE")
+    except PackageNotFoundError:
+        text = None
+    return text or (Path(__file__).parents[2] / "LICENSE").read_text(encoding="utf-8")
 
 
 def page(fmu: Fmu, kind: BuildKind) -> str:

@@ -102,7 +102,10 @@ def zig_compiler() -> list[str]:
         CompilerError: it is not installed.
     """
     if find_spec("ziglang") is None:
-        raise CompilerError("to compile for all platforms, install the extra `cross` (pip install '.[native,cross]')")
+        raise CompilerError(
+            "to compile for all platforms, install the extra `cross`, "
+            "as in pip install 'driveline-damping[native,cross]'"
+        )
     return [sys.executable, "-m", "ziglang", "cc"]
 
 

@@ -18,13 +18,14 @@ from .steps import Refusal
 from .whereabouts import NUMBERS, current
 
 SOURCE = Path(__file__).with_name("steps.c")
+"""It is there in a checkout, where it can change."""
 
 
 def _library() -> CDLL | None:
     spec = find_spec(f"{__package__}._steps")
     if not (spec and spec.origin):
         return None
-    if SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
+    if SOURCE.is_file() and SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
         return None
     return CDLL(spec.origin)
 

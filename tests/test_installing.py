@@ -1,0 +1,135 @@
+"""What is published: the sources, a wheel that works in any folder, and the page that introduces it."""
+
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+import tarfile
+from email import message_from_bytes
+from email.message import Message
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+from markdown_it import MarkdownIt
+
+from fmus import release
+from fmus.catalogue import FMUS
+from tests import ROOT
+
+NOT_PUBLISHED = {".ci/run", ".gitignore", ".pre-commit-config.yaml"}
+
+
+def ran(*command: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    """A command that has ended well, in a folder, without a way to the checkout."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done
+
+
+@pytest.fixture(scope="module")
+def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with the sources, and with the wheel that is made from them."""
+    folder = tmp_path_factory.mktemp("dist")
+    ran(sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, ROOT, folder=folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(published: Path) -> Path:
+    (path,) = published.glob("*.whl")
+    return path
+
+
+@pytest.fixture(scope="module")
+def metadata(wheel: Path) -> Message:
+    with ZipFile(wheel) as archive:
+        return message_from_bytes(archive.read(f"driveline_damping-{release.VERSION}.dist-info/METADATA"))
+
+
+@pytest.fixture(scope="module")
+def scripts(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Scripts of an environment with the wheel, and with the packages of others that run this test."""
+    environment = tmp_path_factory.mktemp("environment")
+    ran(sys.executable, "-m", "venv", "--without-pip", environment, folder=environment)
+    python = environment / "bin/python"
+    install = ("-m", "pip", "--python", python, "install", "--quiet", "--no-index", "--no-deps", wheel)
+    ran(sys.executable, *install, folder=environment)
+    (packages,) = environment.glob("lib/python*/site-packages")
+    (packages / "others.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    where = ran(python, "-c", "import models, fmus, harness; print(harness.__file__)", folder=environment).stdout
+    assert where.startswith(str(packages)), "the packages are not those of the checkout"
+    return environment / "bin"
+
+
+@pytest.fixture(scope="module")
+def away(scripts: Path, native: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder outside the checkout in which the wheel has built the FMUs."""
+    folder = tmp_path_factory.mktemp("away")
+    ran(scripts / "driveline", "build", folder=folder)
+    return folder
+
+
+def test_an_installed_wheel_builds_the_same_fmus_as_the_checkout(away: Path, built: Path, native: Path) -> None:
+    for name in FMUS:
+        assert (away / "build" / f"{name}.fmu").read_bytes() == (built / f"{name}.fmu").read_bytes()
+        assert (away / "build/native" / f"{name}.fmu").read_bytes() == (native / f"{name}.fmu").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["simulate", "--manoeuvre", "tipin15"],
+        ["compare", "--manoeuvre", "tipin15", "--plant", "TwoMassDriveline"],
+        ["check", "--quick", "build/native/DampingController.fmu", "build/MotorTorqueLoop.fmu"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_an_installed_wheel_has_nothing_to_complain_of_in_any_folder(
+    scripts: Path, away: Path, words: list[str]
+) -> None:
+    assert ran(scripts / "driveline", *words, folder=away).stderr == ""
+
+
+def test_the_sources_are_all_there(published: Path) -> None:
+    if not (ROOT / ".git").exists():
+        pytest.skip("no checkout, which would tell what belongs to the project")
+    (path,) = published.glob("*.tar.gz")
+    with tarfile.open(path) as archive:
+        there = {name.partition("/")[2] for name in archive.getnames()}
+    known = ran("git", "ls-files", folder=ROOT).stdout.split()
+    assert {name for name in known if (ROOT / name).is_file()} - there - NOT_PUBLISHED == set()
+
+
+def test_type_checkers_look_into_the_packages(wheel: Path) -> None:
+    with ZipFile(wheel) as archive:
+        assert {"models/py.typed", "fmus/py.typed", "harness/py.typed"} <= set(archive.namelist())
+
+
+def test_the_page_of_the_package_leads_to_what_is_in_the_repository(metadata: Message) -> None:
+    addresses = dict(url.split(", ") for url in metadata.get_all("Project-URL", []))
+    tokens = MarkdownIt("commonmark").enable("table").parse(str(metadata.get_payload()))
+    inline = [token for block in tokens for token in block.children or ()]
+    pages = [str(token.attrs["href"]) for token in inline if token.type == "link_open"]
+    pictures = [str(token.attrs["src"]) for token in inline if token.type == "image"]
+    for address in (*pages, *pictures):
+        assert address.startswith("https://"), address
+    ours = re.compile(rf"{addresses['Repository']}/(blob|raw)/v{release.VERSION}/(.+)")
+    found = [match for address in (*pages, *pictures) if (match := ours.fullmatch(address))]
+    assert {match[1] for match in found} == {"blob", "raw"}
+    for match in found:
+        assert (ROOT / match[2]).is_file(), match[2]
+    assert all(ours.fullmatch(picture)[1] == "raw" for picture in pictures)  # type: ignore[index]
+
+
+def test_the_changelog_names_the_release_and_its_date() -> None:
+    headings = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.M)
+    released = [heading for heading in headings if heading != "Unreleased"]
+    assert released[0] == f"{release.VERSION} ({release.DATE})"
+
+
+def test_the_demo_needs_no_development_tools() -> None:
+    commands = ran("make", "--dry-run", "--always-make", "demo", folder=ROOT).stdout
+    assert re.findall(r"--editable '\.\[(.+)\]'", commands) == ["native,replay"]
