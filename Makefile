@@ -4,8 +4,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 DEMO := $(VENV)/demo
 READY := $(VENV)/ready
+SITE := $(VENV)/site
 
-.PHONY: help setup demo test test-target mutation fuzz lint check cross bench docs dist clean
+.PHONY: help setup demo test test-target mutation fuzz lint check cross bench docs site dist clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
@@ -108,6 +109,13 @@ docs: cross ## the pages of the documentation that are computed
 		cat results/compare/table.md; } > docs/results.md
 	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
 
+$(SITE): $(READY)
+	$(INSTALL) '.[site]'
+	@touch $@
+
+site: $(SITE) ## the documentation as a site, into site/; once its packages are installed, without network
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
 dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked
 	$(INSTALL) '.[publish]'
 	rm -rf dist
@@ -118,4 +126,4 @@ dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked
 	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
 
 clean: ## everything that was made
-	rm -rf $(VENV) build dist results *.egg-info harness/cosimulation/_steps.*
+	rm -rf $(VENV) build dist results site *.egg-info harness/cosimulation/_steps.*

@@ -44,13 +44,15 @@ does in the law.
 ## Order of steps
 
 1. **Describe the car** in a vehicle file ([control.md](control.md#where-the-gains-come-from)).
-   - `J_1`: the rotor and all that turns with it up to the gap.
-   - `phi_B`: with the wheels held, turn the motor gently from flank to flank; the way is 2 `phi_B`.
-   - `C`: from the frequency f of the shuffle after a tip-in with `enable` off. It lies between
-     (2 pi f)^2 J_1 J_2/(J_1 + J_2), if the wheels swing freely, and (2 pi f)^2 J_1, if the tyres hold them.
-   - `tau`: from the response of the motor's torque to a step.
 
-   [A car that the controller does not know](#a-car-that-the-controller-does-not-know) says which of them matter.
+    - `J_1`: the rotor and all that turns with it up to the gap.
+    - `phi_B`: with the wheels held, turn the motor gently from flank to flank; the way is 2 `phi_B`.
+    - `C`: from the frequency f of the shuffle after a tip-in with `enable` off. It lies between
+      (2 pi f)^2 J_1 J_2/(J_1 + J_2), if the wheels swing freely, and (2 pi f)^2 J_1, if the tyres hold them.
+    - `tau`: from the response of the motor's torque to a step.
+
+    [A car that the controller does not know](#a-car-that-the-controller-does-not-know) says which of them matter.
+
 2. **Compute the gains**: `driveline design --vehicle car.toml --output gains.toml`.
 3. **Look at the signals**, with the damping off. At standstill the noise of the motor speed stays far below
    `omega_still` ([Rattle at standstill](#rattle-at-standstill)). In a drive `status` is never `fallback` once the

@@ -1,0 +1,83 @@
+"""What pages show can be typed: commands have these options, Python names what is there."""
+
+import argparse
+import ast
+import re
+import tomllib
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+import yaml
+
+from harness.cli import COMMANDS, complete_commands, parser
+from tests import ROOT
+from tests.docs.pages import INLINE, PAGES, blocks, commands, named, prose
+
+OURS = ("harness", "fmus", "models", "benchmarks")
+
+EVERY_PAGE = pytest.mark.parametrize("page", PAGES, ids=named)
+
+
+@pytest.fixture
+def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder with the examples, and with the files that pages speak of."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    return tmp_path
+
+
+@EVERY_PAGE
+def test_commands_are_understood(page: Path, checkout: Path) -> None:
+    for script in blocks(page, "sh"):
+        for arguments in commands(script):
+            if "--print-completion" not in arguments:
+                parser().parse_args(arguments)
+
+
+@EVERY_PAGE
+def test_commands_in_a_sentence_exist_with_their_options(page: Path) -> None:
+    top = parser()
+    complete_commands(top)
+    known = {name: set(options(top, name)) for name in COMMANDS}
+    for code in INLINE.findall(prose(page)):
+        words = code.split()
+        if words[0] == "driveline" and len(words) > 1 and words[1].islower() and words[1].isalpha():
+            assert words[1] in COMMANDS, code
+            given = {word.partition("=")[0] for word in words if word.startswith("--")}
+            assert given <= known[words[1]], code
+
+
+def options(command: argparse.ArgumentParser, *path: str) -> Iterator[str]:
+    """Of what a path of commands leads to, and of all below."""
+    if not path:
+        yield from command._option_string_actions
+    for action in command._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name in path[:1] or action.choices:
+                yield from options(action.choices[name], *path[1:])
+
+
+@EVERY_PAGE
+def test_python_can_be_read_and_imports_what_is_there(page: Path) -> None:
+    for code in blocks(page, "python"):
+        for node in ast.walk(ast.parse(code)):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in OURS:
+                module = import_module(str(node.module))
+                assert not [alias.name for alias in node.names if not hasattr(module, alias.name)], node.module
+
+
+@EVERY_PAGE
+def test_files_that_are_shown_can_be_read(page: Path) -> None:
+    for code in blocks(page, "toml"):
+        tomllib.loads(code)
+    for code in blocks(page, "yaml"):
+        assert yaml.safe_load(code)
+
+
+def test_modules_that_pages_run_are_there() -> None:
+    for page in PAGES:
+        for module in re.findall(r"python -m ([\w.]+)", page.read_text(encoding="utf-8")):
+            assert find_spec(module), module

@@ -1,0 +1,66 @@
+"""The pages that are made for the site say what the code says."""
+
+import re
+
+import pytest
+
+from docs.site import commands, links, reference
+from harness.cli import COMMANDS, complete_commands, parser
+from tests import ROOT
+from tests.docs.test_code_blocks import options
+from tests.test_rooms import modules
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_page_of_a_command_has_all_its_options(name: str) -> None:
+    top = parser()
+    complete_commands(top)
+    page = commands.pages()[f"commands/{name}.md"]
+    assert page.startswith(f"# driveline {name}\n")
+    told = set(re.findall(r"--[a-z-]+", " ".join(re.findall(r"^`(.*)`$", page, re.M))))
+    assert told == {option for option in options(top, name) if option.startswith("--")} - {"--help"}
+    assert str(ROOT) not in page
+
+
+def test_the_first_page_of_the_commands_leads_to_all() -> None:
+    index = commands.pages()["commands/index.md"]
+    assert all(f"({name}.md) | {text} |" in index for name, text in COMMANDS.items())
+
+
+def test_the_reference_has_every_module_of_every_room() -> None:
+    shown = re.findall(r"^::: (\S+)$", "\n".join(reference.pages().values()), re.M)
+    wanted = {name for name in modules() if not name.startswith("harness.commands.") and not name.endswith("__")}
+    assert set(shown) == wanted - {"build_fmus"}
+    assert len(shown) == len(set(shown))
+
+
+def test_every_room_tells_what_is_in_it() -> None:
+    rows = re.findall(r"^\| \[`([\w.]+)`\]\([\w.]+\) \|(.*)\|$", reference.pages()["reference/index.md"], re.M)
+    assert rows
+    assert not [room for room, text in rows if not text.strip()]
+
+
+@pytest.mark.parametrize(
+    ("link", "page", "on_the_site"),
+    [
+        ("docs/simulate.md", "index.md", "simulate.md"),
+        ("LICENSE", "index.md", "files/LICENSE"),
+        ("../README.md", "tutorial.md", "index.md"),
+        ("../examples/cars/van.toml", "tutorial.md", "files/examples/cars/van.toml"),
+        ("figures/loop.svg", "tutorial.md", "figures/loop.svg"),
+    ],
+)
+def test_links_lead_to_the_place_on_the_site(link: str, page: str, on_the_site: str) -> None:
+    assert links.fitted(f"see [this]({link}#part) and ![]({link})", page) == (
+        f"see [this]({on_the_site}#part) and ![]({on_the_site})"
+    )
+
+
+def test_on_the_site_pages_are_called_by_their_titles() -> None:
+    assert links.fitted("[simulate.md](simulate.md#formats)", "bus.md") == "[The loop from Python](simulate.md#formats)"
+    assert links.fitted("[docs/bus.md](docs/bus.md)", "index.md") == "[The bus](bus.md)"
+
+
+def test_links_to_elsewhere_stay() -> None:
+    text = "[a](https://example.org/x.md) [b](#below) [c](mailto:a@b.c)"
+    assert links.fitted(text, "index.md") == text
