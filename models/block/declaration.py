@@ -120,6 +120,11 @@ def without(record: Any, names: Collection[str]) -> Any:
     return _record(record.__name__, {name: fields[name] for name in fields if name not in names})
 
 
+def quantities(name: str, declared: Mapping[str, tuple[Any, Any]]) -> Any:
+    """A NamedTuple class with these fields: name -> declaration, as an Annotated type, and start value."""
+    return _record(name, declared)
+
+
 def _fields(record: Any) -> dict[str, tuple[Any, Any]]:
     """Declaration and start value of each field."""
     hints = get_type_hints(record, include_extras=True)
