@@ -32,6 +32,7 @@ COMMANDS = {
     "check": "check FMUs for compliance",
     "design": "compute the gains of the controller",
     "analyse": "margins, poles and sensitivities of the loop",
+    "ssp": "write the loop for other tools (System Structure Package)",
     "target": "the controller's C on its processor",
     "bus": "write the database of the bus (DBC)",
     "bound": "compute what no controller can beat, beside what ours reaches",

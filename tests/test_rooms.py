@@ -30,6 +30,7 @@ ROOMS = {
     "harness.reports": {"harness", "harness.recordings", "harness.manoeuvres", "harness.metrics"},
     "harness.html": {"harness", "harness.manoeuvres", "harness.metrics", "harness.reports"},
     "harness.explorer": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.html"},
+    "harness.ssp": COSIMULATION | {"harness.manoeuvres"},
     "harness.compliance": COSIMULATION,
     "harness.linear": {"harness", "harness.metrics", "harness.reports", "models", "models.block", "models.controller"},
     "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.html"},
@@ -65,6 +66,7 @@ ROOMS = {
         "harness.linear",
         "harness.tuning",
         "harness.robustness",
+        "harness.ssp",
         "harness.target",
     },
 }

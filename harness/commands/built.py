@@ -1,8 +1,11 @@
 """The FMUs that a command runs: those of the project are built where they are missing or stale."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
 from fmus.errors import BuildError
 
@@ -10,6 +13,9 @@ from ..control_loop import BUILD, BUILDS, COMPARATORS, NATIVE, chosen_build, loo
 from ..errors import DrivelineError
 from ..stale import warn_of_stale
 from ..told import warn_once
+
+if TYPE_CHECKING:
+    from fmus.fmu import Fmu
 
 
 def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:
@@ -53,3 +59,22 @@ def _refreshed(plant: str, build: str | None, **others: Any) -> str | None:
     if made:
         warn_once(f"built, as missing or stale: {', '.join(map(str, made))}")
     return build
+
+
+@contextmanager
+def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Iterator[Path]:
+    """An FMU that is no part of the loop: that of the folder, or where it is missing or stale one that is built, in a
+    folder that is not BUILD for as long as this lasts.
+
+    Raises:
+        DrivelineError: it cannot be built here.
+    """
+    from fmus.builds import builders
+    from fmus.origin import is_stale
+
+    path = (folder / NATIVE if build == NATIVE else folder) / f"{fmu.name}.fmu"
+    with TemporaryDirectory(prefix="driveline-") as temporary:
+        try:
+            yield builders(build)[0](fmu, folder if folder == BUILD else Path(temporary)) if is_stale(path) else path
+        except BuildError as reason:
+            raise DrivelineError(str(reason)) from reason

@@ -1,17 +1,13 @@
 """`driveline faults`: the controller under faults of its signals and on ice, case after case."""
 
 import argparse
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..control_loop import BUILD, NATIVE, PLANTS
-from ..errors import DrivelineError
+from ..control_loop import NATIVE, PLANTS
 from ..html.page import require_report
 from ..names import require_different
-from .built import built
+from .built import built, made_if_missing
 from .options import add_loop, add_output, add_plant, add_printing, add_report, count
 from .printing import Printer
 from .settings import as_given, blocks, caption, distinguishing, settings
@@ -64,6 +60,8 @@ def run(args: argparse.Namespace) -> int:
     require_different(plants)
     given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
     # here and not above: mistakes and help are answered without them
+    from fmus.signal_faults import FMU
+
     from ..faults.bench import Bench, with_faults
     from ..faults.campaign import campaign
     from ..faults.report import announce, write, write_case
@@ -77,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
     name, first = ("faults", "faults.csv") if args.case is None else (f"case_{args.case}", f"case_{args.case}.csv")
     record = args.output / f"{name}.json"
     report = [args.report] if args.report else []
-    with _injector(args.fmus) as injector:
+    with made_if_missing(FMU, args.fmus, NATIVE) as injector:
         tried = {Path(plant).stem: with_faults(system, injector) for plant, system in systems.items()}
         read = [args.vehicle, args.parameters]
         with recorded(record, same, tried, read, [args.output / first, *report], args.replace) as made:
@@ -101,23 +99,3 @@ def run(args: argparse.Namespace) -> int:
         out.say(f"written: {file}")
     out.document({"cases": [outcome.record for outcome in outcomes], "files": made.files})
     return int(any(outcome.failed for outcome in outcomes))
-
-
-@contextmanager
-def _injector(folder: Path) -> Iterator[Path]:
-    """The FMU of SignalFaults among those of the folder, or else one that is built for as long as this lasts.
-
-    Raises:
-        DrivelineError: it cannot be built here.
-    """
-    from fmus.builds import builders
-    from fmus.errors import BuildError
-    from fmus.origin import is_stale
-    from fmus.signal_faults import FMU
-
-    path = folder / NATIVE / f"{FMU.name}.fmu"
-    with TemporaryDirectory(prefix="driveline-") as temporary:
-        try:
-            yield builders(NATIVE)[0](FMU, folder if folder == BUILD else Path(temporary)) if is_stale(path) else path
-        except BuildError as reason:
-            raise DrivelineError(str(reason)) from reason

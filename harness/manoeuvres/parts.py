@@ -197,7 +197,7 @@ def _added(drawn: Sequence[Lines]) -> Lines:
     import numpy as np
 
     times = np.unique(np.concatenate([one.times for one in drawn]))
-    before, after = (np.sum([side(one, times) for one in drawn], axis=0) for side in (_before, Lines.__call__))
+    before, after = (np.sum([side(one, times) for one in drawn], axis=0) for side in (Lines.before, Lines.__call__))
     jumps = np.abs(after - before) > ROUNDING * np.maximum(np.abs(after), 1.0)
     corners = [
         (time, value)
@@ -205,10 +205,3 @@ def _added(drawn: Sequence[Lines]) -> Lines:
         for value in ([left, right] if jump else [right])
     ]
     return lines(*corners)
-
-
-def _before(one: Lines, t: np.ndarray) -> np.ndarray:
-    """Its values up to the instants, where it jumps the old ones."""
-    import numpy as np
-
-    return np.interp(-t, -np.asarray(one.times)[::-1], np.asarray(one.values)[::-1])

@@ -39,6 +39,12 @@ class Lines:
 
         return np.asarray(np.interp(nanoseconds(t), self.times, self.values))
 
+    def before(self, t: ArrayLike) -> np.ndarray:
+        """Its values up to the instants, where it jumps the old ones."""
+        import numpy as np
+
+        return np.interp(-nanoseconds(t), -np.asarray(self.times)[::-1], np.asarray(self.values)[::-1])
+
 
 @dataclass(frozen=True, eq=False)
 class Held:
