@@ -117,4 +117,15 @@ def test_a_browser_shows_it_from_files(site: Path, chromium: Browser) -> None:
     chromium.chrome.find_element("css selector", find).send_keys("backlash")
     chromium.until("document.querySelectorAll('.md-search-result__item').length > 3")
     assert chromium.console() == []
-    assert all(address.startswith("file:") for address in chromium.fetched())
+
+
+@pytest.mark.parametrize("page", ["index", "derivation", "gallery", "commands/target", "reference/harness"])
+def test_a_browser_fetches_nothing_for_a_page(site: Path, chromium: Browser, page: str) -> None:
+    for log in ("browser", "performance"):
+        chromium.chrome.get_log(log)
+    chromium.chrome.get((site / f"{page}.html").as_uri())
+    chromium.until("document.readyState === 'complete'")
+    fetched = chromium.fetched()
+    assert any(address.endswith(f"{page}.html") for address in fetched)
+    assert all(address.startswith("file:") for address in fetched)
+    assert chromium.console() == []
