@@ -93,6 +93,13 @@ UNITS = {"settling_time": (1e3, "ms"), "response_delay": (1e3, "ms"), "withheld_
 """Of the table: factor and name, by metrics."""
 
 
+MET = 1.005
+"""Share of a goal that rounds to it."""
+
+Reached = Mapping[tuple[Goal, str], float]
+"""The magnitude of what a goal is set for on a plant, in the unit of the table."""
+
+
 class Run(NamedTuple):
     """One that is measured."""
 
@@ -133,6 +140,21 @@ def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
 
     value = mean(True) - mean(False) if goal.over_none else mean(True)
     return UNITS[goal.metric][0] * value
+
+
+def all_reached(found: Mapping[Run, Metrics]) -> dict[tuple[Goal, str], float]:
+    """Of all goals on all plants."""
+    return {(goal, plant): reached(goal, plant, found) for goal in GOALS for plant in PLANTS}
+
+
+def most(goal: Goal, plant: str) -> float:
+    """What is to be reached."""
+    return goal.values[PLANTS.index(plant)]
+
+
+def missed(values: Reached) -> list[tuple[Goal, str]]:
+    """The goals that are not reached."""
+    return [key for key, value in values.items() if value > MET * most(*key)]
 
 
 def monte_carlo(draws: int, parameters: Mapping[str, Any], folder: Path = BUILD, build: str | None = None) -> list[str]:
