@@ -16,7 +16,7 @@ def drawn(page: str) -> str:
 
 
 def _mathml(found: re.Match) -> str:
-    from latex2mathml.converter import convert
+    from latex2mathml.converter import convert  # type: ignore[import-not-found] (of the extra `site`)
 
     kind, latex = found.groups()
     mathml = convert(html.unescape(latex), display="block" if kind == "div" else "inline")
