@@ -17,6 +17,7 @@ from .many import run_many
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
 from .names import require_different
+from .reports.look import PLAIN, Look
 from .reports.signals_file import Units, write_signals
 from .reports.table import Row, values, write_markdown, write_metrics
 from .simulate import simulate
@@ -128,15 +129,12 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
 
 
 def write_figures(
-    outcomes: Sequence[Outcome], folder: Path, caption: str = "", manoeuvres: Manoeuvres = MANOEUVRES
+    outcomes: Sequence[Outcome], folder: Path, look: Look = PLAIN, manoeuvres: Manoeuvres = MANOEUVRES
 ) -> list[Path]:
     """Draws the test drive and the close-ups of the steps that were run, and what else is not of the catalogue; returns
-    the files.
-
-    Args:
-        caption: what was set, in small below.
-    """
-    from .reports.figures import plot_drive, plot_step  # not for the workers, which draw nothing
+    the files."""
+    from .reports.drive_figure import plot_drive  # not for the workers, which draw nothing
+    from .reports.step_figure import plot_step
 
     files = []
     for off, on in zip(outcomes[::2], outcomes[1::2], strict=True):
@@ -147,5 +145,5 @@ def write_figures(
         if plot:
             runs = (off.results, on.results)
             stem = folder / f"{off.case.plant_name}_{name}"
-            files += plot(runs, manoeuvres[name], off.case.plant_name, stem, caption)
+            files += plot(runs, manoeuvres[name], off.case.plant_name, stem, look)
     return files

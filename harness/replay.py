@@ -18,6 +18,8 @@ from .metrics.damage import damage, require_counting
 from .metrics.declaration import given, measured
 from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
+from .recordings.written import Written
+from .reports.look import PLAIN, Look
 from .reports.signals_file import Units, write_signals
 from .reports.table import values, write_metrics, write_rides
 from .simulate import simulate
@@ -170,13 +172,15 @@ def write(
     track: Track,
     plant: str,
     folder: Path,
-    caption: str = "",
+    look: Look = PLAIN,
     format: str = "csv",
     units: Units | None = None,
+    written: Mapping[str, Written] | None = None,
 ) -> list[Path]:
-    """Writes metrics, table, signals (every 10 ms) and the figure of a replay, with its caption; returns the files.
+    """Writes metrics, table, signals (every 10 ms) and the figure of a replay; returns the files.
 
     Args:
+        written: see `harness.reports.replay_figure.plot_replay`.
         format, units: of the signals, see `harness.reports.signals_file`.
     """
     from .reports.replay_figure import plot_replay  # not for the workers, which draw nothing
@@ -189,4 +193,4 @@ def write(
         files.append(write_signals(ride.signals[::STRIDE], units or {}, stem, format))
     drawn = {ride.controller: ride.signals for ride in rides}
     title = f"{plant} on the recorded drive {track.name}"
-    return files + plot_replay(drawn, (track.t, track.v), title, folder / track.name, caption)
+    return files + plot_replay(drawn, (track.t, track.v), title, folder / track.name, look, written)

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
-from ..reports.figures import BLUE, STYLE, VERMILION, save, titled
+from ..reports.colours import BLUE, VERMILION
+from ..reports.figures import STYLE, save, titled
 from ..reports.table import number
 from .calibration import FACTOR, LAW, Case, changed_law
 from .calibration_tables import COLUMNS, Found, change, value

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..metrics.evaluate import T_S, at_samples
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, save, titled
+from ..reports.colours import BLACK, BLUE, GREY, VERMILION
+from ..reports.figures import STYLE, save, titled
 from .bounded import Bounded
 
 SHOWN = (-0.01, 0.25)

@@ -11,7 +11,7 @@ from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
 from .built import built
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_format, add_loop, add_output, add_plant, add_printing, add_report
+from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, look
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, other_format, settings
 
@@ -36,6 +36,7 @@ examples:
   driveline compare --plant my_vehicle.fmu --seed 7 --output results/mine
   driveline compare --set controller.k_d=1.5 --output results/softer
   driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --output results/overtaking
+  driveline compare --manoeuvre tipin15 --window 0.95,1.3 --figures pdf --figures svg
   driveline compare --json > comparison.json
   driveline compare --report comparison.html
 """
@@ -48,6 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_loop(parser)
     add_output(parser, "results/compare", "tables, figures and the signals of every run", of_a_run=True)
     add_format(parser)
+    add_figures(parser)
     add_report(parser)
     add_printing(parser, table=True)
 
@@ -66,6 +68,7 @@ def run(args: argparse.Namespace) -> int:
     out = Printer(args)
     asked = args.manoeuvre or COMPARED
     manoeuvres = chosen(asked)
+    wanted = look(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
     todo = cases(plants, list(manoeuvres))
     given = {plant: settings(args, plant, build) for plant, build in builds.items()}
     systems = {plant: looped(plant, given[plant]) for plant in plants}
@@ -90,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         tables = write_tables(outcomes, args.output)
-        figures = write_figures(outcomes, args.output, caption(args), manoeuvres)
+        figures = write_figures(outcomes, args.output, wanted, manoeuvres)
         made.files += [*tables, *figures]
         for case, path in signals.items():
             own = distinguishing(given[case.plant], systems[case.plant], manoeuvres[case.manoeuvre])
@@ -104,9 +107,11 @@ def run(args: argparse.Namespace) -> int:
             made.files += report
     out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
     out.say(f"tables:  {' '.join(map(str, tables))}")
+    kind, *others = wanted.kinds
+    beside = f" (and {', '.join(f'.{other}' for other in others)})" if others else ""
     for figure in figures:
-        if figure.suffix == ".png":
-            out.say(f"figure:  {figure} (and .pdf)")
+        if figure.suffix == f".{kind}":
+            out.say(f"figure:  {figure}{beside}")
     out.say(f"signals: {args.output / 'runs'}/*{next(iter(signals.values())).suffix} ({len(outcomes)} runs)")
     for path in report:
         out.say(f"report:  {path}")

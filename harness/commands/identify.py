@@ -13,7 +13,7 @@ from fmus.options import file
 from ..errors import DrivelineError
 from ..extra import required
 from ..html.page import require_report
-from .options import add_printing, add_replace, add_report
+from .options import add_figures, add_printing, add_replace, add_report, look
 from .printing import Printer
 from .recording_options import add_recording, of_databases
 from .redesigning import redesign, require_fmus
@@ -21,6 +21,7 @@ from .redesigning import redesign, require_fmus
 if TYPE_CHECKING:
     from ..identification.identify import Identified
     from ..recordings.measurement import Measurement
+    from ..reports.look import Look
 
 FREE = ("J_1", "d", "g_T")
 
@@ -41,7 +42,7 @@ What is likely to be wrong with the recording, or is not determined by it, is sa
 
 Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it all that was
 found (NAME_identified.json), what made it (NAME.json) and four figures: measured and simulated signals, the
-innovations, the cost over each pair of parameters, the frequency response.
+innovations, the cost over each pair of parameters, the frequency response; signals in the units of the recording.
 """
 
 EXAMPLES = """\
@@ -79,6 +80,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="compute the gains for this car, build the controller with them, compare before and after on both plants",
     )
+    add_figures(parser)
     add_replace(parser)
     add_report(parser)
     add_printing(parser)
@@ -108,6 +110,7 @@ def run(args: argparse.Namespace) -> int:
     if {"J_1", "g_T"} <= set(args.free):
         raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
+    wanted = look(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "native")
     if args.design:
         require_fmus()
@@ -139,7 +142,7 @@ def run(args: argparse.Namespace) -> int:
             out.say(f"warning: {warning}")
         made.begin()
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        figures = draw(identified, recording, output.with_suffix(""))
+        figures = draw(identified, recording, output.with_suffix(""), wanted)
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
         made.files += [output, everything, *figures]
@@ -162,7 +165,7 @@ def require_folder(output: Path) -> None:
         raise DrivelineError(f"--output {output}: {there} is no folder that can be written to")
 
 
-def draw(identified: "Identified", recording: "Measurement", stem: Path) -> list[Path]:
+def draw(identified: "Identified", recording: "Measurement", stem: Path, wanted: "Look") -> list[Path]:
     """The figures, STEM_simulation.png and so on."""
     from ..identification.certainty_figures import plot_cost, plot_response
     from ..identification.figures import plot_innovations, plot_simulation
@@ -170,10 +173,10 @@ def draw(identified: "Identified", recording: "Measurement", stem: Path) -> list
     def named(what: str) -> Path:
         return stem.with_name(f"{stem.name}_{what}")
 
-    caption = f"{recording.name}, identified {identified.name}, by {identified.method}"
+    one = wanted._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
     return [
-        *plot_simulation(identified, recording, named("simulation"), caption),
-        *plot_innovations(identified, named("innovations"), caption),
-        *plot_cost(identified, named("cost"), caption),
-        *plot_response(identified, named("response"), caption),
+        *plot_simulation(identified, recording, named("simulation"), one),
+        *plot_innovations(identified, named("innovations"), one),
+        *plot_cost(identified, named("cost"), one),
+        *plot_response(identified, named("response"), one),
     ]

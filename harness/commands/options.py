@@ -10,12 +10,18 @@ from fmus.options import add_parameter_files, folder, output_folder
 
 from ..control_loop import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..cosimulation.limits import USUAL
+from ..errors import DrivelineError
 from ..numbers import real, whole
 from ..plain import quoted
+from ..reports.look import KINDS, Look
+from ..reports.look import USUAL as USUAL_KINDS
 from ..reports.signals_file import FORMATS
 
 OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
 """The blocks of the loop beside the plant, and what they are."""
+
+LEAST_WINDOW = 0.01
+"""In s, of the figures: a few samples."""
 
 
 def add_plant(parser: argparse.ArgumentParser, several: bool = False, default: str = PLANTS[0]) -> None:
@@ -161,6 +167,50 @@ def add_format(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format", choices=FORMATS, default="csv", help=f"of the signals (default: %(default)s); {meanings}"
     )
+
+
+def add_figures(parser: argparse.ArgumentParser) -> None:
+    """--figures and --window, of the figures."""
+    kinds = "; ".join(f"{kind}: {meaning}" for kind, meaning in KINDS.items())
+    parser.add_argument(
+        "--figures",
+        action="append",
+        choices=KINDS,
+        help=f"kind of the figures' files (repeatable; default: {' and '.join(USUAL_KINDS)}); {kinds}",
+    )
+    parser.add_argument(
+        "--window",
+        type=window,
+        metavar="FROM,TO",
+        help="from and to when in s the figures show the signals (default: what suits each figure)",
+    )
+
+
+def look(args: argparse.Namespace, caption: str, *spans: tuple[str, float, float]) -> Look:
+    """What the options of `add_figures` say.
+
+    Args:
+        caption: of the figures.
+        spans: what the figures show, in words, and from and to when in s there is something to be seen.
+
+    Raises:
+        DrivelineError: the window shows nothing of one of them.
+    """
+    for what, start, end in spans if args.window else ():
+        if not (args.window[0] < end and args.window[1] > start):
+            given = ",".join(f"{t:g}" for t in args.window)
+            raise DrivelineError(f"--window {given}: {what} is from {start:g} to {end:g} s")
+    return Look(caption, args.window, tuple(dict.fromkeys(args.figures or USUAL_KINDS)))
+
+
+def window(text: str) -> tuple[float, float]:
+    """Two times in s, the earlier one first."""
+    start, end = (real(part.strip()) for part in (text.partition(",")[0], text.partition(",")[2]))
+    if start is None or end is None or not (isfinite(start) and isfinite(end) and end - start >= LEAST_WINDOW):
+        raise argparse.ArgumentTypeError(
+            f"{quoted(text)} is not of the form 1.0,2.5, two times in s at least {LEAST_WINDOW:g} s apart"
+        )
+    return start, end
 
 
 def add_report(parser: argparse.ArgumentParser) -> None:

@@ -9,7 +9,7 @@ from ..html.page import require_report
 from ..metrics.record import RideMetrics
 from ..recordings.quantities import aliases, example
 from ..reports.table import legend
-from .options import add_format, add_loop, add_output, add_plant, add_printing, add_report, seconds
+from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, look, seconds
 from .printing import Printer
 from .recording_options import add_recording, of_databases
 from .settings import caption, distinguishing, other_format, settings_of_each
@@ -34,7 +34,7 @@ found by driving without damping and are then the same for all; nothing in them 
 
 in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
 folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
-RECORDING.pdf.
+RECORDING.pdf (or --figures), in the units of the recording.
 """
 
 EXAMPLES = """\
@@ -44,6 +44,7 @@ examples:
   driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
   driveline replay my_trip.blf --dbc drive_train.dbc
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
+  driveline replay my_trip.csv --window 310,325 --figures svg
   driveline replay my_trip.csv --set plant.m=1900
 """
 
@@ -60,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_loop(parser, several={"controller": PLACES["controller"][0]})
     add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
     add_format(parser)
+    add_figures(parser)
     add_report(parser)
     add_printing(parser, table=True)
 
@@ -91,6 +93,7 @@ def run(args: argparse.Namespace) -> int:
     interfaces, parameters = fit(systems[first]).interfaces, given[first]["parameters"]
     load = RoadLoad.of_plant(interfaces["plant"], parameters)
     track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
+    wanted = look(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
     same |= {"columns": dict(args.columns)} | of_databases(args) | other_format(args)
@@ -111,7 +114,8 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
-        made.files += write(rides, track, plant, args.output, caption(args), args.format, units(made.fits[first]))
+        of_columns = units(made.fits[first])
+        made.files += write(rides, track, plant, args.output, wanted, args.format, of_columns, recording.written)
         if args.report:
             from ..html import replay as page
 

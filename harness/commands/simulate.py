@@ -6,11 +6,12 @@ from time import perf_counter
 
 from ..control_loop import STEP_SIZE
 from ..cosimulation.system import Scheme
+from ..errors import DrivelineError
 from ..manoeuvres.catalogue import MANOEUVRES
 from .built import built
 from .frames import add_frames, require_frames, write_frames
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_format, add_loop, add_output, add_plant, add_printing, seconds
+from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, look, seconds
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, other_format, settings
 
@@ -37,6 +38,7 @@ examples:
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
   driveline simulate --step 0.0005 --scheme jacobi
   driveline simulate --manoeuvre launch --plot
+  driveline simulate --manoeuvre drive --plot --window 4,6 --figures svg
   driveline simulate --manoeuvre launch --format mf4
   driveline simulate --manoeuvre drive --frames blf
   driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot
@@ -66,6 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_format(parser)
     add_frames(parser)
     parser.add_argument("--plot", action="store_true", help="draw speeds, torques and the motion of the body")
+    add_figures(parser)
     add_printing(parser)
 
 
@@ -80,6 +83,9 @@ def run(args: argparse.Namespace) -> int:
 
     out = Printer(args)
     (manoeuvre,) = chosen([args.manoeuvre]).values()
+    if not args.plot and (args.window or args.figures):
+        raise DrivelineError(f"{'--window' if args.window else '--figures'} is for the figure; ask for it with --plot")
+    wanted = look(args, caption(args), (manoeuvre.name, 0.0, manoeuvre.duration))
     require_steps(manoeuvre.duration, args.step)
     plant = Path(args.plant).stem
     name = f"{plant}_{manoeuvre.name}_{args.control}"
@@ -119,7 +125,7 @@ def run(args: argparse.Namespace) -> int:
             from ..reports.run_figure import plot_run
 
             title = f"{plant}, {manoeuvre.description}, damping {args.control}"
-            for figure in plot_run(results, title, args.output / name, caption(args)):
+            for figure in plot_run(results, manoeuvre, title, args.output / name, wanted):
                 made.files.append(figure)
                 out.say(f"figure:  {figure}")
     out.say(f"made by: {record} (version, FMUs, parameters, units)")

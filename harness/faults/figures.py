@@ -10,7 +10,8 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, matrix_axes, save, titled
+from ..reports.colours import BLACK, BLUE, GREY, VERMILION
+from ..reports.figures import STYLE, legend, matrix_axes, save, titled
 from .bench import Runs
 from .campaign import Outcome, count
 from .cases import SITUATIONS, Case

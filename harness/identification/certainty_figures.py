@@ -12,7 +12,9 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from scipy.stats import chi2
 
 from ..metrics.spectrum import decibels
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
+from ..reports.colours import BLACK, BLUE, GREY, VERMILION
+from ..reports.figures import STYLE, legend, save, titled
+from ..reports.look import PLAIN, Look
 from .cost import POINTS, cost_over, curvature, ellipse, exact
 from .figures import said
 from .identify import Identified
@@ -40,12 +42,11 @@ ABOVE = 6.0
 BAND = "bands: 95 % by the covariance, the tyre as it is; the recording crosses the gap, the models do not"
 
 
-def plot_cost(identified: Identified, stem: Path, caption: str = "") -> list[Path]:
+def plot_cost(identified: Identified, stem: Path, look: Look = PLAIN) -> list[Path]:
     """The cost over each pair of J_2, C and phi_B, with the 95 % ellipse of the answer.
 
     Args:
         stem: path of the files without their ending.
-        caption: what was set, in small below.
 
     Returns:
         The files written.
@@ -61,8 +62,10 @@ def plot_cost(identified: Identified, stem: Path, caption: str = "") -> list[Pat
         key.axis("off")
         key.legend(*C_J_2.get_legend_handles_labels(), loc="lower left")
         figure.align_ylabels()
-        titled(figure, f"Cost above that of the answer\n{said(identified)}", f"{caption}\n{_of(identified)}".strip())
-        return save(figure, stem)
+        titled(
+            figure, f"Cost above that of the answer\n{said(identified)}", f"{look.caption}\n{_of(identified)}".strip()
+        )
+        return save(figure, stem, look.kinds)
 
 
 def _cost(axes: Axes, identified: Identified, x: str, y: str, H: np.ndarray) -> None:
@@ -74,6 +77,7 @@ def _cost(axes: Axes, identified: Identified, x: str, y: str, H: np.ndarray) -> 
         *ellipse(identified, x, y, INSIDE),
         color=VERMILION,
         lw=2.5,
+        ls="--",
         alpha=0.6,
         label="95 % by the covariance of the answer",
     )
@@ -95,12 +99,11 @@ def _of(identified: Identified) -> str:
     return f"cost: {how}; the other free parameters are the likeliest"
 
 
-def plot_response(identified: Identified, stem: Path, caption: str = "", seed: int = 1) -> list[Path]:
+def plot_response(identified: Identified, stem: Path, look: Look = PLAIN, seed: int = 1) -> list[Path]:
     """Frequency response from motor torque to motor speed with its 95 % band, and what the recording itself shows.
 
     Args:
         stem: path of the files without their ending.
-        caption: what was set, in small below.
         seed: of the parameters that are drawn for the band.
 
     Returns:
@@ -115,27 +118,27 @@ def plot_response(identified: Identified, stem: Path, caption: str = "", seed: i
             at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
             axes.plot(f[at], of(recorded[at]), ".", color="0.4", ms=4, label="recording")
             axes.axvline(peak, color=VERMILION, ls=":", lw=0.8)
-        _model(rows, identified, identified.tyre, f"car on its own, peak at {peak:.2f} Hz", VERMILION, seed)
+        _model(rows, identified, identified.tyre, f"car on its own, peak at {peak:.2f} Hz", VERMILION, "-", seed)
         amplitude.set_ylim(top=amplitude.dataLim.y1 + ABOVE)
         if identified.tyre:
-            _model(rows, identified, None, "load torque held", BLUE, seed)
+            _model(rows, identified, None, "load torque held", BLUE, "--", seed)
         amplitude.set_ylabel(r"amplitude of $\omega_1/T_{mot}$ in dB" "\n" "(0 dB: 1 rad/s per N·m)")
         phase.set(ylabel="phase in degrees", xlabel="frequency in Hz", xlim=(RESPONSE[0], RESPONSE[-1]))
         phase.set_xticks(range(2, 21, 2))
         phase.set_yticks(range(-90, 91, 45))
         legend(amplitude)
-        titled(figure, f"Frequency response, teeth in contact\n{said(identified)}", f"{caption}\n{BAND}".strip())
-        return save(figure, stem)
+        titled(figure, f"Frequency response, teeth in contact\n{said(identified)}", f"{look.caption}\n{BAND}".strip())
+        return save(figure, stem, look.kinds)
 
 
 def _model(
-    rows: Sequence[Axes], identified: Identified, behind: Tyre | None, name: str, colour: str, seed: int
+    rows: Sequence[Axes], identified: Identified, behind: Tyre | None, name: str, colour: str, dashes: str, seed: int
 ) -> None:
     """The response and its band."""
     answer = response(identified.p, RESPONSE, behind)
     drawn = drawn_responses(identified, RESPONSE, behind, seed)
     for axes, of in zip(rows, (decibels, _degrees), strict=True):
-        axes.plot(RESPONSE, of(answer), color=colour, label=name)
+        axes.plot(RESPONSE, of(answer), color=colour, ls=dashes, label=name)
         axes.fill_between(RESPONSE, *np.percentile(of(drawn), PERCENTILES, axis=0), color=colour, alpha=0.3, lw=0)
 
 

@@ -1,6 +1,7 @@
 """Figures of an identified model against its recording: free runs (paper, Fig. 5) and innovations."""
 
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import style
@@ -10,8 +11,10 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from scipy.stats import norm
 
 from ..recordings.measurement import Measurement
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
-from .free_runs import FreeRuns, free_runs
+from ..reports.colours import BLACK, BLUE, GREY
+from ..reports.figures import STYLE, legend, save, titled
+from ..reports.look import PLAIN, Look
+from .free_runs import FreeRuns, end_of, free_runs
 from .identify import Identified
 from .prediction import filtered
 from .quality import SIMULATED, Z_95, autocorrelation
@@ -29,31 +32,33 @@ NORMAL = 4.0
 """Size up to which the normal density is drawn at least."""
 
 
-def plot_simulation(identified: Identified, recording: Measurement, stem: Path, caption: str = "") -> list[Path]:
-    """Measured and simulated speeds and torques over the last STRETCH, as in Fig. 5 of the paper.
+def plot_simulation(identified: Identified, recording: Measurement, stem: Path, look: Look = PLAIN) -> list[Path]:
+    """Measured and simulated speeds and torques in the units of the file, over a window or the last STRETCH, as in
+    Fig. 5 of the paper.
 
     Args:
         recording: from which it was identified.
         stem: path of the files without their ending.
-        caption: what was set, in small below.
 
     Returns:
         The files written.
     """
-    runs = free_runs(identified, recording, STRETCH)
+    begin, end = float(recording.time[0]), float(recording.time[-1])
+    window = look.shown(begin, end) if look.window else end_of(recording, STRETCH)
+    runs = free_runs(identified, recording, window)
     drawn = [_motor_speed, _error, _wheel_speed, _torque] + [_load] * (recording.T_load is not None)
     heights = [1.0 if draw is _error else 1.6 for draw in drawn]
     with style.context(STYLE):
         figure = Figure(figsize=(7.2, 1.1 * sum(heights) + 0.7), layout=ConstrainedLayoutEngine(h_pad=0.1))
         rows = figure.subplots(len(drawn), 1, sharex=True, height_ratios=heights)
         for draw, axes in zip(drawn, rows, strict=True):
-            draw(axes, recording, runs)
+            draw(Row(axes, recording, runs, window))
             if axes.get_legend_handles_labels()[0]:
                 legend(axes)
-        rows[-1].set(xlabel="time in s", xlim=(np.nanmin(runs.time), np.nanmax(runs.time)))
+        rows[-1].set(xlabel="time in s", xlim=window)
         figure.align_ylabels()
-        titled(figure, f"Measured and simulated\n{said(identified)}", caption)
-        return save(figure, stem)
+        titled(figure, f"Measured and simulated\n{said(identified)}", look.caption)
+        return save(figure, stem, look.kinds)
 
 
 def said(identified: Identified) -> str:
@@ -61,55 +66,70 @@ def said(identified: Identified) -> str:
     return f"{identified.name}; {identified.method}"
 
 
-def _motor_speed(axes: Axes, recording: Measurement, runs: FreeRuns) -> None:
-    _measured(axes, recording, runs, recording.omega_1, "measured", lw=2.4)
-    axes.plot(runs.time, runs.omega_1, color=BLUE, label=f"simulated, free runs of {SIMULATED:g} s")
-    axes.set_ylabel("motor speed\n" r"$\omega_1$ in rad/s")
+class Row(NamedTuple):
+    """Axes, and what can be drawn into them within a window (from and to when in s), in the units of the file."""
+
+    axes: Axes
+    recording: Measurement
+    runs: FreeRuns
+    window: tuple[float, float]
+
+    def measured(self, y: np.ndarray, quantity: str, label: str, late: float = 0.0, **how: Any) -> None:
+        t = self.recording.time - late
+        shown = (t >= self.window[0]) & (t <= self.window[1])
+        self.axes.plot(t[shown], y[shown] / self.recording.written[quantity].factor, color=GREY, label=label, **how)
+
+    def simulated(self, y: np.ndarray, quantity: str, label: str | None, width: float = 1.0) -> None:
+        t = self.runs.time
+        shown = ~((t < self.window[0]) | (t > self.window[1]))  # and what is NaN between the runs
+        y = y / self.recording.written[quantity].factor
+        self.axes.plot(t[shown], y[shown], color=BLUE, lw=width, label=label)
+
+    def named(self, name: str, quantity: str) -> None:
+        """The name of what is drawn, with the unit."""
+        self.axes.set_ylabel(f"{name}\n{self.recording.written[quantity]}")
 
 
-def _error(axes: Axes, recording: Measurement, runs: FreeRuns) -> None:
-    axes.plot(runs.time, runs.error, color=BLUE, lw=0.6)
-    axes.set_ylabel("difference\nin rad/s")
+def _motor_speed(row: Row) -> None:
+    row.measured(row.recording.omega_1, "omega_1", "measured", lw=2.4)
+    row.simulated(row.runs.omega_1, "omega_1", f"simulated, free runs of {SIMULATED:g} s")
+    row.named("motor speed", "omega_1")
 
 
-def _wheel_speed(axes: Axes, recording: Measurement, runs: FreeRuns) -> None:
+def _error(row: Row) -> None:
+    row.simulated(row.runs.error, "omega_1", None, 0.6)
+    row.named("difference", "omega_1")
+
+
+def _wheel_speed(row: Row) -> None:
     """The recorded one as much earlier as the recording tells that it is late."""
+    recording = row.recording
     omega_2 = recording.omega_2 if recording.valid is None else np.where(recording.valid, recording.omega_2, np.nan)
     late = next((delay.time for delay in recording.delays if delay.of == "omega_2"), 0.0)
     label = f"measured, drawn {1e3 * late:.0f} ms earlier" if late else "measured"
-    _measured(axes, recording, runs, omega_2, label, late, lw=1.6, drawstyle="steps-post")
+    row.measured(omega_2, "omega_2", label, late, lw=1.6, drawstyle="steps-post")
     simulated = "simulated, wheels and vehicle as one" if recording.T_load is None else "simulated"
-    axes.plot(runs.time, runs.omega_2, color=BLUE, label=simulated)
-    axes.set_ylabel("wheel speed\n" r"$\omega_2$ in rad/s")
+    row.simulated(row.runs.omega_2, "omega_2", simulated)
+    row.named("wheel speed", "omega_2")
 
 
-def _torque(axes: Axes, recording: Measurement, runs: FreeRuns) -> None:
-    _measured(axes, recording, runs, recording.T_mot, r"$T_{mot}$, measured")
-    axes.plot(runs.time, runs.T_gear, color=VERMILION, label=r"$T_{gear}$, simulated")
-    axes.set_ylabel("torque\nin N·m")
+def _torque(row: Row) -> None:
+    row.measured(row.recording.T_mot, "T_mot", r"$T_{mot}$, measured", lw=1.6)
+    row.simulated(row.runs.T_gear, "T_mot", r"$T_{gear}$, simulated")
+    row.named("torque", "T_mot")
 
 
-def _load(axes: Axes, recording: Measurement, runs: FreeRuns) -> None:
-    if recording.T_load is not None:
-        _measured(axes, recording, runs, -recording.T_load, r"$-T_{load}$, measured")
-    axes.set_ylabel("load torque\nin N·m")
+def _load(row: Row) -> None:
+    if row.recording.T_load is not None:
+        row.measured(-row.recording.T_load, "T_load", "measured, positive when it drives")
+    row.named("load torque", "T_load")
 
 
-def _measured(
-    axes: Axes, recording: Measurement, runs: FreeRuns, y: np.ndarray, label: str, late: float = 0.0, **how
-) -> None:
-    """A recorded signal while there are runs."""
-    t = recording.time - late
-    shown = (t >= np.nanmin(runs.time)) & (t <= np.nanmax(runs.time))
-    axes.plot(t[shown], y[shown], color=GREY, label=label, **how)
-
-
-def plot_innovations(identified: Identified, stem: Path, caption: str = "") -> list[Path]:
+def plot_innovations(identified: Identified, stem: Path, look: Look = PLAIN) -> list[Path]:
     """The innovations over time, their distribution and their autocorrelation.
 
     Args:
         stem: path of the files without their ending.
-        caption: what was set, in small below.
 
     Returns:
         The files written.
@@ -126,8 +146,8 @@ def plot_innovations(identified: Identified, stem: Path, caption: str = "") -> l
         grid["t"].set_ylabel("innovation over its\nstandard deviation")
         _distribution(grid["h"], size)
         _autocorrelation(grid["c"], size, drive.T_s)
-        titled(figure, f"Innovations\n{said(identified)}", caption)
-        return save(figure, stem)
+        titled(figure, f"Innovations\n{said(identified)}", look.caption)
+        return save(figure, stem, look.kinds)
 
 
 def _distribution(axes: Axes, size: np.ndarray) -> None:

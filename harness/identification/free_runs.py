@@ -8,8 +8,8 @@ import numpy as np
 from ..recordings.measurement import Measurement
 from .drive_train import Parameters, gear_torque
 from .identify import UNMEASURED, WITHIN, Identified
-from .prediction import filtered
-from .quality import near_starts, segments
+from .prediction import BURN_IN, filtered
+from .quality import SIMULATED, near_starts, segments
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +31,20 @@ class FreeRuns:
     error: np.ndarray
 
 
-def free_runs(identified: Identified, recording: Measurement, stretch: float) -> FreeRuns:
+def free_runs(identified: Identified, recording: Measurement, window: tuple[float, float]) -> FreeRuns:
     """
     Args:
         recording: from which it was identified.
-        stretch: how much of its end in s.
+        window: from and to when in s, as recorded, but for the first BURN_IN of the recording; the last run may
+            end later.
     """
-    drive, p = identified.drive, identified.p
-    time, first = recording.time, max(len(drive) - round(stretch / drive.T_s), 0)
-    pieces = segments(drive, (), UNMEASURED if recording.T_load is None else WITHIN, first)
+    drive, p, time = identified.drive, identified.p, recording.time
+    begin, end = (round((t - time[0]) / drive.T_s) for t in window)
+    length = round(SIMULATED / drive.T_s)
+    span = -(-(end - begin) // length) * length
+    last = min(max(begin + span, round(BURN_IN / drive.T_s) + length), len(drive))
+    drift = UNMEASURED if recording.T_load is None else WITHIN
+    pieces = segments(drive.between(0, last), (), drift, max(last - span, 0))
     states, recorded = pieces.free_runs(p, near_starts(pieces, filtered(drive, p, identified.noise)))
     runs = []
     for first, x, omega_1 in zip(pieces.firsts, states, recorded, strict=True):
@@ -47,6 +52,11 @@ def free_runs(identified: Identified, recording: Measurement, stretch: float) ->
         runs.append(np.array([time[at], x[:, 0], x[:, 1], _gear_torque(x, p), x[:, 0] - omega_1]))
         runs.append(np.full((5, 1), np.nan))
     return FreeRuns(*np.hstack(runs))
+
+
+def end_of(recording: Measurement, stretch: float) -> tuple[float, float]:
+    """From and to when in s the last `stretch` s are, or all of it."""
+    return max(float(recording.time[-1]) - stretch, float(recording.time[0])), float(recording.time[-1])
 
 
 def _gear_torque(x: np.ndarray, p: Parameters) -> np.ndarray:

@@ -15,7 +15,7 @@ from ..metrics.spectrum import decibels
 from ..recordings.measurement import Measurement
 from ..reports.colours import BLACK, BLUE, GREY, VERMILION
 from .car_file import MEANS, UNITS, found
-from .free_runs import FreeRuns, free_runs
+from .free_runs import FreeRuns, end_of, free_runs
 from .identify import Identified
 from .prediction import filtered
 from .quality import SIMULATED
@@ -56,7 +56,7 @@ def report(identified: Identified, recording: Measurement, provenance: Mapping[s
         recording: from which it was identified.
         provenance: see `harness.provenance.content`.
     """
-    runs = free_runs(identified, recording, STRETCH)
+    runs = free_runs(identified, recording, end_of(recording, STRETCH))
     pieces = _pieces(runs)
     sections = [
         Section(

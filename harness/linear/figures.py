@@ -10,7 +10,8 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from ..reports.figures import BLACK, BLUE, GREEN, GREY, STYLE, VERMILION, legend, save, titled
+from ..reports.colours import BLACK, BLUE, GREEN, GREY, VERMILION
+from ..reports.figures import STYLE, legend, save, titled
 from .backlash import Swing
 from .loop import LinearLoop
 from .margins import FREQUENCIES, Margins

@@ -63,12 +63,14 @@ class Response:
     Attributes:
         z: from its initial value.
         y: about the line of its final value, from the beginning of the run.
+        final: that line in N.m, from the beginning of the run.
         first: sample of the step.
         T_s: time between samples in s.
     """
 
     z: np.ndarray
     y: np.ndarray
+    final: np.ndarray
     first: int
     T_s: float
 
@@ -106,13 +108,13 @@ def response(t: np.ndarray, T_gear: np.ndarray, t_0: float, dT: float) -> Respon
     """
     T_s = float(t[1] - t[0])
     last = fitted(t)
-    final = Polynomial.fit(t[last], T_gear[last], 1)
+    final = Polynomial.fit(t[last], T_gear[last], 1)(t)
     first = round(t_0 / T_s)
     initial = initial_value(T_gear, first)
-    way = final(t[first]) - initial
+    way = final[first] - initial
     if not abs(way) >= LEAST_WAY * abs(dT):
         raise Absent("the gear torque hardly follows the step of the demand")
-    return Response((T_gear[first:] - initial) / way, (T_gear - final(t)) / way, first, T_s)
+    return Response((T_gear[first:] - initial) / way, (T_gear - final) / way, final, first, T_s)
 
 
 def fitted(t: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ class Choice:
     Attributes:
         place: of the column in the file.
         unit: of the SI, into which `factor` turns its values.
+        written: the unit that they have in the file.
     """
 
     quantity: str
@@ -29,6 +30,7 @@ class Choice:
     place: int
     unit: str
     factor: float
+    written: str
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ class Chooser:
             )
         place, unit = found[0]
         si, factor = self._factor(quantity, columns[place], unit)
-        return Choice(quantity, columns[place], place, si, sign * factor)
+        return Choice(quantity, columns[place], place, si, sign * factor, unit or si)
 
     def _factor(self, quantity: str, column: Column, unit: str | None) -> tuple[str, float]:
         """Unit of the SI and the factor to it."""

@@ -9,6 +9,7 @@ import numpy as np
 from .alignment import aligned, is_slower
 from .channels import Channels
 from .source import RecordingError
+from .written import Written
 
 WHEELS = "omega_wheel"
 """Whose speed over ground is that of the vehicle where it was not recorded."""
@@ -24,6 +25,7 @@ class Drive:
         v: speed of the vehicle in m/s.
         elevation: of the road in m; None if it was not recorded.
         T_mot: motor torque in N.m, motor side.
+        written: v and T_mot as the file writes them.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Drive:
     v: np.ndarray
     elevation: np.ndarray | None
     T_mot: np.ndarray
+    written: Mapping[str, Written]
 
 
 def read_drive(
@@ -58,4 +61,5 @@ def read_drive(
         )
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
     time, values = aligned(channels, "T_mot", received)
-    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"])
+    written = {"v": channels[speed].written, "T_mot": channels["T_mot"].written}
+    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"], written)

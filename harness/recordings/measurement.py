@@ -13,6 +13,7 @@ from .quantities import example
 from .relations import check_relations
 from .signal_checks import check_signal, clipping
 from .source import RecordingError
+from .written import Written
 
 BASE = "omega_1"
 """Whose samples are the time base."""
@@ -44,6 +45,7 @@ class Measurement:
         columns: heading of the column by quantity.
         delays: that the recording tells, see `harness.recordings.delays`.
         warnings: what is odd but can be used, a sentence each.
+        written: T_mot, omega_1, omega_2 and T_load as the file writes them.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Measurement:
     columns: Mapping[str, str]
     delays: Sequence[Delay]
     warnings: Sequence[str]
+    written: Mapping[str, Written]
 
 
 def read_measurement(
@@ -121,12 +124,34 @@ def read_measurement(
         {quantity: heading for quantity, heading in headings.items() if heading},
         estimated(interval, signals),
         [f"{path}, {said}" for channel in judged if channel.quantity in (BASE, *loads) and (said := clipping(channel))],
+        _written(channels, wheels, loads, i, r),
     )
 
 
 def _present(recording: Channels, forms: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
     """The first form in which the file has it; none."""
     return next((form for form in forms if all(recording.has(quantity) for quantity in form)), ())
+
+
+def _written(
+    channels: Mapping[str, Channel], wheels: Sequence[str], loads: Sequence[str], i: float, r: float
+) -> dict[str, Written]:
+    """What is on the motor side in the recording is in the file where it was measured."""
+    found = {quantity: channels[quantity].written for quantity in ("T_mot", BASE)}
+    wheel = channels[wheels[0]]
+    if wheels == ("omega_2",):
+        found["omega_2"] = wheel.written._replace(side="motor side")
+    elif wheel.unit == "m/s":
+        found["omega_2"] = Written(wheel.written.unit, wheel.written.factor * i / r, "over ground")
+    else:
+        found["omega_2"] = Written(wheel.written.unit, wheel.written.factor * i, "wheel side")
+    if loads:
+        load = channels[loads[0]].written
+        at_motor = loads == ("T_load",)
+        found["T_load"] = load._replace(
+            factor=load.factor if at_motor else load.factor / i, side="motor side" if at_motor else "wheel side"
+        )
+    return found
 
 
 def _wheel_speed(

@@ -1,6 +1,8 @@
-"""Figure of a recorded drive: the speed against the recorded one, the gear torque, a close-up for each controller."""
+"""Figure of a recorded drive: the speed against the recorded one, how far the gear torque swings, a close-up for each
+controller; in the units of the recording."""
 
 from collections.abc import Mapping
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -9,15 +11,43 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..metrics.declaration import Absent
 from ..metrics.oscillation import amplitude
-from .figures import BLACK, BLUE, GREY, STYLE, VERMILION, legend, save, titled
+from ..metrics.spectrum import band_rms
+from ..recordings.written import Written
+from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from .figures import STYLE, legend, save, titled
+from .lines import DASH_DOT, DASHED, DOTTED, SOLID, Dashes, Line, Panel, column, draw, envelope_of, interval
+from .look import PLAIN, Look
+from .marks import shade_gap
 
 HEIGHT = 2.3
 """Of a row of axes, in inches."""
 
+SI = {"v": Written("m/s"), "T_mot": Written("N.m")}
+
+How = tuple[str, Dashes, float]
+"""Colour, dashes and width."""
+
+UNDAMPED: How = (ORANGE, SOLID, 1.8)
+OTHERS: tuple[How, ...] = (
+    (BLUE, SOLID, 0.9),
+    (VERMILION, DASHED, 0.9),
+    (BLACK, DASH_DOT, 0.9),
+    (GREEN, DOTTED, 1.2),
+    (PURPLE, (0.0, (8.0, 2.0)), 0.9),
+    (GREY, (0.0, (2.0, 2.0)), 1.2),
+)
+"""The controllers, in turn."""
+
 
 def plot_replay(
-    runs: Mapping[str, np.ndarray], recorded: tuple[np.ndarray, np.ndarray], title: str, stem: Path, caption: str = ""
+    runs: Mapping[str, np.ndarray],
+    recorded: tuple[np.ndarray, np.ndarray],
+    title: str,
+    stem: Path,
+    look: Look = PLAIN,
+    written: Mapping[str, Written] | None = None,
 ) -> list[Path]:
     """Draws the rides of a recorded drive.
 
@@ -27,43 +57,71 @@ def plot_replay(
         recorded: time in s and speed in m/s of the recording.
         title: of the figure.
         stem: path of the files without their ending.
-        caption: what was set, in small below.
+        written: `v` and `T_mot` as the recording writes them; None: in SI units.
 
     Returns:
         The files written.
     """
     undamped, *others = runs
-    first = others[0]
-    t, window = runs[undamped]["time"], _roughest(runs[undamped])
+    t = runs[undamped]["time"]
+    v, torque = (written or SI)["v"], (written or SI)["T_mot"]
+    window = look.shown(float(t[0]), float(t[-1]))
+    closer = window if look.window else _roughest(runs[undamped])
+    looks = {undamped: UNDAMPED} | dict(zip(others, cycle(OTHERS), strict=False))
+    factor = 1.0 / torque.factor
+    T_gear, T_driver = column("plant.T_gear", factor), column("controller.T_driver", factor)
+    swings = envelope_of("plant.T_gear", factor)
     with style.context(STYLE):
         size = (7.2, HEIGHT * (2 + len(others)) + 0.5)
         figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(h_pad=0.11))
-        speed, torque, *close = figure.subplots(2 + len(others), 1)
-        titled(figure, title, caption)
-        speed.plot(*recorded, color=GREY, lw=2.5, label="recorded")
-        speed.plot(t, runs[first]["plant.v"], color=BLUE, label=f"simulated, {first}", rasterized=True)
-        speed.set(ylabel="speed in m/s", xlim=(t[0], t[-1]))
-        _torques(torque, runs, (undamped, first), (t[0], t[-1]))
+        speed, swing, *close = rows = figure.subplots(2 + len(others), 1)
+        titled(figure, title, look.caption)
+        _speeds(speed, runs[others[0]], recorded, f"simulated, {others[0]}", v, window)
+        for name, run in runs.items():
+            _line(swing, Line(swings, _with_rms(name, run, torque), *looks[name]), run, window)
+        swing.set(ylabel=f"gear torque, 5-50 Hz\nenvelope {torque}", xlim=window)
+        swing.set_ylim(bottom=0.0)
         for axes, name in zip(close, others, strict=True):
-            shown = _torques(axes, runs, (undamped, name), window)
-            demand = runs[undamped]["controller.T_driver"]
-            axes.plot(t[shown], demand[shown], color=BLACK, ls="--", lw=0.8, label="demand")
+            for each in (undamped, name):
+                _line(axes, Line(T_gear, each, *looks[each]), runs[each], closer)
+            _line(axes, Line(T_driver, "demand", BLACK, DOTTED, 1.1), runs[name], closer)
+            shade_gap([axes], runs[name], closer, axes)
+            axes.set(ylabel=f"gear torque\n{torque}", xlim=closer)
+        for axes in rows:
+            legend(axes, 2 if axes is swing else 5)
+            for line in axes.lines:
+                line.set_rasterized(True)  # of half an hour
         close[-1].set_xlabel("time in s")
-        for axes in (speed, torque, *close):
-            legend(axes)
-        return save(figure, stem)
+        figure.align_ylabels()
+        return save(figure, stem, look.kinds)
 
 
-def _torques(
-    axes: Axes, runs: Mapping[str, np.ndarray], names: tuple[str, str], window: tuple[float, float]
-) -> np.ndarray:
-    """Draws the gear torque of two rides within a window; which samples are in it."""
-    t = runs[names[0]]["time"]
-    shown = (t >= window[0]) & (t <= window[1])
-    for name, color in zip(names, (VERMILION, BLUE), strict=True):
-        axes.plot(t[shown], runs[name]["plant.T_gear"][shown], color=color, label=name, rasterized=True)
-    axes.set(ylabel="gear torque in N·m", xlim=window)
-    return shown
+def _speeds(
+    axes: Axes,
+    run: np.ndarray,
+    recorded: tuple[np.ndarray, np.ndarray],
+    label: str,
+    v: Written,
+    window: tuple[float, float],
+) -> None:
+    times, speeds = recorded
+    at = (times >= window[0]) & (times <= window[1])
+    axes.plot(times[at], speeds[at] / v.factor, color=GREY, lw=2.5, label="recorded")
+    _line(axes, Line(column("plant.v", 1.0 / v.factor), label, BLUE), run, window)
+    axes.set(ylabel=f"speed {v}", xlim=window)
+
+
+def _line(axes: Axes, line: Line, run: np.ndarray, window: tuple[float, float]) -> None:
+    draw(axes, Panel("", (line,)), run, window)
+
+
+def _with_rms(name: str, run: np.ndarray, unit: Written) -> str:
+    """The name of a ride and the rms of its gear torque from 5 to 50 Hz."""
+    try:
+        rms = band_rms(run["plant.T_gear"], interval(run))
+    except Absent:
+        return name
+    return f"{name}, rms {rms / unit.factor:.3g} {unit.printed}"
 
 
 def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:

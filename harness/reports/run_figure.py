@@ -7,60 +7,80 @@ from matplotlib import style
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .figures import BLACK, BLUE, GREEN, GREY, STYLE, VERMILION, Line, Panel, draw, legend, save, titled
-
-DEMAND = Line("controller.T_driver", r"$T_{driver}$, demand", BLACK, "--", 0.8)
+from ..manoeuvres.manoeuvre import Manoeuvre
+from .colours import BLACK, GREEN, GREY
+from .figures import STYLE, legend, save, titled
+from .lines import (
+    ACCELERATION,
+    DASH_DOT,
+    GEAR_TORQUE,
+    JERK_PANEL,
+    KMH,
+    MOTOR_TORQUE,
+    SPEED_LABEL,
+    SPEEDS,
+    Line,
+    Panel,
+    column,
+    draw,
+    envelope_of,
+)
+from .look import PLAIN, Look
+from .marks import make_room, mark_step, metrics_of, note, said, shade_gap
 
 PANELS = (
+    GEAR_TORQUE,
+    MOTOR_TORQUE,
     Panel(
-        "speed\nin rad/s",
-        (
-            Line("can.omega_2_can", r"$\omega_2$ over CAN", GREEN, "-", 0.8),
-            Line("plant.omega_2", r"$\omega_2$, wheels", GREY, "-", 1.4),
-            Line("plant.omega_1", r"$\omega_1$, motor", BLACK),
-        ),
+        SPEED_LABEL,
+        (Line(column("can.omega_2_can"), r"$i\,\omega_{wheel}$ over CAN", GREEN, DASH_DOT, 0.8), *SPEEDS),
     ),
     Panel(
-        "gear torque\nin N·m",
+        "its envelope,\n5-50 Hz, in rad/s",
         (
-            Line("plant.T_gear", r"$T_{gear}$", VERMILION, "-", 1.4),
-            Line("controller.T_gear_hat", r"$\hat T_{gear}$, estimate", BLUE, "-", 0.8),
-            DEMAND,
+            Line(envelope_of("plant.omega_2"), r"$i\,\omega_{wheel}$, wheels", GREY, width=1.8),
+            Line(envelope_of("plant.omega_1"), r"$\omega_1$, motor", BLACK, width=0.9),
         ),
     ),
-    Panel(
-        "motor torque\nin N·m",
-        (
-            Line("motor.T_mot", r"$T_{mot}$, motor", GREY, "-", 1.4),
-            Line("controller.T_ref", r"$T_{ref}$, to the motor", BLUE, "-", 0.8),
-            DEMAND,
-        ),
-    ),
-    Panel("acceleration\nin m/s²", (Line("plant.a_body", "$a$, body", BLACK),)),
-    Panel("speed of the\nvehicle in m/s", (Line("plant.v", "$v$, vehicle", BLACK),)),
+    ACCELERATION,
+    JERK_PANEL,
+    Panel("speed of the\nvehicle in km/h", (Line(column("plant.v", KMH), "$v$, vehicle", BLACK),)),
 )
 
+HEIGHT = 1.35
+"""Of a row, in inches."""
 
-def plot_run(results: np.ndarray, title: str, stem: Path, caption: str = "") -> list[Path]:
+
+def plot_run(results: np.ndarray, manoeuvre: Manoeuvre, title: str, stem: Path, look: Look = PLAIN) -> list[Path]:
     """Draws one run of the loop.
 
     Args:
         results: of `harness.simulate.simulate`.
+        manoeuvre: that it is of.
         stem: path of the files without their ending.
-        caption: what was set, in small below.
 
     Returns:
         The files written.
     """
+    window = look.shown(float(results["time"][0]), float(results["time"][-1]))
+    metrics = metrics_of(results, manoeuvre)
     with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 8.4), layout=ConstrainedLayoutEngine(h_pad=0.12))
+        figure = Figure(figsize=(7.2, HEIGHT * len(PANELS) + 0.8), layout=ConstrainedLayoutEngine(h_pad=0.12))
         rows = figure.subplots(len(PANELS), 1, sharex=True)
-        titled(figure, title, caption)
+        titled(figure, title, look.caption)
         for axes, panel in zip(rows, PANELS, strict=True):
-            draw(axes, panel, results, np.full(len(results), True))
+            draw(axes, panel, results, window)
             axes.set_ylabel(panel.label)
+        torque, _, speeds, envelopes, _, jerk, _ = rows
+        mark_step(torque, results, manoeuvre, metrics, window)
+        shade_gap(rows, results, window, speeds)
+        for axes, names in ((torque, ("overshoot", "settling_time", "gear_torque_rms")), (jerk, ("jerk_rms",))):
+            note(axes, said(metrics, *names))
+            make_room(axes, 1)
+        envelopes.set_ylim(bottom=0.0)
+        for axes, panel in zip(rows, PANELS, strict=True):
             if len(panel.lines) > 1:
                 legend(axes)
-        rows[-1].set(xlabel="time in s", xlim=(results["time"][0], results["time"][-1]))
+        rows[-1].set(xlabel="time in s", xlim=window)
         figure.align_ylabels()
-        return save(figure, stem)
+        return save(figure, stem, look.kinds)

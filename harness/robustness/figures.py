@@ -12,7 +12,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ..manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from ..reports.colours import COLOURS
-from ..reports.figures import STYLE, plot_step, save, titled
+from ..reports.figures import STYLE, save, titled
+from ..reports.look import Look
+from ..reports.step_figure import plot_step
 from .bench import Bench
 from .draws import draw
 from .outcome import SHOWN, Case
@@ -72,4 +74,5 @@ def plot_draw(bench: Bench, case: Case, caption: str, stem: Path) -> list[Path]:
     """Runs a case again, without damping and with it, and draws both; returns the files."""
     runs = [bench.results(case, control) for control in (False, True)]
     said = f"draw {draw(case.number, bench.seed)}; {case.controller}"
-    return plot_step(runs, CATALOGUE[case.manoeuvre], case.plant, stem, "\n".join(filter(None, (said, caption))))
+    look = Look("\n".join(filter(None, (said, caption))))
+    return plot_step(runs, CATALOGUE[case.manoeuvre], case.plant, stem, look)

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..metrics.evaluate import T_S
-from ..reports.figures import BLACK, BLUE, STYLE, VERMILION, legend, save, titled
+from ..reports.colours import BLACK, BLUE, VERMILION
+from ..reports.figures import STYLE, legend, save, titled
 from .comparison import Comparison
 
 SHOWN = ("tipin15r", "drive", "launch_brake")

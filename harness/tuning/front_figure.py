@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from ..reports.figures import BLACK, BLUE, GREY, STYLE, VERMILION, save, titled
+from ..reports.colours import BLACK, BLUE, GREY, VERMILION
+from ..reports.figures import STYLE, save, titled
 from .search import Evaluated, best, front
 from .space import Space
 

@@ -185,6 +185,27 @@ def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):
     }
 
 
+def test_the_kind_of_the_figure_and_what_it_shows_are_chosen(simulate):
+    (code, out, _), folder = simulate("--step", "0.002", "--plot", "--window", "0.9,1.4", "--figures", "svg")
+    assert code == 0
+    assert "tipin15_on.svg" in out
+    assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".svg"}
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--window", "1,2"), "--window is for the figure; ask for it with --plot"),
+        (("--figures", "svg"), "--figures is for the figure; ask for it with --plot"),
+        (("--plot", "--window", "7,8"), "--window 7,8: tipin15 is from 0 to 6 s"),
+    ],
+)
+def test_a_figure_that_cannot_be_is_refused_before_the_run(simulate, options, said):
+    (code, _, err), folder = simulate(*options)
+    assert (code, err) == (2, f"driveline simulate: {said}\n")
+    assert not folder.exists()
+
+
 def test_an_fmu_of_somebody_else_takes_its_place_under_its_own_names(simulate, tmp_path):
     car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0), v=("speed", "km/h", 1 / 3.6))
     renamed = ("--map", "plant.T_gear=Shaft.tau", "--map", "plant.v=speed")

@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from argparse import ArgumentTypeError
+from argparse import ArgumentTypeError, Namespace
 from shutil import copytree, ignore_patterns
 
 import pytest
@@ -12,8 +12,10 @@ from fmus.catalogue import FMUS
 from fmus.options import file as a_file
 from fmus.options import folder, output_folder
 from fmus.parameter_files import seeds
-from harness.commands.options import assignment, megabytes, seconds, seed
+from harness.commands.options import assignment, look, megabytes, seconds, seed, window
 from harness.control_loop import BUILD
+from harness.errors import DrivelineError
+from harness.reports.look import Look
 from models.block.declaration import Integer, variables
 from tests import ROOT
 
@@ -44,6 +46,38 @@ def test_what_is_no_assignment_is_answered_with_one(text):
 def test_a_parameter_is_finite(value):
     with pytest.raises(ArgumentTypeError, match="finite"):
         assignment(f"plant.m={value}")
+
+
+@pytest.mark.parametrize(
+    ("text", "times"),
+    [("1,2.5", (1.0, 2.5)), (" 0.9 , 1e1 ", (0.9, 10.0)), ("-1,1", (-1.0, 1.0)), ("1,1.01", (1, 1.01))],
+)
+def test_a_window_is_from_one_time_to_a_later_one(text, times):
+    assert window(text) == times
+
+
+@pytest.mark.parametrize(
+    "text", ["", "1", "1,", ",1", "2,1", "1,1", "1,1.009", "1,2,3", "a,b", "nan,2", "1,inf", "1;2"]
+)
+def test_what_is_no_window_is_answered_with_one(text):
+    with pytest.raises(ArgumentTypeError, match=r"is not of the form 1\.0,2\.5"):
+        window(text)
+
+
+def test_a_window_shows_something_of_every_run():
+    def asked(start, end):
+        return look(Namespace(window=(start, end), figures=None), "", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0))
+
+    assert asked(5.99, 9.0).shown(0.0, 6.0) == (5.99, 6.0)
+    assert asked(-1.0, 0.1).shown(0.0, 6.0) == (0.0, 0.1)
+    for start, end in ((6.0, 9.0), (-1.0, 0.0), (30.0, 40.0)):
+        with pytest.raises(DrivelineError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
+            asked(start, end)
+
+
+def test_figures_are_of_the_kinds_that_are_asked_for_each_once():
+    assert look(Namespace(window=None, figures=["svg", "png", "svg"]), "said") == Look("said", None, ("svg", "png"))
+    assert look(Namespace(window=None, figures=None), "") == Look("", None, ("png", "pdf"))
 
 
 def test_a_seed_is_what_the_blocks_declare():

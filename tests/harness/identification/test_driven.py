@@ -20,7 +20,7 @@ def recording(
     time: np.ndarray = TIME, T_ref: np.ndarray | None = None, T_load: np.ndarray | None = None
 ) -> Measurement:
     T_mot, omega = 10.0 + np.sin(20.0 * time), 130.0 + np.cos(9.0 * time)
-    return Measurement("drive", time, T_mot, omega, omega, None, None, T_load, T_ref, {}, (), ())
+    return Measurement("drive", time, T_mot, omega, omega, None, None, T_load, T_ref, {}, (), (), {})
 
 
 def test_the_parts_of_a_cubic_are_exact() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from harness.identification import cost, response_band
 from harness.identification.certainty_figures import INSIDE, plot_cost, plot_response
@@ -22,10 +23,18 @@ from harness.identification.response import Tyre, response
 from harness.identification.simulation import Simulator
 from harness.manoeuvres.prbs import shift_register
 from harness.recordings.measurement import Measurement
+from harness.recordings.written import Written
+from harness.reports.look import Look
 
 CAR = Parameters(J_1=0.055, J_2=0.3, C=117.4, d=0.3, phi_B=0.157)
 T_S, COUNT, SIGMA, SIGMA_LOAD = 0.002, 1500, 0.15, 0.5
 FREE = ("J_2", "C", "phi_B", "d")
+WRITTEN = {
+    "T_mot": Written("kNm", 1e3),
+    "omega_1": Written("rpm", np.pi / 30.0),
+    "omega_2": Written("km/h", 9.0, "over ground"),
+    "T_load": Written("Nm", 0.1, "wheel side"),
+}
 
 
 @cache
@@ -61,12 +70,14 @@ def recording() -> Measurement:
     drive, states = truth()
     time = 100.0 + T_S * np.arange(COUNT + 1)
     T_mot, T_load = np.append(drive.T_mot[:, 0], drive.T_mot[-1, 0]), np.full(COUNT + 1, -10.0)
-    return Measurement("drive", time, T_mot, drive.omega_1, states[:, 1], time < 102.0, None, T_load, None, {}, (), ())
+    return Measurement(
+        "drive", time, T_mot, drive.omega_1, states[:, 1], time < 102.0, None, T_load, None, {}, (), (), WRITTEN
+    )
 
 
 def test_free_runs_of_the_true_model_are_the_truth() -> None:
     drive, states = truth()
-    runs = free_runs(replace(answer(), p=CAR), recording(), 2.0)
+    runs = free_runs(replace(answer(), p=CAR), recording(), (101.0, 103.0))
     between = np.isnan(runs.time)
     assert between.sum() == 4
     assert np.isnan(runs.T_gear[between]).all()
@@ -122,13 +133,46 @@ def test_without_a_gap_the_recording_answers_as_the_model() -> None:
     assert np.degrees(np.angle(off)) == pytest.approx(np.zeros(at.sum()), abs=3.0)
 
 
+def test_the_figure_is_in_the_units_of_the_file_and_shows_the_window(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    figures: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: (figures.append(figure), path.touch()))
+    plot_simulation(answer(), recording(), tmp_path / "run", Look("", (101.1, 101.9), ("png",)))
+    (figure,) = figures
+    assert [axes.get_ylabel().replace("\n", " ") for axes in figure.axes] == [
+        "motor speed in rpm",
+        "difference in rpm",
+        "wheel speed in km/h, over ground",
+        "torque in kNm",
+        "load torque in Nm, wheel side",
+    ]
+    assert all(axes.get_xlim() == (101.1, 101.9) for axes in figure.axes)
+    speed, _, wheels, torque, load = (np.asarray(axes.lines[0].get_ydata()) for axes in figure.axes)
+    at = (recording().time >= 101.1) & (recording().time <= 101.9)
+    assert speed == pytest.approx(recording().omega_1[at] * 30.0 / np.pi)
+    assert wheels == pytest.approx(recording().omega_2[at] / 9.0)
+    assert torque == pytest.approx(1e-3 * recording().T_mot[at])
+    assert load == pytest.approx(100.0)
+    simulated = figure.axes[0].lines[1]
+    assert np.nanmax(np.asarray(simulated.get_xdata())) == pytest.approx(101.9, abs=T_S)
+    assert np.nanmin(np.asarray(simulated.get_xdata())) == pytest.approx(101.1, abs=2.0 * T_S)
+
+
+@pytest.mark.parametrize("window", [(100.0, 100.1), (102.95, 103.0), (99.0, 104.0)])
+def test_free_runs_of_any_window_are_within_the_recording(window: tuple[float, float]) -> None:
+    runs = free_runs(answer(), recording(), window)
+    assert np.nanmin(runs.time) >= recording().time[0]
+    assert np.nanmax(runs.time) <= recording().time[-1]
+
+
 Plot = Callable[[Identified, Measurement, Path], list[Path]]
 
 PLOTS: dict[str, Plot] = {
-    "simulation": lambda one, of, stem: plot_simulation(one, of, stem, "a caption"),
-    "innovations": lambda one, _, stem: plot_innovations(one, stem, "a caption"),
-    "cost": lambda one, _, stem: plot_cost(replace(one, drive=one.drive.between(0, 300)), stem, "a caption"),
-    "response": lambda one, _, stem: plot_response(one, stem, "a caption"),
+    "simulation": lambda one, of, stem: plot_simulation(one, of, stem, Look("a caption")),
+    "innovations": lambda one, _, stem: plot_innovations(one, stem, Look("a caption")),
+    "cost": lambda one, _, stem: plot_cost(replace(one, drive=one.drive.between(0, 300)), stem, Look("a caption")),
+    "response": lambda one, _, stem: plot_response(one, stem, Look("a caption")),
 }
 
 

@@ -48,6 +48,14 @@ def test_columns_are_found_by_name_and_turned_into_si_units(write):
     assert recording.T_mot.tolist() == [20.0, 30.0]
 
 
+def test_it_is_known_how_the_file_writes_speed_and_torque(write):
+    path = write("0,36,1", "1,36,2", header="Time [s],Velocity [km/h],M [kNm]")
+    written = read_drive(path, {"T_mot": "-M"}).written
+    assert {name: str(each) for name, each in written.items()} == {"v": "in km/h", "T_mot": "in kNm"}
+    assert written["v"].factor == pytest.approx(1.0 / 3.6)
+    assert written["T_mot"].factor == 1e3, "a sign that was turned is no unit"
+
+
 def test_kilometres_per_hour_and_newton_metres(write):
     recording = read_drive(write(*rows(3), ""))
     assert recording.v == pytest.approx([10.0, 10.0, 10.0])

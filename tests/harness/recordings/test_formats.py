@@ -18,7 +18,7 @@ DRIVE = recording()
 def as_read(drive: Written) -> Drive:
     """What reading must give."""
     time, v, elevation, T_mot = (values for values, _ in drive.values())
-    return Drive("drive", time, v / 3.6, elevation, T_mot)
+    return Drive("drive", time, v / 3.6, elevation, T_mot, {})
 
 
 def require_same(found: Drive, expected: Drive) -> None:

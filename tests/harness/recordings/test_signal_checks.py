@@ -9,6 +9,7 @@ from harness.recordings.channels import Channel
 from harness.recordings.quantities import QUANTITIES
 from harness.recordings.signal_checks import CLIPPED, SHORTEST, check_signal
 from harness.recordings.source import RecordingError
+from harness.recordings.written import Written
 
 from .car import drive
 from .conftest import Read
@@ -48,7 +49,7 @@ def test_a_channel_that_hardly_varies(name: str) -> None:
 
     def channel(swing: float) -> Channel:
         values = 100.0 + swing * (wave - wave.min()) / np.ptp(wave)
-        return Channel(name, name, QUANTITIES[name].unit, drive()["time"], values, str)
+        return Channel(name, name, QUANTITIES[name].unit, drive()["time"], values, str, Written("N.m"))
 
     check_signal(Path("measured.csv"), channel(least + 1e-6))
     with pytest.raises(RecordingError, match=rf"{name} varies by .*; more than {least:g} .* are needed"):

@@ -1,27 +1,19 @@
-"""The table of the main job, and the figures."""
+"""The table of the main job, and the files."""
 
 import csv
 import io
 import math
 import os
-import re
 from errno import ENOSPC
 from pathlib import Path
 
-import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from rich.console import Console
 
-from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.declaration import declared
 from harness.metrics.record import Metrics, RideMetrics
 from harness.plain import reason
-from harness.reports.figures import plot_drive, plot_step, titled
 from harness.reports.files import complete, remove, write_text
-from harness.reports.replay_figure import plot_replay
 from harness.reports.table import SHOWN, Row, cells, legend, reasons, values, write_markdown, write_metrics
 from harness.reports.terminal import rides_reasons, rides_table, runs_table
 
@@ -203,58 +195,6 @@ def test_only_files_are_removed_before_new_ones_come(tmp_path):
     assert not file.exists()
     assert {path.name for path in tmp_path.iterdir()} == {"link", "pipe", "null"}
     assert Path(os.devnull).exists()
-
-
-@pytest.fixture(scope="module")
-def results():
-    """Signals of two seconds that look like a step."""
-    t = np.arange(2001) * 1e-3
-    names = (
-        "time", "controller.T_driver", "controller.T_ref", "controller.T_damp", "controller.T_gear_hat",
-        "motor.T_mot", "plant.T_gear", "plant.T_rim", "plant.omega_1", "plant.omega_2",
-        "plant.omega_wheel_L", "plant.omega_wheel_R", "plant.v",
-    )  # fmt: skip
-    results = np.zeros(len(t), dtype=[(name, float) for name in names])
-    results["time"] = t
-    results["plant.T_gear"] = np.where(t < 1.0, 0.0, 50.0 + 50.0 * np.exp(-t) * np.sin(50.0 * t))
-    results["plant.omega_2"] = 90.0
-    results["plant.omega_wheel_L"] = results["plant.omega_wheel_R"] = 10.0
-    return results
-
-
-@pytest.mark.parametrize(("plot", "name"), [(plot_drive, "drive"), (plot_step, "tipin15")])
-def test_the_same_runs_give_the_same_figures(plot, name, results, tmp_path):
-    files = [plot([results, results], MANOEUVRES[name], "Plant", tmp_path / part / "run") for part in "ab"]
-    for first, second in zip(*files, strict=True):
-        assert first.read_bytes() == second.read_bytes()
-    assert {file.suffix for file in files[0]} == {".png", ".pdf"}
-    fonts = re.findall(rb"/Subtype\s*/(Type3|TrueType|Type0|Type1)\b", files[0][1].read_bytes())
-    assert set(fonts) == {b"Type0"}, "TrueType, as publishers want it"
-
-
-def test_what_another_controller_does_not_show_is_not_drawn(results, tmp_path):
-    shown = [name for name in results.dtype.names if name not in ("controller.T_gear_hat", "controller.T_damp")]
-    files = plot_step([results[shown]] * 2, MANOEUVRES["tipin15"], "Plant", tmp_path / "run")
-    assert all(file.stat().st_size > 0 for file in files)
-
-
-@pytest.mark.parametrize("size", [8.5, 10.0])
-def test_titles_and_captions_are_not_cut(size):
-    title = "ValidationVehicle, stand on a 10 % grade under the brakes, then pull away uphill, damping on" * 2
-    figure = Figure(figsize=(7.2, 4.0), layout=ConstrainedLayoutEngine())
-    figure.subplots()
-    titled(figure, title, "--set plant.phi_B=0.03 --vehicle 'my $cars$/van.toml' " * 4, size)
-    FigureCanvasAgg(figure).draw()
-    assert len(figure.texts) == 2
-    for text in figure.texts:
-        box = text.get_window_extent()
-        assert 0.0 < box.x0 < box.x1 < figure.bbox.width
-        assert 0.0 < box.y0 < box.y1 < figure.bbox.height
-
-
-def test_a_replay_shorter_than_the_close_up_is_drawn(results, tmp_path):
-    recorded, rides = (np.array([0.0, 2.0]), np.array([1.0, 2.0])), {"none": results, "a": results, "b": results}
-    assert all(file.exists() for file in plot_replay(rides, recorded, "drive", tmp_path / "run"))
 
 
 def test_a_folder_is_not_written_to_as_a_file(tmp_path):

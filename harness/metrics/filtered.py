@@ -1,0 +1,38 @@
+"""Signals within a band of frequencies, over time.
+
+Filters are of Butterworth, of order 4, run forwards and backwards, so that nothing is shifted.
+"""
+
+import numpy as np
+
+from .oscillation import SPAN
+from .spectrum import DRIVE_TRAIN, TO_50_HZ
+
+HIGHEST = 0.9
+"""Of half the sampling rate: the highest corner of a filter."""
+
+
+def band_part(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN) -> np.ndarray:
+    """The part of x (N samples, T_s apart) within a band in Hz that begins at 0 or above; NaN if the samples are too
+    far apart to have any of it."""
+    from scipy.signal import butter, sosfiltfilt  # takes longer to load than many a run does
+
+    low, high = band[0], min(band[1], HIGHEST / (2.0 * T_s))
+    if low >= high:
+        return np.full(len(x), np.nan)
+    kind, corners = ("bandpass", (low, high)) if low else ("lowpass", high)
+    sos = butter(4, corners, kind, fs=1.0 / T_s, output="sos")
+    return np.asarray(sosfiltfilt(sos, x, padlen=min(round(SPAN / T_s), len(x) - 1)))
+
+
+def envelope(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN) -> np.ndarray:
+    """The part of x within a band never exceeds it in magnitude: the largest within 0.2 s, averaged over 0.2 s."""
+    from scipy.ndimage import maximum_filter1d, uniform_filter1d
+
+    width = 2 * round(0.5 * SPAN / T_s) + 1
+    return uniform_filter1d(maximum_filter1d(np.abs(band_part(x, T_s, band)), width), width)
+
+
+def derivative(x: np.ndarray, T_s: float, band: tuple[float, float] = TO_50_HZ) -> np.ndarray:
+    """dx/dt of the part of x within a band."""
+    return np.gradient(band_part(x, T_s, band), T_s)
