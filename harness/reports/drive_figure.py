@@ -17,7 +17,7 @@ from .colours import BLACK, BLUE, ORANGE, VERMILION
 from .figures import STYLE, legend, save, titled
 from .lines import DASHED, DEMAND, T_GEAR, T_RIM, WHEEL, Line, Panel, column, draw, envelope_of, interval, within
 from .look import PLAIN, Look
-from .marks import make_room, metrics_of, note, said, shade_gap
+from .marks import metrics_of, said, shade_gap
 from .step_figure import HEIGHT, TITLES
 
 T_MOT = Line(column("motor.T_mot"), r"$T_{mot}$, motor", BLUE, DASHED, 0.9)
@@ -56,15 +56,12 @@ def plot_drive(
         _row_by_row(whole, PANELS, runs, window)
         for axes, heading in zip(whole[0], TITLES, strict=True):
             axes.set_title(heading)
-        for axes, of in zip(torque, metrics, strict=True):
-            note(axes, said(of, "gear_torque_rms"))
         for axes in whole[:-1].flat:
             axes.tick_params(labelbottom=False)
         if closer:
             _row_by_row(grid[len(PANELS) : -1], [CLOSE_UP], runs, closer)
             for axes in torque:
                 axes.axvspan(*closer, fill=False, ec="0.3", lw=0.8, ls="--")
-        make_room(torque[0], 1)
         for row in grid[len(PANELS) - 1 : -1]:
             legend(row[0])
         figure.align_ylabels()
