@@ -4,6 +4,7 @@ The contenders take turns in processes of their own; the least of all turns is s
 """
 
 import argparse
+import os
 import subprocess
 import sys
 from collections import defaultdict
@@ -18,6 +19,8 @@ from harness.stopping import script
 CONTENDERS: dict[str, tuple[str, ...]] = {
     "python": ("-c", "pass"),
     "python, import numpy": ("-c", "import numpy"),
+    "python, import numpy, scipy": ("-c", "import numpy, scipy"),
+    "python, import numpy, scipy.signal": ("-c", "import numpy, scipy.signal"),
     "python, import fmpy": ("-c", "import fmpy"),
     "driveline --help": ("-m", "harness", "--help"),
     "driveline simulate --help": ("-m", "harness", "simulate", "--help"),
@@ -27,10 +30,15 @@ CONTENDERS: dict[str, tuple[str, ...]] = {
 }
 
 
+def environment() -> dict[str, str]:
+    """What users have: compiled modules are kept, and output comes as Python gives it."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+
+
 def seconds(arguments: tuple[str, ...], folder: str) -> float:
     """Time that Python takes with these arguments, in a folder."""
     began = perf_counter()
-    subprocess.run([sys.executable, *arguments], cwd=folder, capture_output=True, check=False)
+    subprocess.run([sys.executable, *arguments], cwd=folder, env=environment(), capture_output=True, check=False)
     return perf_counter() - began
 
 

@@ -89,12 +89,12 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
         NotPossible: there is something to build, and it is not possible here.
         BuildError: start values that one was built with are refused by what it is now.
     """
-    from .catalogue import EVERY
-
     where = folder / NATIVE_FOLDER if build == "native" else folder
     made = []
     for name in names:
         if is_stale(path := where / f"{name}.fmu"):
+            from .catalogue import EVERY  # what is up to date is found to be so without
+
             origin = origin_of(path)
             platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
             fmu = _as_built(EVERY[name], origin.start_values, path) if origin else EVERY[name]

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from errno import ENOSPC
 from importlib import import_module
+from io import TextIOWrapper
 from types import ModuleType
 from typing import NoReturn
 
@@ -18,6 +19,7 @@ from .names import nearest
 from .plain import plain, reason
 from .progress import hidden
 from .stopping import forget_stdout, reopen_closed_streams, stoppable
+from .waiting import waiting
 
 COMMANDS = {
     "build": "build the FMUs",
@@ -149,18 +151,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     name = "driveline"
     reopen_closed_streams()
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(line_buffering=True)  # who reads a pipe need not wait for the end either
     try:
         with stoppable():
             try:
                 args = parser().parse_args(arguments)
                 name = f"driveline {args.command}"
-                with hidden(getattr(args, "quiet", False) or getattr(args, "json", False)):
+                silent = getattr(args, "quiet", False) or getattr(args, "json", False)
+                with hidden(silent), waiting(name, wanted=not silent):
                     return command(args.command).run(args)
             finally:
                 sys.stdout.flush()
-    except BrokenPipeError:
+    except BrokenPipeError as gone:
         forget_stdout()  # the reader has gone
-        return 1
+        return int(gone.__context__.code or 0) if isinstance(gone.__context__, SystemExit) else 1
     except DrivelineError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return error.exit_code

@@ -1,12 +1,12 @@
 """`driveline explore`: knobs to turn in a browser."""
 
 import argparse
-import sys
 from argparse import ArgumentTypeError
 from pathlib import Path
 
 from ..control_loop import PLACES, PLANTS
 from ..html.page import require_drawing
+from ..waiting import no_longer_waiting
 from .options import add_loop, add_output, add_plant, add_printing, assignment, count
 from .printing import Printer
 from .settings import settings_of_each
@@ -80,8 +80,8 @@ def run(args: argparse.Namespace) -> int:
         return [save_report(bench, answer, [args.vehicle, args.parameters], args.output)]
 
     def said(address: str) -> None:
+        no_longer_waiting()
         out.say(f"{address} (Ctrl-C ends it)")
-        sys.stdout.flush()
 
     serve(bench, {"save car and gains": files, "save report": report}, _typed, args.port, said)
     return 0

@@ -34,11 +34,19 @@ def write_csv(results: np.ndarray, path: Path, headings: Sequence[str] | None = 
     write_rows(headings or results.dtype.names or (), _rows(results), path)
 
 
-def _rows(results: np.ndarray) -> Iterator[tuple[object, ...]]:
-    """The rows with numbers of Python's, which take much more memory and so are made piece by piece."""
+def _rows(results: np.ndarray) -> Iterator[tuple[str, ...]]:
+    """The rows as texts, which take much more memory and so are made piece by piece."""
     for start in range(0, len(results), ROWS_AT_ONCE):
         piece = results[start : start + ROWS_AT_ONCE]
-        columns = (piece[name] for name in results.dtype.names or ())
-        yield from zip(
-            *((column.astype(int) if column.dtype == bool else column).tolist() for column in columns), strict=True
-        )
+        yield from zip(*(_texts(piece[name]) for name in results.dtype.names or ()), strict=True)
+
+
+def _texts(column: np.ndarray) -> list[str]:
+    """The numbers as Python writes them; one that stays is put into words once, which is what takes long."""
+    import numpy as np
+
+    column = np.ascontiguousarray(column.astype(int) if column.dtype == bool else column)
+    bits = column.view(f"u{column.itemsize}")  # by which -0.0 is not 0.0
+    begins = np.flatnonzero(np.append(True, bits[1:] != bits[:-1]))
+    texts = np.array([*map(repr, column[begins].tolist())], object)
+    return texts.repeat(np.diff(begins, append=len(column))).tolist()
