@@ -1,8 +1,8 @@
 """How long `driveline` shows nothing, on a terminal and with its output piped: `python -m benchmarks.silence`.
 
 Every command is run with its defaults or with less to do, and stopped after `--limit` seconds. Shown are the time to
-the first output and the longest time without any, also over that of `python -c "import numpy"`, which runs before each: the
-seconds are those of the machine and of what else it does.
+the first output and the longest time without any, also over that of `python -c "import numpy"`, which runs before
+each: the seconds are those of the machine and of what else it does.
 """
 
 import argparse
