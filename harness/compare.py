@@ -9,8 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from .manoeuvres.catalogue import MANOEUVRES
 from .manoeuvres.manoeuvre import Manoeuvre
 from .many import run_many
@@ -18,8 +16,9 @@ from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import Metrics
 from .names import require_different
 from .reports.look import PLAIN, Look
-from .reports.signals_file import Units, write_signals
+from .reports.signals_file import write_signals
 from .reports.table import Row, values, write_markdown, write_metrics
+from .results import Results
 from .simulate import simulate
 
 CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
@@ -56,7 +55,7 @@ class Outcome(NamedTuple):
 
     case: Case
     metrics: Metrics
-    results: np.ndarray
+    results: Results
 
     @property
     def row(self) -> Row:
@@ -91,12 +90,11 @@ def run_case(
     settings: Settings,
     manoeuvres: Manoeuvres = MANOEUVRES,
     format: str = "csv",
-    units: Mapping[str, Units] | None = None,
 ) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
     manoeuvre = manoeuvres[case.manoeuvre]
     results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings.get(case.plant, {}))
-    write_signals(at_samples(results), (units or {}).get(case.plant_name, {}), output / case.file_name, format)
+    write_signals(at_samples(results), output / case.file_name, format)
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
@@ -106,7 +104,6 @@ def run_cases(
     settings: Settings,
     manoeuvres: Manoeuvres = MANOEUVRES,
     format: str = "csv",
-    units: Mapping[str, Units] | None = None,
 ) -> list[Outcome]:
     """Runs the cases in parallel; their outcomes in the order of the cases.
 
@@ -114,9 +111,8 @@ def run_cases(
         output: folder for the files of signals.
         settings: of the runs with each plant.
         format: of those files, one of `harness.reports.signals_file.FORMATS`.
-        units: of their columns, by the names of the plants.
     """
-    one = partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres, format=format, units=units)
+    one = partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres, format=format)
     return run_many(one, todo)
 
 

@@ -12,7 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from .cosimulation.interface import unit_of
+from .cosimulation import row
 from .cosimulation.system import System
 from .cosimulation.wiring import Fit, fit
 from .errors import DrivelineError
@@ -21,7 +21,7 @@ from .reports.files import alone, remove, replaceable, write_text
 ROOT = Path(__file__).resolve().parents[1]
 
 
-class Results:
+class Made:
     """What a run writes, see `recorded`.
 
     Attributes:
@@ -74,7 +74,7 @@ def recorded(
     inputs: Sequence[Path | None],
     results: Sequence[Path] = (),
     replace: bool = False,
-) -> Iterator[Results]:
+) -> Iterator[Made]:
     """Within it a run is made and written; at its end the record tells what made the files.
 
     Args:
@@ -97,7 +97,7 @@ def recorded(
 
     require()
     with ExitStack() as kept:
-        made = Results(record, systems, require, kept)
+        made = Made(record, systems, require, kept)
         yield made
         write_record(record, run, made.fits, made.files, inputs)
 
@@ -176,19 +176,12 @@ def content(
         },
         "inputs": {str(path): digest(path) for path in inputs if path is not None},
         "files": [path.name for path in files],
-        "units": {name: unit for fit in fits.values() for name, unit in units(fit).items()},
+        "units": {name: unit for fit in fits.values() for name, unit in _units(fit).items()},
     }
 
 
-def units(fit: Fit) -> dict[str, str]:
-    """The unit of every column of the results that has one."""
-    given = {port.name for port in fit.system.inputs}
-    return {"time": "s"} | {
-        f"{instance}.{name}": unit
-        for instance, interface in fit.interfaces.items()
-        for name, variable in interface.variables.items()
-        if (variable.causality == "output" or f"{instance}.{name}" in given) and (unit := unit_of(variable))
-    }
+def _units(fit: Fit) -> dict[str, str]:
+    return row.units(fit.interfaces, [port.name for port in fit.system.inputs])
 
 
 def commit() -> str | None:

@@ -20,7 +20,7 @@ from .metrics.evaluate import at_samples, evaluate
 from .metrics.record import RideMetrics
 from .recordings.written import Written
 from .reports.look import PLAIN, Look
-from .reports.signals_file import Units, write_signals
+from .reports.signals_file import write_signals
 from .reports.table import values, write_metrics, write_rides
 from .simulate import simulate
 
@@ -174,14 +174,13 @@ def write(
     folder: Path,
     look: Look = PLAIN,
     format: str = "csv",
-    units: Units | None = None,
     written: Mapping[str, Written] | None = None,
 ) -> list[Path]:
     """Writes metrics, table, signals (every 10 ms) and the figure of a replay; returns the files.
 
     Args:
+        format: of the signals, see `harness.reports.signals_file`.
         written: see `harness.reports.replay_figure.plot_replay`.
-        format, units: of the signals, see `harness.reports.signals_file`.
     """
     from .reports.replay_figure import plot_replay  # not for the workers, which draw nothing
 
@@ -190,7 +189,7 @@ def write(
     write_rides({ride.controller: ride.metrics for ride in rides}, f"{track.name} on {plant}", files[1])
     for ride in rides:
         stem = folder / f"{track.name}_{ride.suffix}"
-        files.append(write_signals(ride.signals[::STRIDE], units or {}, stem, format))
+        files.append(write_signals(ride.signals[::STRIDE], stem, format))
     drawn = {ride.controller: ride.signals for ride in rides}
     title = f"{plant} on the recorded drive {track.name}"
     return files + plot_replay(drawn, (track.t, track.v), title, folder / track.name, look, written)

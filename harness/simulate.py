@@ -19,6 +19,7 @@ from .errors import WiringError
 from .manoeuvres.manoeuvre import Manoeuvre
 from .manoeuvres.signals import Signal
 from .metrics.evaluate import T_S
+from .results import Results
 from .stale import warn_of_stale
 from .told import warn_once
 
@@ -41,7 +42,7 @@ def simulate(
     can: NameOrFile | None = None,
     mapping: Mapping[str, str] | None = None,
     limits: Limits = USUAL,
-) -> np.ndarray:
+) -> Results:
     """Drives the closed loop through a manoeuvre.
 
     Args:
@@ -57,7 +58,7 @@ def simulate(
         limits: of FMUs that are given by their path.
 
     Returns:
-        Structured array, see `harness.cosimulation.master.Loop.run`.
+        Structured array, see `harness.cosimulation.master.Loop.run`, with the units of its columns.
 
     Raises:
         WiringError: a block, a parameter or an argument does not fit.

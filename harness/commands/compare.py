@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
     from ..compare import cases, run_cases, write_figures, write_tables
-    from ..provenance import content, recorded, units, write_record
+    from ..provenance import content, recorded, write_record
     from ..reports.signals_file import require_format, signals_path
     from ..reports.terminal import print_table, runs_table
     from ..simulate import looped
@@ -83,9 +83,8 @@ def run(args: argparse.Namespace) -> int:
     with recorded(record, same, by_name, read, [*tables, *report], args.replace) as made:
         for plant in plants:
             require_files_drivable(asked, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
-        of_columns = {plant: units(fit) for plant, fit in made.fits.items()}
         made.begin(*(path.with_suffix(".json") for path in signals.values()))
-        outcomes = run_cases(todo, args.output / "runs", given, manoeuvres, args.format, of_columns)
+        outcomes = run_cases(todo, args.output / "runs", given, manoeuvres, args.format)
         rows = [outcome.row for outcome in outcomes]
         if not out.silent:
             print_table(runs_table(rows))

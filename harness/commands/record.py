@@ -107,7 +107,7 @@ def run(args: argparse.Namespace) -> int:
     with recorded(record, same, {plant: system}, [args.vehicle, args.parameters], [recording], args.replace) as made:
         results = simulate(manoeuvre, plant=args.plant, control=args.control == "on", **given)
         made.begin()
-        write_signals(sensed(results, load.i, wheels, given["seed"]), {}, args.output / name, args.format)
+        write_signals(sensed(results, load.i, wheels, given["seed"]), args.output / name, args.format)
         made.files += [recording, *write_frames(args, results, fitted, given["parameters"], args.output / name)]
     out.say(
         f"{manoeuvre.description}, {args.duration:g} s on {plant}, {build} FMUs, damping {args.control}, "

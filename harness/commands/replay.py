@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     from ..cosimulation.wiring import fit
     from ..manoeuvres.follower import require_held
     from ..manoeuvres.road import RoadLoad, Track, torque_limit
-    from ..provenance import content, recorded, units
+    from ..provenance import content, recorded
     from ..recordings.drive import read_drive
     from ..replay import by_name, records, replay, write
     from ..reports.signals_file import require_format
@@ -114,8 +114,7 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
-        of_columns = units(made.fits[first])
-        made.files += write(rides, track, plant, args.output, wanted, args.format, of_columns, recording.written)
+        made.files += write(rides, track, plant, args.output, wanted, args.format, recording.written)
         if args.report:
             from ..html import replay as page
 

@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps
     from ..cosimulation.schedule import described, transfers
-    from ..provenance import recorded, units
+    from ..provenance import recorded
     from ..reports.signals_file import require_format, signals_path, write_signals
     from ..simulate import looped, simulate
 
@@ -115,7 +115,7 @@ def run(args: argparse.Namespace) -> int:
         if Scheme(args.scheme) is Scheme.PROPAGATED:
             out.say(described(transfers(made.fits[plant].system, made.fits[plant].interfaces)))
         made.begin()
-        write_signals(results, units(made.fits[plant]), args.output / name, args.format)
+        write_signals(results, args.output / name, args.format)
         made.files.append(signals)
         out.say(f"signals: {signals} ({len(results)} instants, {len(results.dtype.names or ())} columns)")
         for file in write_frames(args, results, made.fits[plant], given["parameters"], args.output / name):

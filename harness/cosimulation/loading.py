@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..progress import progress
+from ..results import Results
 from ..told import warn_once
 from .apart import Apart
 from .compiled import LIBRARY, CompiledSteps, why_not
@@ -39,7 +40,7 @@ class LoopApart:
         """As `Loop.reset`."""
         self._apart.ask(_reset)
 
-    def run(self, experiment: Experiment) -> np.ndarray:
+    def run(self, experiment: Experiment) -> Results:
         """As `Loop.run`.
 
         Raises:
@@ -54,7 +55,7 @@ class LoopApart:
         sent = replace(experiment, inputs=samples, parameters=dict(experiment.parameters))
         with progress(len(time) - 1, experiment.label) as done:
             rows = self._apart.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
-        return np.frombuffer(rows, layout.recorded)
+        return Results(np.frombuffer(rows, layout.recorded), layout.units)
 
 
 @contextmanager

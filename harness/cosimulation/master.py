@@ -15,6 +15,7 @@ from fmpy.fmi2 import fmi2OK, fmi2Warning
 
 from ..errors import SimulationError, WiringError
 from ..progress import chunks, progress
+from ..results import Results
 from .calls import Call
 from .experiment import Experiment
 from .instance import Instance, instantiated
@@ -62,7 +63,7 @@ class Loop:
                 instance.reset()
         self._is_new = True
 
-    def run(self, experiment: Experiment) -> np.ndarray:
+    def run(self, experiment: Experiment) -> Results:
         """Runs the FMUs from reset on, whatever the run before has done and however it has ended.
 
         Returns:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ..errors import WiringError
 from ..plain import plain
-from .interface import Interface, type_of
+from ..results import Results
+from .interface import Interface, type_of, unit_of
 
 
 def require_fit(name: str, kind: str, samples: NDArray[np.generic]) -> None:
@@ -60,6 +61,7 @@ class Layout:
         dtype: of a row, all Booleans as whole numbers.
         known: number of bytes at the beginning of a row that are known in advance.
         recorded: dtype of a row of the results, Booleans as such.
+        units: of the columns that have one.
     """
 
     def __init__(self, interfaces: Mapping[str, Interface], inputs: Collection[str]) -> None:
@@ -76,6 +78,7 @@ class Layout:
         self.dtype = np.dtype({"names": names, "formats": formats}, align=True)
         offsets = [int(field[1]) for field in (self.dtype.fields or {}).values()]
         self._offsets = dict(zip(names, offsets, strict=True))
+        self.units = units(interfaces, inputs)
         self.known = offsets[first_output] if names[first_output:] else self.dtype.itemsize
         self._types = types
         self._truths = [name for name, kind in types.items() if kind == "Boolean"]
@@ -102,11 +105,21 @@ class Layout:
             table[name] = samples
         return table
 
-    def results(self, table: np.ndarray) -> np.ndarray:
+    def results(self, table: np.ndarray) -> Results:
         """The same memory with the Booleans as such."""
         for name in self._truths:
             table[name] = table[name] != 0
-        return table.view(self.recorded)
+        return Results(table.view(self.recorded), self.units)
+
+
+def units(interfaces: Mapping[str, Interface], inputs: Collection[str]) -> dict[str, str]:
+    """The unit of every column of the results that has one."""
+    return {"time": "s"} | {
+        f"{instance}.{name}": unit
+        for instance, interface in interfaces.items()
+        for name, variable in interface.variables.items()
+        if (variable.causality == "output" or f"{instance}.{name}" in inputs) and (unit := unit_of(variable))
+    }
 
 
 def _variable(name: str, interfaces: Mapping[str, Interface]) -> ModelVariable:

@@ -5,9 +5,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import local
 
-import numpy as np
-
 from ..errors import SimulationError
+from ..results import Results
 from ..stopping import unswallowed
 from .experiment import Experiment
 from .loading import LoopApart, loaded
@@ -18,7 +17,7 @@ MOST_KEPT = 8
 """Systems that are kept loaded at a time."""
 
 
-def run(system: System, experiment: Experiment) -> np.ndarray:
+def run(system: System, experiment: Experiment) -> Results:
     """Loads a system of FMUs, unless it is kept loaded, and runs it; results as of `Loop.run`.
 
     Raises:

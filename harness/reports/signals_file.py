@@ -7,13 +7,14 @@ are read again by `harness.recordings`, and numbers and times are then the same.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..extra import required
 from ..recordings.headings import split
+from ..results import Results
 from .csv_file import write_csv
 from .files import complete
 
@@ -31,27 +32,22 @@ HISTORY = """\
 <FHcomment><TX>signals of a run</TX><tool_id>driveline-damping</tool_id><tool_vendor>driveline-damping</tool_vendor>\
 <tool_version>{}</tool_version></FHcomment>"""
 
-Units = Mapping[str, str]
-"""By column; what has none is not in it. A unit in the name of a column itself, in brackets, goes before."""
 
-
-def _csv(results: np.ndarray, units: Units, path: Path) -> None:
+def _csv(results: np.ndarray, path: Path) -> None:
     write_csv(results, path)
 
 
-def _csv_with_units(results: np.ndarray, units: Units, path: Path) -> None:
+def _csv_with_units(results: np.ndarray, path: Path) -> None:
     """Units in brackets behind the names."""
-    both = [_name_and_unit(name, units) for name in results.dtype.names or ()]
-    write_csv(results, path, [f"{name} [{unit}]" if unit else name for name, unit in both])
+    write_csv(results, path, [f"{name} [{unit}]" if unit else name for _, name, unit in _columns(results)])
 
 
-def _parquet(results: np.ndarray, units: Units, path: Path) -> None:
+def _parquet(results: np.ndarray, path: Path) -> None:
     """The unit of a column stands in its metadata as `unit`, and where pandas reads `DataFrame.attrs` from."""
     arrow = required("pyarrow", "writing Parquet files", "recordings")
     parquet = required("pyarrow.parquet", "writing Parquet files", "recordings")
     fields, columns, attributes = [], [], {}
-    for column in results.dtype.names or ():
-        name, unit = _name_and_unit(column, units)
+    for column, name, unit in _columns(results):
         columns.append(arrow.array(results[column]))
         fields.append(arrow.field(name, columns[-1].type, metadata={"unit": unit} if unit else None))
         attributes |= {name: unit} if unit else {}
@@ -60,17 +56,16 @@ def _parquet(results: np.ndarray, units: Units, path: Path) -> None:
         parquet.write_table(arrow.table(columns, schema=schema), file)
 
 
-def _mdf(results: np.ndarray, units: Units, path: Path) -> None:
+def _mdf(results: np.ndarray, path: Path) -> None:
     """One group of channels, whose master is the first column, the time."""
     asammdf = required("asammdf", "writing MDF files", "recordings")
     from importlib.metadata import version
 
     from asammdf.blocks.v4_blocks import FileHistory
 
-    clock, *others = list(results.dtype.names or ())
+    (clock, *_), *others = _columns(results)
     signals = []
-    for column in others:
-        name, unit = _name_and_unit(column, units)
+    for column, name, unit in others:
         samples = results[column].astype("u1") if results.dtype[column].kind == "b" else results[column].copy()
         signals.append(asammdf.Signal(samples, results[clock].copy(), name=name, unit=unit or ""))
     history = FileHistory()
@@ -84,9 +79,12 @@ def _mdf(results: np.ndarray, units: Units, path: Path) -> None:
             made.save(file, compression=TRANSPOSED_DEFLATE, add_history_block=False)
 
 
-def _name_and_unit(column: str, units: Units) -> tuple[str, str | None]:
-    name, unit = split(column)
-    return name, unit or units.get(column)
+def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
+    """Each column, its name and its unit: that in the name itself, in brackets, or that of Results."""
+    units = results.units if isinstance(results, Results) else {}
+    for column in results.dtype.names or ():
+        name, unit = split(column)
+        yield column, name, unit or units.get(column)
 
 
 class Format(NamedTuple):
@@ -97,7 +95,7 @@ class Format(NamedTuple):
     """
 
     ending: str
-    write: Callable[[np.ndarray, Units, Path], None]
+    write: Callable[[np.ndarray, Path], None]
     meaning: str
     package: str | None = None
 
@@ -124,12 +122,12 @@ def signals_path(stem: Path, format: str) -> Path:
     return stem.with_name(f"{stem.name}{FORMATS[format].ending}")
 
 
-def write_signals(results: np.ndarray, units: Units, stem: Path, format: str = "csv") -> Path:
-    """Writes a structured array, its first column the time in s; returns the file.
+def write_signals(results: np.ndarray, stem: Path, format: str = "csv") -> Path:
+    """Writes a structured array, its first column the time in s, with the units that it knows; returns the file.
 
     Raises:
         MissingExtra: the package that writes the format is not installed.
     """
     path = signals_path(stem, format)
-    FORMATS[format].write(results, units, path)
+    FORMATS[format].write(results, path)
     return path

@@ -11,11 +11,12 @@ from harness.errors import MissingExtra
 from harness.recordings.channels import Channels
 from harness.recordings.opening import opened
 from harness.reports.signals_file import FORMATS, require_format, signals_path, write_signals
+from harness.results import Results
 
 UNITS = {"time": "s", "plant.v": "m/s", "plant.T_gear": "N.m", "controller.T_driver": "N.m", "plant.phi": "rad"}
 
 
-def run() -> np.ndarray:
+def run() -> Results:
     """Numbers that short decimals do not hold, flags and counters."""
     k = np.arange(501)
     columns = {
@@ -30,7 +31,7 @@ def run() -> np.ndarray:
     results = np.empty(len(k), dtype=[(name, values.dtype) for name, values in columns.items()])
     for name, values in columns.items():
         results[name] = values
-    return results
+    return Results(results, UNITS)
 
 
 RESULTS = run()
@@ -38,7 +39,7 @@ RESULTS = run()
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_what_is_written_is_read_again_with_its_times_and_units(tmp_path: Path, name: str) -> None:
-    source = opened(write_signals(RESULTS, UNITS, tmp_path / "run", name))
+    source = opened(write_signals(RESULTS, tmp_path / "run", name))
     others = [column for column in RESULTS.dtype.names or () if not (source.own_time and column == "time")]
     assert [column.name for column in source.columns] == others
     for column, samples in zip(source.columns, source.read(range(len(others))), strict=True):
@@ -51,7 +52,7 @@ def test_what_is_written_is_read_again_with_its_times_and_units(tmp_path: Path, 
 
 @pytest.mark.parametrize("name", [name for name in FORMATS if name != "csv"])
 def test_quantities_are_found_in_si_units_without_any_other_file(tmp_path: Path, name: str) -> None:
-    channels = Channels(write_signals(RESULTS, UNITS, tmp_path / "run", name)).read("v", "T_driver", "valid", "counter")
+    channels = Channels(write_signals(RESULTS, tmp_path / "run", name)).read("v", "T_driver", "valid", "counter")
     for quantity, column in {"v": "plant.v", "T_driver": "controller.T_driver", "counter": "can.counter"}.items():
         np.testing.assert_array_equal(channels[quantity].time, RESULTS["time"])
         np.testing.assert_array_equal(channels[quantity].values, RESULTS[column])
@@ -59,14 +60,14 @@ def test_quantities_are_found_in_si_units_without_any_other_file(tmp_path: Path,
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_same_signals_give_the_same_bytes_and_nothing_else_is_left(tmp_path: Path, name: str) -> None:
-    first = write_signals(RESULTS, UNITS, tmp_path / "run", name).read_bytes()
-    assert write_signals(RESULTS, UNITS, tmp_path / "run", name).read_bytes() == first
+    first = write_signals(RESULTS, tmp_path / "run", name).read_bytes()
+    assert write_signals(RESULTS, tmp_path / "run", name).read_bytes() == first
     assert list(tmp_path.iterdir()) == [signals_path(tmp_path / "run", name)]
 
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_other_row_of_an_array_is_written_too(tmp_path: Path, name: str) -> None:
-    source = opened(write_signals(RESULTS[::5], UNITS, tmp_path / "run", name))
+    source = opened(write_signals(RESULTS[::5], tmp_path / "run", name))
     place = [column.name for column in source.columns].index("plant.T_gear")
     np.testing.assert_array_equal(source.read([place])[0].values, RESULTS["plant.T_gear"][::5])
 
@@ -74,14 +75,14 @@ def test_every_other_row_of_an_array_is_written_too(tmp_path: Path, name: str) -
 def test_units_in_the_names_of_columns_are_units_in_every_format(tmp_path: Path) -> None:
     recorded = RESULTS[["time", "plant.v"]].astype([("Time [s]", float), ("Velocity [m/s]", float)])
     for name in FORMATS:
-        column = opened(write_signals(recorded, {}, tmp_path / name, name)).columns[-1]
+        column = opened(write_signals(recorded, tmp_path / name, name)).columns[-1]
         assert (column.name, column.unit) == ("Velocity", "m/s")
 
 
 def test_asammdf_finds_channels_units_and_one_time(tmp_path: Path) -> None:
     from asammdf import MDF
 
-    with MDF(write_signals(RESULTS, UNITS, tmp_path / "run", "mf4")) as file:
+    with MDF(write_signals(RESULTS, tmp_path / "run", "mf4")) as file:
         assert file.version == "4.10"
         torque = file.get("plant.T_gear")
         assert torque.unit == "N.m"
@@ -93,7 +94,7 @@ def test_asammdf_finds_channels_units_and_one_time(tmp_path: Path) -> None:
 def test_pandas_finds_numbers_kinds_and_units_in_parquet(tmp_path: Path) -> None:
     import pandas as pd
 
-    frame = pd.read_parquet(write_signals(RESULTS, UNITS, tmp_path / "run", "parquet"))
+    frame = pd.read_parquet(write_signals(RESULTS, tmp_path / "run", "parquet"))
     assert frame.attrs["units"] == UNITS
     for column in RESULTS.dtype.names or ():
         np.testing.assert_array_equal(frame[column], RESULTS[column])
@@ -103,7 +104,7 @@ def test_pandas_finds_numbers_kinds_and_units_in_parquet(tmp_path: Path) -> None
 def test_fmpy_and_pandas_read_both_kinds_of_csv(tmp_path: Path) -> None:
     import pandas as pd
 
-    plain, units = (write_signals(RESULTS, UNITS, tmp_path / name, name) for name in ("csv", "csv-units"))
+    plain, units = (write_signals(RESULTS, tmp_path / name, name) for name in ("csv", "csv-units"))
     np.testing.assert_array_equal(read_csv(plain)["plant.T_gear"], RESULTS["plant.T_gear"])
     np.testing.assert_array_equal(pd.read_csv(units)["plant.T_gear [N.m]"], RESULTS["plant.T_gear"])
 
@@ -111,7 +112,7 @@ def test_fmpy_and_pandas_read_both_kinds_of_csv(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["parquet", "mf4"])
 def test_without_the_extra_it_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     monkeypatch.setitem(sys.modules, str(FORMATS[name].package), None)
-    for attempt in (lambda: require_format(name), lambda: write_signals(RESULTS, UNITS, tmp_path / "run", name)):
+    for attempt in (lambda: require_format(name), lambda: write_signals(RESULTS, tmp_path / "run", name)):
         with pytest.raises(MissingExtra, match=r"the extra `recordings`, as in pip install"):
             attempt()
     assert not list(tmp_path.iterdir())
