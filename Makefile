@@ -27,7 +27,7 @@ $(DEMO): $(INSTALLED)
 
 $(READY): $(INSTALLED)
 	$(environment)
-	$(INSTALL) '.[recordings,replay,design,bound,native,cluster,report,dev]'
+	$(INSTALL) '.[recordings,replay,design,bound,native,cluster,report,notebook,dev]'
 	@touch $(DEMO) $@
 
 setup: $(READY) ## the virtual environment alone, with all that the other targets need

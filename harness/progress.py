@@ -4,11 +4,15 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
-from importlib.util import find_spec
+from html import escape
 from time import monotonic
+from typing import Any
 
 QUIET = 1.0
 """Seconds that a run may take in silence."""
+
+REFRESH = 0.1
+"""Seconds between two looks of a notebook."""
 
 _hidden = ContextVar("hidden", default=False)
 """Each thread has its own."""
@@ -22,7 +26,8 @@ def chunks(length: int, size: int = 200) -> Iterator[range]:
 
 @contextmanager
 def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
-    """What is called with the number of pieces that are done shows them on stderr, from the first second on.
+    """What is called with the number of pieces that are done shows them on stderr or in the notebook, from the first
+    second on.
 
     Within it nothing else shows progress.
     """
@@ -32,7 +37,8 @@ def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
         def done(count: int) -> None:
             nonlocal show
             if show is None and not silent and monotonic() - began > QUIET:
-                show = stack.enter_context(_bar(total, label))
+                bar = _line_of_notebook if _in_notebook() else _bar
+                show = stack.enter_context(bar(total, label))
             if show:
                 show(count)
 
@@ -50,8 +56,13 @@ def hidden(wanted: bool = True) -> Iterator[None]:
 
 
 def _visible() -> bool:
-    in_notebook = "ipykernel" in sys.modules and find_spec("ipywidgets") is not None
-    return in_notebook or (sys.stderr is not None and sys.stderr.isatty())
+    return _in_notebook() or (sys.stderr is not None and sys.stderr.isatty())
+
+
+def _in_notebook() -> bool:
+    """Whether this process is the kernel of one."""
+    ipython: Any = sys.modules.get("IPython")
+    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
 
 
 @contextmanager
@@ -62,3 +73,25 @@ def _bar(total: int, label: str) -> Iterator[Callable[[int], None]]:
     with Progress(console=Console(file=sys.stderr), transient=True) as bar:
         task = bar.add_task(label, total=total)
         yield lambda count: bar.update(task, completed=count)
+
+
+@contextmanager
+def _line_of_notebook(total: int, label: str) -> Iterator[Callable[[int], None]]:
+    """Below the cell, with no more than every notebook can show: the bar of rich needs widgets there."""
+    from IPython.display import DisplayHandle
+
+    line, next_time = DisplayHandle(), 0.0
+    line.display({"text/plain": label}, raw=True)
+
+    def show(count: int) -> None:
+        nonlocal next_time
+        if monotonic() >= next_time or count == total:
+            text = f"{label}: {count} of {total}"
+            bar = f'{escape(label)} <progress value="{count}" max="{total}"></progress> {count} of {total}'
+            line.update({"text/plain": text, "text/html": bar}, raw=True)
+            next_time = monotonic() + REFRESH
+
+    try:
+        yield show
+    finally:
+        line.update({"text/plain": ""}, raw=True)

@@ -52,7 +52,7 @@ ROOMS = {
     | {"harness.robustness", "harness.identification"},
     "harness": COSIMULATION
     | {"harness.recordings", "harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
-    | {"fmus"},  # harness.stale alone: what makes an FMU stale is known to those who make it
+    | {"fmus"},  # harness.stale and harness.built alone: what makes an FMU is known to those who make it
     "harness.commands": COSIMULATION
     | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
     | {
@@ -129,9 +129,9 @@ def test_what_runs_any_fmu_knows_nothing_of_how_ours_are_made(room: str) -> None
             assert not {name for name in reached(module) if name.startswith(("fmus.", "models."))}, module
 
 
-def test_what_makes_an_fmu_stale_is_asked_in_one_place() -> None:
-    for module in modules():
-        if module.startswith("harness.") and module.count(".") == 1 and module != "harness.stale":
+def test_what_makes_an_fmu_is_asked_in_two_places() -> None:
+    for module in set(modules()) - {"harness.stale", "harness.built"}:
+        if module.startswith("harness.") and module.count(".") == 1:
             assert not {name for name in imports(module) if name.startswith("fmus")}, module
 
 

@@ -8,10 +8,11 @@ import numpy as np
 
 from ..metrics.declaration import Absent, Column, Metric, measured
 from ..metrics.evaluate import at_samples
+from ..metrics.shown import Shown
 
 
 @dataclass(frozen=True)
-class EstimateMetrics:
+class EstimateMetrics(Shown):
     """Of T_gear_hat, compared with the true gear torque at the samples of the controller."""
 
     bias: Annotated[

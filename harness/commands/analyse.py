@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from math import isfinite
 from typing import Any
 
+from ..built import built
 from ..control_loop import PLACES, PLANTS
 from ..errors import DrivelineError
-from .built import built
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 

@@ -4,9 +4,9 @@ import argparse
 import sys
 from itertools import product
 
+from ..built import built
 from ..control_loop import BUILDS, PLANTS
 from ..manoeuvres.catalogue import MANOEUVRES
-from .built import built
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 

@@ -4,12 +4,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..built import built
 from ..control_loop import PLANTS
 from ..html.page import require_report
 from ..manoeuvres.catalogue import COMPARED
 from ..metrics.record import Metrics
 from ..reports.table import legend, reasons
-from .built import built
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, look
 from .printing import Printer

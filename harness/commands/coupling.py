@@ -3,9 +3,9 @@
 import argparse
 from itertools import product
 
+from ..built import built
 from ..control_loop import PLANTS, STEP_SIZE, loop
 from ..cosimulation.system import Scheme
-from .built import built
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 

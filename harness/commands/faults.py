@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..built import built, made_if_missing
 from ..control_loop import NATIVE, PLANTS
 from ..html.page import require_report
 from ..names import require_different
-from .built import built, made_if_missing
 from .options import add_loop, add_output, add_plant, add_printing, add_report, count
 from .printing import Printer
 from .settings import as_given, blocks, caption, distinguishing, settings

@@ -4,9 +4,9 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
+from ..built import built
 from ..control_loop import STEP_SIZE
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED, binary_torque
-from .built import built
 from .frames import add_frames, require_frames, write_frames
 from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
 from .printing import Printer

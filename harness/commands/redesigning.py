@@ -7,9 +7,9 @@ from typing import Any
 
 from rich.table import Table
 
+from ..built import built
 from ..control_loop import BUILD, PLACES, PLANTS
 from ..errors import DrivelineError
-from .built import built
 from .design import designed
 from .printing import Printer
 from .searching import write_gains

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from fmus.options import output_folder
 
+from ..built import built
 from ..control_loop import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..errors import DrivelineError
 from ..numbers import real
 from ..plain import quoted
-from .built import built
 from .options import add_fmus, count, seed
 from .printing import Printer
 

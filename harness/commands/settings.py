@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from shlex import quote
 from typing import Any
 
+from ..built import built
 from ..control_loop import BUILD, PLACES, STEP_SIZE
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
 from ..errors import DrivelineError
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .built import built
 from .options import OTHERS
 
 LOG = logging.getLogger(__name__)

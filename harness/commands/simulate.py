@@ -4,11 +4,11 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
+from ..built import built
 from ..control_loop import STEP_SIZE
 from ..cosimulation.system import Scheme
 from ..errors import DrivelineError
 from ..manoeuvres.catalogue import MANOEUVRES
-from .built import built
 from .frames import add_frames, require_frames, write_frames
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, look, seconds

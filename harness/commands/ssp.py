@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..built import built, made_if_missing
 from ..control_loop import PLANTS
 from ..names import require_different
-from .built import built, made_if_missing
 from .manoeuvres import add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..built import built
 from ..errors import DrivelineError
 from ..names import nearest
-from .built import built
 from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer
 from .settings import blocks, distinguishing, settings

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from .declaration import Column, Metric
+from .shown import Shown
 
 GearTorqueRms = Annotated[
     float,
@@ -23,7 +24,7 @@ JerkRms = Annotated[
 
 
 @dataclass(frozen=True)
-class Metrics:
+class Metrics(Shown):
     """Torques are those of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
     T_ref - T_driver, the demand delayed by the one sample that every controller needs. Rms and peak values are those
     from 0.2 s before a step to 4 s after it, in every other manoeuvre those of the whole record.
@@ -97,7 +98,7 @@ class Metrics:
 
 
 @dataclass(frozen=True)
-class RideMetrics:
+class RideMetrics(Shown):
     """The metrics of a recorded drive that was simulated."""
 
     gear_torque_rms: GearTorqueRms

@@ -14,10 +14,10 @@ from fmus.catalogue import EVERY, FMUS
 from fmus.comparators import COMPARATORS
 from fmus.parameter_files import read_parameters
 from fmus.python.packaging import build
+from harness import built as building
 from harness import control_loop
 from harness.analysis.back_to_back import compare_block, random_inputs
 from harness.cli import main
-from harness.commands import built as building
 from harness.control_loop import NATIVE, loop
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.metrics.evaluate import evaluate

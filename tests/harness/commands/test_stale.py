@@ -7,9 +7,9 @@ from shutil import copytree
 import pytest
 
 from fmus import origin
+from harness import built
 from harness import stale as judging
 from harness.cli import main
-from harness.commands import built
 from harness.manoeuvres.catalogue import MANOEUVRES
 from harness.many import run_many
 from harness.simulate import simulate

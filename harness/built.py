@@ -1,4 +1,4 @@
-"""The FMUs that a command runs: those of the project are built where they are missing or stale."""
+"""The FMUs that a command or a notebook runs: those of the project are built where they are missing or stale."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,19 +9,22 @@ from typing import TYPE_CHECKING, Any
 
 from fmus.errors import BuildError
 
-from ..control_loop import BUILD, BUILDS, COMPARATORS, NATIVE, chosen_build, loop
-from ..errors import DrivelineError
-from ..stale import warn_of_stale
-from ..told import warn_once
+from .control_loop import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile, chosen_build, loop
+from .errors import DrivelineError
+from .stale import warn_of_stale
+from .told import warn_once
 
 if TYPE_CHECKING:
     from fmus.fmu import Fmu
 
 
-def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> str:
+def built(plant: NameOrFile | None = None, folder: Path = BUILD, build: str | None = None, **others: Any) -> str:
     """The build that runs with that plant and the other blocks, which is the one asked for if there is one.
 
     The project's own FMUs in BUILD are built where they are missing or stale; others are said to be stale.
+
+    Args:
+        plant, others: what stands in the places of the loop, see `harness.control_loop.loop`.
 
     Raises:
         WiringError: there is no such block.
@@ -41,7 +44,7 @@ def built(plant: str, folder: Path, build: str | None = None, **others: Any) -> 
     return build
 
 
-def _refreshed(plant: str, build: str | None, **others: Any) -> str | None:
+def _refreshed(plant: NameOrFile | None, build: str | None, **others: Any) -> str | None:
     """Builds what is missing or stale in BUILD for a loop; the build that runs, None for that of `chosen_build`."""
     from fmus.builds import NotPossible, refreshed
 
