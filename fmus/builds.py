@@ -32,7 +32,7 @@ class NotPossible(BuildError):
 
 
 def build_fmus(
-    names: Sequence[str],
+    names: Sequence[str | Fmu],
     folder: Path,
     builds: str | None = None,
     platform: str = "host",
@@ -43,7 +43,7 @@ def build_fmus(
 
     Args:
         names: of FMUs of the project, or paths of Python files with a block of the user's own, of which there is a
-            native build only; none for all of the project but the comparators.
+            native build only, or these blocks themselves; none for all of the project but the comparators.
         folder: for the files; the native ones go to NATIVE_FOLDER in it.
         builds: one of BUILDS; None for each that is possible here.
         platform: of the native builds, one of PLATFORMS.
@@ -56,7 +56,7 @@ def build_fmus(
     from .catalogue import EVERY, FMUS
     from .parameter_files import read_files, require_taken
 
-    fmus = [_named(name) for name in dict.fromkeys(names or FMUS)]
+    fmus = [name if isinstance(name, Fmu) else _named(name) for name in _each_once(names or list(FMUS))]
     own = [fmu for fmu in fmus if fmu not in EVERY.values()]
     built = [fmu.name for fmu in fmus]
     if same := sorted({name for name in built if built.count(name) > 1}):
@@ -64,13 +64,17 @@ def build_fmus(
     if own and builds in ("python", "both"):
         raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
     of_the_project = builders(builds, platform) if len(own) < len(fmus) else []
-    files = [Path(name) for name in names if name.endswith(".py")]
+    files = [Path(name) for name in names if isinstance(name, str) and name.endswith(".py")]
     of_own = [_guarded(builder, files) for builder in builders("native", platform)] if own else []
     start_values = read_files(vehicle, parameters, own)
     require_taken(parameters, {name for fmu in fmus for name in fmu.block.Parameters._fields}, " or ".join(built))
     for fmu in fmus:
         for build in of_own if fmu in own else of_the_project:
             yield build(fmu.started_with(start_values), folder)
+
+
+def _each_once(names: Sequence[str | Fmu]) -> list[str | Fmu]:
+    return [name for k, name in enumerate(names) if name not in names[:k]]
 
 
 def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
@@ -183,7 +187,7 @@ def _into_own_folder(builder: Builder, fmu: Fmu, folder: Path) -> Path:
 
 
 def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
-    """The builder for blocks in these files, which are not ours: whatever goes wrong in one is a BuildError."""
+    """The builder for blocks that are not ours, of these files or a notebook: whatever goes wrong is a BuildError."""
 
     def build(fmu: Fmu, folder: Path) -> Path:
         try:
@@ -191,8 +195,7 @@ def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
         except OSError:
             raise
         except Exception as error:
-            raise BuildError(
-                f"{place(error, files)}: {fmu.name} cannot be built: {type(error).__name__}: {error}"
-            ) from error
+            where = f"{place(error, files)}: " if files else ""
+            raise BuildError(f"{where}{fmu.name} cannot be built: {type(error).__name__}: {error}") from error
 
     return build

@@ -101,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
         vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
-    plant, motor, _ = records(vehicle)
+    plant, _, _ = records(vehicle)
     out = Printer(args)
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     if output.suffix != ".toml":
@@ -114,11 +114,9 @@ def run(args: argparse.Namespace) -> int:
     required("casadi", "identifying a model", "native")
     if args.design:
         require_fmus()
+    from ..analysis.known_car import identified as identified_car
     from ..identification import car_file
-    from ..identification.drive_train import Parameters
-    from ..identification.identify import identify
 
-    start = Parameters(plant.J_1, plant.J_2, plant.C, 0.0, plant.phi_B)
     record = output.with_suffix(".json")
     same = {
         "recording": sha256(args.recording.read_bytes()).hexdigest(),
@@ -132,8 +130,7 @@ def run(args: argparse.Namespace) -> int:
     report = [args.report] if args.report else []
     everything = output.with_name(f"{output.stem}_identified.json")
     with recorded(record, same, {}, read, [output, everything, *report], args.replace) as made:
-        J_v = plant.m * plant.r**2 / plant.i**2
-        identified = identify(recording, start, motor.tau, J_v, list(dict.fromkeys(args.free)), out.say)
+        identified = identified_car(recording, vehicle, list(dict.fromkeys(args.free)), out.say)
         for delay in recording.delays:
             out.say(f"delay: {delay}")
         for line in car_file.lines(identified):
