@@ -1,8 +1,10 @@
 """Progress is for people who wait: on a terminal, after a while, one at a time."""
 
 import io
+import sys
 from contextlib import redirect_stderr
 from threading import Event, Thread
+from types import SimpleNamespace
 
 import pytest
 
@@ -111,3 +113,42 @@ def test_threads_do_not_hide_each_others_progress():
         make("later")
     assert "here" in shown.getvalue()
     assert "later" in shown.getvalue()
+
+
+@pytest.fixture
+def kernel(monkeypatch):
+    """What the kernel of a notebook has displayed."""
+    display = pytest.importorskip("IPython.display", reason="needs the extra `notebook`")
+    displayed = []
+
+    class Handle:
+        def display(self, data, raw):
+            displayed.append(data)
+
+        update = display
+
+    monkeypatch.setattr(display, "DisplayHandle", Handle)
+    monkeypatch.setattr(sys.modules["IPython"], "get_ipython", lambda: SimpleNamespace(kernel=None))
+    return displayed
+
+
+def test_a_notebook_shows_how_far_it_is_and_nothing_when_all_is_done(kernel):
+    with redirect_stderr(io.StringIO()) as written:
+        make("tip-in <1>")
+    assert [data["text/plain"] for data in kernel] == ["tip-in <1>", "tip-in <1>: 1 of 2", "tip-in <1>: 2 of 2", ""]
+    assert kernel[2]["text/html"] == 'tip-in &lt;1&gt; <progress value="2" max="2"></progress> 2 of 2'
+    assert written.getvalue() == ""
+
+
+def test_a_notebook_is_not_flooded(kernel):
+    make("tip-in", steps=10000)
+    assert len(kernel) < 100
+    assert kernel[-2]["text/plain"] == "tip-in: 10000 of 10000"
+
+
+def test_a_shell_of_ipython_is_a_terminal(kernel, monkeypatch):
+    monkeypatch.setattr(sys.modules["IPython"], "get_ipython", SimpleNamespace)
+    with redirect_stderr(Terminal()) as shown:
+        make("tip-in")
+    assert "tip-in" in shown.getvalue()
+    assert kernel == []
