@@ -38,7 +38,7 @@ def test_a_metric_without_value_is_a_dash_with_the_reason_whatever_is_in_it() ->
 
 def test_a_share_has_no_unit() -> None:
     values = {metric.name: 0.5 for metric in declared(Metrics)}
-    assert any("<td>overshoot</td><td>0.5</td><td></td>" in row for row in rows(Metrics(**values)))
+    assert any("<td>overshoot</td><td>0.5</td><td></td>" in row for row in rows(Metrics(**values)))  # type: ignore[arg-type]
 
 
 def test_a_frame_has_a_row_a_run_and_the_units() -> None:
