@@ -143,7 +143,13 @@ def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
     if isinstance(before, dict) and isinstance(now, dict):
         for key in sorted(before.keys() | now.keys()):
             yield from _differences(before.get(key), now.get(key), f"{name} {key}".strip())
-    elif before != now and not (before in ({}, None) and now in ({}, None)):  # nothing is set in either
+    elif before in ({}, None) and now in ({}, None):
+        return  # nothing is set in either
+    elif isinstance(before, dict) and now is None:
+        yield f"{name} there, not here"
+    elif before is None and isinstance(now, dict):
+        yield f"{name} here, not there"
+    elif before != now:
         yield f"{name}: {'not set' if before is None else before} there, {'not set' if now is None else now} here"
 
 

@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     systems = {Path(plant).stem: looped(plant, given[Path(plant).stem]) for plant in plants}
     ssp, record = args.output / "driveline.ssp", args.output / "driveline.json"
     same: dict[str, Any] = {name: distinguishing(given[name], systems[name], manoeuvre) for name in systems}
-    same |= {"manoeuvre": manoeuvre.name} | digests([args.manoeuvre])
+    same |= {"plants": plants, "manoeuvre": manoeuvre.name} | digests([args.manoeuvre])
     read = [*files([args.manoeuvre]).values(), args.vehicle, args.parameters]
     with made_if_missing(FMU, args.fmus, builds[plants[0]]) as source:
         driven_by = {name: driven(system, source) for name, system in systems.items()}

@@ -76,7 +76,7 @@ def _from_toml(path: Path) -> Manoeuvre:
 
 def _entries(path: Path) -> dict[str, Any]:
     if not path.is_file():
-        raise ManoeuvreError("there is no such file")
+        raise ManoeuvreError("it is a folder, not a file" if path.is_dir() else "there is no such file")
     if (size := path.stat().st_size) > LARGEST:
         raise ManoeuvreError(f"{size / 1e6:.1f} MB is too long; at most {LARGEST / 1e6:g} MB, or a table as CSV")
     try:

@@ -231,3 +231,16 @@ def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:
     require_same_run(record, {"seed": 1}, [table])
     with pytest.raises(DrivelineError, match=r"table\.md is of another run \(seed: 1 there, 2 here\)"):
         require_same_run(record, {"seed": 2}, [table])
+
+
+@pytest.mark.parametrize(("before", "now", "said"), [(2, 1, "van there, not here"), (1, 2, "van here, not there")])
+def test_a_whole_car_that_is_new_or_gone_is_named_without_all_that_it_has(
+    before: int, now: int, said: str, tmp_path: Path
+) -> None:
+    cars = {"default": {"C": 117.4}, "van": {"C": 80.0, "m": 2500.0}}
+    runs = [dict(list(cars.items())[:number]) for number in (before, now)]
+    record, table = tmp_path / "compare.json", tmp_path / "table.md"
+    table.touch()
+    record.write_text(json.dumps({"run": runs[0]}), encoding="utf-8")
+    with pytest.raises(DrivelineError, match=rf"another run \({said}\)"):
+        require_same_run(record, runs[1], [table])

@@ -249,3 +249,11 @@ def test_the_project_of_mastersim_names_what_is_in_the_package(packaged) -> None
             assert {f"../../{entry}" for entry in archive.namelist()} >= set(fmus)
             assert len(fmus) == len(BOXES)
             assert f"parameter plant.v_0 {MANOEUVRES['tipin15'].v_0!r}\n" in text
+
+
+def test_another_default_variant_is_another_package(packaged, fmus, capsys) -> None:
+    folder = packaged("--plant", PLANTS[0], "--plant", PLANTS[1]).parent
+    same = ["ssp", "--fmus", str(fmus), "--output", str(folder), "--quiet"]
+    assert main([*same, "--plant", PLANTS[0], "--plant", PLANTS[1]]) == 0
+    assert main([*same, "--plant", PLANTS[1], "--plant", PLANTS[0]]) == 2
+    assert "is of another run (plants: " in capsys.readouterr().err
