@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..extra import required
 from ..recordings.headings import split
-from ..results import Results
 from .csv_file import write_csv
 from .files import complete
 
@@ -81,6 +80,8 @@ def _mdf(results: np.ndarray, path: Path) -> None:
 
 def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
     """Each column, its name and its unit: that in the name itself, in brackets, or that of Results."""
+    from ..results import Results
+
     units = results.units if isinstance(results, Results) else {}
     for column in results.dtype.names or ():
         name, unit = split(column)
