@@ -53,7 +53,7 @@ def write_log(sent: Iterable[Telegram], results: np.ndarray, path: Path) -> None
     Raises:
         MissingExtra: python-can or cantools is not installed.
     """
-    can = required("can", "logs of a bus", "recordings")
+    can = required("can", "a log of the bus", "recordings")
     telegrams = list(sent)
     every = [
         frame

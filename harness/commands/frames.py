@@ -38,7 +38,7 @@ def require_frames(args: argparse.Namespace, own: frozenset[str]) -> None:
     if others := [place for place in BLOCKS if place not in own]:
         raise DrivelineError(f"--frames: {', '.join(getattr(args, place) for place in others)} declares no frames")
     for package in ("can", "cantools"):
-        required(package, "logs of a bus", "recordings")
+        required(package, "a log of the bus", "recordings")
 
 
 def write_frames(
