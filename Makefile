@@ -12,6 +12,7 @@ help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
 
 INSTALLED := pyproject.toml setup.py constraints.txt harness/cosimulation/steps.c
+PACKAGES := models fmus harness
 
 define environment
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -41,7 +42,7 @@ test: $(READY) ## all tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-target: $(READY) ## the controller's C on an emulated processor; says what to apt-get install
-	$(BIN)/python -m fmus.target
+	$(BIN)/python -m driveline.fmus.target
 	$(BIN)/python -m pytest tests/fmus/target tests/harness/target
 
 mutation: $(READY) ## small faults put into the controller and the C core, one by one: do the tests find them?
@@ -53,6 +54,7 @@ fuzz: $(READY) ## odd calls, files and options by the thousand
 lint: $(READY) ## format, lint and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	@for package in $(PACKAGES); do ln -sfn ../$$package driveline/$$package; done # type checkers see the package as it is installed
 	$(BIN)/basedpyright
 
 check: $(READY) ## build the FMUs and run every compliance check on them
@@ -75,14 +77,14 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline build
 	$(BIN)/driveline coupling --output docs
 	$(BIN)/driveline back-to-back --output docs
-	$(BIN)/python -m harness.analysis.design_page
-	$(BIN)/python -m harness.analysis.calibration_page
+	$(BIN)/python -m docs.studies.design_page
+	$(BIN)/python -m docs.studies.calibration_page
 	$(BIN)/driveline build NoDamping SpeedWashout SpeedDifference PaperObserver LinearObserver PerfectState
-	$(BIN)/python -m harness.tuning.comparison_page
-	$(BIN)/python -m harness.tuning.goals_page
-	$(BIN)/python -m fmus.description.blocks_page
-	$(BIN)/python -m harness.reports.recordings_page
-	$(BIN)/python -m harness.tuning.identification_page
+	$(BIN)/python -m docs.studies.comparison_page
+	$(BIN)/python -m docs.studies.goals_page
+	$(BIN)/python -m docs.studies.blocks_page
+	$(BIN)/python -m docs.studies.recordings_page
+	$(BIN)/python -m docs.studies.identification_page
 	$(BIN)/driveline record --plant ValidationVehicle --replace --quiet
 	$(BIN)/driveline identify results/record/ValidationVehicle_prbs_off.csv --output results/identify/identification.toml \
 		--replace --quiet

@@ -3,8 +3,8 @@
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from pathlib import Path
 
-from fmus import build_command
-from fmus.errors import BuildError
+from driveline.fmus.building import build_command
+from driveline.fmus.errors import BuildError
 
 
 def main() -> None:

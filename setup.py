@@ -1,23 +1,40 @@
-"""All is declared in pyproject.toml but the page of the package: the README with links that lead to the repository."""
+"""What pyproject.toml cannot declare: the folders of the checkout as packages of `driveline`, and the page of the
+package: the README with links that lead to the repository."""
 
 import re
 import tomllib
 from pathlib import Path
 
-from setuptools import setup
+from setuptools import find_packages, setup
+
+ROOT = Path(__file__).parent
+
+(VERSION,) = re.findall(r'^VERSION = "(.+)"$', (ROOT / "fmus/release.py").read_text(encoding="utf-8"), re.M)
 
 RELATIVE = re.compile(r"(!?)(\[[^\]]*\]\()(?!#|[a-z]+:)")
 """What stands before the address of a picture or of a page in the repository."""
 
+FOLDERS = ("models", "fmus", "harness")
+"""Of the checkout; installed, each is a package of `driveline`, beside which nothing of ours lies."""
 
-def page(folder: Path) -> str:
+
+def page() -> str:
     """The README of a release as it is read elsewhere: its pictures and pages are those of the tag."""
-    (version,) = re.findall(r'^VERSION = "(.+)"$', (folder / "fmus/release.py").read_text(encoding="utf-8"), re.M)
-    repository = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Repository"]
+    repository = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Repository"]
     return RELATIVE.sub(
-        lambda found: f"{found[0]}{repository}/{'raw' if found[1] else 'blob'}/v{version}/",
-        (folder / "README.md").read_text(encoding="utf-8"),
+        lambda found: f"{found[0]}{repository}/{'raw' if found[1] else 'blob'}/v{VERSION}/",
+        (ROOT / "README.md").read_text(encoding="utf-8"),
     )
 
 
-setup(long_description=page(Path(__file__).parent), long_description_content_type="text/markdown")
+def _within(folder: str) -> list[str]:
+    return [f"{folder}.{name}" for name in find_packages(folder)]
+
+
+setup(
+    version=VERSION,
+    packages=["driveline", *(f"driveline.{name}" for folder in FOLDERS for name in (folder, *_within(folder)))],
+    package_dir={f"driveline.{folder}": folder for folder in FOLDERS},
+    long_description=page(),
+    long_description_content_type="text/markdown",
+)

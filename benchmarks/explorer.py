@@ -17,11 +17,11 @@ from time import process_time
 from rich.console import Console
 from rich.table import Table
 
-from harness.control_loop import BUILD, NATIVE, PLACES, PLANTS
-from harness.cosimulation.runs import kept_loaded
-from harness.explorer.bench import Bench
-from harness.explorer.wanted import Wanted
-from harness.stopping import script
+from driveline.harness.base.interruption import script
+from driveline.harness.cosimulation.runs import kept_loaded
+from driveline.harness.explorer.request import Request
+from driveline.harness.explorer.request_runs import RequestRunner
+from driveline.harness.loop.places import BUILD, NATIVE, PLACES, PLANTS
 from tests.browser import browser
 
 OURS = PLACES["controller"][0]
@@ -48,13 +48,13 @@ move()
 def computing(plant: str, name: str, start: float, step: float, moves: int) -> float:
     """Median time of a core in ms from what is wanted to the answer."""
     settings = {"parameters": {}, "controller": OURS, "folder": BUILD, "build": NATIVE}
-    bench, wanted = Bench({(plant, OURS): (plant, settings)}), Wanted(plant, "tipin15")
+    runner, request = RequestRunner({(plant, OURS): (plant, settings)}), Request(plant, "tipin15")
     took = []
     with kept_loaded():
-        bench.answer(wanted)
+        runner.answer(request)
         for k in range(moves):
             began = process_time()
-            bench.answer(wanted.but(**{KINDS[name]: {name: start + step * k}}))
+            runner.answer(request.replaced(**{KINDS[name]: {name: start + step * k}}))
             took.append(1e3 * (process_time() - began))
     return median(took)
 
@@ -68,7 +68,7 @@ def main() -> None:
         opened.chrome.set_script_timeout(120)
         for plant in PLANTS:
             command = ["explore", "--plant", plant, "--port", "0", "--output", folder, "--build", "native"]
-            served = subprocess.Popen([sys.executable, "-m", "harness", *command], stdout=subprocess.PIPE, text=True)
+            served = subprocess.Popen([sys.executable, "-m", "driveline", *command], stdout=subprocess.PIPE, text=True)
             try:
                 assert served.stdout is not None
                 found = re.match(r"\S+", served.stdout.readline())

@@ -21,20 +21,19 @@ from typing import NamedTuple
 from rich.console import Console
 from rich.table import Table
 
-from harness.control_loop import PLANTS, loop
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.steps import MakeSteps, interpreted
-from harness.cosimulation.system import Scheme, System
-from harness.manoeuvres.manoeuvre import Manoeuvre
-from harness.manoeuvres.signals import lines
-from harness.simulate import signals
-from harness.stale import warn_of_stale
-from harness.stopping import script
-
-from . import plain_loop
-from .timed import Timed
+from benchmarks import plain_loop
+from benchmarks.timed import Timed
+from driveline.harness.base.interruption import script
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.steps import MakeSteps, interpreted
+from driveline.harness.cosimulation.system import Scheme, System
+from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.loop.stale_fmus import warn_of_stale
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.manoeuvres.signals import lines
+from driveline.harness.simulation.simulate import signals
 
 STEP_SIZE = 1e-3
 MICRO = 1e6

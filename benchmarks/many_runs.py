@@ -16,18 +16,17 @@ from loky import cpu_count
 from rich.console import Console
 from rich.table import Table
 
-from harness.control_loop import PLANTS, loop
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.steps import Refusal, interpreted
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.many import run_many
-from harness.metrics.evaluate import evaluate
-from harness.simulate import signals, simulate, start
-from harness.stopping import script
-
-from .timed import Timed
+from benchmarks.timed import Timed
+from driveline.harness.base.interruption import script
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.steps import Refusal, interpreted
+from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import signals, simulate, start
 
 TIPIN = MANOEUVRES["tipin15"]
 

@@ -10,22 +10,22 @@ from tempfile import TemporaryDirectory
 
 import fmpy
 
-from fmus.native.compiler import host_compiler
-from harness.cosimulation.interface import Interface, type_of
-from harness.cosimulation.system import System
+from driveline.fmus.native.compiler import host_compiler
+from driveline.harness.cosimulation.interface import Interface, type_of
+from driveline.harness.cosimulation.system import System
 
 SOURCE = Path(__file__).parent / "plain_loop.c"
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2")
 KINDS = ("Real", "Integer", "Boolean")
 
 
-def run(system: System, steps: int, step_size: float, start: Mapping[str, float], watched: str) -> tuple[float, float]:
+def run(system: System, steps: int, step_size: float, start: Mapping[str, float], traced: str) -> tuple[float, float]:
     """Compiles the loop for this system and runs it; all FMUs hand on their outputs after the step, as Jacobi.
 
     Args:
         step_size: in s.
         start: Real parameters and inputs `instance.variable`.
-        watched: Real output `instance.variable`.
+        traced: Real output `instance.variable`.
 
     Returns:
         Processor time a step in s, without loading and initialization; the watched output in the end.
@@ -39,7 +39,7 @@ def run(system: System, steps: int, step_size: float, start: Mapping[str, float]
         interfaces = {instance: Interface(path) for instance, path in system.instances.items()}
         for instance, interface in interfaces.items():
             fmpy.extract(str(interface.path), unzipdir=str(folder / instance))
-        (folder / "wiring.h").write_text(_header(system, interfaces, folder, start, watched), encoding="utf-8")
+        (folder / "wiring.h").write_text(_header(system, interfaces, folder, start, traced), encoding="utf-8")
         program = folder / "loop"
         command = [host_compiler(), *FLAGS, f"-I{folder}", str(SOURCE), "-ldl", "-o", str(program)]
         subprocess.run(command, check=True)
@@ -50,10 +50,10 @@ def run(system: System, steps: int, step_size: float, start: Mapping[str, float]
 
 
 def _header(
-    system: System, interfaces: Mapping[str, Interface], folder: Path, start: Mapping[str, float], watched: str
+    system: System, interfaces: Mapping[str, Interface], folder: Path, start: Mapping[str, float], traced: str
 ) -> str:
     sources = {target: source for source, target, _ in system.connections}
-    used = {*sources.values(), watched}
+    used = {*sources.values(), traced}
     outputs = dict(_ports(interfaces, "output", used))
     inputs = dict(_ports(interfaces, "input", sources))
     places = _places(outputs)
@@ -76,7 +76,7 @@ def _header(
             _array("const Start starts", given),
             _array("Port inputs", (port(*key, names) for key, names in inputs.items())),
             _array("Port outputs", (port(*key, names) for key, names in outputs.items())),
-            f"enum {{ WATCHED = {places[watched]} }};\n",
+            f"enum {{ WATCHED = {places[traced]} }};\n",
         )
     )
 

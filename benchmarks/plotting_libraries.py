@@ -17,7 +17,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from harness.stopping import script
+from driveline.harness.base.interruption import script
 from tests.browser import browser
 
 PANELS, CURVES, POINTS = 8, 4, 3000
@@ -37,7 +37,7 @@ def write(library: str, path: Path) -> None:
         from bokeh.plotting import figure
         from bokeh.resources import INLINE
 
-        from harness.html.figures import stacked, window
+        from driveline.harness.views.html.linked_figures import stacked, window
 
         x_range, figures = window(0.0, 6.0), []
         for panel in curves:

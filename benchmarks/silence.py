@@ -21,7 +21,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.start_up import environment
-from harness.stopping import script
+from driveline.harness.base.interruption import script
 
 ROOT = Path(__file__).parents[1]
 
@@ -54,7 +54,7 @@ COMMANDS = (
     "back-to-back",
 )
 
-RECORD = ("-m", "harness", "record", "--plant", "ValidationVehicle", "--quiet", "--output", "recorded")
+RECORD = ("-m", "driveline", "record", "--plant", "ValidationVehicle", "--quiet", "--output", "recorded")
 
 
 class Silence(NamedTuple):
@@ -128,7 +128,7 @@ def main() -> None:
                     if recording:
                         (place / "recording.csv").symlink_to(recording)
                     unit = silence(["-c", "import numpy"], place, False, args.limit).total
-                    found = silence(["-m", "harness", *command.split()], place, piped, args.limit)
+                    found = silence(["-m", "driveline", *command.split()], place, piped, args.limit)
                     table.add_row(
                         command.replace(f"{ROOT}/", ""), "piped" if piped else "terminal", *_cells(found, unit)
                     )

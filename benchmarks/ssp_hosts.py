@@ -24,12 +24,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from harness.cli import main as driveline
-from harness.control_loop import PLANTS, STEP_SIZE
-from harness.cosimulation.system import Scheme
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import simulate
-from harness.stopping import script
+from driveline.harness.base.interruption import script
+from driveline.harness.commands.cli import main as driveline
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.loop.places import PLANTS, STEP_SIZE
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
 
 DEFAULT = "SystemStructure.ssd"
 

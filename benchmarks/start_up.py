@@ -14,7 +14,7 @@ from time import perf_counter
 from rich.console import Console
 from rich.table import Table
 
-from harness.stopping import script
+from driveline.harness.base.interruption import script
 
 CONTENDERS: dict[str, tuple[str, ...]] = {
     "python": ("-c", "pass"),
@@ -22,11 +22,11 @@ CONTENDERS: dict[str, tuple[str, ...]] = {
     "python, import numpy, scipy": ("-c", "import numpy, scipy"),
     "python, import numpy, scipy.signal": ("-c", "import numpy, scipy.signal"),
     "python, import fmpy": ("-c", "import fmpy"),
-    "driveline --help": ("-m", "harness", "--help"),
-    "driveline simulate --help": ("-m", "harness", "simulate", "--help"),
-    "driveline simulate, an unknown manoeuvre": ("-m", "harness", "simulate", "--manoeuvre", "tipn15"),
-    "driveline simulate, up to an unknown parameter": ("-m", "harness", "simulate", "--set", "plant.nothing=1"),
-    "driveline simulate, a manoeuvre of 6 s": ("-m", "harness", "simulate", "--manoeuvre", "tipin15"),
+    "driveline --help": ("-m", "driveline", "--help"),
+    "driveline simulate --help": ("-m", "driveline", "simulate", "--help"),
+    "driveline simulate, an unknown manoeuvre": ("-m", "driveline", "simulate", "--manoeuvre", "tipn15"),
+    "driveline simulate, up to an unknown parameter": ("-m", "driveline", "simulate", "--set", "plant.nothing=1"),
+    "driveline simulate, a manoeuvre of 6 s": ("-m", "driveline", "simulate", "--manoeuvre", "tipin15"),
 }
 
 

@@ -20,21 +20,20 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from harness.control_loop import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, chosen_build, loop
-from harness.cosimulation.calls import Call
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.instance import Instance
-from harness.cosimulation.interface import type_of
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.steps import MakeSteps, Steps, interpreted
-from harness.cosimulation.system import System
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import signals, start
-from harness.stale import warn_of_stale
-from harness.stopping import script
-
-from .timed import Timed
+from benchmarks.timed import Timed
+from driveline.harness.base.interruption import script
+from driveline.harness.cosimulation.calls import Call
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.instance import Instance
+from driveline.harness.cosimulation.interface import type_of
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.steps import MakeSteps, Steps, interpreted
+from driveline.harness.cosimulation.system import System
+from driveline.harness.loop.places import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS, chosen_build, loop
+from driveline.harness.loop.stale_fmus import warn_of_stale
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import signals, start
 
 STEP_SIZE = 1e-3
 MICRO = 1e6
@@ -76,9 +75,9 @@ class Stopwatch:
 
     def function(self, instance: Instance, name: str) -> Callable[..., int]:
         """Stands in for `Instance.function`."""
-        return self.watched(instance.slave.dll[name], (instance.name, name))
+        return self.traced(instance.slave.dll[name], (instance.name, name))
 
-    def watched(self, call: Callable[..., int], key: tuple[str, str]) -> Callable[..., int]:
+    def traced(self, call: Callable[..., int], key: tuple[str, str]) -> Callable[..., int]:
         clock, note = perf_counter, self.laps[key].append
 
         def watched_call(*arguments: Any) -> int:
@@ -93,7 +92,7 @@ class Stopwatch:
         """Seconds that watching adds to a call, outside and inside of the lap it takes."""
         count = 20_000
         key = ("", "")
-        nothing = self.watched(id, key)
+        nothing = self.traced(id, key)
         began = perf_counter()
         for _ in range(count):
             nothing(self)

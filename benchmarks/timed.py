@@ -5,8 +5,8 @@ from time import process_time
 
 import numpy as np
 
-from harness.cosimulation.calls import Call
-from harness.cosimulation.steps import MakeSteps, Refusal, Steps
+from driveline.harness.cosimulation.calls import Call
+from driveline.harness.cosimulation.steps import MakeSteps, Refusal, Steps
 
 
 class Timed:

@@ -1,6 +1,6 @@
 """The FMUs of the controllers that ours is compared with; they are no part of the product."""
 
-from models.comparators import (
+from ..models.comparators import (
     linear_observer,
     no_damping,
     paper_observer,
@@ -8,7 +8,6 @@ from models.comparators import (
     speed_difference,
     speed_washout,
 )
-
 from .fmu import Fmu
 
 COMPARATORS: dict[str, Fmu] = {

@@ -5,7 +5,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
-from models.block.types import Block, with_start_values
+from ..models.block.types import Block, with_start_values
+
+PACKAGE = __package__.removesuffix("fmus")
+"""What the names of the project's own modules begin with."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,8 @@ class Fmu:
 
     @property
     def module(self) -> str:
-        """Module that holds the equations, for example models.two_mass_driveline."""
-        return self.block.module
+        """Module that holds the equations, for example models.two_mass_driveline; a stranger's with all its name."""
+        return self.block.module.removeprefix(PACKAGE)
 
     @property
     def is_of_the_project(self) -> bool:
@@ -42,7 +45,7 @@ class Fmu:
     @property
     def equations(self) -> str:
         """Docstring of that module."""
-        return sys.modules[self.module].__doc__ or ""
+        return sys.modules[self.block.module].__doc__ or ""
 
     def started_with(self, values: Mapping[str, Any]) -> Self:
         """The FMU with those of the start values, by name, whose parameters it has."""

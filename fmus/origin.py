@@ -1,4 +1,4 @@
-"""What an FMU was made from: told inside it, so that one that is older than its sources is found."""
+"""What an FMU was made from, recorded inside it, so that one that is older than its sources is found."""
 
 import hashlib
 import json
@@ -45,17 +45,17 @@ def sources_digest() -> str:
 
 def origin_entry(fmu: Fmu) -> dict[str, bytes]:
     """The file that tells it, by its name in the archive."""
-    told = {"sources": sources_digest(), "start_values": dict(fmu.start_values)}
-    return {ENTRY: json.dumps(told, indent=2, sort_keys=True).encode() + b"\n"}
+    entry = {"sources": sources_digest(), "start_values": dict(fmu.start_values)}
+    return {ENTRY: json.dumps(entry, indent=2, sort_keys=True).encode() + b"\n"}
 
 
 def origin_of(path: Path) -> Origin | None:
     """What the FMU at `path` tells; None if it tells nothing (it is somebody else's, or older than this)."""
     try:
         with zipfile.ZipFile(path) as archive:
-            told = json.loads(archive.read(ENTRY))
+            entry = json.loads(archive.read(ENTRY))
             binaries = [name.split("/")[1] for name in archive.namelist() if name.startswith("binaries/")]
-        return Origin(told["sources"], dict(told["start_values"]), frozenset(binaries))
+        return Origin(entry["sources"], dict(entry["start_values"]), frozenset(binaries))
     except Exception:  # whatever the bytes of a stranger lead zipfile to
         return None
 

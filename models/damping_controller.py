@@ -11,7 +11,7 @@ that is not only ends the mode that uses it. What counts as that, and how long, 
 """
 
 from .controller import damping_law, torque_estimator
-from .controller.supervised import supervised
+from .controller.supervised_controller import supervised
 
 BLOCK = supervised(
     name="DampingController",

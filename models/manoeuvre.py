@@ -12,7 +12,7 @@ from typing import Annotated, Any, NamedTuple
 from .block.declaration import Real, quantities, variables
 from .block.operators import floor, logical_and, where
 from .block.types import ContinuousBlock
-from .plant import Input as PlantInput
+from .physics.plant import Input as PlantInput
 
 POINTS = 32
 """That a manoeuvre has at the most."""

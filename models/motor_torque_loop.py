@@ -13,7 +13,7 @@ from .block.frame import Content, Frame
 from .block.noise import normals
 from .block.operators import clip, floor, maximum, where
 from .block.types import ContinuousBlock
-from .vehicle import CAR, MotorLag, MotorTorque
+from .physics.vehicle import CAR, MotorLag, MotorTorque
 
 SQRT_2 = 2.0**0.5
 NOISE = 0.0

@@ -21,14 +21,14 @@ they would show then follows omega_2 without slip.
 
 from typing import Annotated, Any, NamedTuple
 
-from . import brake, vehicle
-from .backlash import dead_zone
 from .block.declaration import Boolean, Real
 from .block.operators import maximum, sign, where
 from .block.types import ContinuousBlock
-from .brake import BRAKE
-from .plant import Input, Output
-from .vehicle import CAR
+from .physics import brake, vehicle
+from .physics.backlash import dead_zone
+from .physics.brake import BRAKE
+from .physics.plant import Input, Output
+from .physics.vehicle import CAR
 
 
 class Parameters(NamedTuple):

@@ -25,14 +25,14 @@ with their penetration, so that the torque does not jump at the contact (K. H. H
 
 from typing import Annotated, Any, NamedTuple
 
-from . import brake, vehicle
-from .backlash import dead_zone
 from .block.declaration import Real
 from .block.operators import atan, maximum, minimum, sign, sin, tanh, where
 from .block.types import ContinuousBlock
-from .brake import BRAKE
-from .plant import Input, Output
-from .vehicle import CAR
+from .physics import brake, vehicle
+from .physics.backlash import dead_zone
+from .physics.brake import BRAKE
+from .physics.plant import Input, Output
+from .physics.vehicle import CAR
 
 
 class Parameters(NamedTuple):

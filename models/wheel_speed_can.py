@@ -7,14 +7,14 @@ The message arrives after a random transport delay, never overtaking another, un
 
 from typing import Annotated, Any, NamedTuple
 
-from . import tooth_wheel
 from .block.declaration import Boolean, Integer, Real
 from .block.frame import Content, Frame
 from .block.noise import uniform
 from .block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
 from .block.types import SampledBlock
-from .tooth_wheel import ToothWheel
-from .vehicle import CAR, GearRatio, WheelRadius
+from .physics import tooth_wheel
+from .physics.tooth_wheel import ToothWheel
+from .physics.vehicle import CAR, GearRatio, WheelRadius
 
 T_S = 0.001
 """Sample time in s; the ABS unit works at whole multiples of it."""

@@ -6,9 +6,9 @@ from shutil import copytree
 import pytest
 from hypothesis import settings
 
-from fmus.builds import NotPossible, builders
-from fmus.catalogue import FMUS
-from fmus.python.packaging import build
+from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.python.packaging import build
 from tests.browser import browser
 
 # the same examples in every run, and nothing timed

@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from fmus.builds import NotPossible
+from driveline.fmus.building.builds import NotPossible
 from tests.fuzz.targets import TARGETS
 
 

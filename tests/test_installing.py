@@ -9,13 +9,14 @@ import tarfile
 from email import message_from_bytes
 from email.message import Message
 from pathlib import Path
+from shutil import copytree
 from zipfile import ZipFile
 
 import pytest
 from markdown_it import MarkdownIt
 
-from fmus import release
-from fmus.catalogue import FMUS
+from driveline.fmus import release
+from driveline.fmus.catalogue import FMUS
 from tests import ROOT
 
 NOT_PUBLISHED = (".ci/", ".github/", ".gitignore", ".pre-commit-config.yaml")
@@ -62,7 +63,7 @@ def scripts(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     ran(sys.executable, *install, folder=environment)
     (packages,) = environment.glob("lib/python*/site-packages")
     (packages / "others.pth").write_text(sysconfig.get_path("purelib") + "\n")
-    where = ran(python, "-c", "import models, fmus, harness; print(harness.__file__)", folder=environment).stdout
+    where = ran(python, "-c", "import driveline; print(driveline.__file__)", folder=environment).stdout
     assert where.startswith(str(packages)), "the packages are not those of the checkout"
     return environment / "bin"
 
@@ -113,8 +114,28 @@ def test_the_sources_are_all_there(published: Path) -> None:
 def test_the_wheel_has_what_the_packages_have_and_that_they_are_typed(wheel: Path) -> None:
     with ZipFile(wheel) as archive:
         there = set(archive.namelist())
-    assert set(tracked("models", "fmus", "harness")) - there == {COMPILED}
-    assert {"models/py.typed", "fmus/py.typed", "harness/py.typed"} <= there
+    inside = {f"driveline/{name}" for name in tracked("models", "fmus", "harness")} | set(tracked("driveline"))
+    assert inside - there == {f"driveline/{COMPILED}"}
+    assert "driveline/py.typed" in there
+
+
+def test_nothing_of_ours_lies_outside_of_the_one_package(wheel: Path) -> None:
+    with ZipFile(wheel) as archive:
+        tops = {name.partition("/")[0] for name in archive.namelist()}
+    assert {top for top in tops if not top.endswith((".dist-info", ".libs"))} == {"driveline"}
+
+
+def test_a_script_beside_folders_of_the_same_names_runs(scripts: Path, native: Path, tmp_path: Path) -> None:
+    for folder in ("models", "fmus", "harness"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "__init__.py").write_text("raise ImportError('not this one')\n")
+    copytree(native, tmp_path / "build" / native.name)
+    (tmp_path / "script.py").write_text(
+        "import driveline\n"
+        "tipin = driveline.MANOEUVRES['tipin15']\n"
+        "print(driveline.evaluate(driveline.simulate(tipin), tipin).settling_time)\n"
+    )
+    assert 0.0 < float(ran(scripts / "python", "script.py", folder=tmp_path).stdout) < 0.2
 
 
 def test_the_page_of_the_package_leads_to_what_is_in_the_repository(metadata: Message) -> None:

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from shutil import copytree, ignore_patterns
+from shutil import copy, copytree, ignore_patterns
 from textwrap import dedent
 from typing import Any
 
@@ -76,10 +76,12 @@ def test_outputs_and_what_a_kernel_adds_are_cleared(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def desk(native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder_of_user(native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder of a user who has installed the packages and built the FMUs there."""
     for package in ("models", "fmus", "harness"):
-        copytree(ROOT / package, tmp_path / "installed" / package, ignore=ignore_patterns("__pycache__"))
+        copytree(ROOT / package, tmp_path / "installed/driveline" / package, ignore=ignore_patterns("__pycache__"))
+    for path in (ROOT / "driveline").glob("*.py*"):
+        copy(path, tmp_path / "installed/driveline")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path / "installed"))
     copytree(native, tmp_path / "desk" / "build" / native.name)
     return tmp_path / "desk"
@@ -107,11 +109,11 @@ def executed(path: Path, last_cell: str, folder: Path) -> tuple[list[Any], list[
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs_and_shows_what_it_says(path: Path, desk: Path) -> None:
-    outputs, displayed = executed(path, dedent(IMPORTS) + dedent(SHOWN[path.stem]), desk)
+def test_a_notebook_runs_and_shows_what_it_says(path: Path, folder_of_user: Path) -> None:
+    outputs, displayed = executed(path, dedent(IMPORTS) + dedent(SHOWN[path.stem]), folder_of_user)
     assert [output for output in outputs if output.get("name") == "stderr"] == [], "nothing is warned of"
     assert sum("image/png" in output.get("data", {}) for output in outputs) == FIGURES[path.stem]
-    assert not list((desk / "build").glob("*.fmu")), "all FMUs were there"
+    assert not list((folder_of_user / "build").glob("*.fmu")), "all FMUs were there"
     if path.stem == "sweep":
         shown = [data["text/plain"] for data in displayed if data["text/plain"].startswith("tip-ins: ")]
         assert shown[-1] == "tip-ins: 1000 of 1000"

@@ -1,4 +1,4 @@
-"""Which room may import from which: the architecture as a table, read from the top."""
+"""The order of the rooms: each imports only from those before it, so that no circle can be."""
 
 import ast
 import importlib.util
@@ -10,75 +10,58 @@ import pytest
 
 from tests import ROOT
 
-COSIMULATION = {"harness", "harness.cosimulation"}
+ORDER = (
+    "models.block",
+    "models.physics",
+    "models.controller",
+    "models.comparators",
+    "models",
+    "fmus",
+    "fmus.description",
+    "fmus.native",
+    "fmus.python",
+    "fmus.target",
+    "fmus.building",
+    "harness.base",
+    "harness.cosimulation",
+    "harness.loop",
+    "harness.recordings",
+    "harness.manoeuvres",
+    "harness.metrics",
+    "harness.simulation",
+    "harness.views",
+    "harness.views.html",
+    "harness.design",
+    "harness.design.search",
+    "harness.identification",
+    "harness.studies.compare",
+    "harness.studies.drives",
+    "harness.studies.margins",
+    "harness.studies.coupling",
+    "harness.studies.back_to_back",
+    "harness.studies.bound",
+    "harness.studies.faults",
+    "harness.studies.robustness",
+    "harness.exchange.ssp",
+    "harness.exchange.bus",
+    "harness.exchange.target",
+    "harness.exchange.compliance",
+    "harness.explorer",
+    "harness.commands",
+    "docs.studies",
+    "docs.site",
+)
+"""Each once; a folder that holds others is a room of its own."""
 
-ROOMS = {
-    "models.block": set(),
-    "models.controller": {"models", "models.block"},
-    "models.comparators": {"models.block", "models.controller"},
-    "models": {"models.block", "models.controller"},
-    "fmus.description": {"fmus", "models.block"},
-    "fmus.python": {"fmus", "fmus.description", "models.block"},
-    "fmus.native": {"fmus", "fmus.description", "models.block"},
-    "fmus.target": {"fmus", "fmus.description", "fmus.native", "fmus.python", "models.block"},
-    "fmus": {"fmus.description", "fmus.python", "fmus.native", "models", "models.block", "models.comparators"},
-    "": {"fmus"},
-    "harness.cosimulation": {"harness"},
-    "harness.recordings": COSIMULATION,
-    "harness.manoeuvres": COSIMULATION | {"harness.recordings"},
-    "harness.metrics": {"harness", "harness.manoeuvres"},
-    "harness.reports": {"harness", "harness.recordings", "harness.manoeuvres", "harness.metrics"},
-    "harness.html": {"harness", "harness.manoeuvres", "harness.metrics", "harness.reports"},
-    "harness.explorer": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.html"},
-    "harness.ssp": COSIMULATION | {"harness.manoeuvres"},
-    "harness.compliance": COSIMULATION,
-    "harness.linear": {"harness", "harness.metrics", "harness.reports", "models", "models.block", "models.controller"},
-    "harness.faults": COSIMULATION | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.html"},
-    "harness.robustness": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "harness.html"},
-    "harness.analysis": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "fmus", "fmus.description"}
-    | {"harness.linear", "models", "models.block", "models.controller"}
-    | {"harness.recordings", "harness.identification"},
-    "harness.bound": {"harness", "harness.cosimulation", "harness.manoeuvres", "harness.metrics", "harness.reports"}
-    | {"harness.linear", "models", "models.controller"},
-    "harness.identification": {"harness", "harness.recordings", "harness.metrics", "harness.reports", "harness.html"},
-    "harness.bus": {"harness", "harness.reports", "fmus", "models.block"},
-    "harness.target": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.recordings", "harness.reports"}
-    | {"fmus", "fmus.native", "fmus.target"},
-    "harness.tuning": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.analysis", "fmus", "fmus.description"}
-    | {"harness.robustness", "harness.identification"},
-    "harness": COSIMULATION
-    | {"harness.recordings", "harness.manoeuvres", "harness.metrics", "harness.reports", "harness.commands"}
-    | {"fmus"},  # harness.stale and harness.built alone: what makes an FMU is known to those who make it
-    "harness.commands": COSIMULATION
-    | {"harness.manoeuvres", "harness.metrics", "harness.reports", "harness.compliance", "harness.analysis", "fmus"}
-    | {
-        "harness.recordings",
-        "harness.identification",
-        "harness.bound",
-        "harness.bus",
-        "harness.explorer",
-        "harness.faults",
-        "harness.html",
-        "harness.linear",
-        "harness.tuning",
-        "harness.robustness",
-        "harness.ssp",
-        "harness.target",
-    },
-}
-"""Each room and those that it may import from; "" is build_fmus.py. FMUs know no harness, and of the harness only
-the analysis, its linear loop and the bound know the models."""
+KNOW_THE_MODELS = ("harness.design", "harness.identification", "harness.studies", "harness.exchange", "docs.studies")
+"""Rooms beside models and fmus that may import the equations; all others see FMUs only as FMUs."""
 
 
 def modules() -> Iterator[str]:
-    yield "build_fmus"
-    for package in ("models", "fmus", "harness"):
-        for path in sorted((ROOT / package).rglob("*.py")):
-            yield ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    for folder in ("models", "fmus", "harness", "docs"):
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            if path.name != "__init__.py":
+                yield ".".join(path.relative_to(ROOT).with_suffix("").parts)
 
 
 def source(module: str) -> Path:
@@ -86,29 +69,42 @@ def source(module: str) -> Path:
 
 
 def imports(module: str) -> Iterator[str]:
-    """What a module imports: of `from a import b` the module a.b, or a where b is something in it."""
+    """What a module imports, ours without the name of the package: of `from a import b` the module a.b, or a where b
+    is something in it."""
     package = module.rpartition(".")[0]
     for node in ast.walk(ast.parse(source(module).read_bytes())):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            base = importlib.util.resolve_name("." * node.level + (node.module or ""), f"driveline.{package}")
+            base = base.removeprefix("driveline.")
             for alias in node.names:
                 yield f"{base}.{alias.name}" if source(f"{base}.{alias.name}").is_file() else base
 
 
-def rooms_in(module: str) -> set[str]:
-    """Rooms of ours that a module imports from; what lies outside every room is a room of its own."""
-    found = {
-        name for name in imports(module) if name.split(".")[0] in ("models", "fmus", "harness", "tests", "benchmarks")
-    }
-    return {name if (ROOT / name.replace(".", "/")).is_dir() else name.rpartition(".")[0] for name in found}
+def room(module: str) -> str:
+    return module if (ROOT / module.replace(".", "/")).is_dir() else module.rpartition(".")[0]
 
 
 @pytest.mark.parametrize("module", list(modules()))
-def test_a_room_imports_from_the_rooms_that_it_may(module: str) -> None:
-    room = module.rpartition(".")[0]
-    assert rooms_in(module) <= ROOMS[room] | {room}
+def test_a_room_imports_only_from_those_before_it(module: str) -> None:
+    before = ORDER[: ORDER.index(room(module)) + 1]
+    ours = {room(name) for name in imports(module) if source(name).is_file() or (ROOT / name.split(".")[0]).is_dir()}
+    assert ours - {"tests"} <= set(before)
+
+
+def test_every_room_has_its_place_in_the_order() -> None:
+    assert {room(module) for module in modules()} == set(ORDER)
+
+
+def test_files_lie_in_rooms() -> None:
+    assert [path.name for path in (ROOT / "harness").glob("*.py")] == ["__init__.py"]
+
+
+@pytest.mark.parametrize("module", [name for name in modules() if name.startswith("harness.")])
+def test_only_design_and_studies_know_the_models(module: str) -> None:
+    if not module.startswith(KNOW_THE_MODELS):
+        assert not [name for name in imports(module) if name.startswith("models")]
 
 
 def reached(module: str) -> set[str]:
@@ -122,17 +118,11 @@ def reached(module: str) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("room", ["cosimulation", "recordings", "manoeuvres", "metrics", "compliance"])
-def test_what_runs_any_fmu_knows_nothing_of_how_ours_are_made(room: str) -> None:
+@pytest.mark.parametrize("name", ["cosimulation", "recordings", "manoeuvres", "metrics", "exchange.compliance"])
+def test_what_runs_any_fmu_knows_nothing_of_how_ours_are_made(name: str) -> None:
     for module in modules():
-        if module.startswith(f"harness.{room}."):
-            assert not {name for name in reached(module) if name.startswith(("fmus.", "models."))}, module
-
-
-def test_what_makes_an_fmu_is_asked_in_two_places() -> None:
-    for module in set(modules()) - {"harness.stale", "harness.built"}:
-        if module.startswith("harness.") and module.count(".") == 1:
-            assert not {name for name in imports(module) if name.startswith("fmus")}, module
+        if module.startswith(f"harness.{name}."):
+            assert not {found for found in reached(module) if found.startswith(("fmus.", "models."))}, module
 
 
 def test_the_models_use_the_standard_library_alone() -> None:

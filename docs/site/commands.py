@@ -5,9 +5,8 @@ import html
 import re
 from collections.abc import Iterator, Mapping
 
-from harness.cli import COMMANDS, EXIT_CODES, complete_commands, parser
-
-from . import ROOT
+from docs.site import ROOT
+from driveline.harness.commands.cli import COMMANDS, EXIT_CODES, complete_commands, parser
 
 FOLDER = "commands"
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from fnmatch import fnmatch
 from typing import NamedTuple
 
-from . import ROOT, links
+from docs.site import ROOT, links
 
 PAGE = "gallery.md"
 FIGURES = ROOT / "docs" / "figures"
@@ -15,7 +15,7 @@ BY_HAND = ""
 MADE_BY = {
     "drive.png": "driveline compare",
     "analysis_*.png": "driveline analyse",
-    "calibration_*.png": "python -m harness.analysis.calibration_page",
+    "calibration_*.png": "python -m docs.studies.calibration_page",
     "identification_simulation.png": "driveline identify results/record/ValidationVehicle_prbs_off.csv",
     "robustness_*.png": "driveline robustness --cases 300",
     "worst_*.png": "driveline robustness --cases 300",

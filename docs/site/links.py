@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from . import ROOT
+from docs.site import ROOT
 
 PAGES = {
     "README.md": "index.md",

@@ -4,11 +4,11 @@ import ast
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from . import ROOT
+from docs.site import ROOT
 
 FOLDER = "reference"
 PACKAGES = ("harness", "fmus", "models")
-ELSEWHERE = "harness.commands"
+ELSEWHERE = "driveline.harness.commands"
 """Has pages of its own, made from the parsers."""
 
 

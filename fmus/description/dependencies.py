@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 from typing import Any
 
-from models.block.declaration import Boolean, variables
-from models.block.types import Block
-
+from ...models.block.declaration import Boolean, variables
+from ...models.block.types import Block
 from ..symbol import Symbol
 
 

@@ -6,9 +6,8 @@ from html import escape
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-from models.block.declaration import Enumeration
-from models.block.types import Block, ContinuousBlock
-
+from ...models.block.declaration import Enumeration
+from ...models.block.types import Block, ContinuousBlock
 from ..fmu import Fmu
 from .build_kind import BuildKind
 from .picture import picture

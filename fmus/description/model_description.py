@@ -5,9 +5,8 @@ from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from models.block.declaration import Boolean, Enumeration, Integer, Real
-from models.block.types import SampledBlock
-
+from ...models.block.declaration import Boolean, Enumeration, Integer, Real
+from ...models.block.types import SampledBlock
 from ..fmu import Fmu
 from ..release import ABOUT, date
 from .build_kind import BuildKind

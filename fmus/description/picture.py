@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 from PIL import Image
 
-from models.block.types import Block
+from ...models.block.types import Block
 
 ROW = 0.26
 """Height of one port in inches."""

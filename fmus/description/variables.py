@@ -2,9 +2,8 @@
 
 from typing import Any, NamedTuple
 
-from models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
-from models.block.operators import LARGEST
-
+from ...models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
+from ...models.block.operators import LARGEST
 from .units import NOMINAL
 
 

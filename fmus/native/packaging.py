@@ -5,8 +5,7 @@ from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 
-from models.block.types import ContinuousBlock
-
+from ...models.block.types import ContinuousBlock
 from ..archive import guid_of, write_archive
 from ..description.build_kind import BuildKind
 from ..description.documentation import documentation

@@ -3,9 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from models.block.declaration import Quantity, Real, variables
-from models.block.types import Block
-
+from ...models.block.declaration import Quantity, Real, variables
+from ...models.block.types import Block
 from ..description.numbers import numbers
 
 RECORDS = {"u": "Input", "p": "Parameters", "y": "Output", "x": "State"}

@@ -9,9 +9,9 @@ from string import Formatter
 from types import ModuleType
 from typing import Any
 
-from models.block import explicit, implicit, integrator, runner
-
+from ...models.block import explicit, implicit, integrator, runner
 from .. import protocol
+from ..fmu import PACKAGE
 
 HEADER = """/* What Python and C share, written by build_fmus.py from {modules}.
 
@@ -32,7 +32,7 @@ def shared_header() -> str:
     """shared.h: every number, text, tuple of texts and enumeration that those modules name with a capital."""
     modules = (protocol, runner, explicit, implicit, integrator)
     return HEADER.format(
-        modules=", ".join(module.__name__ for module in modules),
+        modules=", ".join(module.__name__.removeprefix(PACKAGE) for module in modules),
         definitions="\n\n".join(text for module in modules for text in _definitions(module)),
     )
 

@@ -3,9 +3,8 @@
 import re
 from typing import Any
 
-from models.block.explicit import small_sizes
-from models.block.types import SampledBlock
-
+from ...models.block.explicit import small_sizes
+from ...models.block.types import SampledBlock
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 from .arithmetic import Graph

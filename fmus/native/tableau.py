@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from models.block import rodas
-from models.block.dop853 import B_3, ERROR_5, A, B
-from models.block.explicit import GREATEST, TOLERANCE
+from ...models.block import rodas
+from ...models.block.dop853 import B_3, ERROR_5, A, B
+from ...models.block.explicit import GREATEST, TOLERANCE
 
 DOP853 = """/* The Runge-Kutta method of order 8 by Dormand and Prince, written by build_fmus.py from dop853.py. */
 

@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 
 import casadi
 
-from models.block.types import Block, ContinuousBlock, SampledBlock
-
+from ...models.block.types import Block, ContinuousBlock, SampledBlock
 from .symbol import CasadiSymbol, expression
 
 

@@ -6,13 +6,11 @@ They go into one package whose name comes from their content, so that neither an
 
 import ast
 import hashlib
-import importlib.util
 from collections.abc import Iterator
+from importlib.util import resolve_name
 from pathlib import Path
 
-from ..fmu import Fmu
-
-PACKAGES = ("models", "fmus")
+from ..fmu import PACKAGE, Fmu
 
 PACKAGE_TEXT = '''"""The FMU {name}: the block run as a slave of PythonFMU."""
 
@@ -69,7 +67,7 @@ def bundle(fmu: Fmu) -> dict[str, bytes]:
     files = {IMAGE: fmu.image} if fmu.image else {}
     for module in modules:
         path = source_path(module)
-        files[_place(path)] = relocated(module)
+        files[_place(path)] = path.read_bytes()
         files |= {_place(data): data.read_bytes() for data in path.parent.glob(f"{path.stem}.toml")}
     return dict(sorted(files.items()))
 
@@ -91,46 +89,19 @@ def source_path(module: str) -> Path:
 
 
 def imported(module: str) -> Iterator[str]:
-    """Names of our own modules that a module imports."""
+    """Names of our own modules that a module imports: by relative imports, so that they are found in any package."""
     package = module if source_path(module).name == "__init__.py" else module.rpartition(".")[0]
     for node in ast.walk(ast.parse(source_path(module).read_bytes())):
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = resolve_name("." * node.level + (node.module or ""), PACKAGE + package).removeprefix(PACKAGE)
             names = [base, *(f"{base}.{alias.name}" for alias in node.names)]
-        else:
-            continue
-        yield from (name for name in names if _is_ours(name) and source_path(name).is_file())
+            yield from (name for name in names if source_path(name).is_file())
 
 
 def packages_of(module: str) -> Iterator[str]:
     """The packages that a module lies in, the outermost last."""
     while module := module.rpartition(".")[0]:
         yield module
-
-
-def relocated(module: str) -> bytes:
-    """Text of a module as it stands in the package of an FMU: what it imports of ours is named relative to itself.
-
-    Raises:
-        ValueError: it has a statement `import a.b` of ours, which has no relative form.
-    """
-    path = source_path(module)
-    text = path.read_bytes()
-    lines = text.splitlines(keepends=True)
-    upwards = b"." * len(path.relative_to(_root()).parts)
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Import) and any(_is_ours(alias.name) for alias in node.names):
-            raise ValueError(f"{path}, line {node.lineno}: write `from a import b` to import modules of the project")
-        if isinstance(node, ast.ImportFrom) and not node.level and _is_ours(node.module or ""):
-            line, place = lines[node.lineno - 1], node.col_offset + len("from ")
-            lines[node.lineno - 1] = line[:place] + upwards + line[place:]
-    return b"".join(lines)
-
-
-def _is_ours(module: str) -> bool:
-    return module.split(".")[0] in PACKAGES
 
 
 def package_name(fmu: Fmu, files: dict[str, bytes]) -> str:

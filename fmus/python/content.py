@@ -3,9 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
-from models.block.runner import runner
-from models.block.types import Block, SampledBlock
-
+from ...models.block.runner import runner
+from ...models.block.types import Block, SampledBlock
 from ..description.numbers import numbers
 from ..description.variables import Variable, interface
 from ..protocol import ANY_NUMBER, BAD_STATE, DAMAGED_STATE, FROM_START_ON, MOST_TICKS, NEAR_ITS_TIME, Mode

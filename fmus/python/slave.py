@@ -5,10 +5,9 @@ from collections.abc import Callable
 from typing import Any
 from weakref import ref
 
-from models.block.implicit import NotIntegrable
-from models.block.integrator import TooMuchWork
-from models.block.runner import Runner, runner
-
+from ...models.block.implicit import NotIntegrable
+from ...models.block.integrator import TooMuchWork
+from ...models.block.runner import Runner, runner
 from .. import protocol
 from ..protocol import Mode
 from . import content, snapshot

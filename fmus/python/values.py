@@ -3,8 +3,7 @@
 import math
 from typing import Any
 
-from models.block.types import ContinuousBlock
-
+from ...models.block.types import ContinuousBlock
 from .. import protocol
 from ..description.variables import Variable, interface
 from .refusal import Refused

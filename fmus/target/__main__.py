@@ -1,4 +1,4 @@
-"""`python -m fmus.target` says what is missing to run the controller on the emulated target, if anything."""
+"""`python -m driveline.fmus.target` says what is missing to run the controller on the emulated target, if anything."""
 
 import sys
 

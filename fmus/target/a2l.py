@@ -8,8 +8,7 @@ import subprocess
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from models.block.declaration import Enumeration
-
+from ...models.block.declaration import Enumeration
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 

@@ -103,10 +103,10 @@ def _misra(names: Iterable[str], folder: Path) -> list[tuple[str, str, str]]:
     """Rule, file and line; what cppcheck finds beside MISRA has its name for a rule."""
     template = "--template={id} {file} {line}"
     command = [CHECKER, "--quiet", "--addon=misra", "--std=c99", template, "--template-location=", *names]
-    said = subprocess.run(
+    output = subprocess.run(
         command, cwd=folder, env=os.environ | WITHOUT_VALUES, capture_output=True, text=True, check=True
     ).stderr
-    rows = [line.split() for line in said.splitlines() if line.strip()]
+    rows = [line.split() for line in output.splitlines() if line.strip()]
     return [(rule.removeprefix("misra-c2012-"), file, line) for rule, file, line in rows]
 
 
@@ -114,5 +114,5 @@ def _warned(names: Iterable[str], folder: Path) -> list[tuple[str, str, str]]:
     warnings = ("-Wno-error", "-Wfloat-equal", f"-Wstack-usage={LARGEST_STACK}", "-fno-diagnostics-color")
     command = [COMPILER, *PROCESSOR, *FLAGS, *warnings, "-c", *names]
     environment = os.environ | {"LC_ALL": "C"}
-    said = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True).stderr
-    return [(rule, file, line) for file, line, rule in WARNING.findall(said)]
+    output = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True).stderr
+    return [(rule, file, line) for file, line, rule in WARNING.findall(output)]

@@ -74,13 +74,13 @@ def require_packages(*others: str) -> None:
             install.
     """
     lacking = [program for program in (COMPILER, EMULATOR, *others) if shutil.which(program) is None]
-    if not lacking and not Path(_said_by(COMPILER, "-print-file-name=nano.specs")).is_absolute():
+    if not lacking and not Path(_output_of(COMPILER, "-print-file-name=nano.specs")).is_absolute():
         lacking = ["nano.specs"]
     if lacking:
         raise CompilerError(f"there is no {' and no '.join(lacking)}: apt-get install {' '.join(PACKAGES)}")
 
 
-def _said_by(*command: str) -> str:
+def _output_of(*command: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 

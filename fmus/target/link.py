@@ -183,10 +183,10 @@ class Link:
         except subprocess.TimeoutExpired:
             return f"{self.name} closed its link"
         assert self._process.stderr
-        said = self._process.stderr.read().decode(errors="replace").strip().splitlines()
+        lines = self._process.stderr.read().decode(errors="replace").strip().splitlines()
         if code < 0:
             return f"{self.name} was lost: ended by {signal.Signals(-code).name}"
-        reason = "a fault of the processor" if code == CRASHED else said[0] if said else f"exit code {code}"
+        reason = "a fault of the processor" if code == CRASHED else lines[0] if lines else f"exit code {code}"
         return f"{self.name} crashed: {reason}"
 
 

@@ -4,9 +4,8 @@ Files without any FMI in them: the same structs and arithmetic as in the FMU, bu
 project, and in single precision if wanted.
 """
 
-from models.block.declaration import Enumeration, variables
-from models.block.types import SampledBlock
-
+from ...models.block.declaration import Enumeration, variables
+from ...models.block.types import SampledBlock
 from ..catalogue import EVERY
 from ..fmu import Fmu
 from ..native.records import Names, records_of, structs

@@ -1,1 +1,1 @@
-"""The commands of `driveline`, see `harness.cli`."""
+"""The commands of `driveline`, see `harness.commands.cli`."""

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from math import isfinite
 from typing import Any
 
-from ..built import built
-from ..control_loop import PLACES, PLANTS
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
+from ..loop.built_fmus import built
+from ..loop.places import PLACES, PLANTS
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
@@ -32,7 +32,7 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    from fmus.options import add_parameter_files
+    from ...fmus.building.options import add_parameter_files
 
     parser.add_argument(
         "--plant", action="append", choices=PLANTS, metavar="NAME", help=f"only this plant: {' or '.join(PLANTS)}"
@@ -52,8 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from fmus.errors import ParameterFileError
-    from fmus.parameter_files import read_files
+    from ...fmus.building.parameter_files import read_files
+    from ...fmus.errors import ParameterFileError
 
     plants = list(dict.fromkeys(args.plant or PLANTS))
     try:
@@ -62,11 +62,11 @@ def run(args: argparse.Namespace) -> int:
         raise DrivelineError(str(refusal)) from refusal
     builds = {plant: built(plant, args.fmus, controller=args.controller) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from ..analysis.analysis_report import announce, write
-    from ..analysis.cars import loop_parameters
-    from ..analysis.loop_analysis import analyse
-    from ..provenance import recorded
-    from ..simulate import looped
+    from ..design.design_trials import loop_parameters
+    from ..simulation.provenance import recorded
+    from ..simulation.simulate import looped
+    from ..studies.margins.analysis_report import announce, write
+    from ..studies.margins.loop_analysis import analyse
     from .settings import distinguishing
 
     given: dict[str, dict[str, Any]] = {

@@ -4,8 +4,8 @@ import argparse
 import sys
 from itertools import product
 
-from ..built import built
-from ..control_loop import BUILDS, PLANTS
+from ..loop.built_fmus import built
+from ..loop.places import BUILDS, PLANTS
 from ..manoeuvres.catalogue import MANOEUVRES
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
@@ -38,12 +38,11 @@ def run(args: argparse.Namespace) -> int:
     for plant, build in product(PLANTS, BUILDS):
         built(plant, args.fmus, build)
     # here and not above: only this measurement needs the models
-    from fmus.catalogue import FMUS
-
-    from ..analysis.back_to_back import Differences, compare_block, compare_loop, random_inputs
-    from ..analysis.back_to_back_page import LoopRow, page
-    from ..many import run_many
-    from ..reports.files import write_text
+    from ...fmus.catalogue import FMUS
+    from ..base.atomic_files import write_text
+    from ..simulation.many_runs import run_many
+    from ..studies.back_to_back.back_to_back import Differences, compare_block, compare_loop, random_inputs
+    from ..studies.back_to_back.back_to_back_page import LoopRow, page
 
     def compare_alone(name: str) -> Differences:
         return compare_block(name, random_inputs(FMUS[name].block, RANDOM_STEPS), args.fmus)

@@ -3,9 +3,9 @@
 import argparse
 from typing import Any
 
-from ..built import built
-from ..control_loop import PLACES, PLANTS
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
+from ..loop.built_fmus import built
+from ..loop.places import PLACES, PLANTS
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
@@ -31,9 +31,8 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    from fmus.options import add_parameter_files
-
-    from ..bound.manoeuvres import BOUNDED_MANOEUVRES
+    from ...fmus.building.options import add_parameter_files
+    from ..studies.bound.bounded_manoeuvres import BOUNDED_MANOEUVRES
 
     parser.add_argument(
         "--manoeuvre",
@@ -57,10 +56,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from fmus.errors import ParameterFileError
-    from fmus.parameter_files import read_files
-
-    from ..bound.manoeuvres import BOUNDED_MANOEUVRES
+    from ...fmus.building.parameter_files import read_files
+    from ...fmus.errors import ParameterFileError
+    from ..studies.bound.bounded_manoeuvres import BOUNDED_MANOEUVRES
 
     names = list(dict.fromkeys(args.manoeuvre or BOUNDED_MANOEUVRES))
     try:
@@ -70,11 +68,11 @@ def run(args: argparse.Namespace) -> int:
     plant = PLANTS[0]
     build = built(plant, args.fmus, controller=args.controller)
     # here and not above: mistakes and help are answered without them
-    from ..analysis.cars import loop_parameters
-    from ..bound.bounded import all_bounded
-    from ..bound.report import announce, record, write
-    from ..provenance import recorded
-    from ..simulate import looped
+    from ..design.design_trials import loop_parameters
+    from ..simulation.provenance import recorded
+    from ..simulation.simulate import looped
+    from ..studies.bound.bound_report import announce, record, write
+    from ..studies.bound.bounds import all_bounded
     from .settings import distinguishing
 
     given: dict[str, Any] = {

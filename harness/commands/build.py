@@ -2,11 +2,10 @@
 
 import argparse
 
-from fmus import build_command
-from fmus.errors import BuildError
-
-from ..control_loop import BUILD
-from ..errors import DrivelineError
+from ...fmus.building import build_command
+from ...fmus.errors import BuildError
+from ..base.errors import DrivelineError
+from ..loop.places import BUILD
 
 DESCRIPTION = build_command.DESCRIPTION
 EXAMPLES = build_command.examples("driveline build")

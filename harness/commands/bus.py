@@ -2,8 +2,8 @@
 
 import argparse
 
-from ..control_loop import PLACES
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
+from ..loop.places import PLACES
 from .options import add_output, add_printing
 from .printing import Printer
 
@@ -23,7 +23,7 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    from fmus.options import file
+    from ...fmus.building.options import file
 
     action = parser.add_argument("--vehicle", type=file, metavar="FILE.toml", help="what belongs to the car")
     action.complete = "file"  # type: ignore[attr-defined]
@@ -32,10 +32,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from fmus.errors import ParameterFileError
-    from fmus.parameter_files import read_vehicle
-
-    from ..bus.database import telegrams, write_dbc
+    from ...fmus.building.parameter_files import read_vehicle
+    from ...fmus.errors import ParameterFileError
+    from ..exchange.bus.database import telegrams, write_dbc
 
     try:
         car = read_vehicle(args.vehicle) if args.vehicle else {}

@@ -4,7 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
-from ..plain import quoted
+from ..base.plain_text import quoted
 from .options import add_json, add_limits, add_printing
 from .settings import limits
 
@@ -45,8 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def rule(text: str) -> str:
     """The name of a rule."""
-    from ..compliance.check import RULES
-    from ..names import nearest
+    from ..base.known_names import nearest
+    from ..exchange.compliance.check import RULES
 
     names = [rule.name for rule in RULES]
     if text not in names:
@@ -55,10 +55,10 @@ def rule(text: str) -> str:
 
 
 def run(args: argparse.Namespace) -> int:
-    from ..compliance.check import check
-    from ..compliance.junit import junit
-    from ..compliance.rule import Severity
-    from ..reports.terminal import print_verdict
+    from ..exchange.compliance.check import check
+    from ..exchange.compliance.junit import junit
+    from ..exchange.compliance.rule import Severity
+    from ..views.terminal import print_verdict
 
     style = "json" if args.json else args.format or FORMATS[0]
     failing = {severity.value for severity in Severity} if args.strict else {Severity.ERROR.value}
@@ -84,6 +84,6 @@ def run(args: argparse.Namespace) -> int:
     elif style == "junit":
         print(junit(found, failing))
     elif not args.quiet:
-        told = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items() if count)
-        print(f"{told or 'no findings'} in {len(found)} FMU(s)")
+        summary = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items() if count)
+        print(f"{summary or 'no findings'} in {len(found)} FMU(s)")
     return 1 if any(counts[severity] for severity in failing) else 0

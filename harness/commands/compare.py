@@ -4,14 +4,14 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..built import built
-from ..control_loop import PLANTS
-from ..html.page import require_report
+from ..loop.built_fmus import built
+from ..loop.places import PLANTS
 from ..manoeuvres.catalogue import COMPARED
-from ..metrics.record import Metrics
-from ..reports.table import legend, reasons
+from ..metrics.run_metrics import Metrics
+from ..views.html.report_page import require_report
+from ..views.metrics_table import legend, reasons
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, look
+from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, figure_options
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, other_format, settings
 
@@ -59,30 +59,30 @@ def run(args: argparse.Namespace) -> int:
     plants = list(dict.fromkeys(args.plant or PLANTS))
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from ..compare import cases, run_cases, write_figures, write_tables
-    from ..provenance import content, recorded, write_record
-    from ..reports.signals_file import require_format, signals_path
-    from ..reports.terminal import print_table, runs_table
-    from ..simulate import looped
+    from ..simulation.provenance import content, recorded, write_record
+    from ..simulation.simulate import looped
+    from ..studies.compare.compare import cases, run_cases, write_figures, write_tables
+    from ..views.signals_file import require_format, signals_path
+    from ..views.terminal import print_table, runs_table
 
     out = Printer(args)
-    asked = args.manoeuvre or COMPARED
-    manoeuvres = chosen(asked)
-    wanted = look(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
+    requested = args.manoeuvre or COMPARED
+    manoeuvres = chosen(requested)
+    drawing = figure_options(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
     todo = cases(plants, list(manoeuvres))
     given = {plant: settings(args, plant, build) for plant, build in builds.items()}
     systems = {plant: looped(plant, given[plant]) for plant in plants}
     record, tables = args.output / "compare.json", [args.output / name for name in ("table.md", "metrics.csv")]
     same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
-    same |= {"manoeuvres": list(manoeuvres)} | digests(asked) | other_format(args)
+    same |= {"manoeuvres": list(manoeuvres)} | digests(requested) | other_format(args)
     by_name = {Path(plant).stem: system for plant, system in systems.items()}
-    read = [*files(asked).values(), args.vehicle, args.parameters]
+    read = [*files(requested).values(), args.vehicle, args.parameters]
     signals = {case: signals_path(args.output / "runs" / case.file_name, args.format) for case in todo}
     require_format(args.format)
     report = [args.report] if args.report else []
     with recorded(record, same, by_name, read, [*tables, *report], args.replace) as made:
         for plant in plants:
-            require_files_drivable(asked, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
+            require_files_drivable(requested, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
         made.begin(*(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(todo, args.output / "runs", given, manoeuvres, args.format)
         rows = [outcome.row for outcome in outcomes]
@@ -92,21 +92,21 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         tables = write_tables(outcomes, args.output)
-        figures = write_figures(outcomes, args.output, wanted, manoeuvres)
+        figures = write_figures(outcomes, args.output, drawing, manoeuvres)
         made.files += [*tables, *figures]
         for case, path in signals.items():
             own = distinguishing(given[case.plant], systems[case.plant], manoeuvres[case.manoeuvre])
             one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
             write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
         if args.report:
-            from ..html import compare as page
+            from ..studies.compare import compare_report as page
 
             runs = [(outcome.row, outcome.results) for outcome in outcomes]
             page.report(runs, manoeuvres, content(same, made.fits, [], read), args.report)
             made.files += report
     out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
     out.say(f"tables:  {' '.join(map(str, tables))}")
-    kind, *others = wanted.kinds
+    kind, *others = drawing.kinds
     beside = f" (and {', '.join(f'.{other}' for other in others)})" if others else ""
     for figure in figures:
         if figure.suffix == f".{kind}":

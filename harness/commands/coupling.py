@@ -3,9 +3,9 @@
 import argparse
 from itertools import product
 
-from ..built import built
-from ..control_loop import PLANTS, STEP_SIZE, loop
 from ..cosimulation.system import Scheme
+from ..loop.built_fmus import built
+from ..loop.places import PLANTS, STEP_SIZE, loop
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
@@ -36,13 +36,13 @@ def run(args: argparse.Namespace) -> int:
     for plant in PLANTS:
         built(plant, args.fmus)
     # here and not above: only this measurement needs the models
-    from ..analysis.coupling import MANOEUVRES, compare
-    from ..analysis.coupling_page import page
-    from ..analysis.dead_time import dead_times
-    from ..analysis.step_dependence import compare_all
+    from ..base.atomic_files import write_text
     from ..cosimulation.schedule import transfers
     from ..cosimulation.wiring import fit
-    from ..reports.files import write_text
+    from ..studies.coupling.coupling import MANOEUVRES, compare
+    from ..studies.coupling.coupling_page import page
+    from ..studies.coupling.dead_time import dead_times
+    from ..studies.coupling.step_dependence import compare_all
 
     cases = [(plant, manoeuvre, scheme) for plant in PLANTS for manoeuvre in MANOEUVRES for scheme in Scheme]
     fitted = fit(loop(folder=args.fmus))

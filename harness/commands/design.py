@@ -5,15 +5,14 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fmus.options import file
-
-from ..errors import DrivelineError
+from ...fmus.building.options import file
+from ..base.errors import DrivelineError
 from .options import add_printing, add_replace
 from .printing import Printer
-from .searching import add_search, require_search, run_search, write_gains
+from .search_options import add_search, require_search, run_search, write_gains
 
 if TYPE_CHECKING:
-    from ..analysis.weights import Weights
+    from ..design.design_weights import Weights
 
 DESCRIPTION = """\
 Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its
@@ -53,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from fmus.errors import ParameterFileError
+    from ...fmus.errors import ParameterFileError
 
     try:
         if args.search is not None:
@@ -81,12 +80,11 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None) -> s
         ParameterFileError: the vehicle file is refused.
         DesignError: there is no controller for this car.
     """
-    from fmus.parameter_files import read_vehicle
-
-    from ..analysis.design import design, gains_file
-    from ..analysis.kalman import DesignError
-    from ..analysis.weights import WEIGHTS, records
-    from ..linear.modes import swing
+    from ...fmus.building.parameter_files import read_vehicle
+    from ..design.design import design, gains_file
+    from ..design.design_weights import WEIGHTS, records
+    from ..design.kalman import DesignError
+    from ..studies.margins.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
     gains = design(plant, motor, can, weights or WEIGHTS)

@@ -4,9 +4,9 @@ import argparse
 from argparse import ArgumentTypeError
 from pathlib import Path
 
-from ..control_loop import PLACES, PLANTS
-from ..html.page import require_drawing
-from ..waiting import no_longer_waiting
+from ..base.status_line import no_longer_waiting
+from ..loop.places import PLACES, PLANTS
+from ..views.html.report_page import require_drawing
 from .options import add_loop, add_output, add_plant, add_printing, assignment, count
 from .printing import Printer
 from .settings import settings_of_each
@@ -51,8 +51,8 @@ def _port(text: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..names import require_different
-    from ..replay import by_name
+    from ..base.known_names import require_different
+    from ..studies.drives.replay import by_name
 
     require_drawing("the explorer")
     plants = list(dict.fromkeys(args.plant or PLANTS))
@@ -63,27 +63,26 @@ def run(args: argparse.Namespace) -> int:
         for plant in plants
         for name, settings in settings_of_each(args, plant, controllers).items()
     }
-    from fmus.parameter_files import read_parameters, read_vehicle
-
-    from ..explorer.bench import Answer, Bench
+    from ...fmus.building.parameter_files import read_parameters, read_vehicle
+    from ..explorer.request_runs import Answer, RequestRunner
     from ..explorer.saving import save_files, save_report
     from ..explorer.server import serve
 
-    bench, out = Bench(given), Printer(args)
+    runner, out = RequestRunner(given), Printer(args)
     car = read_vehicle(args.vehicle) if args.vehicle else {}
     gains = read_parameters(args.parameters) if args.parameters else {}
 
     def files(answer: Answer) -> list[Path]:
-        return save_files(bench, answer.wanted, gains, car, args.output)
+        return save_files(runner, answer.request, gains, car, args.output)
 
     def report(answer: Answer) -> list[Path]:
-        return [save_report(bench, answer, [args.vehicle, args.parameters], args.output)]
+        return [save_report(runner, answer, [args.vehicle, args.parameters], args.output)]
 
-    def said(address: str) -> None:
+    def announce(address: str) -> None:
         no_longer_waiting()
         out.say(f"{address} (Ctrl-C ends it)")
 
-    serve(bench, {"save car and gains": files, "save report": report}, _typed, args.port, said)
+    serve(runner, {"save car and gains": files, "save report": report}, _typed, args.port, announce)
     return 0
 
 

@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..built import built, made_if_missing
-from ..control_loop import NATIVE, PLANTS
-from ..html.page import require_report
-from ..names import require_different
+from ..base.known_names import require_different
+from ..loop.built_fmus import built, made_if_missing
+from ..loop.places import NATIVE, PLANTS
+from ..views.html.report_page import require_report
 from .options import add_loop, add_output, add_plant, add_printing, add_report, count
 from .printing import Printer
 from .settings import as_given, blocks, caption, distinguishing, settings
@@ -60,13 +60,12 @@ def run(args: argparse.Namespace) -> int:
     require_different(plants)
     given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from fmus.signal_faults import FMU
-
-    from ..faults.bench import Bench, with_faults
-    from ..faults.campaign import campaign
-    from ..faults.report import announce, write, write_case
-    from ..provenance import content, recorded
-    from ..simulate import looped
+    from ...fmus.signal_faults import FMU
+    from ..simulation.provenance import content, recorded
+    from ..simulation.simulate import looped
+    from ..studies.faults.fault_campaign import campaign
+    from ..studies.faults.fault_injection import FaultRunner, with_faults
+    from ..studies.faults.fault_report import announce, write, write_case
 
     out = Printer(args)
     systems = {plant: looped(plant, given[plant]) for plant in plants}
@@ -89,9 +88,11 @@ def run(args: argparse.Namespace) -> int:
                 made.begin()
                 files = write(outcomes, f" {as_given(args)}", args.output)
             if args.report:
-                from ..faults import html
+                from ..studies.faults import fault_report_html
 
-                html.report(outcomes, Bench(injector, given), content(same, made.fits, [], read), args.report)
+                fault_report_html.report(
+                    outcomes, FaultRunner(injector, given), content(same, made.fits, [], read), args.report
+                )
             made.files += [*files, *report]
     if not out.silent:
         announce(outcomes)

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import DrivelineError
-from ..extra import required
+from ..base.errors import DrivelineError
+from ..base.optional_packages import required
 
 if TYPE_CHECKING:
     import numpy as np
@@ -52,8 +52,8 @@ def write_frames(
     """
     if args.frames is None:
         return []
-    from ..bus.database import telegrams, write_dbc
-    from ..bus.log import write_log
+    from ..exchange.bus.database import telegrams, write_dbc
+    from ..exchange.bus.log import write_log
 
     sent = telegrams(fitted.parameters(given))
     log, database = (stem.with_name(f"{stem.name}.{ending}") for ending in (args.frames, "dbc"))

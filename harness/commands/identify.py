@@ -8,20 +8,19 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fmus.options import file
-
-from ..errors import DrivelineError
-from ..extra import required
-from ..html.page import require_report
-from .options import add_figures, add_printing, add_replace, add_report, look
+from ...fmus.building.options import file
+from ..base.errors import DrivelineError
+from ..base.optional_packages import required
+from ..views.html.report_page import require_report
+from .options import add_figures, add_printing, add_replace, add_report, figure_options
 from .printing import Printer
 from .recording_options import add_recording, of_databases
-from .redesigning import redesign, require_fmus
+from .redesign import redesign, require_fmus
 
 if TYPE_CHECKING:
     from ..identification.identify import Identified
     from ..recordings.measurement import Measurement
-    from ..reports.look import Look
+    from ..views.figure_options import FigureOptions
 
 FREE = ("J_1", "d", "g_T")
 
@@ -88,13 +87,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from fmus.errors import ParameterFileError
-    from fmus.parameter_files import read_vehicle
-
-    from ..analysis.weights import records
-    from ..provenance import content, recorded
+    from ...fmus.building.parameter_files import read_vehicle
+    from ...fmus.errors import ParameterFileError
+    from ..base.atomic_files import write_text
+    from ..design.design_weights import records
     from ..recordings.measurement import read_measurement
-    from ..reports.files import write_text
+    from ..simulation.provenance import content, recorded
 
     require_report(args.report)
     try:
@@ -110,12 +108,12 @@ def run(args: argparse.Namespace) -> int:
     if {"J_1", "g_T"} <= set(args.free):
         raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
-    wanted = look(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
+    drawing = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "native")
     if args.design:
         require_fmus()
-    from ..analysis.known_car import identified as identified_car
     from ..identification import car_file
+    from ..identification.prior_knowledge import identified as identified_car
 
     record = output.with_suffix(".json")
     same = {
@@ -139,14 +137,14 @@ def run(args: argparse.Namespace) -> int:
             out.say(f"warning: {warning}")
         made.begin()
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        figures = draw(identified, recording, output.with_suffix(""), wanted)
+        figures = draw(identified, recording, output.with_suffix(""), drawing)
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
         made.files += [output, everything, *figures]
         if args.report:
-            from ..identification import html
+            from ..identification import identification_report_html
 
-            html.report(identified, recording, content(same, {}, [], read), args.report)
+            identification_report_html.report(identified, recording, content(same, {}, [], read), args.report)
             made.files += report
         if args.design:
             made.files += redesign(output, vehicle, args.replace, out)
@@ -162,15 +160,15 @@ def require_folder(output: Path) -> None:
         raise DrivelineError(f"--output {output}: {there} is no folder that can be written to")
 
 
-def draw(identified: "Identified", recording: "Measurement", stem: Path, wanted: "Look") -> list[Path]:
+def draw(identified: "Identified", recording: "Measurement", stem: Path, drawing: "FigureOptions") -> list[Path]:
     """The figures, STEM_simulation.png and so on."""
-    from ..identification.certainty_figures import plot_cost, plot_response
-    from ..identification.figures import plot_innovations, plot_simulation
+    from ..identification.fit_figures import plot_innovations, plot_simulation
+    from ..identification.uncertainty_figures import plot_cost, plot_response
 
     def named(what: str) -> Path:
         return stem.with_name(f"{stem.name}_{what}")
 
-    one = wanted._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
+    one = drawing._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
     return [
         *plot_simulation(identified, recording, named("simulation"), one),
         *plot_innovations(identified, named("innovations"), one),

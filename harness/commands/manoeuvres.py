@@ -6,11 +6,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
+from ..base.known_names import nearest
+from ..base.plain_text import plain
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
-from ..names import nearest
-from ..plain import plain
 from .options import names_or_files
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ def add_manoeuvre(parser: argparse.ArgumentParser, what: str, **how: Any) -> Non
 def name_or_file(text: str) -> str:
     """A name of the catalogue, or what has an ending and so is a file."""
     if text not in MANOEUVRES and not Path(text).suffix:
-        said = plain(text, 60) or "an empty name"
+        shown = plain(text, 60) or "an empty name"
         raise argparse.ArgumentTypeError(
-            f"{said} is unknown; {nearest(text, MANOEUVRES)} (or give a .toml or .csv file)"
+            f"{shown} is unknown; {nearest(text, MANOEUVRES)} (or give a .toml or .csv file)"
         )
     return text
 

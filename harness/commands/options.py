@@ -6,16 +6,15 @@ from math import ceil, isfinite
 from pathlib import Path
 from typing import Any
 
-from fmus.options import add_parameter_files, folder, output_folder
-
-from ..control_loop import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
+from ...fmus.building.options import add_parameter_files, folder, output_folder
+from ..base.errors import DrivelineError
+from ..base.plain_text import quoted
+from ..base.written_numbers import real, whole
 from ..cosimulation.limits import USUAL
-from ..errors import DrivelineError
-from ..numbers import real, whole
-from ..plain import quoted
-from ..reports.look import KINDS, Look
-from ..reports.look import USUAL as USUAL_KINDS
-from ..reports.signals_file import FORMATS
+from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
+from ..views.figure_options import KINDS, FigureOptions
+from ..views.figure_options import USUAL as USUAL_KINDS
+from ..views.signals_file import FORMATS
 
 OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
 """The blocks of the loop beside the plant, and what they are."""
@@ -186,7 +185,7 @@ def add_figures(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def look(args: argparse.Namespace, caption: str, *spans: tuple[str, float, float]) -> Look:
+def figure_options(args: argparse.Namespace, caption: str, *spans: tuple[str, float, float]) -> FigureOptions:
     """What the options of `add_figures` say.
 
     Args:
@@ -200,7 +199,7 @@ def look(args: argparse.Namespace, caption: str, *spans: tuple[str, float, float
         if not (args.window[0] < end and args.window[1] > start):
             given = ",".join(f"{t:g}" for t in args.window)
             raise DrivelineError(f"--window {given}: {what} is from {start:g} to {end:g} s")
-    return Look(caption, args.window, tuple(dict.fromkeys(args.figures or USUAL_KINDS)))
+    return FigureOptions(caption, args.window, tuple(dict.fromkeys(args.figures or USUAL_KINDS)))
 
 
 def window(text: str) -> tuple[float, float]:
@@ -255,7 +254,7 @@ def assignment(text: str) -> tuple[str, float]:
 
 def seed(text: str) -> int:
     """A whole number that all blocks with noise take."""
-    from fmus.parameter_files import seeds  # not for help
+    from ...fmus.building.parameter_files import seeds  # not for help
 
     return count(text, *seeds())
 

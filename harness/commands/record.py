@@ -4,8 +4,8 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
-from ..built import built
-from ..control_loop import STEP_SIZE
+from ..loop.built_fmus import built
+from ..loop.places import STEP_SIZE
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED, binary_torque
 from .frames import add_frames, require_frames, write_frames
 from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
@@ -76,12 +76,12 @@ def run(args: argparse.Namespace) -> int:
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps
-    from ..cosimulation.wiring import beyond, fit, require
-    from ..manoeuvres.road import RoadLoad, torque_limit
-    from ..provenance import recorded
-    from ..record import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed
-    from ..reports.signals_file import require_format, signals_path, write_signals
-    from ..simulate import looped, simulate, start
+    from ..cosimulation.wiring import fit, out_of_bounds, require
+    from ..manoeuvres.road_load import RoadLoad, torque_limit
+    from ..simulation.excitation_drive import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed
+    from ..simulation.provenance import recorded
+    from ..simulation.simulate import looped, simulate, start
+    from ..views.signals_file import require_format, signals_path, write_signals
 
     out = Printer(args)
     plant = Path(args.plant).stem
@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
     slope = holding_slope(load, args.mean, v_0)
     demand = {name: getattr(args, name) for name in ("mean", "amplitude", "clock", "order", "duration")}
     manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
-    require(beyond(fitted, start(manoeuvre) | given["parameters"]))
+    require(out_of_bounds(fitted, start(manoeuvre) | given["parameters"]))
     wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
     same = {"demand": demand | {"speed": args.speed, "slope": slope}, "damping": args.control}
     same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, system, manoeuvre) | other_format(args)

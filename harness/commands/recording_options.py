@@ -5,8 +5,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from ..names import nearest
-from ..plain import quoted
+from ..base.known_names import nearest
+from ..base.plain_text import quoted
 from ..recordings.quantities import QUANTITIES
 
 

@@ -4,12 +4,22 @@ import argparse
 from hashlib import sha256
 from pathlib import Path
 
-from ..control_loop import PLACES, PLANTS
-from ..html.page import require_report
-from ..metrics.record import RideMetrics
+from ..loop.places import PLACES, PLANTS
+from ..metrics.run_metrics import RideMetrics
 from ..recordings.quantities import aliases, example
-from ..reports.table import legend
-from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, look, seconds
+from ..views.html.report_page import require_report
+from ..views.metrics_table import legend
+from .options import (
+    add_figures,
+    add_format,
+    add_loop,
+    add_output,
+    add_plant,
+    add_printing,
+    add_report,
+    figure_options,
+    seconds,
+)
 from .printing import Printer
 from .recording_options import add_recording, of_databases
 from .settings import caption, distinguishing, other_format, settings_of_each
@@ -69,14 +79,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.wiring import fit
-    from ..manoeuvres.follower import require_held
-    from ..manoeuvres.road import RoadLoad, Track, torque_limit
-    from ..provenance import content, recorded
+    from ..manoeuvres.road_load import RoadLoad, Track, torque_limit
+    from ..manoeuvres.speed_following import require_held
     from ..recordings.drive import read_drive
-    from ..replay import by_name, records, replay, write
-    from ..reports.signals_file import require_format
-    from ..reports.terminal import print_table, rides_reasons, rides_table
-    from ..simulate import looped
+    from ..simulation.provenance import content, recorded
+    from ..simulation.simulate import looped
+    from ..studies.drives.replay import by_name, records, replay, write
+    from ..views.signals_file import require_format
+    from ..views.terminal import print_table, rides_reasons, rides_table
 
     out = Printer(args)
     require_report(args.report)
@@ -93,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
     interfaces, parameters = fit(systems[first]).interfaces, given[first]["parameters"]
     load = RoadLoad.of_plant(interfaces["plant"], parameters)
     track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
-    wanted = look(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
+    drawing = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
     same |= {"columns": dict(args.columns)} | of_databases(args) | other_format(args)
@@ -114,9 +124,9 @@ def run(args: argparse.Namespace) -> int:
             out.say(reason)
         out.say(f"{LEGEND}\n")
         made.begin()
-        made.files += write(rides, track, plant, args.output, wanted, args.format, recording.written)
+        made.files += write(rides, track, plant, args.output, drawing, args.format, recording.file_units)
         if args.report:
-            from ..html import replay as page
+            from ..studies.drives import replay_report as page
 
             drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
             title = f"{plant} on the recorded drive {track.name}"

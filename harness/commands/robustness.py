@@ -5,16 +5,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..control_loop import PLACES, PLANTS
-from ..errors import DrivelineError
-from ..html.page import require_report
+from ..base.errors import DrivelineError
+from ..loop.places import PLACES, PLANTS
+from ..views.html.report_page import require_report
 from .options import add_loop, add_output, add_plant, add_printing, add_report, count
 from .printing import Printer
 from .settings import as_given, caption, distinguishing, settings_of_each
 
 if TYPE_CHECKING:
-    from ..robustness.bench import Bench, Given
-    from ..robustness.outcome import Outcome
+    from ..studies.robustness.case_runs import CaseRunner, Given
+    from ..studies.robustness.outcome import Outcome
 
 DESCRIPTION = """\
 Draws cars with their sensors from the box of parameters (docs/robustness.md), of which no controller is told, and
@@ -56,9 +56,9 @@ def _number(text: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..names import require_different
-    from ..replay import by_name
-    from ..robustness.bench import Bench
+    from ..base.known_names import require_different
+    from ..studies.drives.replay import by_name
+    from ..studies.robustness.case_runs import CaseRunner
 
     require_report(args.report)
     plants = list(dict.fromkeys(args.plant or PLANTS))
@@ -69,20 +69,20 @@ def run(args: argparse.Namespace) -> int:
         for plant in plants
         for name, of_each in settings_of_each(args, plant, controllers).items()
     }
-    bench = Bench(given, args.seed)
-    return _one(args, bench, given) if args.case is not None else _all(args, bench, given)
+    runner = CaseRunner(given, args.seed)
+    return _one(args, runner, given) if args.case is not None else _all(args, runner, given)
 
 
-def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
+def _all(args: argparse.Namespace, runner: "CaseRunner", given: "Given") -> int:
+    from ..base.atomic_files import alone, remove
     from ..cosimulation.wiring import fit
-    from ..provenance import content, require_same_run, write_record
-    from ..reports.files import alone, remove
-    from ..robustness.archive import Archive
-    from ..robustness.campaign import campaign, cases
-    from ..robustness.report import announce, write
-    from ..robustness.summary import summaries
+    from ..simulation.provenance import content, require_same_run, write_record
+    from ..studies.robustness.campaign_archive import Archive
+    from ..studies.robustness.robustness_campaign import campaign, cases
+    from ..studies.robustness.robustness_report import announce, write
+    from ..studies.robustness.summary import summaries
 
-    out, same, systems = Printer(args), _distinguishing(bench, given), _systems(given)
+    out, same, systems = Printer(args), _distinguishing(runner, given), _systems(given)
     record, runs, read = args.output / "robustness.json", args.output / "runs.csv", [args.vehicle, args.parameters]
     with alone(args.output):
         try:
@@ -94,11 +94,11 @@ def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
         archive, fits = Archive(runs), {name: fit(system) for name, system in systems.items()}
         write_record(record, same, fits, [runs], read)
         archive.begin()
-        outcomes = campaign(bench, range(1, args.cases + 1), archive, scheduler=args.scheduler)
-        known = cases(bench.loops, range(1, max(case.number for case in archive) + 1))
+        outcomes = campaign(runner, range(1, args.cases + 1), archive, scheduler=args.scheduler)
+        known = cases(runner.loops, range(1, max(case.number for case in archive) + 1))
         archive.write([archive[case] for case in known if case in archive])
-        files = [runs, *write(outcomes, bench, _as_given(args), caption(args), args.output)]
-        files += _reported(args, outcomes, bench, content(same, fits, [], read))
+        files = [runs, *write(outcomes, runner, _as_given(args), caption(args), args.output)]
+        files += _reported(args, outcomes, runner, content(same, fits, [], read))
         write_record(record, same, fits, files, read)
     if not out.silent:
         announce(outcomes)
@@ -108,22 +108,22 @@ def _all(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
     return 0
 
 
-def _one(args: argparse.Namespace, bench: "Bench", given: "Given") -> int:
+def _one(args: argparse.Namespace, runner: "CaseRunner", given: "Given") -> int:
     """One draw again."""
-    from ..provenance import content, recorded
-    from ..robustness.campaign import campaign
-    from ..robustness.draws import draw
-    from ..robustness.report import announce, write_draw
-    from ..robustness.summary import summaries
+    from ..simulation.provenance import content, recorded
+    from ..studies.robustness.draws import draw
+    from ..studies.robustness.robustness_campaign import campaign
+    from ..studies.robustness.robustness_report import announce, write_draw
+    from ..studies.robustness.summary import summaries
 
     out, name, read = Printer(args), f"draw_{args.case}", [args.vehicle, args.parameters]
-    record, same = args.output / f"{name}.json", _distinguishing(bench, given) | {"case": args.case}
+    record, same = args.output / f"{name}.json", _distinguishing(runner, given) | {"case": args.case}
     with recorded(record, same, _systems(given), read, _report(args), args.replace) as made:
         out.say(f"draw {draw(args.case, args.seed)}")
-        outcomes = campaign(bench, [args.case], scheduler=args.scheduler)
+        outcomes = campaign(runner, [args.case], scheduler=args.scheduler)
         made.begin()
-        made.files += write_draw(outcomes, bench, caption(args), args.output)
-        made.files += _reported(args, outcomes, bench, content(same, made.fits, [], read))
+        made.files += write_draw(outcomes, runner, caption(args), args.output)
+        made.files += _reported(args, outcomes, runner, content(same, made.fits, [], read))
     if not out.silent:
         announce(outcomes)
     for file in (*made.files, record):
@@ -136,12 +136,14 @@ def _report(args: argparse.Namespace) -> list[Path]:
     return [args.report] if args.report else []
 
 
-def _reported(args: argparse.Namespace, outcomes: Sequence["Outcome"], bench: "Bench", provenance: Any) -> list[Path]:
+def _reported(
+    args: argparse.Namespace, outcomes: Sequence["Outcome"], runner: "CaseRunner", provenance: Any
+) -> list[Path]:
     """Writes the report if one is asked for; returns the file."""
     for path in _report(args):
-        from ..robustness import html
+        from ..studies.robustness import robustness_report_html
 
-        html.report(outcomes, bench, provenance, path)
+        robustness_report_html.report(outcomes, runner, provenance, path)
     return _report(args)
 
 
@@ -154,14 +156,14 @@ def _as_given(args: argparse.Namespace) -> str:
 
 def _systems(given: "Given") -> dict[str, Any]:
     """The systems that run, by the names of plant and controller."""
-    from ..simulate import looped
+    from ..simulation.simulate import looped
 
     return {" with ".join(key): looped(*loop) for key, loop in given.items()}
 
 
-def _distinguishing(bench: "Bench", given: "Given") -> dict[str, Any]:
-    from ..robustness.campaign import distinguishing as of_the_draws
+def _distinguishing(runner: "CaseRunner", given: "Given") -> dict[str, Any]:
+    from ..studies.robustness.robustness_campaign import distinguishing as of_the_draws
 
     systems = _systems(given)
     loops = {" with ".join(key): loop for key, (_, loop) in given.items()}
-    return of_the_draws(bench) | {name: distinguishing(loops[name], system, None) for name, system in systems.items()}
+    return of_the_draws(runner) | {name: distinguishing(loops[name], system, None) for name, system in systems.items()}

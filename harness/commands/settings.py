@@ -1,4 +1,4 @@
-"""What the options of a run say: the arguments of `harness.simulate.simulate`, and what tells runs apart."""
+"""What the options of a run say: the arguments of `driveline.simulate`, and what tells runs apart."""
 
 import argparse
 import logging
@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 from shlex import quote
 from typing import Any
 
-from ..built import built
-from ..control_loop import BUILD, PLACES, STEP_SIZE
+from ..base.errors import DrivelineError
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
-from ..errors import DrivelineError
+from ..loop.built_fmus import built
+from ..loop.places import BUILD, PLACES, STEP_SIZE
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .options import OTHERS
 
@@ -28,7 +28,7 @@ def limits(args: argparse.Namespace) -> Limits:
 
 
 def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]:
-    """What the options of `add_loop` say for a plant and a build, as arguments of `harness.simulate.simulate`.
+    """What the options of `add_loop` say for a plant and a build, as arguments of `driveline.simulate`.
 
     Raises:
         WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter, or not
@@ -36,8 +36,8 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
         DrivelineError: a file of parameters is refused.
     """
     from ..cosimulation.mapping import parsed
-    from ..cosimulation.wiring import beyond, fit, require
-    from ..simulate import looped
+    from ..cosimulation.wiring import fit, out_of_bounds, require
+    from ..simulation.simulate import looped
 
     given = {
         "seed": args.seed,
@@ -49,7 +49,7 @@ def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]
     }
     system = looped(plant, given)
     parameters = _from_files(args, system) | dict(args.assignments)
-    require(beyond(fit(system, parameters=parameters), parameters))
+    require(out_of_bounds(fit(system, parameters=parameters), parameters))
     return given | {"parameters": parameters}
 
 
@@ -131,10 +131,9 @@ def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvr
         given: of `settings`.
         manoeuvre: None: several.
     """
-    from fmus.origin import origin_of
-
-    from ..provenance import digest
-    from ..simulate import start
+    from ...fmus.origin import origin_of
+    from ..simulation.provenance import digest
+    from ..simulation.simulate import start
 
     ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
     others = {name: path for name, path in system.instances.items() if name not in system.own}
@@ -159,9 +158,8 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     """
     if args.vehicle is None and args.parameters is None:
         return {}
-    from fmus.errors import ParameterFileError
-    from fmus.parameter_files import for_instances, of_plants, read_files, require_taken, units
-
+    from ...fmus.building.parameter_files import for_instances, of_plants, read_files, require_taken, units
+    from ...fmus.errors import ParameterFileError
     from ..cosimulation.wiring import fit, require
 
     interfaces = fit(system).interfaces
@@ -196,7 +194,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
 def _other_unit(interface: Any, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:
     """Why the number of a file, in the unit that is meant, does not reach the parameter `instance.name`, or None."""
     from ..cosimulation.interface import unit_of
-    from ..cosimulation.units import factor
+    from ..cosimulation.unit_conversion import factor
 
     theirs = mapping.get(name, name.partition(".")[2])
     unit = next(unit_of(variable) for variable in interface.description.modelVariables if variable.name == theirs)

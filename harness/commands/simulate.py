@@ -4,14 +4,14 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
-from ..built import built
-from ..control_loop import STEP_SIZE
+from ..base.errors import DrivelineError
 from ..cosimulation.system import Scheme
-from ..errors import DrivelineError
+from ..loop.built_fmus import built
+from ..loop.places import STEP_SIZE
 from ..manoeuvres.catalogue import MANOEUVRES
 from .frames import add_frames, require_frames, write_frames
 from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
-from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, look, seconds
+from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, figure_options, seconds
 from .printing import Printer
 from .settings import blocks, caption, distinguishing, other_format, settings
 
@@ -77,15 +77,15 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps
     from ..cosimulation.schedule import described, transfers
-    from ..provenance import recorded
-    from ..reports.signals_file import require_format, signals_path, write_signals
-    from ..simulate import looped, simulate
+    from ..simulation.provenance import recorded
+    from ..simulation.simulate import looped, simulate
+    from ..views.signals_file import require_format, signals_path, write_signals
 
     out = Printer(args)
     (manoeuvre,) = chosen([args.manoeuvre]).values()
     if not args.plot and (args.window or args.figures):
         raise DrivelineError(f"{'--window' if args.window else '--figures'} is for the figure; ask for it with --plot")
-    wanted = look(args, caption(args), (manoeuvre.name, 0.0, manoeuvre.duration))
+    drawing = figure_options(args, caption(args), (manoeuvre.name, 0.0, manoeuvre.duration))
     require_steps(manoeuvre.duration, args.step)
     plant = Path(args.plant).stem
     name = f"{plant}_{manoeuvre.name}_{args.control}"
@@ -122,10 +122,10 @@ def run(args: argparse.Namespace) -> int:
             made.files.append(file)
             out.say(f"bus:     {file}")
         if args.plot:
-            from ..reports.run_figure import plot_run
+            from ..views.run_figure import plot_run
 
             title = f"{plant}, {manoeuvre.description}, damping {args.control}"
-            for figure in plot_run(results, manoeuvre, title, args.output / name, wanted):
+            for figure in plot_run(results, manoeuvre, title, args.output / name, drawing):
                 made.files.append(figure)
                 out.say(f"figure:  {figure}")
     out.say(f"made by: {record} (version, FMUs, parameters, units)")

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..built import built, made_if_missing
-from ..control_loop import PLANTS
-from ..names import require_different
+from ..base.known_names import require_different
+from ..loop.built_fmus import built, made_if_missing
+from ..loop.places import PLANTS
 from .manoeuvres import add_manoeuvre, chosen, digests, files, require_files_drivable
 from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer
@@ -48,13 +48,12 @@ def run(args: argparse.Namespace) -> int:
     require_different(plants)
     builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
     # here and not above: mistakes and help are answered without them
-    from fmus.archive import write_archive
-    from fmus.manoeuvre import FMU
-
-    from ..provenance import recorded
-    from ..simulate import looped, start
-    from ..ssp.driven import driven, points
-    from ..ssp.package import Variant, package
+    from ...fmus.archive import write_archive
+    from ...fmus.manoeuvre import FMU
+    from ..exchange.ssp.loop_with_source import points, with_source
+    from ..exchange.ssp.package import Variant, package
+    from ..simulation.provenance import recorded
+    from ..simulation.simulate import looped, start
 
     out = Printer(args)
     (manoeuvre,) = chosen([args.manoeuvre]).values()
@@ -65,8 +64,8 @@ def run(args: argparse.Namespace) -> int:
     same |= {"plants": plants, "manoeuvre": manoeuvre.name} | digests([args.manoeuvre])
     read = [*files([args.manoeuvre]).values(), args.vehicle, args.parameters]
     with made_if_missing(FMU, args.fmus, builds[plants[0]]) as source:
-        driven_by = {name: driven(system, source) for name, system in systems.items()}
-        with recorded(record, same, driven_by, read, [ssp], args.replace) as made:
+        sourced = {name: with_source(system, source) for name, system in systems.items()}
+        with recorded(record, same, sourced, read, [ssp], args.replace) as made:
             variants = {}
             for name, fitted in made.fits.items():
                 require_files_drivable([args.manoeuvre], {manoeuvre.name: manoeuvre}, fitted, given[name]["parameters"])

@@ -3,9 +3,8 @@
 import argparse
 from importlib import import_module
 
-from fmus.options import add_parameter_files
-
-from ..control_loop import PLACES
+from ...fmus.building.options import add_parameter_files
+from ..loop.places import PLACES
 
 DESCRIPTION = """\
 The controller on the processor that it is meant for, in C (docs/target.md).

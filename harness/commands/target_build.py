@@ -2,8 +2,7 @@
 
 import argparse
 
-from fmus.options import output_folder
-
+from ...fmus.building.options import output_folder
 from .options import add_printing
 from .printing import Printer
 from .target import add_controller
@@ -37,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..target.built import built_on_target
+    from ..exchange.target.target_build import built_on_target
 
     path = built_on_target(args.controller, args.output, args.vehicle, args.parameters)
     Printer(args).say(f"{path}  {path.stat().st_size / 1024:.0f} kB")

@@ -2,7 +2,7 @@
 
 import argparse
 
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
 from .options import add_output, add_printing
 from .printing import Printer
 from .target import add_controller
@@ -36,9 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..provenance import require_same_text
-    from ..reports.files import write_text
-    from ..target.exported import exported
+    from ..base.atomic_files import write_text
+    from ..exchange.target.c_export import exported
+    from ..simulation.provenance import require_same_text
 
     sources = exported(args.controller, args.precision, args.vehicle, args.parameters)
     files = {args.output / name: text for name, text in sources.items()}

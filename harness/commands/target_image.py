@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..target.built import write_image
+    from ..exchange.target.target_build import write_image
 
     for path in write_image(args.controller, args.output, args.vehicle, args.parameters):
         Printer(args).say(f"written: {path}")

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..built import built
-from ..errors import DrivelineError
-from ..names import nearest
+from ..base.errors import DrivelineError
+from ..base.known_names import nearest
+from ..loop.built_fmus import built
 from .options import add_loop, add_output, add_plant, add_printing
 from .printing import Printer
 from .settings import blocks, distinguishing, settings
@@ -41,15 +41,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from ..control_loop import PLACES
+    from ..loop.places import PLACES
 
     if args.controller not in PLACES["controller"]:
         raise DrivelineError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
     build = built(args.plant, args.fmus, args.build, **blocks(args))
     # here and not above: mistakes and help are answered without them
-    from ..provenance import recorded
-    from ..simulate import looped
-    from ..target.record import record, write
+    from ..exchange.target.offline_test import record, write
+    from ..simulation.provenance import recorded
+    from ..simulation.simulate import looped
 
     out = Printer(args)
     given: dict[str, Any] = settings(args, args.plant, build)

@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 
 from fmpy.model_description import ModelVariable
 
+from .input_lines import Line, slope, start
 from .instance import Instance
 from .interface import type_of
-from .lines import Line, slope, start
-from .row import KINDS, Layout
+from .row_layout import KINDS, Layout
 
 
 class Call(NamedTuple):

@@ -11,9 +11,9 @@ from xml.etree.ElementTree import Element
 from fmpy import read_model_description
 from fmpy.model_description import ModelDescription
 
-from ..errors import WiringError
-from ..plain import plain
-from .archive import described
+from ..base.errors import WiringError
+from ..base.plain_text import plain
+from .fmu_archive import described
 from .limits import USUAL, Limits
 
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")

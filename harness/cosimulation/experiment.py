@@ -8,7 +8,7 @@ from math import floor, inf, isfinite
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import WiringError
+from ..base.errors import WiringError
 from .system import Scheme
 
 Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]

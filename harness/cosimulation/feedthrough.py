@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from fmpy.model_description import ModelVariable
 
-from ..errors import WiringError
+from ..base.errors import WiringError
 from .interface import Interface
 from .system import System
 

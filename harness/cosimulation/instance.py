@@ -22,11 +22,11 @@ from fmpy.fmi2 import (
 )
 from fmpy.logging import addLoggerProxy
 
-from ..errors import SimulationError, WiringError
-from ..plain import plain
+from ..base.errors import SimulationError, WiringError
+from ..base.plain_text import plain
+from .call_trace import AT_START, note
 from .interface import Interface, type_of
-from .unpacked import Unpacked
-from .whereabouts import AT_START, note
+from .unpacked_fmu import Unpacked
 
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
 
@@ -54,7 +54,7 @@ def _callbacks(key: int) -> fmi2CallbackFunctions:
     return callbacks
 
 
-class FMU2Watched(FMU2Slave):
+class FMU2Traced(FMU2Slave):
     """What fmpy makes of an FMU; notes each call, and takes a status that FMI does not know for a refusal.
 
     (fmpy looks for FMU2 in the name of the class.)
@@ -84,7 +84,7 @@ class Instance:
         status: the worst so far.
     """
 
-    def __init__(self, name: str, interface: Interface, slave: FMU2Watched, key: int) -> None:
+    def __init__(self, name: str, interface: Interface, slave: FMU2Traced, key: int) -> None:
         self.name = name
         self.number = slave.number
         self.interface = interface
@@ -206,7 +206,7 @@ def instantiated(name: str, fmu: Unpacked, number: int = 0) -> Iterator[Instance
 def _instantiate(name: str, fmu: Unpacked, key: int, number: int) -> Instance:
     interface = fmu.interface
     try:
-        slave = FMU2Watched(
+        slave = FMU2Traced(
             number,
             guid=interface.description.guid,
             unzipDirectory=fmu.folder,

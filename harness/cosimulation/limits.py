@@ -17,4 +17,4 @@ class Limits:
 
 
 USUAL = Limits()
-"""Unless something else is said."""
+"""The limits that hold by default."""

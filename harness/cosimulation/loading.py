@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from ..progress import progress
-from ..results import Results
-from ..told import warn_once
-from .apart import Apart
-from .compiled import LIBRARY, CompiledSteps, why_not
+from ..base.collected_warnings import warn_once
+from ..base.progress import progress
+from .compiled_steps import LIBRARY, CompiledSteps, why_not
 from .experiment import Experiment
 from .instance import label
+from .isolated_process import IsolatedProcess
 from .master import Loop, opened
-from .row import Layout
+from .results import Results
+from .row_layout import Layout
 from .schedule import described, transfers
 from .steps import MakeSteps, interpreted
 from .system import System
@@ -29,16 +29,16 @@ from .wiring import Fit, fit, require, unknown
 LOG = logging.getLogger(__name__)
 
 
-class LoopApart:
+class IsolatedLoop:
     """Loaded FMUs that run together in a process of their own; see `harness.cosimulation.master.Loop`."""
 
-    def __init__(self, apart: Apart, fitted: Fit) -> None:
-        self._apart = apart
+    def __init__(self, isolated: IsolatedProcess, fitted: Fit) -> None:
+        self._isolated = isolated
         self._fitted = fitted
 
     def reset(self) -> None:
         """As `Loop.reset`."""
-        self._apart.ask(_reset)
+        self._isolated.ask(_reset)
 
     def run(self, experiment: Experiment) -> Results:
         """As `Loop.run`.
@@ -54,7 +54,7 @@ class LoopApart:
         size = len(time) * layout.recorded.itemsize
         sent = replace(experiment, inputs=samples, parameters=dict(experiment.parameters))
         with progress(len(time) - 1, experiment.label) as done:
-            rows = self._apart.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
+            rows = self._isolated.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
         return Results(np.frombuffer(rows, layout.recorded), layout.units)
 
 
@@ -65,7 +65,7 @@ def loaded(
     parameters: Iterable[str] = (),
     folder: Path | None = None,
     make_steps: MakeSteps = CompiledSteps if LIBRARY else interpreted,
-) -> Iterator[Loop | LoopApart]:
+) -> Iterator[Loop | IsolatedLoop]:
     """The FMUs of a system, loaded and wired, for any number of runs. Afterwards they are gone.
 
     Args:
@@ -84,7 +84,7 @@ def loaded(
     for name in fitted.absent:
         LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
     LOG.info("under the propagated scheme, %s", described(transfers(fitted.system, fitted.interfaces)))
-    load = _here if system.instances.keys() <= system.own else _apart
+    load = _here if system.instances.keys() <= system.own else _isolated
     with load(fitted, folder, make_steps) as loop:
         yield loop
 
@@ -93,16 +93,16 @@ _here: Callable[[Fit, Path | None, MakeSteps], Any] = opened
 
 
 @contextmanager
-def _apart(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator[LoopApart]:
+def _isolated(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator[IsolatedLoop]:
     names = [label(*item) for item in fitted.interfaces.items()]
-    apart = Apart(names, fitted.system.limits.call, folder)
+    isolated = IsolatedProcess(names, fitted.system.limits.call, folder)
     try:
-        apart.ask(_load, fitted, make_steps)
-        yield LoopApart(apart, fitted)
-        if apart.alive:
-            apart.ask(_unload)
+        isolated.ask(_load, fitted, make_steps)
+        yield IsolatedLoop(isolated, fitted)
+        if isolated.alive:
+            isolated.ask(_unload)
     finally:
-        apart.close()
+        isolated.close()
 
 
 # what follows runs in the other process

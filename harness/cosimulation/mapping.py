@@ -10,11 +10,11 @@ from copy import copy
 
 from fmpy.model_description import ModelVariable
 
-from ..errors import WiringError
-from ..names import nearest
+from ..base.errors import WiringError
+from ..base.known_names import nearest
 from .interface import Interface, unit_of
 from .system import System
-from .units import SI, factor
+from .unit_conversion import SI, factor
 
 
 def parsed(texts: Iterable[str]) -> dict[str, str]:
@@ -74,16 +74,16 @@ def _missing_or_taken(theirs: str, ours: str, own: Mapping[str, ModelVariable], 
     return None
 
 
-def _convert(interface: Interface, name: str, wanted: str | None) -> str | None:
+def _convert(interface: Interface, name: str, target_unit: str | None) -> str | None:
     """Lets the values of a variable be converted into the wanted unit, if there is one; says what hinders it."""
     variable = interface.variables[name]
     unit = unit_of(variable)
-    if variable.type != "Real" or wanted is None:
+    if variable.type != "Real" or target_unit is None:
         return None
     try:
         if unit:
-            interface.factors[name] = factor(unit, wanted)
+            interface.factors[name] = factor(unit, target_unit)
     except ValueError as reason:
         return str(reason)
-    variable.unit = wanted
+    variable.unit = target_unit
     return None

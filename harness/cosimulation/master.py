@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 from fmpy.fmi2 import fmi2OK, fmi2Warning
 
-from ..errors import SimulationError, WiringError
-from ..progress import chunks, progress
-from ..results import Results
+from ..base.errors import SimulationError, WiringError
+from ..base.progress import chunks, progress
+from .bound_calls import Wires, wired
 from .calls import Call
 from .experiment import Experiment
 from .instance import Instance, instantiated
+from .results import Results
 from .steps import NOT_FINITE, MakeSteps, made
 from .system import Scheme
-from .unpacked import unpacked
-from .wires import Wires, wired
+from .unpacked_fmu import unpacked
 from .wiring import Fit, require, unknown
 
 
@@ -158,7 +158,7 @@ class Loop:
 
 
 def _check(call: Call, status: int, time: float | None = None) -> None:
-    """Raises what is to be said of a status at a time in s (of NaN, in the step from it on); None: before the first."""
+    """Raises the error of a status at a time in s (of NaN, in the step from it on); None: before the first."""
     if status == NOT_FINITE:
         when = "at the start" if time is None else f"in the step from {time:g} s"
         raise call.instance.not_finite(call.names, call.values, when)

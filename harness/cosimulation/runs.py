@@ -5,12 +5,12 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import local
 
-from ..errors import SimulationError
-from ..results import Results
-from ..stopping import unswallowed
+from ..base.errors import SimulationError
+from ..base.interruption import unswallowed
 from .experiment import Experiment
-from .loading import LoopApart, loaded
+from .loading import IsolatedLoop, loaded
 from .master import Loop
+from .results import Results
 from .system import System
 
 MOST_KEPT = 8
@@ -64,9 +64,9 @@ class KeptLoops:
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
-        self._loops: dict[Hashable, tuple[ExitStack, Loop | LoopApart]] = {}
+        self._loops: dict[Hashable, tuple[ExitStack, Loop | IsolatedLoop]] = {}
 
-    def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop | LoopApart:
+    def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop | IsolatedLoop:
         """The loop of a system after reset, or as `loaded` gives it."""
         key = repr(system), *map(_version, system.instances.values())
         stack, loop = self._loops.pop(key, (ExitStack(), None))

@@ -17,15 +17,15 @@ enum { FMI2_OK, FMI2_WARNING };
 /* The status, which no FMU returns, of a call that put out NaN or infinity: NOT_FINITE in steps.py */
 enum { NOT_FINITE = INT32_MIN };
 
-/* Whereabouts in whereabouts.py: the call that was begun last, where another process may look at it. */
-struct whereabouts {
+/* CallRecord in call_trace.py: the call that was begun last, where another process may look at it. */
+struct call_record {
     int32_t instance;
     int32_t function;
     double time;
     int64_t calls;
 };
 
-EXPORT struct whereabouts *whereabouts;
+EXPORT struct call_record *call_record;
 
 /* struct CompiledLine in compiled.py: Line in lines.py */
 typedef struct {
@@ -48,7 +48,7 @@ typedef struct {
     const double *factors;    /* the FMU's values times these are those of the row; null: they are the same */
     int32_t real;             /* the values are double, else int32_t */
     const double *step_size;  /* in s, of calls that depend on it */
-    int32_t instance;         /* numbers for whereabouts */
+    int32_t instance;         /* numbers for call_record */
     int32_t function;
     int32_t (*rates)(void *component, const uint32_t *references, size_t count, const int32_t *orders, void *values);
     const int32_t *orders;
@@ -146,10 +146,10 @@ static int32_t made(const Call *call, const unsigned char *row)
     } else if (call->sources && !changed(call, row)) {
         return FMI2_OK;
     }
-    whereabouts->instance = call->instance;
-    whereabouts->function = call->function;
-    memcpy(&whereabouts->time, row, sizeof whereabouts->time);
-    whereabouts->calls++;
+    call_record->instance = call->instance;
+    call_record->function = call->function;
+    memcpy(&call_record->time, row, sizeof call_record->time);
+    call_record->calls++;
     if (call->do_step) {
         double time;
         memcpy(&time, row, sizeof time);

@@ -1,4 +1,4 @@
-"""The steps of the master, call by call in Python; `harness.cosimulation.compiled` makes the same ones faster."""
+"""The steps of the master, call by call in Python; `harness.cosimulation.compiled_steps` makes the same ones faster."""
 
 from collections.abc import Callable, Sequence
 from ctypes import c_double
@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from fmpy.fmi2 import fmi2OK, fmi2Warning
 
+from .call_trace import AT_START, note
 from .calls import Call
-from .whereabouts import AT_START, note
 
 NOT_FINITE = -(2**31)
 """The status, which no FMU returns, of a call that put out NaN or infinity."""

@@ -6,9 +6,9 @@ from enum import Enum
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-from ..errors import WiringError
-from ..names import nearest
-from ..plain import plain
+from ..base.errors import WiringError
+from ..base.known_names import nearest
+from ..base.plain_text import plain
 from .limits import USUAL, Limits
 
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
 
-from ..errors import WiringError
-from ..names import nearest
-from ..plain import plain
+from ..base.errors import WiringError
+from ..base.known_names import nearest
+from ..base.plain_text import plain
 from . import mapping
 from .interface import Interface, type_of, unit_of
 from .system import Connection, Port, System
@@ -57,7 +57,7 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     problems = list(mapping.apply(system, interfaces))
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
     found = Fit(system.without(absent), interfaces, absent)
-    problems += _twins(interfaces)
+    problems += _duplicates(interfaces)
     require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
     return found
 
@@ -82,7 +82,7 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
                 yield f"{name} is fed more than once"
 
 
-def beyond(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
+def out_of_bounds(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
     """Which of the values that a run gives to parameters are beyond the bounds that an FMU declares."""
     for name, value in parameters.items():
         if problem := beyond_bounds(fitted, "parameter", name, value):
@@ -110,7 +110,7 @@ def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:
     return interface is not None and variable not in interface.variables.keys() | interface.refused
 
 
-def _twins(interfaces: Mapping[str, Interface]) -> Iterator[str]:
+def _duplicates(interfaces: Mapping[str, Interface]) -> Iterator[str]:
     """What an FMU has more than one of, by a name that is then no name."""
     for instance, interface in interfaces.items():
         variables = [v for v in interface.description.modelVariables if v.causality in ("input", "output", "parameter")]

@@ -6,20 +6,20 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from ..html.compare import report
+from ..base.atomic_files import write_text
 from ..manoeuvres.catalogue import MANOEUVRES
-from ..provenance import content
-from ..reports.files import write_text
-from ..reports.table import Row
-from .bench import Answer, Bench
-from .wanted import Wanted
+from ..simulation.provenance import content
+from ..studies.compare.compare_report import report
+from ..views.metrics_table import Row
+from .request import Request
+from .request_runs import Answer, RequestRunner
 
 DIGITS = 6
 """Significant digits of a value in a file."""
 
 
 def save_files(
-    bench: Bench, wanted: Wanted, known: Mapping[str, Any], of_car: Mapping[str, Any], folder: Path
+    runner: RequestRunner, request: Request, known: Mapping[str, Any], of_car: Mapping[str, Any], folder: Path
 ) -> list[Path]:
     """Writes car_N.toml and gains_N.toml with a number that is not taken; returns both.
 
@@ -28,30 +28,30 @@ def save_files(
         of_car: those of the vehicle file.
     """
     car, gains = free(folder, "car_{}.toml", "gains_{}.toml")
-    units = {knob.name: (knob.unit, knob.meaning) for knob in (*bench.car, *bench.gains)}
+    units = {knob.name: (knob.unit, knob.meaning) for knob in (*runner.car, *runner.gains)}
     by = f"by `driveline explore` (driveline-damping {version('driveline-damping')})"
-    write_text(_toml(f"A car, {by}.", {**of_car, **wanted.car}, units), car)
-    write_text(_toml(f"Gains of {bench.controllers[0]}, {by}.", {**known, **bench.gains_of(wanted)}, units), gains)
+    write_text(_toml(f"A car, {by}.", {**of_car, **request.car}, units), car)
+    write_text(_toml(f"Gains of {runner.controllers[0]}, {by}.", {**known, **runner.gains_of(request)}, units), gains)
     return [car, gains]
 
 
-def save_report(bench: Bench, answer: Answer, inputs: list[Path | None], folder: Path) -> Path:
+def save_report(runner: RequestRunner, answer: Answer, inputs: list[Path | None], folder: Path) -> Path:
     """Writes report_N.html of the runs without and with control; returns it.
 
     Args:
         inputs: files that were read at the start.
     """
     (page,) = free(folder, "report_{}.html")
-    wanted = answer.wanted
+    request = answer.request
     runs = []
     for name, run in answer.runs.items():
-        plant = wanted.plant if name == bench.controllers[0] else f"{wanted.plant} with {name}"
+        plant = request.plant if name == runner.controllers[0] else f"{request.plant} with {name}"
         runs += [
-            (Row(plant, wanted.manoeuvre, control, each.metrics), each.results)
+            (Row(plant, request.manoeuvre, control, each.metrics), each.results)
             for control, each in ((False, answer.without), (True, run))
         ]
-    fits = {name: bench.fit(wanted.plant, name) for name in answer.runs}
-    same = {"wanted": vars(wanted), **{name: bench.parameters(wanted, name) for name in answer.runs}}
+    fits = {name: runner.fit(request.plant, name) for name in answer.runs}
+    same = {"request": vars(request), **{name: runner.parameters(request, name) for name in answer.runs}}
     report(runs, MANOEUVRES, content(same, fits, [], inputs), page)
     return page
 

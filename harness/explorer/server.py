@@ -11,10 +11,10 @@ from bokeh.application.handlers import FunctionHandler
 from bokeh.server.server import Server
 from bokeh.settings import settings
 
-from ..errors import DrivelineError
-from .bench import Bench
-from .desk import Desk, Save, Typed
-from .driver import Driver
+from ..base.errors import DrivelineError
+from .request_runs import RequestRunner
+from .view import Save, Typed, View
+from .worker import Worker
 
 ADDRESS = "127.0.0.1"
 
@@ -22,13 +22,15 @@ VANISHED = 2_000
 """After how many ms a tab that has gone is forgotten."""
 
 
-def serve(bench: Bench, saves: dict[str, Save], typed: Typed, port: int, said: Callable[[str], None]) -> None:
-    """Serves until the process is stopped; every tab has a desk of its own.
+def serve(
+    runner: RequestRunner, saves: dict[str, Save], typed: Typed, port: int, announce: Callable[[str], None]
+) -> None:
+    """Serves until the process is stopped; every tab has a view of its own.
 
     Args:
-        saves, typed: see `harness.explorer.desk.Desk`.
+        saves, typed: see `harness.explorer.view.View`.
         port: 0: any that is free.
-        said: gets the address once the page can be opened.
+        announce: gets the address once the page can be opened.
 
     Raises:
         DrivelineError: the port is taken.
@@ -37,14 +39,14 @@ def serve(bench: Bench, saves: dict[str, Save], typed: Typed, port: int, said: C
     for name in ("bokeh", "tornado"):  # of a tab that has gone, and what a page of somebody's own sends
         logging.getLogger(name).setLevel(logging.CRITICAL)
 
-    def open_desk(document: Any) -> None:
-        Desk(document, bench, driver, saves, typed)
+    def open_view(document: Any) -> None:
+        View(document, runner, worker, saves, typed)
 
     port = free(port)
-    driver = Driver()
+    worker = Worker()
     try:
         server = Server(
-            {"/": Application(FunctionHandler(open_desk))},
+            {"/": Application(FunctionHandler(open_view))},
             address=ADDRESS,
             port=port,
             allow_websocket_origin=[f"{host}:{port}" for host in (ADDRESS, "localhost")],
@@ -52,14 +54,14 @@ def serve(bench: Bench, saves: dict[str, Save], typed: Typed, port: int, said: C
             unused_session_lifetime_milliseconds=VANISHED,
         )
         try:
-            said(f"http://{ADDRESS}:{port}/")
+            announce(f"http://{ADDRESS}:{port}/")
             server.start()
             server.io_loop.start()
         finally:
             server.unlisten()
             server.stop()
     finally:
-        driver.close()
+        worker.close()
 
 
 def free(port: int) -> int:

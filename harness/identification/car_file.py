@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from .drive_train import Parameters
-from .equivalent import equivalent
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
 from .quality import Z_95
+from .two_mass_equivalent import equivalent
 
 UNITS = {
     "J_1": "kg.m2",

@@ -4,8 +4,8 @@ from itertools import product
 from math import pi
 
 from .drive_train import Parameters
-from .driven import Drive
 from .maximum_likelihood import maximise
+from .model_inputs import Drive
 from .prediction import Noise, Predictor, filtered
 
 INERTIAS = (0.5, 2.0, 8.0, 30.0)

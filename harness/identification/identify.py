@@ -8,41 +8,41 @@ import numpy as np
 
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
-from .doubts import (
+from .diagnostics import (
     LIKELY,
-    late_or_early,
-    of_demand,
-    of_gain,
-    of_innovations,
-    of_load_gain,
-    of_offset,
-    of_outliers,
-    of_spectrum,
-    of_tyre,
-    undetermined,
+    diagnose_demand,
+    diagnose_excitation,
+    diagnose_innovations,
+    diagnose_load_delay,
+    diagnose_load_gain,
+    diagnose_motor_gain,
+    diagnose_offsets,
+    diagnose_outliers,
+    diagnose_spectrum,
+    diagnose_tyre,
 )
 from .drive_train import Parameters
-from .driven import Drive, driven
+from .drive_train_response import Tyre, resonance, tyre
 from .global_start import best_start
 from .maximum_likelihood import Found, maximise
+from .model_inputs import Drive, model_inputs
 from .noise import white_noise
 from .output_error import Fitted
 from .prediction import BURN_IN, Noise, Predictor, filtered
 from .quality import SIMULATED, Quality, judged, near_starts, segments
-from .response import Tyre, resonance, tyre
 from .torque_loop import FittedLoop
 
 DAMPED = ("J_2", "C", "phi_B", "d")
 """What is searched without the load torque."""
 
 NEUTRAL = {"d": 0.0, "g_T": 1.0}
-"""What the data may ask for, and what it is if they do not."""
+"""Parameters that may not be significant, and their values if they are not."""
 
-BROAD = 5.0
+WIDE_LOAD_NOISE = 5.0
 """Noise of the load torque in N.m with which the search begins: the filter then follows the motor speed whatever the
 parameters are, and the cost has one valley."""
 
-WIDER = 20.0
+WIDEST_LOAD_NOISE = 20.0
 """The same where the model does not explain the recording."""
 
 FEW, FEWER = 12, 6
@@ -57,7 +57,7 @@ EXPLAINED = 1.25
 DAMPING = 0.1
 """Damping ratio with which a search begins."""
 
-LACKING = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0)
+MODEL_NOISE = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0)
 """Without the load torque: what model and resistance are off by. Narrower, the parameters are those of the next few
 milliseconds."""
 
@@ -69,11 +69,11 @@ HELD_OUT = 0.25
 
 WITH_LOAD, WITHOUT_LOAD = "with load torque", "effective, without load torque"
 
-Said = Callable[[str], None]
+Log = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class Estimate:
     """Attributes:
     method: "prediction error" or "output error".
     p: the parameters.
@@ -97,7 +97,7 @@ class Answer:
 
 
 @dataclass(frozen=True, eq=False)
-class Identified(Answer):
+class Identified(Estimate):
     """Attributes:
     name: WITH_LOAD: J_2 is that of the wheels; WITHOUT_LOAD: J_2 carries the vehicle.
     loop: motor control, if its demand was recorded.
@@ -124,7 +124,7 @@ def identify(
     tau: float,
     J_v: float,
     more: Sequence[str] = (),
-    said: Said = lambda _: None,
+    log: Log = lambda _: None,
 ) -> Identified:
     """
     Args:
@@ -132,48 +132,48 @@ def identify(
         tau: lag of motor control in s that the car should have.
         J_v: inertia of the vehicle in kg.m2, motor side.
         more: names of parameters that are to be free as well.
-        said: gets a line about each step.
+        log: gets a line for each step.
 
     Raises:
-        RecordingError: it is too short; see `harness.identification.driven.driven`.
+        RecordingError: it is too short; see `harness.identification.model_inputs.model_inputs`.
     """
-    drive, demand = driven(recording)
+    drive, demand = model_inputs(recording)
     loop = demand if demand and demand.answers else None
     _require_long(recording.name, drive, (BURN_IN + SIMULATED) / HELD_OUT, "to judge the fit by the last quarter")
     measured = recording.T_load is not None
-    noise = of_sensors(recording, loop) if measured else LACKING
-    answer = answered(drive, start, noise, measured, more, said)
-    said("judging it by data that were not used")
+    noise = of_sensors(recording, loop) if measured else MODEL_NOISE
+    estimate = fit(drive, start, noise, measured, more, log)
+    log("judging it by data that were not used")
     cut = round((1.0 - HELD_OUT) * len(drive))
-    without = again(drive.between(0, cut), answer, measured)
+    held_out = refit(drive.between(0, cut), estimate, measured)
     drift = WITHIN if measured else UNMEASURED
-    through = filtered(drive, answer.p, answer.noise)
-    behind, odd = None, []
+    filter_run = filtered(drive, estimate.p, estimate.noise)
+    tyre_found, tyre_warnings = None, []
     if recording.T_load is not None:
-        load = recording.T_load[1:] / answer.p.g_L
-        behind = tyre(load, through.states[:, 1], drive.T_mot.mean(axis=1), drive.T_s, J_v)
-        odd = of_tyre(behind)
-        behind = None if odd else behind
-    quality = judged(drive, without, answer.noise, drift, cut)
-    explained = measured and answer.method == "prediction error"
+        load = recording.T_load[1:] / estimate.p.g_L
+        tyre_found = tyre(load, filter_run.states[:, 1], drive.T_mot.mean(axis=1), drive.T_s, J_v)
+        tyre_warnings = diagnose_tyre(tyre_found)
+        tyre_found = None if tyre_warnings else tyre_found
+    quality = judged(drive, held_out, estimate.noise, drift, cut)
+    explained = measured and estimate.method == "prediction error"
     warnings = (
         *recording.warnings,
-        *(of_demand(demand, drive.T_s, tau) if demand else ()),
-        *of_spectrum(recording.omega_1),
-        *of_outliers(through, drive.T_s),
-        *(of_offset(through, answer.p) if measured else ()),
-        *of_gain(answer.p, answer.deviations),
-        *of_load_gain(answer.p, answer.deviations),
-        *answer.warnings,
-        *(of_innovations(quality.correlation) if explained else ()),
-        *odd,
-        *undetermined(through.states[:, 2], answer.p, answer.deviations, answer.free),
+        *(diagnose_demand(demand, drive.T_s, tau) if demand else ()),
+        *diagnose_spectrum(recording.omega_1),
+        *diagnose_outliers(filter_run, drive.T_s),
+        *(diagnose_offsets(filter_run, estimate.p) if measured else ()),
+        *diagnose_motor_gain(estimate.p, estimate.deviations),
+        *diagnose_load_gain(estimate.p, estimate.deviations),
+        *estimate.warnings,
+        *(diagnose_innovations(quality.correlation) if explained else ()),
+        *tyre_warnings,
+        *diagnose_excitation(filter_run.states[:, 2], estimate.p, estimate.deviations, estimate.free),
     )
     return Identified(
-        **{**vars(answer), "warnings": warnings},
+        **{**vars(estimate), "warnings": warnings},
         name=WITH_LOAD if measured else WITHOUT_LOAD,
         loop=loop,
-        tyre=behind,
+        tyre=tyre_found,
         quality=quality,
         drive=drive,
     )
@@ -192,50 +192,50 @@ def of_sensors(recording: Measurement, loop: FittedLoop | None) -> Noise:
     return Noise(white_noise(recording.omega_1), T_mot, T_load)
 
 
-def answered(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], said: Said) -> Answer:
+def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], log: Log) -> Estimate:
     if not measured:
         free = _names(*DAMPED, *more)
-        begun = best_start(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise)
-        found = maximise(Predictor(free), drive, begun, noise)
-        _told(said, "predicted without load torque", found.p)
-        return Answer("prediction error", found.p, sandwich(found), free, noise, ())
-    begun = widely(drive, start, noise, more)
-    _told(said, "predicted by a wide filter", begun)
-    best = predicted(drive, begun, noise, more, said)
-    doubts = late_or_early(drive, best, noise)
+        initial = best_start(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise)
+        found = maximise(Predictor(free), drive, initial, noise)
+        _log_stage(log, "predicted without load torque", found.p)
+        return Estimate("prediction error", found.p, sandwich_covariance(found), free, noise, ())
+    initial = coarse_fit(drive, start, noise, more)
+    _log_stage(log, "predicted by a wide filter", initial)
+    best = prediction_error_fit(drive, initial, noise, more, log)
+    diagnostics = diagnose_load_delay(drive, best, noise)
     if best.innovations.rms <= EXPLAINED:
-        return Answer("prediction error", best.p, best.covariance, best.free, noise, tuple(doubts))
-    said("the model does not explain all of the recording: pieces of 0.5 s are simulated")
-    fitted = simulated(drive, begun, noise, more)
-    _told(said, "simulated", fitted.p)
-    lacks = (
+        return Estimate("prediction error", best.p, best.covariance, best.free, noise, tuple(diagnostics))
+    log("the model does not explain all of the recording: pieces of 0.5 s are simulated")
+    fitted = output_error_fit(drive, initial, noise, more)
+    _log_stage(log, "simulated", fitted.p)
+    warnings = (
         "the two masses do not explain all of this car (with the noise of the sensors alone the innovations have the "
         f"size {best.innovations.rms:.2f}): "
         f"parameters are those with which free runs of 0.5 s fit best, to {fitted.error:.2g} rad/s",
-        *doubts,
+        *diagnostics,
     )
     of_model = Noise(fitted.error, noise.T_mot, noise.T_load)
-    return Answer("output error", fitted.p, fitted.covariance, fitted.free, of_model, lacks)
+    return Estimate("output error", fitted.p, fitted.covariance, fitted.free, of_model, warnings)
 
 
-def widely(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str] = ()) -> Parameters:
-    """From anywhere, by a filter that follows the motor speed whatever the parameters are."""
-    broad, free = Noise(noise.omega_1, noise.T_mot, BROAD), _searched(more)
-    begun = best_start(Predictor(free), drive, start._replace(d=_damping(start)), broad)
-    return maximise(Predictor((*free, "g_L")), drive, begun, broad, most=FEWER).p
+def coarse_fit(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str] = ()) -> Parameters:
+    """A coarse fit from anywhere, by a filter that follows the motor speed whatever the parameters are."""
+    broad, free = Noise(noise.omega_1, noise.T_mot, WIDE_LOAD_NOISE), _searched(more)
+    initial = best_start(Predictor(free), drive, start._replace(d=_damping(start)), broad)
+    return maximise(Predictor((*free, "g_L")), drive, initial, broad, most=FEWER).p
 
 
-def predicted(
-    drive: Drive, begun: Parameters, noise: Noise, more: Sequence[str] = (), said: Said = lambda _: None
+def prediction_error_fit(
+    drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = (), log: Log = lambda _: None
 ) -> Found:
-    """By prediction error, with no more than the data ask for."""
-    found = maximise(Predictor((*_searched(more), "g_L")), drive, begun, noise, most=FEW)
-    _told(said, "predicted with the noise of the sensors", found.p)
-    return asked(drive, found, noise, more, said)
+    """The fit by prediction error, with no parameter that is not significant."""
+    found = maximise(Predictor((*_searched(more), "g_L")), drive, initial, noise, most=FEW)
+    _log_stage(log, "predicted with the noise of the sensors", found.p)
+    return backward_elimination(drive, found, noise, more, log)
 
 
-def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: Said) -> Found:
-    """Without structural damping and gain of the motor torque, unless the data ask for them.
+def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequence[str], log: Log) -> Found:
+    """Backward elimination: without structural damping and gain of the motor torque, unless they are significant.
 
     Args:
         found: with both.
@@ -244,24 +244,24 @@ def asked(drive: Drive, found: Found, noise: Noise, more: Sequence[str], said: S
     best = found
     while optional := [name for name in NEUTRAL if name in best.free and name not in more]:
         deviations = dict(zip(best.free, np.sqrt(np.diag(best.covariance)), strict=True))
-        told = {name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 for name in optional}
-        least = min(optional, key=lambda name: told[name])
-        if told[least] > LIKELY:
+        significance = {name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 for name in optional}
+        least = min(optional, key=lambda name: significance[name])
+        if significance[least] > LIKELY:
             break
         free = tuple(name for name in best.free if name != least)
         best = maximise(Predictor(free), drive, best.p._replace(**{least: NEUTRAL[least]}), noise, most=FEWER)
-        _told(said, f"the data do not ask for {least}", best.p)
+        _log_stage(log, f"without {least}, which is not significant", best.p)
     return best
 
 
-def simulated(drive: Drive, begun: Parameters, noise: Noise, more: Sequence[str] = ()) -> Fitted:
-    """By output error; with the gain of the motor torque if that is surely not 1."""
+def output_error_fit(drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = ()) -> Fitted:
+    """The fit by output error; with the gain of the motor torque if that is surely not 1."""
     free = (*_searched(more), "g_L")
     known = free if "g_T" in more else tuple(name for name in free if name != "g_T")
     least = BURN_IN + SIMULATED * (len(free) + 2)
     _require_long("the recording", drive, least, f"for {len(free)} parameters of a car that two masses do not explain")
-    wider = Noise(noise.omega_1, noise.T_mot, WIDER)
-    p = maximise(Predictor(free), drive, begun._replace(d=_damping(begun)), wider, most=FEW).p
+    wider = Noise(noise.omega_1, noise.T_mot, WIDEST_LOAD_NOISE)
+    p = maximise(Predictor(free), drive, initial._replace(d=_damping(initial)), wider, most=FEW).p
     pieces = segments(drive, free, WITHIN)
     fitted = pieces.fit(p._replace(d=_damping(p)), near_starts(pieces, filtered(drive, p, wider)))
     if free == known or abs(fitted.p.g_T - 1.0) > SURELY * fitted.deviation("g_T"):
@@ -269,16 +269,16 @@ def simulated(drive: Drive, begun: Parameters, noise: Noise, more: Sequence[str]
     return segments(drive, known, WITHIN).fit(fitted.p._replace(g_T=1.0), fitted.starts, most=FEW)
 
 
-def again(drive: Drive, answer: Answer, measured: bool) -> Parameters:
-    """The parameters of another part of the recording."""
-    if answer.method == "prediction error":
-        return maximise(Predictor(answer.free), drive, answer.p, answer.noise).p
-    pieces = segments(drive, answer.free, WITHIN)
-    return pieces.fit(answer.p, near_starts(pieces, filtered(drive, answer.p, answer.noise)), most=6).p
+def refit(drive: Drive, estimate: Estimate, measured: bool) -> Parameters:
+    """The fit to another part of the recording."""
+    if estimate.method == "prediction error":
+        return maximise(Predictor(estimate.free), drive, estimate.p, estimate.noise).p
+    pieces = segments(drive, estimate.free, WITHIN)
+    return pieces.fit(estimate.p, near_starts(pieces, filtered(drive, estimate.p, estimate.noise)), most=6).p
 
 
-def sandwich(found: Found, block: int = 250) -> np.ndarray:
-    """Covariance of the free parameters where the innovations are not white: their blocks speak for themselves."""
+def sandwich_covariance(found: Found, block: int = 250) -> np.ndarray:
+    """Sandwich covariance of the free parameters, from blocks of innovations that are not white."""
     seen = found.innovations
     inverse = found.inverse_information
     each = seen.scores
@@ -301,5 +301,5 @@ def _damping(p: Parameters) -> float:
     return 2.0 * DAMPING * float(np.sqrt(p.C * p.J_1 * p.J_2 / (p.J_1 + p.J_2)))
 
 
-def _told(said: Said, stage: str, p: Parameters) -> None:
-    said(f"{stage}: J_2 = {p.J_2:.4g}, C = {p.C:.4g}, phi_B = {p.phi_B:.4g}, d = {p.d:.2g}")
+def _log_stage(log: Log, stage: str, p: Parameters) -> None:
+    log(f"{stage}: J_2 = {p.J_2:.4g}, C = {p.C:.4g}, phi_B = {p.phi_B:.4g}, d = {p.d:.2g}")

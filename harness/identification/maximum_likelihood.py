@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .drive_train import Parameters
-from .driven import Drive
+from .model_inputs import Drive
 from .prediction import Innovations, Noise, Predictor
 
 SIGNED = {"d"}

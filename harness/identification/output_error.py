@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .drive_train import Parameters
-from .driven import Drive
 from .maximum_likelihood import UNKNOWN, moved, scales
-from .simulation import Simulator
+from .model_inputs import Drive
+from .segment_simulation import Simulator
 
 WITHIN = np.array([3.0, 10.0, 0.5])
 """Standard deviations of speeds and twist at the start of a segment about what is expected there."""

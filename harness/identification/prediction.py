@@ -14,9 +14,9 @@ import casadi as ca
 import numpy as np
 
 from .buffered import Buffered
-from .compiled import compiled
+from .compiled_functions import compiled
 from .drive_train import STEPS, Parameters, State, sample
-from .driven import Drive
+from .model_inputs import Drive
 
 STATES = len(State._fields)
 LOWER = [(row, column) for row in range(STATES) for column in range(row + 1)]
@@ -145,7 +145,7 @@ BURN_IN = 0.2
 START = (1.0, 5.0, 0.1, 2.0, 2.0)
 """Standard deviations of the state that the filter starts with, in the units of `State`."""
 
-SIDES, APART = (-1.0, 0.0, 1.0), (-15.0, 0.0, 15.0)
+SIDES, TWIST_RATES = (-1.0, 0.0, 1.0), (-15.0, 0.0, 15.0)
 """Flanks, and speeds in rad/s by which the wheels turn faster, with which it may start."""
 
 COMPARED = 0.4
@@ -159,8 +159,8 @@ def _start(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, np.nd
     run, given = _filter().passed(len(piece)), _given(piece, p, noise)
     T_0 = abs(float(drive.T_mot[0, 0]))
 
-    def start(side: float, apart: float) -> np.ndarray:
-        x = [drive.omega_1[0], drive.omega_1[0] + apart, side * (p.phi_B + T_0 / p.C), 0.0, 0.0]
+    def start(side: float, twist_rate: float) -> np.ndarray:
+        x = [drive.omega_1[0], drive.omega_1[0] + twist_rate, side * (p.phi_B + T_0 / p.C), 0.0, 0.0]
         P = np.diag(np.square(START))
         return np.concatenate([x, [P[at] for at in LOWER]])
 
@@ -168,11 +168,11 @@ def _start(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, np.nd
         _, (size, log_S) = run(start(*begin), *given)
         return float(np.sum(size**2 + log_S))
 
-    side, apart = min(product(SIDES, APART), key=cost)
+    side, twist_rate = min(product(SIDES, TWIST_RATES), key=cost)
     d = np.zeros((STATES + len(LOWER), len(p)))
     d[2, Parameters._fields.index("C")] = -side * T_0 / p.C**2
     d[2, Parameters._fields.index("phi_B")] = side
-    return start(side, apart), d
+    return start(side, twist_rate), d
 
 
 class _Filter:

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.stats import norm
 
 from .drive_train import Parameters
-from .driven import Drive
+from .model_inputs import Drive
 from .output_error import Segments
 from .prediction import BURN_IN, Filtered, Noise, filtered
-from .simulation import Simulator
+from .segment_simulation import Simulator
 
 SIMULATED, PREDICTED = 0.5, 0.05
 """In s."""

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.signal import csd, welch
 
+from .drive_train_response import WINDOW, Tyre, response
 from .identify import Identified
-from .response import WINDOW, Tyre, response
 
 DRAWS = 500
 

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
+from .demand_shape import plateau_ends
 from .manoeuvre import Manoeuvre
 from .prbs import binary_torque
-from .shape import plateau_ends
 from .signals import FlatSine, lines
 
 KMH = 1.0 / 3.6

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from .demand_shape import plateau_ends, step_of
 from .manoeuvre import Manoeuvre
 from .parts import constant, summed
-from .shape import plateau_ends, step_of
 from .signals import NOTHING, Lines, Signal
 
 Parts = float | Signal | Sequence[Signal]

@@ -3,24 +3,24 @@
 from collections.abc import Iterator, Mapping
 from math import inf
 
-from ..control_loop import INPUTS, PARAMETERS, STEP_SIZE
 from ..cosimulation.experiment import instants
 from ..cosimulation.wiring import Fit, beyond_bounds
+from ..loop.places import INPUTS, PARAMETERS, STEP_SIZE
 from .manoeuvre import Manoeuvre
 from .parts import ManoeuvreError
 
 
-def require_drivable(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float], told: str) -> None:
+def require_drivable(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float], label: str) -> None:
     """
     Args:
         parameters: `instance.parameter` -> value, that the run sets.
-        told: what the manoeuvre is called.
+        label: what the manoeuvre is called.
 
     Raises:
         ManoeuvreError: names all that is beyond what an FMU takes, or the motor can make.
     """
     if problems := list(_problems(manoeuvre, fitted, parameters)):
-        raise ManoeuvreError("\n".join(f"{told}: {problem}" for problem in problems))
+        raise ManoeuvreError("\n".join(f"{label}: {problem}" for problem in problems))
 
 
 def _problems(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:

@@ -17,9 +17,9 @@ from math import atan, isfinite
 from pathlib import Path
 from typing import Any
 
-from ..control_loop import STEP_SIZE
-from ..names import nearest
-from ..plain import plain
+from ..base.known_names import nearest
+from ..base.plain_text import plain
+from ..loop.places import STEP_SIZE
 from .composed import composed
 from .manoeuvre import Manoeuvre
 from .parts import KINDS, LONGEST, UNITS, ManoeuvreError, constant, summed
@@ -109,8 +109,8 @@ def _parts(name: str, entries: list[Any], unit: str, duration: float) -> Iterato
             )
         kind = entry.get("kind")
         if not isinstance(kind, str) or kind not in KINDS:
-            said = "it has no kind" if kind is None else f"kind = {plain(repr(kind), 60)} is unknown"
-            raise ManoeuvreError(f"{where}: {said}; {nearest(str(kind or ''), KINDS)}")
+            shown = "it has no kind" if kind is None else f"kind = {plain(repr(kind), 60)} is unknown"
+            raise ManoeuvreError(f"{where}: {shown}; {nearest(str(kind or ''), KINDS)}")
         try:
             given = _arguments(kind, {key: value for key, value in entry.items() if key != "kind"}, unit)
             for key in ("at", "begin"):
@@ -165,8 +165,8 @@ def _number(key: str, value: Any, unit: str) -> float:
 
 
 def _converted(key: str, text: str, unit: str) -> float:
-    from ..numbers import real
-    from ..recordings.units import factor_to
+    from ..base.written_numbers import real
+    from ..recordings.recording_units import factor_to
 
     number, _, given = plain(text, 60).partition(" ")
     value = real(number)
@@ -182,7 +182,7 @@ def _converted(key: str, text: str, unit: str) -> float:
 
 def _from_table(path: Path) -> Manoeuvre:
     """Of straight lines between the rows, two at one instant being a jump; it begins with the first row."""
-    from ..recordings.course import read_course
+    from ..recordings.driver_and_road import read_course
 
     course = read_course(path)
     try:

@@ -3,7 +3,7 @@
     T_driver = summed([constant(-12.0), step(1.0, 112.0), sine(10.0, 5.0, begin=3.0, end=4.0)])
 
 Instants are in s, frequencies in Hz, all else in the unit of the signal. Straight lines stay straight lines in a sum,
-so that a step and its height can be told from them (`harness.manoeuvres.shape`).
+so that a step and its height can be told from them (`harness.manoeuvres.demand_shape`).
 
 Raised is a ManoeuvreError, whose message is to stand after the name of the part.
 """
@@ -16,8 +16,8 @@ from itertools import pairwise
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from ..control_loop import T_S
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
+from ..loop.places import T_S
 from .prbs import FEEDBACK, shift_register
 from .signals import Lines, Signal, lines, nanoseconds
 

@@ -1,6 +1,6 @@
 """A short drive in town of our own making, in the layout of a recording.
 
-    python -m harness.manoeuvres.town_drive
+    python -m driveline.harness.manoeuvres.town_drive
 
 writes it again to `harness/manoeuvres/data/town_drive.csv`: an uneven foot, passages of the torque through zero, a
 stop at a light. The speed is that of a point mass, sampled and rounded as a recording would be.
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .road import ROTATING_MASS, RoadLoad
+from .road_load import ROTATING_MASS, RoadLoad
 from .signals import lines
 
 PATH = Path(__file__).parent / "data" / "town_drive.csv"

@@ -4,7 +4,7 @@ from types import ModuleType
 
 import numpy as np
 
-from ..extra import required
+from ..base.optional_packages import required
 from .declaration import Absent
 
 EXPONENT = 5.0

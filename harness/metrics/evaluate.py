@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ..control_loop import T_S
+from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
 from .oscillation import amplitude
-from .record import Metrics
+from .run_metrics import Metrics
 from .spectrum import TO_50_HZ, band_rms
 from .step_response import Response, height_of_step, response, settling_time
 

@@ -42,8 +42,8 @@ def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> fl
     return min(1.0, float(s / sqrt(pi**2 + s**2)))
 
 
-def _alternating_extremes(y: np.ndarray, apart: int) -> list[float]:
-    """Extremes of y above 0.02 that alternate in sign and are `apart` samples away from each other.
+def _alternating_extremes(y: np.ndarray, least_distance: int) -> list[float]:
+    """Extremes of y above 0.02 that alternate in sign and are `least_distance` samples away from each other.
 
     Of those that do not alternate or are closer, the largest is kept.
     """
@@ -51,7 +51,7 @@ def _alternating_extremes(y: np.ndarray, apart: int) -> list[float]:
     turning = np.flatnonzero((slope[:-1] * slope[1:] <= 0.0) & (slope[:-1] != 0.0)) + 1
     kept: list[int] = []
     for k in turning[np.abs(y[turning]) > 0.02]:
-        if not kept or (y[k] * y[kept[-1]] < 0.0 and k - kept[-1] >= apart):
+        if not kept or (y[k] * y[kept[-1]] < 0.0 and k - kept[-1] >= least_distance):
             kept.append(int(k))
         elif abs(y[k]) > abs(y[kept[-1]]):
             kept[-1] = int(k)

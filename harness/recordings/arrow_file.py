@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..extra import required
-from ..plain import plain
+from ..base.optional_packages import required
+from ..base.plain_text import plain
 from .headings import split
 from .source import Column, RecordingError, Samples, samples
 

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..extra import required
-from ..plain import plain
-from ..progress import progress
+from ..base.optional_packages import required
+from ..base.plain_text import plain
+from ..base.progress import progress
 from .source import Column, RecordingError, Samples, samples
 
 BLF = b"LOGG"
@@ -162,8 +162,8 @@ def _opened(path: Path) -> Iterator[Any]:
     except RecordingError:
         raise
     except Exception as error:
-        said = plain(error, 200) or type(error).__name__
-        raise RecordingError(f"{path} is a damaged log of a bus: {said}") from error
+        detail = plain(error, 200) or type(error).__name__
+        raise RecordingError(f"{path} is a damaged log of a bus: {detail}") from error
 
 
 def _columns(places: Sequence[tuple[Kind, Any, Any]]) -> list[Column]:

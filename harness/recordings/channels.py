@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..plain import plain
-from .choosing import Choice, Chooser
-from .opening import opened
+from ..base.plain_text import plain
+from .column_choice import Choice, Chooser
+from .file_units import FileUnit
+from .format_detection import opened
 from .quantities import QUANTITIES, aliases
 from .source import RecordingError, Samples
 from .time_checks import check_time
-from .written import Written
 
 LEAST = 2
 """Samples that every recording has."""
@@ -30,7 +30,7 @@ class Channel:
         time: in s, strictly increasing; channels that were sampled together have the same array.
         values: finite, one for each time.
         where: of a value in the file by its index, as in "line 12".
-        written: in the file.
+        file_unit: its unit in the file.
     """
 
     quantity: str
@@ -39,7 +39,7 @@ class Channel:
     time: np.ndarray
     values: np.ndarray
     where: Callable[[int], str]
-    written: Written
+    file_unit: FileUnit
 
 
 class Channels:
@@ -109,8 +109,8 @@ def _channel(choice: Choice, samples: Samples, time: np.ndarray | None) -> Chann
     own = samples.time if time is None else time
     assert own is not None, "a file has a column of time, or its channels have their own"
     values = choice.factor * samples.values
-    written = Written(plain(choice.written), abs(choice.factor))
-    return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where, written)
+    file_unit = FileUnit(plain(choice.file_unit), abs(choice.factor))
+    return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where, file_unit)
 
 
 def _by_time(channels: Iterable[Channel]) -> Iterable[list[Channel]]:

@@ -9,8 +9,8 @@ from itertools import islice
 from pathlib import Path
 from statistics import median
 
+from .recording_units import is_unit
 from .source import RecordingError
-from .units import is_unit
 
 SEPARATORS = ("\t", ";", ",")
 

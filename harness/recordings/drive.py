@@ -8,8 +8,8 @@ import numpy as np
 
 from .alignment import aligned, is_slower
 from .channels import Channels
+from .file_units import FileUnit
 from .source import RecordingError
-from .written import Written
 
 WHEELS = "omega_wheel"
 """Whose speed over ground is that of the vehicle where it was not recorded."""
@@ -25,7 +25,7 @@ class Drive:
         v: speed of the vehicle in m/s.
         elevation: of the road in m; None if it was not recorded.
         T_mot: motor torque in N.m, motor side.
-        written: v and T_mot as the file writes them.
+        file_units: of v and T_mot.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Drive:
     v: np.ndarray
     elevation: np.ndarray | None
     T_mot: np.ndarray
-    written: Mapping[str, Written]
+    file_units: Mapping[str, FileUnit]
 
 
 def read_drive(
@@ -61,5 +61,5 @@ def read_drive(
         )
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
     time, values = aligned(channels, "T_mot", received)
-    written = {"v": channels[speed].written, "T_mot": channels["T_mot"].written}
-    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"], written)
+    file_units = {"v": channels[speed].file_unit, "T_mot": channels["T_mot"].file_unit}
+    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"], file_units)

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..extra import required
-from ..plain import plain
+from ..base.optional_packages import required
+from ..base.plain_text import plain
 from .source import Column, RecordingError, Samples, samples
 
 MARKS = (b"MDF     ", b"UnFinMF ")

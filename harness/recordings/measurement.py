@@ -9,11 +9,11 @@ import numpy as np
 from .alignment import aligned, is_slower
 from .channels import Channel, Channels
 from .delays import Delay, estimated
+from .file_units import FileUnit
 from .quantities import example
 from .relations import check_relations
 from .signal_checks import check_signal, clipping
 from .source import RecordingError
-from .written import Written
 
 BASE = "omega_1"
 """Whose samples are the time base."""
@@ -45,7 +45,7 @@ class Measurement:
         columns: heading of the column by quantity.
         delays: that the recording tells, see `harness.recordings.delays`.
         warnings: what is odd but can be used, a sentence each.
-        written: T_mot, omega_1, omega_2 and T_load as the file writes them.
+        file_units: of T_mot, omega_1, omega_2 and T_load.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Measurement:
     columns: Mapping[str, str]
     delays: Sequence[Delay]
     warnings: Sequence[str]
-    written: Mapping[str, Written]
+    file_units: Mapping[str, FileUnit]
 
 
 def read_measurement(
@@ -123,7 +123,11 @@ def read_measurement(
         signals.get("T_ref"),
         {quantity: heading for quantity, heading in headings.items() if heading},
         estimated(interval, signals),
-        [f"{path}, {said}" for channel in judged if channel.quantity in (BASE, *loads) and (said := clipping(channel))],
+        [
+            f"{path}, {finding}"
+            for channel in judged
+            if channel.quantity in (BASE, *loads) and (finding := clipping(channel))
+        ],
         _written(channels, wheels, loads, i, r),
     )
 
@@ -135,18 +139,18 @@ def _present(recording: Channels, forms: Sequence[tuple[str, ...]]) -> tuple[str
 
 def _written(
     channels: Mapping[str, Channel], wheels: Sequence[str], loads: Sequence[str], i: float, r: float
-) -> dict[str, Written]:
+) -> dict[str, FileUnit]:
     """What is on the motor side in the recording is in the file where it was measured."""
-    found = {quantity: channels[quantity].written for quantity in ("T_mot", BASE)}
+    found = {quantity: channels[quantity].file_unit for quantity in ("T_mot", BASE)}
     wheel = channels[wheels[0]]
     if wheels == ("omega_2",):
-        found["omega_2"] = wheel.written._replace(side="motor side")
+        found["omega_2"] = wheel.file_unit._replace(side="motor side")
     elif wheel.unit == "m/s":
-        found["omega_2"] = Written(wheel.written.unit, wheel.written.factor * i / r, "over ground")
+        found["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i / r, "over ground")
     else:
-        found["omega_2"] = Written(wheel.written.unit, wheel.written.factor * i, "wheel side")
+        found["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i, "wheel side")
     if loads:
-        load = channels[loads[0]].written
+        load = channels[loads[0]].file_unit
         at_motor = loads == ("T_load",)
         found["T_load"] = load._replace(
             factor=load.factor if at_motor else load.factor / i, side="motor side" if at_motor else "wheel side"

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
-from ..names import nearest
-from ..plain import plain
+from ..base.known_names import nearest
+from ..base.plain_text import plain
 from .headings import key
 from .source import RecordingError
 
@@ -26,7 +26,7 @@ class Quantity:
 
     Attributes:
         unit: of the SI, as in Modelica.
-        written: a unit in which files have it.
+        file_unit: a unit in which files have it.
         limit: largest magnitude that a car can have.
         also: a second SI unit that files may have it in and that no factor converts into the first: wheel speeds are
             often given in m/s, and only the tyre radius makes rad/s of them, slopes in %, the tangent. Whoever reads it
@@ -38,7 +38,7 @@ class Quantity:
 
     meaning: str
     unit: str
-    written: str
+    file_unit: str
     limit: float
     also: str | None = None
     slowest: float = inf
@@ -117,4 +117,4 @@ def _read(path: Path) -> dict[str, list[str]]:
 
 def example(quantity: str, names: Aliases) -> str:
     """A heading under which a file may have the quantity."""
-    return f"{names[quantity][0]} [{QUANTITIES[quantity].written}]"
+    return f"{names[quantity][0]} [{QUANTITIES[quantity].file_unit}]"

@@ -25,7 +25,7 @@ STANDSTILL = 1.0
 FAST, LINK, OTHERS = (20.0, 60.0), 0.5, 0.7
 """Band in Hz, and correlation from which on a torque is certain to belong to a rate of speed: the motor's, others. In
 test drives of both plants with 15 and 30 N.m, at 15 and 50 km/h, with and without damping, that of T_mot and omega_1 is
-.54 to .98 and always the largest; no other is above .48. Of 60 cars by lot it is .35 at least, and another one .63 at
+.54 to .98 and always the largest; no other is above .48. Of 60 random cars it is .35 at least, and another one .63 at
 most: in a wide gap the teeth hit hard, and wheels and motor feel that alike."""
 
 SLOW, OPPOSED, SIZE = 2.0, 0.5, 3.0
@@ -69,19 +69,19 @@ def _check_links(path: Path, headings: Mapping[str, str], interval: float, signa
     found = links(interval, signals)
     T, omega = max(found, key=lambda pair: abs(found[pair]))
     link = found[T, omega]
-    wanted = (T, omega) == ("T_mot", "omega_1")
-    if abs(link) < (LINK if wanted else OTHERS):
+    expected = (T, omega) == ("T_mot", "omega_1")
+    if abs(link) < (LINK if expected else OTHERS):
         return  # too little excitation to tell
-    said = f"{headings[omega]} follows {headings[T]} (correlation {link:.2f} from {FAST[0]:g} to {FAST[1]:g} Hz)"
-    if not wanted:
+    finding = f"{headings[omega]} follows {headings[T]} (correlation {link:.2f} from {FAST[0]:g} to {FAST[1]:g} Hz)"
+    if not expected:
         exchanged = [
             f"{headings[of_motor]} and {headings[name]}"
             for of_motor, name in (("T_mot", T), ("omega_1", omega))
             if of_motor != name
         ]
-        raise RecordingError(f"{path}: {said}: are {', and '.join(exchanged)} exchanged?")
+        raise RecordingError(f"{path}: {finding}: are {', and '.join(exchanged)} exchanged?")
     if link < 0.0:
-        raise RecordingError(f"{path}: {said}: one of them has the wrong sign")
+        raise RecordingError(f"{path}: {finding}: one of them has the wrong sign")
 
 
 def _check_speeds(path: Path, headings: Mapping[str, str], signals: Mapping[str, np.ndarray]) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..longest_run import longest_run
+from ..base.longest_interval import longest_run
 from .channels import Channel
 from .quantities import QUANTITIES
 from .source import RecordingError
@@ -43,7 +43,7 @@ def check_signal(path: Path, channel: Channel) -> None:
 
 
 def clipping(channel: Channel) -> str | None:
-    """What is said of a channel that stays at its largest or smallest value as if it were cut off, else None.
+    """The message about a channel that stays at its largest or smallest value as if it were cut off, else None.
 
     The motor torque is not judged: under a binary demand it stays at two values.
     """

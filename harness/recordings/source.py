@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from ..errors import DrivelineError
+from ..base.errors import DrivelineError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,5 +86,5 @@ def samples(
 
 
 def not_finite(path: Path, where: str, column: Column, value: str) -> RecordingError:
-    """What is said of a value that cannot be used."""
+    """The message about a value that cannot be used."""
     return RecordingError(f"{path}, {where}, column {column.heading}: {value or 'nothing'} is not a finite number")

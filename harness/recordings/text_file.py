@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..numbers import real
-from ..plain import plain
+from ..base.plain_text import plain
+from ..base.written_numbers import real
 from .dialect import Dialect, dialect_of
 from .encoding import decoded
 from .headings import split
-from .own_results import units_beside
+from .result_units import units_beside
 from .source import Column, RecordingError, Samples, not_finite
 
 LONGEST_CELL = 60

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ..block.declaration import with_defaults, without
-from ..controller.parts import Estimator, Law
+from ..controller.interfaces import Estimator, Law
 
 
 def fixed(part: Any, defaults: Mapping[str, float] | None = None, /, **values: float) -> Any:

@@ -8,7 +8,7 @@ T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear]
 """
 
 from ..controller import torque_estimator
-from ..controller.supervised import supervised
+from ..controller.supervised_controller import supervised
 from . import state_feedback
 from .fixed import fixed
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Real
 from ..block.operators import where
 from ..controller.fading import toward
-from ..controller.parts import Motion
+from ..controller.interfaces import Motion
 
 
 class Parameters(NamedTuple):

@@ -5,8 +5,8 @@ T_damp = 0
 
 from typing import Any, NamedTuple
 
-from ..controller.parts import Addition, Motion
-from ..controller.supervised import supervised
+from ..controller.interfaces import Addition, Motion
+from ..controller.supervised_controller import supervised
 from . import measured_speeds
 
 

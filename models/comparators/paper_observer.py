@@ -10,7 +10,7 @@ The vehicle takes no share of the gear torque, nor is there a load.
 """
 
 from ..controller import damping_law, torque_estimator
-from ..controller.supervised import supervised
+from ..controller.supervised_controller import supervised
 from .fixed import fixed
 from .state_feedback import NO_LANDING
 
@@ -25,7 +25,7 @@ GAINS = {
     "L_can_omega_2": 0.00368111,
     "L_can_phi": -7.63251e-05,
 }
-"""Of the Riccati equations that ours come from, for this model (harness.analysis.design, literal_observer)."""
+"""Of the Riccati equations that ours come from, for this model (harness.design.design, literal_observer)."""
 
 BLOCK = supervised(
     name="PaperObserver",

@@ -10,9 +10,9 @@ from typing import Annotated, Any, NamedTuple
 from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, is_finite
 from ..controller import damping_law, supervision, torque_estimator
-from ..controller.departure import DepartureState
+from ..controller.launch_direction import LaunchState
 from ..controller.signal_monitor import MonitorState
-from ..controller.supervised import Supervised, supervised
+from ..controller.supervised_controller import Supervised, supervised
 from ..controller.torque_estimator import Estimate, EstimatorState, bounded
 from ..controller.wheel_monitor import WheelState
 from .fixed import fixed
@@ -32,15 +32,15 @@ class Truth(NamedTuple):
     T_gear: Annotated[float, Real("N.m", "true gear torque, motor side")] = 0.0
 
 
-class Informed(Supervised):
-    """A controller that is told the truth."""
+class WithTrueMotion(Supervised):
+    """A controller that gets the true motion of the plant."""
 
-    def measured(self, x: Any, u: Any, p: Any) -> tuple[Any, MonitorState, WheelState, DepartureState]:
-        expected, signals, heard, leaving = super().measured(x, u, p)
-        return told(expected, u, p), signals, heard, leaving
+    def measured(self, x: Any, u: Any, p: Any) -> tuple[Any, MonitorState, WheelState, LaunchState]:
+        expected, signals, wheel_state, launch = super().measured(x, u, p)
+        return with_true_motion(expected, u, p), signals, wheel_state, launch
 
 
-def told(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
+def with_true_motion(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
     """The state of the model with the plant's motion; as expected where that is not finite.
 
     Its twist is that which makes the true gear torque and, in the gap, the true one.
@@ -51,7 +51,7 @@ def told(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
     return branch(known, lambda: true, lambda: expected)
 
 
-_CONTROLLER = Informed(MODEL, damping_law)
+_CONTROLLER = WithTrueMotion(MODEL, damping_law)
 
 BLOCK = replace(
     supervised(

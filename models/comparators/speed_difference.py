@@ -10,8 +10,8 @@ from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
 from ..controller.damping_law import washed_out
-from ..controller.parts import Addition, Motion
-from ..controller.supervised import supervised
+from ..controller.interfaces import Addition, Motion
+from ..controller.supervised_controller import supervised
 from . import measured_speeds
 
 

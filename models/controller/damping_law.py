@@ -20,9 +20,9 @@ from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import clip, logical_and, maximum, minimum, sqrt, where
-from ..vehicle import CAR, HalfGap, MotorInertia, Stiffness
+from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness
 from .gains import GAINS
-from .parts import Addition, Motion
+from .interfaces import Addition, Motion
 
 
 class Parameters(NamedTuple):

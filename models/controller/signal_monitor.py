@@ -5,7 +5,7 @@ from where that was going, and from what the model expects), frozen (unchanged f
 turns, although noise has moved it before or the model expects it to move by more than its resolution, the
 smallest change that was seen; and from then on until it changes); a motor torque when it is not finite, out
 of range, or far from what the motor should have (torque_loop). A speed that is bad for longer than t_bad is
-followed wherever it is plausible, so that it can prove itself (trust).
+followed wherever it is plausible, so that it can heal (trust).
 """
 
 from typing import Annotated, Any, NamedTuple

@@ -2,7 +2,7 @@
 
 In every sample the estimator goes one sample on and takes what was measured, the law says what to add
 to the driver's demand. Motor signals that have failed lead to fallback: the demand is passed through,
-estimator and law start anew, until the signals have proved themselves. A lost, late or absurd wheel speed
+estimator and law restart, until the signals have healed. A lost, late or absurd wheel speed
 only ends the mode that uses it. A demand that is not finite counts as zero. At rest the damping fades out
 and the estimator is held. Modes fade within t_fade. Whatever comes in, T_ref is finite and within T_max,
 and takes no more than T_take_max from the demand and adds no more than T_add_max to it; T_add_max is also
@@ -13,13 +13,16 @@ from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Enumeration, Integer, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, maximum, where
-from ..vehicle import CAR, MotorInertia, MotorLag
-from . import departure, rest, swings, trust
-from .departure import DepartureState
-from .parts import Addition, Motion
+from ..physics.vehicle import CAR, MotorInertia, MotorLag
+from . import launch_direction as departure
+from . import oscillation_monitor as swings
+from . import signal_trust as trust
+from . import standstill
+from .interfaces import Addition, Motion
+from .launch_direction import LaunchState
+from .oscillation_monitor import SwingState
 from .signal_monitor import MonitorState
-from .swings import SwingState
-from .trust import TrustState
+from .signal_trust import TrustState
 from .wheel_monitor import WheelState
 
 T_S = 0.002
@@ -72,7 +75,7 @@ class State(NamedTuple):
     law: Any
     monitor: MonitorState
     wheels: WheelState
-    departure: DepartureState
+    launch_direction: LaunchState
     swings: SwingState
     trust: TrustState
     level: Annotated[float, Real("1", "share of the damping that acts")]
@@ -131,25 +134,25 @@ def output(x: State, u: Input, p: Any) -> Output:
     )
 
 
-def is_doubtful(signals: MonitorState, heard: WheelState) -> Any:
-    """Whether the motor signals are bad in this sample, or contradicted."""
-    return logical_or(signals.bad > 0.0, heard.apart > 0.0)
+def is_suspect(signals: MonitorState, wheel_state: WheelState) -> Any:
+    """Whether the motor signals are bad in this sample, or do not match the wheel speed."""
+    return logical_or(signals.bad > 0.0, wheel_state.mismatch_time > 0.0)
 
 
 def is_launching(x: State) -> Any:
     """Whether the car was at rest a moment ago."""
-    return x.since_rest < rest.LAUNCH
+    return x.since_rest < standstill.LAUNCH
 
 
 def trust_after(
-    x: State, signals: MonitorState, heard: WheelState, leaving: DepartureState, resting: Any, p: Any
+    x: State, signals: MonitorState, wheel_state: WheelState, launch: LaunchState, resting: Any, p: Any
 ) -> TrustState:
     """The trust in the motor signals with those of this sample; `resting`: the car is at rest."""
-    departs_wrongly = logical_and(departure.is_against(leaving), logical_not(departure.is_against(x.departure)))
-    confirmed = logical_and(heard.witness, swings.is_calm(x.opposing, p))
-    lying = logical_or(swings.feeds(x.swings), departs_wrongly)
-    apart = maximum(heard.apart, where(leaving.misled, T_S, 0.0))
-    return trust.update(x.trust, signals.bad, apart, lying, confirmed, resting, T_S, p)
+    wrong_direction = logical_and(departure.is_against(launch), logical_not(departure.is_against(x.launch_direction)))
+    confirmed = logical_and(wheel_state.reference_valid, swings.is_calm(x.opposing, p))
+    implausible = logical_or(swings.feeds(x.swings), wrong_direction)
+    mismatch_time = maximum(wheel_state.mismatch_time, where(launch.wrong_sign, T_S, 0.0))
+    return trust.update(x.trust, signals.bad, mismatch_time, implausible, confirmed, resting, T_S, p)
 
 
 def damping_limited(added: Addition, p: Any) -> Addition:

@@ -18,13 +18,13 @@ rounds them as little as the twist, which is the integral of their difference.
 
 from typing import Annotated, Any, NamedTuple
 
-from ..backlash import dead_zone
 from ..block.declaration import Real
 from ..block.operators import clip, interpolate, where
-from ..vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia
+from ..physics.backlash import dead_zone
+from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia
 from .fading import toward
 from .gains import GAINS
-from .parts import Motion
+from .interfaces import Motion
 
 HISTORY = 32
 """Past estimates of omega_2 that are kept, one a sample."""

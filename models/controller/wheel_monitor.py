@@ -1,23 +1,23 @@
-"""What the messages with the wheel speed are good for: to correct the estimate, and as a witness.
+"""What the messages with the wheel speed are good for: to correct the estimate, and as a reference for the motor speed.
 
-A message corrects the estimate when it is new, valid, in range, not doubted and near it; the wheel speed is
-in use while such messages keep coming. Any message that says a speed is a witness against a motor
-speed that is far from it, unless it is the messages that have leapt from one to the next while the motor
-speed has not: then they are doubted, until one is near the motor speed again. What contradicts is far from the motor
-speed of now and from that of when the message came: wheels that lock leave the last message behind in between.
+A message corrects the estimate when it is new, valid, in range, plausible and near it; the wheel speed is in use
+while such messages keep coming. Any message that says a speed is a valid reference for the motor speed, unless
+the messages have leapt from one to the next while the motor speed has not: then they are implausible, until one
+is near the motor speed again. A motor speed mismatches when it is far from the reference now and was so when the
+message came: wheels that lock leave the last message behind in between.
 
 The teeth of a wheel do not tell its direction. It is taken from the motor while the messages are silent or
-doubted, and kept otherwise: a car that turns round passes the speeds at which they say nothing. A motor that
+implausible, and kept otherwise: a car that turns round passes the speeds at which they say nothing. A motor that
 turns backwards while it pushes hard has the wrong sign, unless the car was seen to roll back before it pushed, or the
-motor to set off with its torque (departure). One that has set off against it goes where that torque pushes.
+motor to set off with its torque (launch direction). One that has set off against it goes where that torque pushes.
 """
 
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
-from . import departure
-from .departure import DepartureState
+from . import launch_direction
+from .launch_direction import LaunchState
 from .signal_monitor import plausible
 
 PUSH = 0.25
@@ -46,16 +46,16 @@ class WheelState(NamedTuple):
     usable: Annotated[bool, Boolean("a message has come that corrects the estimate")]
     unused: Annotated[float, Real("s", "time since such a message")]
     silence: Annotated[float, Real("s", "time since a message that says a speed")]
-    doubted: Annotated[bool, Boolean("the messages have leapt away from the estimate")]
-    witness: Annotated[bool, Boolean("the messages say what the motor speed must be")]
+    implausible: Annotated[bool, Boolean("the messages have leapt away from the motor speed")]
+    reference_valid: Annotated[bool, Boolean("the messages are a reference for the motor speed")]
     late: Annotated[float, Real("rad/s", "motor speed, as late as the messages")]
     late_then: Annotated[float, Real("rad/s", "that speed at the message received last")]
-    apart: Annotated[float, Real("s", "time for which messages contradict the motor speed")]
+    mismatch_time: Annotated[float, Real("s", "time for which motor speed and messages do not match")]
 
 
 def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
     known = has_wheel_speed(u, p)
-    direction = direction_of(omega_1, T_mot, 0.0, departure.start(), p)
+    direction = direction_of(omega_1, T_mot, 0.0, launch_direction.start(), p)
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=direction * message(u),
@@ -64,11 +64,11 @@ def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
         usable=False,
         unused=where(known, 0.0, p.t_stale),
         silence=where(known, 0.0, p.t_stale),
-        doubted=False,
-        witness=known,
+        implausible=False,
+        reference_valid=known,
         late=omega_1,
         late_then=omega_1,
-        apart=0.0,
+        mismatch_time=0.0,
     )
 
 
@@ -92,20 +92,20 @@ def is_pushing(T_mot: Any, p: Any) -> Any:
     return T_mot >= PUSH * p.T_max
 
 
-def direction_of(omega_1: Any, T_mot: Any, rolling: Any, leaving: DepartureState, p: Any) -> Any:
-    """Of a car whose motor turns with omega_1 (rad/s) under T_mot (N.m), and that was seen to roll back for so long."""
-    believed = logical_or(rolling >= ROLLING, departure.is_with(leaving))
+def direction_of(omega_1: Any, T_mot: Any, rolling: Any, launch: LaunchState, p: Any) -> Any:
+    """Of a car whose motor turns with omega_1 (rad/s) under T_mot (N.m), and that was rolling back for so long (s)."""
+    believed = logical_or(rolling >= ROLLING, launch_direction.is_with(launch))
     possible = logical_or(logical_not(is_pushing(T_mot, p)), believed)
     turning = where(logical_and(is_backwards(omega_1, p), possible), -1.0, 1.0)
-    wrong = logical_or(departure.is_against(leaving), leaving.misled)
-    return where(wrong, departure.heading(leaving), turning)
+    wrong = logical_or(launch_direction.is_against(launch), launch.wrong_sign)
+    return where(wrong, launch_direction.heading(launch), turning)
 
 
 def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, wrong: Any, T_s: Any, p: Any) -> Any:
     """Time in s for which the car was seen to roll back, one sample later.
 
     It counts while the motor does not push, stays while it does, and is taken back while the motor does not turn
-    backwards; a motor speed that is bad or misleads has seen nothing.
+    backwards; a motor speed that is bad or has the wrong sign does not count.
     """
     step = where(is_backwards(omega_1, p), where(is_pushing(T_mot, p), 0.0, T_s), -T_s)
     return where(wrong, 0.0, clip(rolling + step, 0.0, 2.0 * ROLLING))
@@ -117,7 +117,7 @@ def update(
     omega_1: Any,
     T_mot: Any,
     bad: Any,
-    leaving: DepartureState,
+    launch: LaunchState,
     omega_2_hat: Any,
     T_s: Any,
     p: Any,
@@ -128,24 +128,24 @@ def update(
         u: input with omega_2_can, valid, counter.
         omega_1, T_mot: motor speed and torque in use, rad/s and N.m.
         bad: time in s since the motor signals were good.
-        leaving: how the motor has set off out of rest.
+        launch: the launch direction.
         omega_2_hat: estimate before the message, rad/s.
     """
     known = has_wheel_speed(u, p)
-    believed = logical_and(x.silence < p.t_stale, logical_not(x.doubted))
-    rolling = rolling_time(x.rolling, omega_1, T_mot, logical_or(bad > 0.0, leaving.misled), T_s, p)
-    direction = where(believed, x.direction, direction_of(omega_1, T_mot, rolling, leaving, p))
+    believed = logical_and(x.silence < p.t_stale, logical_not(x.implausible))
+    rolling = rolling_time(x.rolling, omega_1, T_mot, logical_or(bad > 0.0, launch.wrong_sign), T_s, p)
+    direction = where(believed, x.direction, direction_of(omega_1, T_mot, rolling, launch, p))
     new = logical_and(u.counter != x.counter, known)
     omega_2 = where(new, direction * message(u), x.omega_2)
     late = x.late + minimum(T_s / LATE, 1.0) * (omega_1 - x.late)
-    apart, allowed = abs(omega_2 - late), SHARE * abs(omega_2)
-    doubted = logical_and(logical_or(x.doubted, has_leapt(x, omega_2, late, p)), apart > LEAP + allowed)
-    near = logical_and(abs(omega_2 - omega_2_hat) <= p.e_max, logical_not(doubted))
+    distance, allowed = abs(omega_2 - late), SHARE * abs(omega_2)
+    implausible = logical_and(logical_or(x.implausible, has_leapt(x, omega_2, late, p)), distance > LEAP + allowed)
+    near = logical_and(abs(omega_2 - omega_2_hat) <= p.e_max, logical_not(implausible))
     usable = logical_and(new, near)
     silence = where(new, 0.0, minimum(x.silence + T_s, p.t_stale))
-    witness = logical_and(logical_and(known, silence < p.t_stale), logical_not(doubted))
+    reference_valid = logical_and(logical_and(known, silence < p.t_stale), logical_not(implausible))
     late_then = where(new, late, x.late_then)
-    far = minimum(apart, abs(omega_2 - late_then)) > p.e_wheel + allowed
+    far = minimum(distance, abs(omega_2 - late_then)) > p.e_wheel + allowed
     return WheelState(
         counter=1.0 * u.counter,
         omega_2=omega_2,
@@ -154,11 +154,11 @@ def update(
         usable=usable,
         unused=where(usable, 0.0, minimum(x.unused + T_s, p.t_stale)),
         silence=silence,
-        doubted=doubted,
-        witness=witness,
+        implausible=implausible,
+        reference_valid=reference_valid,
         late=late,
         late_then=late_then,
-        apart=where(logical_and(witness, far), minimum(x.apart + T_s, p.t_apart + T_s), 0.0),
+        mismatch_time=where(logical_and(reference_valid, far), minimum(x.mismatch_time + T_s, p.t_apart + T_s), 0.0),
     )
 
 
@@ -169,6 +169,6 @@ def has_leapt(x: WheelState, omega_2: Any, late: Any, p: Any) -> Any:
     return logical_and(leapt, x.silence < p.t_stale)
 
 
-def hears_wheels(x: WheelState, u: Any, p: Any) -> Any:
+def wheel_speed_in_use(x: WheelState, u: Any, p: Any) -> Any:
     """Whether the wheel speed is in use: valid, and messages that can be used keep coming."""
     return logical_and(u.valid, x.unused < p.t_stale)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from harness.cli import COMMANDS, complete_commands, parser
+from driveline.harness.commands.cli import COMMANDS, complete_commands, parser
 from tests import ROOT
 from tests.docs.pages import INLINE, PAGES, blocks, commands, named, prose
 

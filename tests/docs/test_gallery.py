@@ -5,7 +5,7 @@ import re
 import pytest
 
 from docs.site import gallery
-from harness.cli import parser
+from driveline.harness.commands.cli import parser
 from tests import ROOT
 from tests.docs.pages import PAGES, commands, text_of
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from docs.site import commands, links, reference
-from harness.cli import COMMANDS, complete_commands, parser
+from driveline.harness.commands.cli import COMMANDS, complete_commands, parser
 from tests import ROOT
 from tests.docs.test_code_blocks import options
 from tests.test_rooms import modules
@@ -17,8 +17,8 @@ def test_the_page_of_a_command_has_all_its_options(name: str) -> None:
     complete_commands(top)
     page = commands.pages()[f"commands/{name}.md"]
     assert page.startswith(f"# driveline {name}\n")
-    told = set(re.findall(r"--[a-z-]+", " ".join(re.findall(r"^`(.*)`$", page, re.M))))
-    assert told == {option for option in options(top, name) if option.startswith("--")} - {"--help"}
+    documented = set(re.findall(r"--[a-z-]+", " ".join(re.findall(r"^`(.*)`$", page, re.M))))
+    assert documented == {option for option in options(top, name) if option.startswith("--")} - {"--help"}
     assert str(ROOT) not in page
 
 
@@ -29,7 +29,9 @@ def test_the_first_page_of_the_commands_leads_to_all() -> None:
 
 def test_the_reference_has_every_module_of_every_room() -> None:
     shown = re.findall(r"^::: (\S+)$", "\n".join(reference.pages().values()), re.M)
-    wanted = {name for name in modules() if not name.startswith("harness.commands.") and not name.endswith("__")}
+    wanted = {
+        name for name in modules() if not name.startswith("driveline.harness.commands.") and not name.endswith("__")
+    }
     assert set(shown) == wanted - {"build_fmus"}
     assert len(shown) == len(set(shown))
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fmus.release import DATE, VERSION
-from harness.cli import parser
+from driveline.fmus.release import DATE, VERSION
+from driveline.harness.commands.cli import parser
 from tests import ROOT
 from tests.docs.pages import commands
 

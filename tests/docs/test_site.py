@@ -102,8 +102,8 @@ def test_every_page_is_found_by_searching(site: Path) -> None:
 
 
 def test_the_reference_shows_docstrings(site: Path) -> None:
-    page = (site / "reference" / "harness.html").read_text(encoding="utf-8")
-    assert 'id="harness.simulate.simulate"' in page
+    page = (site / "reference" / "driveline.harness.views.html").read_text(encoding="utf-8")
+    assert 'id="driveline.simulate"' in page
     assert "MissingExtra" in page
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.cli import main
+from driveline.harness.commands.cli import main
 from tests import ROOT
 from tests.docs.pages import blocks
 

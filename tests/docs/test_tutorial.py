@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.cli import main
+from driveline.harness.commands.cli import main
 from tests import ROOT
 from tests.docs.pages import BLOCK, blocks, commands, text_of
 
@@ -32,18 +32,18 @@ def test_its_commands_give_its_figures(
             if arguments[0] != "build":
                 assert main(arguments) == 0, shlex.join(arguments)
     assert Path("results/simulate/TwoMassDriveline_tipin15_off.png").is_file()
-    told = text_of(TUTORIAL)
+    page = text_of(TUTORIAL)
     for damping, row in metrics("results/first").items():
-        (shown,) = re.findall(rf"^\| {damping} \|(.*)\|$", told, re.M)
+        (shown,) = re.findall(rf"^\| {damping} \|(.*)\|$", page, re.M)
         assert {cell.strip() for cell in shown.split("|")} <= set(row)
     as_it_was, designed = metrics("results/van_as_it_was"), metrics("results/van")
-    for value in (*re.findall(r"it overshoots by (\d+) % and settles in (\d+) ms", told)[0],):
+    for value in (*re.findall(r"it overshoots by (\d+) % and settles in (\d+) ms", page)[0],):
         assert value in as_it_was["on"]
-    for value in re.findall(r"without damping by (\d+) %, in (\d+) ms", told)[0]:
+    for value in re.findall(r"without damping by (\d+) %, in (\d+) ms", page)[0]:
         assert value in as_it_was["off"]
     overshoot, settling, withheld, before = re.findall(
         r"Now it overshoots by (\d+) % and settles in (\d+) ms, and withholds ([\d.]+) ms in the place of ([\d.]+)\.",
-        told,
+        page,
     )[0]
     assert {overshoot, settling, withheld} <= set(designed["on"])
     assert before in as_it_was["on"]

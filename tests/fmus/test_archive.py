@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from fmus import release
-from fmus.archive import write_archive
-from harness.cli import main
-from harness.reports.files import write_text
+from driveline.fmus import release
+from driveline.fmus.archive import write_archive
+from driveline.harness.base.atomic_files import write_text
+from driveline.harness.commands.cli import main
 
 FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}
 
@@ -71,5 +71,5 @@ def test_a_file_in_the_place_of_the_folder_is_answered_in_one_line(
     with pytest.raises(SystemExit) as end:
         main(["build", "--output", str(tmp_path / "file")])
     assert end.value.code == 2
-    assert "--output" in (said := capsys.readouterr().err)
-    assert "file is a file; a folder is needed" in said
+    assert "--output" in (message := capsys.readouterr().err)
+    assert "file is a file; a folder is needed" in message

@@ -4,12 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from fmus import builds, origin
-from fmus.builds import NotPossible, refreshed
-from fmus.catalogue import FMUS
-from fmus.errors import BuildError
-from fmus.origin import is_stale, origin_of
-from fmus.python.packaging import build
+from driveline.fmus import origin
+from driveline.fmus.building import builds
+from driveline.fmus.building.builds import NotPossible, refreshed
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.errors import BuildError
+from driveline.fmus.origin import is_stale, origin_of
+from driveline.fmus.python.packaging import build
 
 NAME = "WheelSpeedCan"
 
@@ -46,21 +47,21 @@ def test_an_fmu_stays_the_car_that_it_was_built_as(tmp_path: Path, later) -> Non
     path = build(FMUS[NAME].started_with({"i": 12.0}), tmp_path)
     later()
     assert refreshed([NAME], tmp_path, "python") == [path]
-    told = origin_of(path)
-    assert told is not None
-    assert told.start_values == {"i": 12.0}
+    found = origin_of(path)
+    assert found is not None
+    assert found.start_values == {"i": 12.0}
 
 
-@pytest.mark.parametrize(("values", "said"), [({"i": -1.0}, "i = -1.0"), ({"i_gone": 1.0}, "no such parameter")])
+@pytest.mark.parametrize(("values", "message"), [({"i": -1.0}, "i = -1.0"), ({"i_gone": 1.0}, "no such parameter")])
 def test_start_values_that_are_refused_now_are_named_and_the_file_is_kept(
-    tmp_path: Path, later, monkeypatch: pytest.MonkeyPatch, values: dict[str, float], said: str
+    tmp_path: Path, later, monkeypatch: pytest.MonkeyPatch, values: dict[str, float], message: str
 ) -> None:
     path = build(FMUS[NAME], tmp_path)
     before = path.read_bytes()
     later()
-    told = origin.Origin("older", values, frozenset())
-    monkeypatch.setattr(builds, "origin_of", lambda _: told)
-    with pytest.raises(BuildError, match=said):
+    found = origin.Origin("older", values, frozenset())
+    monkeypatch.setattr(builds, "origin_of", lambda _: found)
+    with pytest.raises(BuildError, match=message):
         refreshed([NAME], tmp_path, "python")
     assert path.read_bytes() == before
 

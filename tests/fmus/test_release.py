@@ -3,7 +3,7 @@
 import ast
 from pathlib import Path
 
-from fmus import release
+from driveline.fmus import release
 
 
 def test_the_installer_reads_the_version_without_running_anything():

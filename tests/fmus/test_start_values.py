@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from fmpy import read_model_description
 
-from fmus.builds import build_fmus
-from fmus.catalogue import FMUS
-from fmus.errors import BuildError
-from fmus.parameter_files import for_instances, read_files
-from fmus.python.packaging import build
-from harness.control_loop import NATIVE
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import simulate
-from models.block.declaration import variables
-from models.block.types import with_start_values
+from driveline.fmus.building.builds import build_fmus
+from driveline.fmus.building.parameter_files import for_instances, read_files
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.errors import BuildError
+from driveline.fmus.python.packaging import build
+from driveline.harness.loop.places import NATIVE
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
+from driveline.models.block.declaration import variables
+from driveline.models.block.types import with_start_values
 from tests import ROOT
 from tests.fmus.host import opened
 

@@ -5,8 +5,8 @@ import re
 
 import pytest
 
-from fmus.catalogue import FMUS
-from fmus.python import snapshot
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.python import snapshot
 from tests.fmus.host import opened
 
 every_fmu = pytest.mark.parametrize("name", FMUS)

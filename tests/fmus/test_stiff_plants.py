@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from models.plant import Output
+from driveline.models.physics.plant import Output
 from tests.fmus.host import Host, opened
 
 DURATION, STEP = 0.2, 1e-3
@@ -39,7 +39,7 @@ every_stop = pytest.mark.parametrize(
 )
 
 
-def driven(host: Host, stop: Stop, step_size: float) -> np.ndarray:
+def simulated(host: Host, stop: Stop, step_size: float) -> np.ndarray:
     """The outputs every millisecond, a row each: rolling at 1 m/s, then braked."""
     references = [host.variables[name].valueReference for name in Output._fields]
     host.initialize(v_0=1.0, **stop.parameters)
@@ -60,7 +60,7 @@ def unpacked_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def run(folder: Path, unpacked: Path, stop: Stop, step_size: float = STEP) -> np.ndarray:
     with opened(folder / f"{stop.plant}.fmu", unpacked / f"{folder.name}-{stop.plant}") as host:
-        return driven(host, stop, step_size)
+        return simulated(host, stop, step_size)
 
 
 @every_stop

@@ -8,10 +8,10 @@ from typing import Annotated, NamedTuple
 import pytest
 from pythonfmu import Fmi2Slave
 
-from fmus.catalogue import FMUS
-from fmus.python.slave import BlockSlave
-from models.block.declaration import Real
-from models.block.types import SampledBlock
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.python.slave import BlockSlave
+from driveline.models.block.declaration import Real
+from driveline.models.block.types import SampledBlock
 from tests.fmus.host import opened
 
 SAMPLED = [name for name, fmu in FMUS.items() if isinstance(fmu.block, SampledBlock)]

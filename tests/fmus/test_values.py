@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from fmus.catalogue import FMUS
-from fmus.description.variables import LARGEST, interface
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.variables import LARGEST, interface
 from tests.fmus.host import opened
 
 SETTABLE = [

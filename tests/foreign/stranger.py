@@ -8,7 +8,7 @@ from zipfile import ZipFile
 import fmpy
 import pytest
 
-from . import UNITS
+from tests.foreign import UNITS
 
 SOURCE = Path(__file__).with_name("stranger.c")
 

@@ -12,12 +12,11 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
-from harness.progress import progress
-from harness.stopping import script
-
-from . import page
-from .target import Target, Unclean
-from .targets import TARGETS
+from driveline.harness.base.interruption import script
+from driveline.harness.base.progress import progress
+from tests.fuzz import page
+from tests.fuzz.target import Target, Unclean
+from tests.fuzz.targets import TARGETS
 
 
 def run(name: str, target: Target, seed: int, tries: int) -> Counter[str]:

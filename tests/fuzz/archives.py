@@ -9,16 +9,15 @@ from pathlib import Path
 from random import Random
 from zipfile import ZipFile, ZipInfo
 
-from fmus.builds import build_fmus
-from harness.compliance.check import check
-from harness.control_loop import NATIVE, PLANTS, loop
-from harness.cosimulation.wiring import fit
-from harness.errors import DrivelineError
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import simulate
-
-from .damage import ODD, spoiled_bytes, spoiled_text
-from .target import Attempt, Target, Unclean
+from driveline.fmus.building.builds import build_fmus
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.exchange.compliance.check import check
+from driveline.harness.loop.places import NATIVE, PLANTS, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
+from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
+from tests.fuzz.target import Attempt, Target, Unclean
 
 DESCRIPTION = "modelDescription.xml"
 ATTRIBUTE = re.compile(r' (\w+)="([^"]*)"')

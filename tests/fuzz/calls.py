@@ -8,11 +8,10 @@ from random import Random
 
 import fmpy
 
-from fmus.builds import NotPossible, builders
-from fmus.catalogue import FMUS
-from fmus.native.compiler import host_compiler
-
-from .target import Attempt, Target, Unclean
+from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.compiler import host_compiler
+from tests.fuzz.target import Attempt, Target, Unclean
 
 HOST = Path(__file__).parents[1] / "fmus" / "native" / "native_host.c"
 CALLS = 300

@@ -13,10 +13,11 @@ is never less than what its spring holds.
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from models import brake, validation_vehicle, vehicle
-from models import two_mass_driveline as driveline
-from models.backlash import dead_zone
-from models.block.operators import tanh
+from driveline.models import two_mass_driveline as driveline
+from driveline.models import validation_vehicle
+from driveline.models.block.operators import tanh
+from driveline.models.physics import brake, vehicle
+from driveline.models.physics.backlash import dead_zone
 
 
 class Energy(NamedTuple):

@@ -7,11 +7,10 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from random import Random
 
-from fmus.builds import build_fmus
-from harness.cli import COMMANDS, main, parser
-
-from .damage import ODD
-from .target import Attempt, Target, Unclean
+from driveline.fmus.building.builds import build_fmus
+from driveline.harness.commands.cli import COMMANDS, main, parser
+from tests.fuzz.damage import ODD
+from tests.fuzz.target import Attempt, Target, Unclean
 
 RUN = "simulate"
 """The command that is run; of the others the options are read."""
@@ -61,14 +60,14 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         command = random.choice((RUN, *COMMANDS))
         drawn = random.choices(of_command[command], k=random.randint(1, 4))
         arguments = [command, *(fixed if command == RUN else []), *(w for a in drawn for w in words(a, random))]
-        said, out = io.StringIO(), io.StringIO()
+        message, out = io.StringIO(), io.StringIO()
         try:
-            with redirect_stderr(said), redirect_stdout(out):
+            with redirect_stderr(message), redirect_stdout(out):
                 answer = code(arguments)
         except Exception as error:
             raise Unclean(f"driveline {arguments}: {error!r}") from error
-        if answer not in (0, 1, 2) or bool(answer) != bool(said.getvalue()) or len(said.getvalue()) > LONGEST:
-            raise Unclean(f"driveline {arguments}: exit code {answer}, {said.getvalue()!r}")
+        if answer not in (0, 1, 2) or bool(answer) != bool(message.getvalue()) or len(message.getvalue()) > LONGEST:
+            raise Unclean(f"driveline {arguments}: exit code {answer}, {message.getvalue()!r}")
         return f"exit code {answer}"
 
     yield attempt

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from .targets import TARGETS
+from tests.fuzz.targets import TARGETS
 
 ROOT = Path(__file__).parents[2]
 PATH = ROOT / "docs" / "reliability.md"
@@ -34,5 +34,5 @@ def record(name: str, seed: int, answers: Mapping[str, int]) -> None:
 
 def _row(name: str, answers: Mapping[str, int]) -> str:
     total, faults = sum(answers.values()), answers.get(FAULT, 0)
-    said = ", ".join(f"{n / total:.1%} {answer}" for answer, n in answers.items() if answer != FAULT)
-    return f"| {TARGETS[name].what} | {TARGETS[name].promise} | {total} | {said} | {faults} |\n"
+    shares = ", ".join(f"{n / total:.1%} {answer}" for answer, n in answers.items() if answer != FAULT)
+    return f"| {TARGETS[name].what} | {TARGETS[name].promise} | {total} | {shares} | {faults} |\n"

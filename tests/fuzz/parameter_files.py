@@ -5,11 +5,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 
-from fmus.errors import ParameterFileError
-from fmus.parameter_files import read_vehicle
-
-from .damage import ODD, spoiled_bytes, spoiled_text
-from .target import Attempt, Target, Unclean
+from driveline.fmus.building.parameter_files import read_vehicle
+from driveline.fmus.errors import ParameterFileError
+from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
+from tests.fuzz.target import Attempt, Target, Unclean
 
 SOUND = "# a car\nJ_1 = 0.09\nJ_2 = 0.45\nC = 210.0\nphi_B = 0.06\ni = 10.5\nm = 2200\nr = 0.34\n"
 

@@ -15,18 +15,17 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from fmus.fmu import Fmu
-from fmus.native.compiler import host_compiler
-from fmus.native.packaging import C_FILES
-from fmus.native.shared_header import shared_header
-from fmus.native.source import block_sources
-from fmus.native.tableau import rosenbrock_header, step_header
-from models import two_mass_driveline, validation_vehicle
-from models.block.declaration import Quantity, Real, variables
-from models.block.types import ContinuousBlock
-
-from .energy import ENERGIES
-from .target import Attempt, Target, Unclean
+from driveline.fmus.fmu import Fmu
+from driveline.fmus.native.compiler import host_compiler
+from driveline.fmus.native.packaging import C_FILES
+from driveline.fmus.native.shared_header import shared_header
+from driveline.fmus.native.source import block_sources
+from driveline.fmus.native.tableau import rosenbrock_header, step_header
+from driveline.models import two_mass_driveline, validation_vehicle
+from driveline.models.block.declaration import Quantity, Real, variables
+from driveline.models.block.types import ContinuousBlock
+from tests.fuzz.energy import ENERGIES
+from tests.fuzz.target import Attempt, Target, Unclean
 
 PLANTS = (two_mass_driveline.BLOCK, validation_vehicle.BLOCK)
 

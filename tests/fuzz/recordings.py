@@ -8,17 +8,16 @@ from random import Random
 
 import numpy as np
 
-from harness.errors import DrivelineError
-from harness.manoeuvres.follower import drive, needed_force
-from harness.manoeuvres.road import RoadLoad, Track
-from harness.recordings.drive import read_drive
-from harness.recordings.measurement import read_measurement
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.manoeuvres.road_load import RoadLoad, Track
+from driveline.harness.manoeuvres.speed_following import drive, needed_force
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.measurement import read_measurement
+from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
+from tests.fuzz.target import Attempt, Target, Unclean
 from tests.harness.recordings.car import RADIUS, RATIO
 from tests.harness.recordings.car import drive as excited
 from tests.harness.recordings.variants import TEXTS, recording, write_arrow, write_mdf
-
-from .damage import ODD, spoiled_bytes, spoiled_text
-from .target import Attempt, Target, Unclean
 
 SOUND = "Time [s],Velocity [km/h],Elevation [m],Motor Torque [Nm]\n" + "".join(
     f"{0.1 * k:.1f},{20.0 + 0.1 * k:.2f},{500.0 + 0.01 * k:.2f},{k % 7 * 5.0:.2f}\n" for k in range(30)

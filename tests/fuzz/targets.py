@@ -1,6 +1,6 @@
 """All fuzz targets by name."""
 
-from . import archives, calls, options, parameter_files, plants, recordings
+from tests.fuzz import archives, calls, options, parameter_files, plants, recordings
 
 TARGETS = {
     "calls": calls.TARGET,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import acos, atan2, cos, hypot, pi, sin, sqrt
 
-from models.two_mass_driveline import Parameters
+from driveline.models.two_mass_driveline import Parameters
 
 INSTANT = 1e-13
 """Crossings closer than this to the present instant (in s) are the one just made."""

@@ -6,9 +6,8 @@ from typing import Any
 
 import pytest
 
-from models.backlash import dead_zone
-from models.block.declaration import without
-from models.comparators import (
+from driveline.models.block.declaration import without
+from driveline.models.comparators import (
     linear_observer,
     no_damping,
     paper_observer,
@@ -16,9 +15,10 @@ from models.comparators import (
     speed_difference,
     state_feedback,
 )
-from models.controller import supervision
-from models.controller.supervision import T_S, Input, State
-from tests.models.controller.controllers import OURS, driven, run, shaken
+from driveline.models.controller import supervision
+from driveline.models.controller.supervision import T_S, Input, State
+from driveline.models.physics.backlash import dead_zone
+from tests.models.controller.controllers import OURS, drive_inputs, run, shaken
 
 LITERAL = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0, "t_land": 0.0}
 LINEAR = {"phi_B": 0.0, "k_gap": 0.3, **dict.fromkeys(state_feedback.NO_LANDING, 0.1)}
@@ -54,7 +54,7 @@ def test_where_no_wheel_speed_is_valid_the_speed_difference_does_nothing() -> No
 
 def test_the_speed_difference_fades_in_with_the_first_valid_message() -> None:
     """A fiftieth more of it with each sample, so that no jump comes of it."""
-    silent = driven(0.2, valid=False)
+    silent = drive_inputs(0.2, valid=False)
     states = run(speed_difference.BLOCK, [*silent, *(u._replace(counter=900 + u.counter) for u in shaken(0.3))])
     changes = [abs(b.T_damp - a.T_damp) for a, b in pairwise(states[100:])]
     assert {x.T_damp for x in states[:101]} == {0.0}
@@ -101,9 +101,9 @@ def test_what_is_fixed_cannot_be_set(block: Any, names: Any) -> None:
 
 
 def informed(inputs: list[Input], **truth: float) -> list[Any]:
-    """Inputs of PerfectState, which is told that the motor turns faster and faster than the wheels."""
-    told = {"omega_1": 150.0, "omega_2": 140.0, "phi": 0.5, "T_gear": 40.0} | truth
-    return [perfect_state.BLOCK.Input(*u)._replace(**told) for u in inputs]
+    """Inputs of PerfectState, for which the motor turns faster and faster than the wheels."""
+    motion_of_plant = {"omega_1": 150.0, "omega_2": 140.0, "phi": 0.5, "T_gear": 40.0} | truth
+    return [perfect_state.BLOCK.Input(*u)._replace(**motion_of_plant) for u in inputs]
 
 
 def test_perfect_signals_are_fed_back_as_they_are() -> None:
@@ -113,7 +113,7 @@ def test_perfect_signals_are_fed_back_as_they_are() -> None:
 
 
 def test_what_is_measured_changes_nothing_of_what_perfect_signals_damp() -> None:
-    calm, noisy = (run(perfect_state.BLOCK, informed(inputs)) for inputs in (driven(0.2), shaken(0.2)))
+    calm, noisy = (run(perfect_state.BLOCK, informed(inputs)) for inputs in (drive_inputs(0.2), shaken(0.2)))
     assert torques(calm) == torques(noisy)
 
 
@@ -122,7 +122,7 @@ def test_in_the_gap_the_twist_is_the_true_one_and_beyond_it_that_of_the_gear_tor
     e = perfect_state.MODEL.start(150.0, 50.0, False, p)
     for phi, T_gear, expected in ((0.1, 0.0, 0.1), (0.9, 11.74, p.phi_B + 0.1), (-0.9, -11.74, -p.phi_B - 0.1)):
         (u,) = informed([Input()], phi=phi, T_gear=T_gear)
-        motion = perfect_state.MODEL.motion(perfect_state.told(e, u, p), p)
+        motion = perfect_state.MODEL.motion(perfect_state.with_true_motion(e, u, p), p)
         assert motion.phi == pytest.approx(expected, rel=1e-12)
         assert motion.T_gear == pytest.approx(T_gear, rel=1e-12)
 

@@ -8,17 +8,26 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.analysis import monolithic
-from models import damping_controller, two_mass_driveline, validation_vehicle
-from models.backlash import dead_zone
-from models.block.types import ContinuousBlock
-from models.controller import torque_estimator as estimator
-from models.controller.supervision import FALLBACK, T_S, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input
-from tests.models.controller.controllers import ABSURD, ROLLING, any_input, bump, driven, run, run_with_motor, shaken
+from driveline.harness.studies.coupling import monolithic
+from driveline.models import damping_controller, two_mass_driveline, validation_vehicle
+from driveline.models.block.types import ContinuousBlock
+from driveline.models.controller import torque_estimator as estimator
+from driveline.models.controller.supervision import FALLBACK, T_S, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input
+from driveline.models.physics.backlash import dead_zone
+from tests.models.controller.controllers import (
+    ABSURD,
+    ROLLING,
+    any_input,
+    bump,
+    drive_inputs,
+    run,
+    run_with_motor,
+    shaken,
+)
 
 BLOCK = damping_controller.BLOCK
 P = BLOCK.Parameters()
-DRIVEN = [u._replace(valid=k >= 50) for k, u in enumerate(driven(1.5))]
+DRIVEN = [u._replace(valid=k >= 50) for k, u in enumerate(drive_inputs(1.5))]
 T_REF_DRIVEN = run(BLOCK, DRIVEN)[-1].T_ref
 HELD = (0.0, (0.0, 0.0, 0.0, 0.0))
 """Base and estimate at rest."""
@@ -82,7 +91,7 @@ def test_at_rest_the_estimator_is_held_whatever_the_times(t_rest: float, t_fade:
 
 
 def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None:
-    x = run(BLOCK, driven(0.1))[-1]
+    x = run(BLOCK, drive_inputs(0.1))[-1]
     ahead = estimator.integrated(x.estimator.estimate, x.monitor.T_mot, T_S, P)
     y = BLOCK.output(x, ROLLING, P)
     assert (y.phi_hat, y.omega_2_hat) == (ahead.phi, x.estimator.base + ahead.omega_2)
@@ -168,14 +177,14 @@ LASTING: dict[str, tuple[float, Fault, float]] = {
 @pytest.mark.parametrize(("status", "fault", "time"), LASTING.values(), ids=LASTING)
 def test_a_fault_has_its_time(status: float, fault: Fault, time: float) -> None:
     """To a sample: times are sums of sample times, which have rounding."""
-    inputs = [fault(u, k) if k >= ONSET else u for k, u in enumerate(driven(0.5))]
+    inputs = [fault(u, k) if k >= ONSET else u for k, u in enumerate(drive_inputs(0.5))]
     found = [x.status for x in run(BLOCK, inputs)[ONSET + 1 :]].index(status)
     assert found * T_S == pytest.approx(time, abs=1.5 * T_S)
 
 
 @pytest.mark.parametrize(("jump", "used"), [(7.5, True), (8.5, False)])
 def test_a_speed_that_jumps_by_8_radians_per_second_is_not_used(jump: float, used: bool) -> None:
-    x, bad = run(BLOCK, driven(0.1))[-1], ROLLING._replace(omega_1_meas=150.0 + jump)
+    x, bad = run(BLOCK, drive_inputs(0.1))[-1], ROLLING._replace(omega_1_meas=150.0 + jump)
     assert (BLOCK.update(x, bad, P).monitor.bad == 0.0) == used
 
 
@@ -203,7 +212,7 @@ def test_a_car_is_at_rest_below_2_newton_metres_and_3_radians_per_second() -> No
 
 
 def test_the_damping_is_switched_within_a_tenth_of_a_second() -> None:
-    states = run(BLOCK, [u._replace(enable=k < 10) for k, u in enumerate(driven(0.2))])
+    states = run(BLOCK, [u._replace(enable=k < 10) for k, u in enumerate(drive_inputs(0.2))])
     fading = [x.level for x in states if 0.0 < x.level < 1.0]
     assert (len(fading) + 1) * T_S == pytest.approx(0.1, abs=1.5 * T_S)
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import motor_torque_loop as motor
-from models.block.integrator import Integrator
+from driveline.models import motor_torque_loop as motor
+from driveline.models.block.integrator import Integrator
 
 P = motor.Parameters()
 SILENT = P._replace(sigma_T=0.0, sigma_omega=0.0, q_omega=0.0)
@@ -86,8 +86,8 @@ def test_noise_has_the_given_deviation_and_no_mean_and_no_memory() -> None:
 
 
 def test_the_same_seed_gives_the_same_noise_and_another_another() -> None:
-    first, again, other = samples(P, 200), samples(P, 200), samples(P._replace(seed=2), 200)
-    assert (first == again).all()
+    first, repeated, other = samples(P, 200), samples(P, 200), samples(P._replace(seed=2), 200)
+    assert (first == repeated).all()
     assert abs(np.corrcoef(first[:, 1], other[:, 1])[0, 1]) < 0.3
 
 

@@ -6,8 +6,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from models import two_mass_driveline, validation_vehicle
-from models.block.integrator import Integrator
+from driveline.models import two_mass_driveline, validation_vehicle
+from driveline.models.block.integrator import Integrator
 from tests.models import reference_vehicle as reference
 from tests.models.reference_vehicle import Held
 

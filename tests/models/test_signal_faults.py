@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from models import signal_faults
-from models.block.runner import SampledRunner
-from models.signal_faults import (
+from driveline.models import signal_faults
+from driveline.models.block.runner import SampledRunner
+from driveline.models.signal_faults import (
     BLOCK,
     FLAPPING,
     FROZEN,

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from models import two_mass_driveline, validation_vehicle
-from models.block.integrator import Integrator
+from driveline.models import two_mass_driveline, validation_vehicle
+from driveline.models.block.integrator import Integrator
 
 PLANTS = pytest.mark.parametrize("plant", [two_mass_driveline, validation_vehicle], ids=lambda m: m.BLOCK.name)
 

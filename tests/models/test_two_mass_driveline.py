@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import two_mass_driveline as driveline
-from models.block.integrator import Integrator
+from driveline.models import two_mass_driveline as driveline
+from driveline.models.block.integrator import Integrator
 from tests.models.exact_driveline import ExactDriveline
 
 RECORDED = driveline.Parameters(recorded_load=True)

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import two_mass_driveline as driveline
-from models import validation_vehicle as vehicle
-from models.backlash import dead_zone
-from models.block.integrator import Integrator
+from driveline.models import two_mass_driveline as driveline
+from driveline.models import validation_vehicle as vehicle
+from driveline.models.block.integrator import Integrator
+from driveline.models.physics.backlash import dead_zone
 
 P = vehicle.Parameters()
 REST = vehicle.State(*[0.0] * len(vehicle.State._fields))

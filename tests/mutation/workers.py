@@ -87,8 +87,8 @@ class Remembered:
     that run Python."""
 
     def pytest_configure(self) -> None:
-        from fmus.native import packaging as native
-        from fmus.python import packaging as python
+        from driveline.fmus.native import packaging as native
+        from driveline.fmus.python import packaging as python
 
         native.block_sources = remembered(native.block_sources)
         native.documentation = remembered(native.documentation)

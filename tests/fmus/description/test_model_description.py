@@ -12,18 +12,18 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmus.catalogue import FMUS
-from fmus.description.build_kind import BuildKind
-from fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
-from fmus.description.model_description import model_description
-from fmus.description.units import base_exponents
-from fmus.description.variables import interface
-from fmus.errors import BuildError
-from fmus.fmu import Fmu
-from fmus.release import DATE, VERSION, date
-from models.block.declaration import Boolean, Real
-from models.block.operators import where
-from models.block.types import ContinuousBlock
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.build_kind import BuildKind
+from driveline.fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
+from driveline.fmus.description.model_description import model_description
+from driveline.fmus.description.units import base_exponents
+from driveline.fmus.description.variables import interface
+from driveline.fmus.errors import BuildError
+from driveline.fmus.fmu import Fmu
+from driveline.fmus.release import DATE, VERSION, date
+from driveline.models.block.declaration import Boolean, Real
+from driveline.models.block.operators import where
+from driveline.models.block.types import ContinuousBlock
 
 every_fmu = pytest.mark.parametrize("name", FMUS)
 

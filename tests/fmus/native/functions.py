@@ -3,10 +3,10 @@
 import ctypes
 import subprocess
 
-from fmus.native.compiler import host_compiler
-from fmus.native.packaging import C_FILES
-from fmus.native.source import block_sources
-from fmus.native.trace import trace
+from driveline.fmus.native.compiler import host_compiler
+from driveline.fmus.native.packaging import C_FILES
+from driveline.fmus.native.source import block_sources
+from driveline.fmus.native.trace import trace
 
 EXPORTED = """
 __attribute__((visibility("default"))) void *address_of_{name}(void);

@@ -6,9 +6,9 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from fmus.catalogue import FMUS
-from fmus.native.compiler import host_compiler
-from harness.control_loop import NATIVE
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.compiler import host_compiler
+from driveline.harness.loop.places import NATIVE
 from tests.fmus.host import opened
 
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"

@@ -23,10 +23,10 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from fmus.catalogue import FMUS
-from fmus.description.variables import Variable, interface
-from fmus.native.compiler import host_compiler
-from harness.control_loop import NATIVE
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.variables import Variable, interface
+from driveline.fmus.native.compiler import host_compiler
+from driveline.harness.loop.places import NATIVE
 
 PROGRAM = Path(__file__).parent / "calls.c"
 WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion")
@@ -190,8 +190,8 @@ class Calls(RuleBasedStateMachine):
     def teardown(self):
         if self.program.poll() is None:
             self.call("free")
-        _, said = self.program.communicate()
-        assert (self.program.returncode, said) == (0, "")
+        _, message = self.program.communicate()
+        assert (self.program.returncode, message) == (0, "")
 
 
 @pytest.mark.parametrize("name", FMUS)

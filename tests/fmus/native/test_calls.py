@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 from fmpy.fmi1 import FMICallException
 
-from fmus.catalogue import FMUS
-from models.block.declaration import with_defaults
+from driveline.fmus.catalogue import FMUS
+from driveline.models.block.declaration import with_defaults
 from tests.fmus.forged import forged, sealed
 from tests.fmus.host import opened
 
@@ -111,7 +111,7 @@ def test_freeing_nothing_is_no_error(native, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("what", "said"),
+    ("what", "expected"),
     [
         ({"guid": b"{other}"}, "GUID"),
         ({"guid": None}, "GUID"),
@@ -120,7 +120,7 @@ def test_freeing_nothing_is_no_error(native, tmp_path):
         ({"kind": 0}, "co-simulation"),
     ],
 )
-def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, said):
+def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, expected):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         binary = ctypes.CDLL(host.fmu.dll._name)
         binary.fmi2Instantiate.restype = ctypes.c_void_p
@@ -130,7 +130,7 @@ def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, said):
             given["name"], given["kind"], given["guid"], None, ctypes.byref(host._callbacks), 0, 1
         )
         assert made is None
-        assert said in host.message
+        assert expected in host.message
         assert host.named == (given["name"] or b"").decode()
         assert binary.fmi2Instantiate(given["name"], 1, given["guid"], None, None, 0, 1) is None
 
@@ -211,13 +211,13 @@ def test_messages_are_given_out_by_category(native, tmp_path):
 
         def messages():
             """Which of a discarded step and an unknown reference is told."""
-            told = []
+            has_message = []
             for call_wrongly in (lambda: host.step(0.0, 1001.0), lambda: host.fmu.getReal([99])):
                 host.message = ""
                 with pytest.raises(FMICallException):
                     call_wrongly()
-                told.append(bool(host.message))
-            return told
+                has_message.append(bool(host.message))
+            return has_message
 
         assert messages() == [True, True]
         host.fmu.setDebugLogging(False, ["logStatusDiscard"])

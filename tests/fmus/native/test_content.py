@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from fmus.catalogue import FMUS
+from driveline.fmus.catalogue import FMUS
 from tests.fmus.forged import HEAD, forged, with_number
 from tests.fmus.host import opened
 

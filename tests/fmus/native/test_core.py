@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.catalogue import FMUS
-from fmus.native.packaging import c_sources
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.packaging import c_sources
 
 
 @pytest.mark.parametrize("name", FMUS)

@@ -8,12 +8,12 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.catalogue import FMUS
-from fmus.description.variables import interface
-from fmus.native.compiler import host_compiler
-from fmus.native.packaging import C_FILES
-from fmus.native.trace import leaves
-from models.block.types import ContinuousBlock, SampledBlock
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.variables import interface
+from driveline.fmus.native.compiler import host_compiler
+from driveline.fmus.native.packaging import C_FILES
+from driveline.fmus.native.trace import leaves
+from driveline.models.block.types import ContinuousBlock, SampledBlock
 from tests.fmus.native.functions import Functions
 
 TOLERANCE = 1e-12

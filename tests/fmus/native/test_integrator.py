@@ -19,15 +19,15 @@ from hypothesis import strategies as st
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.native.compiler import FLAGS, host_compiler
-from fmus.native.packaging import C_FILES
-from fmus.native.shared_header import shared_header
-from fmus.native.tableau import rosenbrock_header, step_header
-from models import two_mass_driveline as driveline
-from models.block.explicit import TOLERANCE, small_sizes
-from models.block.implicit import NotIntegrable
-from models.block.integrator import Integrator, TooMuchWork
-from models.block.types import ContinuousBlock
+from driveline.fmus.native.compiler import FLAGS, host_compiler
+from driveline.fmus.native.packaging import C_FILES
+from driveline.fmus.native.shared_header import shared_header
+from driveline.fmus.native.tableau import rosenbrock_header, step_header
+from driveline.models import two_mass_driveline as driveline
+from driveline.models.block.explicit import TOLERANCE, small_sizes
+from driveline.models.block.implicit import NotIntegrable
+from driveline.models.block.integrator import Integrator, TooMuchWork
+from driveline.models.block.types import ContinuousBlock
 from tests.models.block.test_integrator import *  # noqa: F403
 from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIntegrator, Nothing, P, block
 
@@ -126,7 +126,7 @@ def integrator(tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
 @pytest.fixture
 def hurried(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
     """The same with little work allowed, which is compiled into it."""
-    monkeypatch.setattr("models.block.integrator.MOST_WORK", LITTLE_WORK)
+    monkeypatch.setattr("driveline.models.block.integrator.MOST_WORK", LITTLE_WORK)
     library = cache(lambda *sizes: compiled(tmp_path_factory.mktemp("hurried"), *sizes))
     return lambda block: CompiledIntegrator(library, block)
 
@@ -219,20 +219,20 @@ Rates = Callable[[Body, float], Body]
 Zero = Callable[[Body, float], float]
 
 
-def watched(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], list[float]]:
+def traced(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], list[float]]:
     """A block with one number as its input, where its derivative is asked for, and what its indicator answered."""
-    asked: list[Body] = []
+    requested: list[Body] = []
     zeros: list[float] = []
 
     def watch(x: Body, u: float, _p: Any) -> Body:
-        asked.append(x)
+        requested.append(x)
         return derivative(x, u)
 
     def indicators(x: Body, u: float, _p: Any) -> tuple[float]:
         zeros.append(zero(x, u))
         return (zeros[-1],)
 
-    return replace(block(watch), event_indicators=indicators), asked, zeros
+    return replace(block(watch), event_indicators=indicators), requested, zeros
 
 
 @pytest.mark.parametrize("which", ["x", "v", "beyond"])
@@ -242,13 +242,13 @@ def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, w
     def pushed(x: Body, _u: float) -> Body:
         return Body(0.0, 0.0, 0.0)._replace(**{which: -1.0 if getattr(x, which) > 0.0 else 0.5})
 
-    asked: list[set[Body]] = []
+    requested: list[set[Body]] = []
     for make in (integrator, Integrator):
-        chattering, looks_at = watched(pushed, lambda x, _u: getattr(x, which))[:2]
+        chattering, looks_at = traced(pushed, lambda x, _u: getattr(x, which))[:2]
         with pytest.raises(NotIntegrable, match=which):
             make(chattering).advance(Body(0.0, 0.0, 0.0)._replace(**{which: 0.03}), 0.0, Nothing(), 0.1)
-        asked.append(set(looks_at))
-    assert asked[0] == asked[1]
+        requested.append(set(looks_at))
+    assert requested[0] == requested[1]
 
 
 @settings(max_examples=40)
@@ -306,14 +306,14 @@ def ends_with_moving_input(
     Returns:
         What the indicator answered, in both.
     """
-    with_input, asked, zeros = watched(derivative, zero)
-    as_state, asked_in_python, zeros_in_python = watched(
+    with_input, requested, zeros = traced(derivative, zero)
+    as_state, asked_in_python, zeros_in_python = traced(
         lambda x, _u: derivative(x, x.beyond)._replace(beyond=slope), lambda x, _u: zero(x, x.beyond)
     )
     end = integrator(with_input).advance(start._replace(beyond=0.0), start.beyond, Nothing(), 0.1, slope)
-    wanted = Integrator(as_state).advance(start, 0.0, Nothing(), 0.1)
-    assert end[:2] == pytest.approx(wanted[:2], abs=20.0 * TOLERANCE)
-    assert len(asked) <= 1.5 * len(asked_in_python) + 20
+    expected = Integrator(as_state).advance(start, 0.0, Nothing(), 0.1)
+    assert end[:2] == pytest.approx(expected[:2], abs=20.0 * TOLERANCE)
+    assert len(requested) <= 1.5 * len(asked_in_python) + 20
     return zeros, zeros_in_python
 
 
@@ -357,5 +357,5 @@ def test_an_excursion_beyond_a_zero_that_moves_is_found(
         return Body(x.v, -side * g, 0.0)
 
     zeros = ends_with_moving_input(integrator, thrown, start, slope, lambda x, u: x.x - u)
-    apart = np.abs(np.subtract.outer(*zeros))
-    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-6, "they look at other places"
+    distances = np.abs(np.subtract.outer(*zeros))
+    assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-6, "they look at other places"

@@ -6,12 +6,12 @@ from typing import Annotated, NamedTuple
 import pytest
 from pythonfmu import Fmi2Slave
 
-from fmus.fmu import Fmu
-from fmus.python.refusal import Refused
-from fmus.python.slave import FMI_DISCARD, BlockSlave
-from models.block.declaration import Real
-from models.block.operators import where
-from models.block.types import ContinuousBlock
+from driveline.fmus.fmu import Fmu
+from driveline.fmus.python.refusal import Refused
+from driveline.fmus.python.slave import FMI_DISCARD, BlockSlave
+from driveline.models.block.declaration import Real
+from driveline.models.block.operators import where
+from driveline.models.block.types import ContinuousBlock
 from tests.fmus.host import opened
 
 
@@ -99,7 +99,7 @@ def test_a_step_to_nowhere_is_refused(native_builder, tmp_path, pull, message):
 @pytest.fixture
 def little_work(monkeypatch):
     """Of integration, in both builds: a stretch is an explicit step."""
-    monkeypatch.setattr("models.block.integrator.MOST_WORK", 49)
+    monkeypatch.setattr("driveline.models.block.integrator.MOST_WORK", 49)
 
 
 TOO_LONG = "the step of 0.51 s is refused; n changes so fast that it would take too long; shorter steps are allowed"
@@ -117,13 +117,13 @@ def test_a_step_that_takes_too_long_is_discarded_in_c(little_work, native_builde
 
 
 def test_a_step_that_takes_too_long_is_discarded_in_python(little_work):
-    slave, said = PulledSlave(instance_name="pulled", resources=""), []
+    slave, logged = PulledSlave(instance_name="pulled", resources=""), []
     slave.setup_experiment(0.0, None, None)
     slave.enter_initialization_mode()
     slave.exit_initialization_mode()
     before = slave._get_fmu_state()
-    slave.log = lambda message, status, category: said.append((message, status))
+    slave.log = lambda message, status, category: logged.append((message, status))
     assert not slave.do_step(0.0, 0.51)
-    assert said == [(TOO_LONG, FMI_DISCARD)]
+    assert logged == [(TOO_LONG, FMI_DISCARD)]
     assert slave._get_fmu_state() == before
     assert slave.do_step(0.0, 0.5)

@@ -11,8 +11,8 @@ import fmpy
 import pytest
 from fmpy.build import build_platform_binary
 
-from fmus.builds import NotPossible, builders
-from fmus.catalogue import FMUS
+from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.catalogue import FMUS
 from tests import ROOT
 from tests.fmus.host import opened
 
@@ -85,15 +85,15 @@ def test_the_description_differs_from_that_of_the_python_build_only_where_the_bu
 
 
 @pytest.mark.parametrize(
-    ("without", "said"), [("casadi", "install the extra `native`"), ("cc", "there is no C compiler")]
+    ("without", "message"), [("casadi", "install the extra `native`"), ("cc", "there is no C compiler")]
 )
-def test_what_is_missing_for_a_native_build_is_said_and_the_other_build_is_made(monkeypatch, without, said):
+def test_what_is_missing_for_a_native_build_is_said_and_the_other_build_is_made(monkeypatch, without, message):
     if without == "cc":
         pytest.importorskip("casadi", reason="the extra `native` is not installed")
         monkeypatch.setenv("CC", "no-such-compiler")
     else:
-        monkeypatch.setattr("fmus.builds.find_spec", lambda name: None)
-    with pytest.raises(NotPossible, match=said):
+        monkeypatch.setattr("driveline.fmus.building.builds.find_spec", lambda name: None)
+    with pytest.raises(NotPossible, match=message):
         builders("native")
     assert len(builders(None)) == 1
 

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fmus.builds import build_fmus
-from fmus.errors import BuildError
-from fmus.own_file import fmu_in
-from harness.control_loop import NATIVE
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.metrics.evaluate import evaluate
-from harness.simulate import simulate
+from driveline.fmus.building.builds import build_fmus
+from driveline.fmus.building.own_file import fmu_in
+from driveline.fmus.errors import BuildError
+from driveline.harness.loop.places import NATIVE
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 
 EXAMPLE, FMPY, *_ = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S)
@@ -61,7 +61,9 @@ def test_a_file_without_an_fmu_is_refused(tmp_path: Path) -> None:
     assert "has no line `FMU = Fmu(BLOCK, stop_time=10.0)`" in done.stderr
 
 
-OF_THE_BUS = "from fmus.fmu import Fmu\nfrom models.wheel_speed_can import BLOCK\nFMU = Fmu(BLOCK, stop_time=11.0)\n"
+OF_THE_BUS = (
+    "from driveline import Fmu\nfrom driveline.models.wheel_speed_can import BLOCK\nFMU = Fmu(BLOCK, stop_time=11.0)\n"
+)
 
 
 def test_a_file_can_be_changed_and_read_again(tmp_path: Path) -> None:
@@ -112,7 +114,7 @@ def line_of(piece: str) -> int:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("import nonsense", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
         ("\nFMU = (", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),
@@ -126,12 +128,12 @@ def line_of(piece: str) -> int:
         ),
     ],
 )
-def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str, said: str) -> None:
+def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str, message: str) -> None:
     file = tmp_path / "my_vehicle.py"
     file.write_text(text, encoding="utf-8")
     done = build(file, tmp_path)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert message in done.stderr
     assert "Traceback" not in done.stderr
 
 

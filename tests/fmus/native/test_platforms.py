@@ -7,9 +7,9 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.builds import NotPossible, builders
-from fmus.catalogue import FMUS
-from fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
+from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
 
 LARGEST = 200 * 1024
 """Of a file with four libraries, one of them for two processors; 150 kB were enough until Arm Macs had one twice."""

@@ -6,8 +6,8 @@ import sys
 import pytest
 from fmpy.fmi1 import FMICallException
 
-from fmus.catalogue import FMUS
-from models.block.types import ContinuousBlock
+from driveline.fmus.catalogue import FMUS
+from driveline.models.block.types import ContinuousBlock
 from tests.fmus.host import opened
 
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]

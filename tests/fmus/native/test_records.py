@@ -7,12 +7,12 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.fmu import Fmu
-from fmus.native.records import records_of, structs
-from models.block.declaration import Boolean, Real
-from models.block.operators import maximum
-from models.block.runner import runner
-from models.block.types import SampledBlock
+from driveline.fmus.fmu import Fmu
+from driveline.fmus.native.records import records_of, structs
+from driveline.models.block.declaration import Boolean, Real
+from driveline.models.block.operators import maximum
+from driveline.models.block.runner import runner
+from driveline.models.block.types import SampledBlock
 from tests.fmus.host import opened
 
 

@@ -10,11 +10,11 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.fmu import Fmu
-from fmus.native.compiler import FLAGS, host_compiler
-from fmus.native.packaging import c_sources
-from models.block.runner import SampledRunner
-from models.block.types import SampledBlock
+from driveline.fmus.fmu import Fmu
+from driveline.fmus.native.compiler import FLAGS, host_compiler
+from driveline.fmus.native.packaging import c_sources
+from driveline.models.block.runner import SampledRunner
+from driveline.models.block.types import SampledBlock
 from tests.models.block.test_runner import (  # noqa: F401
     START,
     Counter,

@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from fmus.catalogue import FMUS
-from models.block.runner import runner
+from driveline.fmus.catalogue import FMUS
+from driveline.models.block.runner import runner
 from tests.fmus.host import opened
 
 TOLERANCE = 1e-9

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from fmus import protocol
-from fmus.catalogue import FMUS
-from fmus.native.records import paths, records_of
+from driveline.fmus import protocol
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.records import paths, records_of
 from tests.fmus.forged import forged
 from tests.fmus.host import Host, opened
 
@@ -133,7 +133,7 @@ REFUSALS = [
 ]
 
 
-def said(folder, unpacked, refusal):
+def message(folder, unpacked, refusal):
     with opened(folder / f"{refusal.fmu}.fmu", unpacked) as host:
         return host.refuses(refusal.call, host), host.status
 
@@ -145,8 +145,8 @@ def unpacked(tmp_path_factory):
 
 @pytest.mark.parametrize("refusal", REFUSALS, ids=lambda refusal: refusal.sentence)
 def test_both_builds_say_the_same(built, native, unpacked, refusal):
-    in_python, status_in_python = said(built, unpacked["python"] / refusal.fmu, refusal)
-    in_c, status_in_c = said(native, unpacked["native"] / refusal.fmu, refusal)
+    in_python, status_in_python = message(built, unpacked["python"] / refusal.fmu, refusal)
+    in_c, status_in_c = message(native, unpacked["native"] / refusal.fmu, refusal)
     assert in_c == in_python
     assert status_in_c == refusal.status
     assert status_in_python == (FATAL if refusal.status == ERROR else refusal.status)

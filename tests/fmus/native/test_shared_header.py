@@ -2,7 +2,7 @@
 
 import pytest
 
-from fmus.native.shared_header import definition, shared_header
+from driveline.fmus.native.shared_header import definition, shared_header
 
 
 @pytest.mark.parametrize(

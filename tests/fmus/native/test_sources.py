@@ -6,8 +6,8 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from fmus.catalogue import FMUS
-from fmus.native.compiler import FLAGS, host_compiler
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.compiler import FLAGS, host_compiler
 from tests.fmus.host import opened
 
 PROGRAM = Path(__file__).parent / "linked.c"
@@ -55,8 +55,8 @@ def test_all_fmus_are_linked_into_one_program_and_run_side_by_side(native, objec
     guids = [str(fmpy.read_model_description(str(native / f"{name}.fmu")).guid) for name in FMUS]
     done = subprocess.run([tmp_path / "linked", *guids], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
-    said = dict(line.split() for line in done.stdout.splitlines())
-    assert {name: float(value) for name, value in said.items()} == {
+    printed = dict(line.split() for line in done.stdout.splitlines())
+    assert {name: float(value) for name, value in printed.items()} == {
         name: value for name, (_, value) in expected.items()
     }
 

@@ -9,11 +9,11 @@ pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
 import casadi
 
-from fmus.native.arithmetic import LOOKED_UP, Graph
-from fmus.native.statements import Statements
-from fmus.native.symbol import CasadiSymbol
-from fmus.native.trace import exact
-from models.block.operators import interpolate, where
+from driveline.fmus.native.arithmetic import LOOKED_UP, Graph
+from driveline.fmus.native.statements import Statements
+from driveline.fmus.native.symbol import CasadiSymbol
+from driveline.fmus.native.trace import exact
+from driveline.models.block.operators import interpolate, where
 
 NAMES = [f"a[{k}]" for k in range(6)]
 

@@ -57,6 +57,6 @@ def host(built, tmp_path_factory):
 @pytest.mark.parametrize("change", FORMS)
 def test_a_form_that_no_instance_can_have_written_is_refused(host, change):
     saved = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
-    said = host.refuses(host.fmu.deSerializeFMUstate, change(saved))
-    assert said == "the FMU state is refused: its bytes are damaged"
+    message = host.refuses(host.fmu.deSerializeFMUstate, change(saved))
+    assert message == "the FMU state is refused: its bytes are damaged"
     host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(saved))

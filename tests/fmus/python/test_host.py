@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fmus.catalogue import FMUS
+from driveline.fmus.catalogue import FMUS
 from tests import ROOT
 from tests.fmus.host import opened
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from fmus.native.compiler import CompilerError, host_compiler
+from driveline.fmus.native.compiler import CompilerError, host_compiler
 
 SOURCE = Path(__file__).parent / "exit_host.c"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from fmus.catalogue import FMUS
-from fmus.python.bundle import imported, source_path
-from fmus.python.packaging import build
-from fmus.release import DATE
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.python.bundle import imported, source_path
+from driveline.fmus.python.packaging import build
+from driveline.fmus.release import DATE
 from tests import ROOT
 from tests.fmus.host import opened
 
@@ -42,16 +42,16 @@ def copied_project(tmp_path):
 
 
 def test_a_rebuild_elsewhere_gives_the_same_bytes(built, copied_project):
-    code, said = run(["build_fmus.py", "--build", "python", "--output", "out"], copied_project, PYTHONHASHSEED="7")
-    assert code == 0, said
+    code, message = run(["build_fmus.py", "--build", "python", "--output", "out"], copied_project, PYTHONHASHSEED="7")
+    assert code == 0, message
     for name in FMUS:
         assert (copied_project / "out" / f"{name}.fmu").read_bytes() == (built / f"{name}.fmu").read_bytes()
 
 
 def test_only_what_is_named_is_built_and_said_in_a_line(copied_project):
-    code, said = run(["build_fmus.py", "--build", "python", "WheelSpeedCan", "MotorTorqueLoop"], copied_project)
+    code, message = run(["build_fmus.py", "--build", "python", "WheelSpeedCan", "MotorTorqueLoop"], copied_project)
     assert code == 0
-    assert [line.split()[0] for line in said.splitlines()] == [
+    assert [line.split()[0] for line in message.splitlines()] == [
         str(copied_project / "build" / "WheelSpeedCan.fmu"),
         str(copied_project / "build" / "MotorTorqueLoop.fmu"),
     ]
@@ -62,15 +62,15 @@ def test_only_what_is_named_is_built_and_said_in_a_line(copied_project):
 
 
 def test_an_unknown_name_is_answered_with_the_nearest():
-    code, said = run(["build_fmus.py", "TwoMasDriveline"], ROOT)
+    code, message = run(["build_fmus.py", "TwoMasDriveline"], ROOT)
     assert code == 2
-    assert "unknown FMU TwoMasDriveline; did you mean TwoMassDriveline?" in said
+    assert "unknown FMU TwoMasDriveline; did you mean TwoMassDriveline?" in message
 
 
 def test_a_vehicle_file_in_the_place_of_an_fmu_is_answered_with_its_option():
-    code, said = run(["build_fmus.py", "car.toml"], ROOT)
+    code, message = run(["build_fmus.py", "car.toml"], ROOT)
     assert code == 2
-    assert "car.toml is no FMU; a car is given as --vehicle car.toml" in said
+    assert "car.toml is no FMU; a car is given as --vehicle car.toml" in message
 
 
 def test_the_builder_leaves_no_trace_even_while_the_fmu_is_loaded(built, tmp_path):
@@ -125,13 +125,13 @@ def test_top_level_modules_carry_the_name_of_the_build(built, name):
     assert all(n == "slavemodule.txt" or n.startswith(f"driveline_{short}_") for n in resources)
 
 
-@pytest.mark.parametrize("module", ["fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
+@pytest.mark.parametrize("module", ["driveline.fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
 def test_what_runs_inside_an_fmu_imports_the_standard_library_alone(module):
     ours, waiting = set(), {module}
     while waiting:
         ours.add(current := waiting.pop())
         waiting |= set(imported(current)) - ours
     text = "; ".join(f"import {name}" for name in sorted(ours))
-    code, said = run(["-S", "-c", f"import sys; sys.path.insert(0, {str(ROOT)!r}); {text}"], ROOT)
-    assert code == 0, said
+    code, message = run(["-S", "-c", f"import sys; sys.path.insert(0, {str(ROOT)!r}); {text}"], ROOT)
+    assert code == 0, message
     assert all(source_path(name).is_file() for name in ours)

@@ -6,11 +6,11 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.native.compiler import CompilerError
-from fmus.native.statements import SINGLE
-from fmus.target.deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
-from fmus.target.image import require_packages
-from fmus.target.sources import CONTROLLERS, target_sources
+from driveline.fmus.native.compiler import CompilerError
+from driveline.fmus.native.statements import SINGLE
+from driveline.fmus.target.deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
+from driveline.fmus.target.image import require_packages
+from driveline.fmus.target.sources import CONTROLLERS, target_sources
 
 SOURCES = target_sources(CONTROLLERS["DampingController"], SINGLE)
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from fmus.target import link
-from fmus.target.link import Link, TargetError
+from driveline.fmus.target import link
+from driveline.fmus.target.link import Link, TargetError
 
 PROGRAM = """
 import struct, sys, time
@@ -56,7 +56,7 @@ def test_what_is_asked_is_answered() -> None:
 
 
 @pytest.mark.parametrize(
-    ("otherwise", "said"),
+    ("otherwise", "message"),
     [
         ("time.sleep(60)", "the target hangs: no answer within 1 s"),
         ("sys.stdout.buffer.write(b'ab'), sys.stdout.buffer.flush(), time.sleep(60)", "hangs"),
@@ -66,12 +66,12 @@ def test_what_is_asked_is_answered() -> None:
         ("sys.exit(0)", "the target crashed: exit code 0"),
     ],
 )
-def test_what_does_not_answer_is_named_within_a_second_and_ended(otherwise: str, said: str) -> None:
+def test_what_does_not_answer_is_named_within_a_second_and_ended(otherwise: str, message: str) -> None:
     with started(otherwise) as running:
         running.start((0.0, 0.0))
         running.update((0.0, 0.0))
         begun = time.monotonic()
-        with pytest.raises(TargetError, match=said):
+        with pytest.raises(TargetError, match=message):
             running.update((0.0, 0.0))
         assert time.monotonic() - begun < 2.0
         assert not is_alive(process_of(running))

@@ -12,18 +12,18 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from fmus.native.compiler import host_compiler
-from fmus.native.statements import SINGLE
-from fmus.target.image import FLAGS, host_program
-from fmus.target.link import Link
-from fmus.target.sources import CONTROLLERS, PRECISIONS, target_sources
-from fmus.two_mass_driveline import FMU as CONTINUOUS
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import looped
-from harness.target.cases import Case, recorded
-from harness.target.comparison import responses
-from models.controller.supervision import T_S
-from models.damping_controller import BLOCK as CONTROLLER
+from driveline.fmus.native.compiler import host_compiler
+from driveline.fmus.native.statements import SINGLE
+from driveline.fmus.target.image import FLAGS, host_program
+from driveline.fmus.target.link import Link
+from driveline.fmus.target.sources import CONTROLLERS, PRECISIONS, target_sources
+from driveline.fmus.two_mass_driveline import FMU as CONTINUOUS
+from driveline.harness.exchange.target.comparison import responses
+from driveline.harness.exchange.target.offline_cases import Case, recorded
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import looped
+from driveline.models.controller.supervision import T_S
+from driveline.models.damping_controller import BLOCK as CONTROLLER
 
 OURS = CONTROLLERS["DampingController"]
 
@@ -127,8 +127,8 @@ def test_every_controller_compiles_under_the_names_of_any(name: str, tmp_path: P
     (tmp_path / "any.c").write_text(ANY, encoding="utf-8")
     (source,) = [file for file in sources if file.endswith(".c")]
     subprocess.run([host_compiler(), *FLAGS, source, "any.c", "-lm", "-o", "any"], cwd=tmp_path, check=True)
-    said = subprocess.run([tmp_path / "any"], capture_output=True, text=True, check=True).stdout.split()
-    assert said == [name, str(T_S), "12"]
+    printed = subprocess.run([tmp_path / "any"], capture_output=True, text=True, check=True).stdout.split()
+    assert printed == [name, str(T_S), "12"]
 
 
 ANY = """

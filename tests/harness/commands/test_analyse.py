@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from harness.analysis.analysis_report import write
-from harness.analysis.estimate import EstimateMetrics
-from harness.analysis.loop_analysis import Analysis, Part, linear_part
-from harness.analysis.sensitivity import SHOWN, Sensitivity
-from harness.cli import main
-from harness.commands.analyse import finite
-from harness.errors import DrivelineError
-from harness.linear.backlash import LimitCycle, Swing
-from harness.linear.sweeps import SWEEPS, Swept
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.commands.analyse import finite
+from driveline.harness.commands.cli import main
+from driveline.harness.metrics.estimate import EstimateMetrics
+from driveline.harness.studies.margins.analysis_report import write
+from driveline.harness.studies.margins.describing_function import LimitCycle, Swing
+from driveline.harness.studies.margins.loop_analysis import Analysis, Part, linear_part
+from driveline.harness.studies.margins.parameter_sweeps import SWEEPS, Swept
+from driveline.harness.studies.margins.sensitivity import SHOWN, Sensitivity
 
 PLANT = "TwoMassDriveline"
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from fmus.parameter_files import read_parameters, read_vehicle
-from harness.analysis.design import design
-from harness.analysis.weights import records
-from harness.cli import main
+from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
+from driveline.harness.commands.cli import main
+from driveline.harness.design.design import design
+from driveline.harness.design.design_weights import records
 from tests import ROOT
 
 VAN = ROOT / "examples" / "cars" / "van.toml"
@@ -48,7 +48,7 @@ def test_nothing_depends_on_the_working_directory(
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("J1 = 0.09\n", "line 1: J1 is not known"),
         ("tau = 0.1\n", "T_pred would be 0.03333; the controller takes"),
@@ -56,12 +56,12 @@ def test_nothing_depends_on_the_working_directory(
     ],
 )
 def test_a_car_without_a_controller_is_answered_with_exit_code_2(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, said: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str
 ) -> None:
     car, gains = tmp_path / "car.toml", tmp_path / "gains.toml"
     car.write_text(text, encoding="utf-8")
     assert main(["design", "--vehicle", str(car), "--output", str(gains)]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not gains.exists()
 
 

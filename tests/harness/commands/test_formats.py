@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from harness.cli import main
-from harness.recordings.drive import read_drive
-from harness.recordings.measurement import read_measurement
-from harness.reports.signals_file import FORMATS
+from driveline.harness.commands.cli import main
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.measurement import read_measurement
+from driveline.harness.views.signals_file import FORMATS
 
 OTHERS = [name for name in FORMATS if name != "csv"]
 
@@ -56,7 +56,7 @@ def test_a_run_in_another_format_can_be_driven_again(driven, name, native, tmp_p
 
 
 def read_drive_speed(ride):
-    from harness.recordings.channels import Channels
+    from driveline.harness.recordings.channels import Channels
 
     return Channels(ride).read("v")["v"].unit == "m/s"
 

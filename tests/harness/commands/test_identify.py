@@ -10,11 +10,11 @@ import pytest
 from fmpy import read_model_description
 from matplotlib.figure import Figure
 
-from fmus.parameter_files import read_parameters, read_vehicle
-from harness.analysis import redesign
-from harness.analysis.design import design
-from harness.analysis.weights import PLANT, records
-from harness.cli import main
+from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
+from driveline.harness.commands.cli import main
+from driveline.harness.design import redesign
+from driveline.harness.design.design import design
+from driveline.harness.design.design_weights import PLANT, records
 
 FIGURES = {
     f"car_{name}.{ending}" for name in ("simulation", "innovations", "cost", "response") for ending in ("png", "pdf")
@@ -56,13 +56,13 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
     monkeypatch.setattr(Figure, "savefig", lambda _, path, **__: path.write_bytes(b"a figure"))
     folder = tmp_path / "out"
     assert identify() == 0
-    said = capsys.readouterr().out
+    message = capsys.readouterr().out
     assert {path.name for path in folder.iterdir()} == FILES
-    assert {line.split(": ")[1] for line in said.splitlines() if line.startswith("written")} == {
+    assert {line.split(": ")[1] for line in message.splitlines() if line.startswith("written")} == {
         str(folder / name) for name in FILES
     }
-    assert "identified with load torque, by prediction error: J_2 is that of the wheels alone" in said
-    assert "warning" not in said
+    assert "identified with load torque, by prediction error: J_2 is that of the wheels alone" in message
+    assert "warning" not in message
     document = found(folder)
     for name, true, relative in (("J_2", PLANT.J_2, 4e-3), ("C", PLANT.C, 1e-3), ("phi_B", PLANT.phi_B, 3e-3)):
         require_close(document, name, true, relative)
@@ -71,7 +71,7 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
     assert read_vehicle(folder / "car.toml").keys() == {"C", "phi_B", "tau"}
     assert json.loads((folder / "car.json").read_text(encoding="utf-8"))["files"]
 
-    monkeypatch.setattr("harness.commands.identify.draw", lambda *_: [])
+    monkeypatch.setattr("driveline.harness.commands.identify.draw", lambda *_: [])
     before = {name: (folder / name).read_bytes() for name in ("car.toml", "car_identified.json")}
     assert identify("--quiet") == 0
     assert capsys.readouterr() == ("", "")
@@ -96,7 +96,7 @@ def test_more_parameters_can_be_freed(identify: Identify, tmp_path: Path, withou
 @pytest.fixture
 def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """They are drawn in another test."""
-    monkeypatch.setattr("harness.commands.identify.draw", lambda *_: [])
+    monkeypatch.setattr("driveline.harness.commands.identify.draw", lambda *_: [])
 
 
 def test_without_load_torque_and_demand_the_result_has_another_name(
@@ -121,9 +121,9 @@ def test_the_vehicle_file_that_is_given_is_what_is_known(
     car = tmp_path / "known.toml"
     car.write_text(f"J_1 = {1.03 * PLANT.J_1}\nC = 100.0\nm = 1450.0\n", encoding="utf-8")
     assert identify("--vehicle", str(car)) == 0
-    said = capsys.readouterr().out
-    assert "warning: the recorded motor torque looks 0.97" in said
-    assert f"or J_1 = {1.03 * PLANT.J_1:g} kg.m2 should be 0.05" in said
+    message = capsys.readouterr().out
+    assert "warning: the recorded motor torque looks 0.97" in message
+    assert f"or J_1 = {1.03 * PLANT.J_1:g} kg.m2 should be 0.05" in message
     entries = read_vehicle(tmp_path / "out" / "car.toml")
     assert entries.keys() == {"J_1", "C", "m", "phi_B", "tau"}
     assert (entries["J_1"], entries["m"]) == (1.03 * PLANT.J_1, 1450.0)
@@ -141,9 +141,9 @@ def test_a_file_whose_folder_cannot_be_made_is_refused_before_the_search(
 ) -> None:
     (tmp_path / "file").touch()
     assert main(["identify", str(recording), "--output", str(tmp_path / "file" / "more" / "car.toml")]) == 2
-    said = capsys.readouterr()
-    assert f"{tmp_path / 'file'} is no folder that can be written to" in said.err
-    assert "predicted" not in said.out
+    message = capsys.readouterr()
+    assert f"{tmp_path / 'file'} is no folder that can be written to" in message.err
+    assert "predicted" not in message.out
 
 
 def test_stopped_while_figures_are_drawn_it_leaves_no_vehicle_file(
@@ -165,14 +165,14 @@ def test_design_writes_gains_and_both_builds_and_compares(
     without_figures: None,
     native_builder: object,
 ) -> None:
-    asked = []
+    calls = []
 
-    def worth(plant: str, manoeuvre: str, car: dict, told: dict) -> tuple[float, float]:
-        asked.append((plant, manoeuvre, car, told))
-        return (0.123, 0.045) if "k_d" in told else (0.234, 0.056)
+    def worth(plant: str, manoeuvre: str, car: dict, assumed: dict) -> tuple[float, float]:
+        calls.append((plant, manoeuvre, car, assumed))
+        return (0.123, 0.045) if "k_d" in assumed else (0.234, 0.056)
 
     monkeypatch.setattr(redesign, "worth", worth)
-    monkeypatch.setattr("harness.commands.redesigning.built", lambda *_: None)
+    monkeypatch.setattr("driveline.harness.commands.redesign.built", lambda *_: None)
     assert identify("--design") == 0
     folder = tmp_path / "out"
     car, gains = read_vehicle(folder / "car.toml"), read_parameters(folder / "car_gains.toml")
@@ -185,13 +185,13 @@ def test_design_writes_gains_and_both_builds_and_compares(
     files = json.loads((folder / "car.json").read_text(encoding="utf-8"))["files"]
     assert files.count("DampingController.fmu") == 2
     lines = capsys.readouterr().out.splitlines()
-    said = "\n".join(line for line in lines if any(f" {name} " in line for name in redesign.MANOEUVRES))
-    assert said.count("234") == said.count("123") == said.count("5.6") == said.count("4.5") == 8
-    assert all(of == car for _, _, of, _ in asked)
+    message = "\n".join(line for line in lines if any(f" {name} " in line for name in redesign.MANOEUVRES))
+    assert message.count("234") == message.count("123") == message.count("5.6") == message.count("4.5") == 8
+    assert all(of == car for _, _, of, _ in calls)
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["--output", "car.json"], "--output car.json: a vehicle file is a .toml"),
         (["--vehicle", "absent.toml"], "absent.toml"),
@@ -205,7 +205,7 @@ def test_wrong_use_is_refused_with_exit_code_2(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     options: list[str],
-    said: str,
+    message: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     try:
@@ -213,7 +213,7 @@ def test_wrong_use_is_refused_with_exit_code_2(
     except SystemExit as end:
         code = end.code
     assert code == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

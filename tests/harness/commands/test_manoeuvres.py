@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from harness.cli import main
+from driveline.harness.commands.cli import main
 
 TIPIN = """\
 duration = 3.0
@@ -56,7 +56,7 @@ def test_a_comparison_measures_a_step_of_a_file_as_one_of_the_catalogue(native, 
 
 
 @pytest.mark.parametrize(
-    ("entries", "said"),
+    ("entries", "message"),
     [
         ("T_driver = 181", "T_driver = 181 N.m at 0 s: the motor makes -180 to 180 N.m (motor.T_max)"),
         ("T_brake = -1", "T_brake = -1 N.m at 0 s: TwoMassDriveline.fmu takes 0 to 20000 N.m"),
@@ -65,13 +65,13 @@ def test_a_comparison_measures_a_step_of_a_file_as_one_of_the_catalogue(native, 
     ],
 )
 @pytest.mark.parametrize("command", ["simulate", "compare"])
-def test_what_the_loop_does_not_take_is_said_before_it_runs(native, tmp_path, capsys, command, entries, said):
+def test_what_the_loop_does_not_take_is_said_before_it_runs(native, tmp_path, capsys, command, entries, message):
     path = tmp_path / "beyond.toml"
     path.write_text(f"duration = 2\n{entries}\n", encoding="utf-8")
     out = tmp_path / "out"
     options = ["--plant", "TwoMassDriveline", "--manoeuvre", str(path), "--fmus", str(native.parent)]
     assert main([command, *options, "--output", str(out)]) == 2
-    assert f"driveline {command}: {path}: {said}" in capsys.readouterr().err
+    assert f"driveline {command}: {path}: {message}" in capsys.readouterr().err
     assert not [file for file in out.rglob("*") if file.is_file()]
 
 

@@ -8,15 +8,15 @@ from shutil import copytree, ignore_patterns
 
 import pytest
 
-from fmus.catalogue import FMUS
-from fmus.options import file as a_file
-from fmus.options import folder, output_folder
-from fmus.parameter_files import seeds
-from harness.commands.options import assignment, look, megabytes, seconds, seed, window
-from harness.control_loop import BUILD
-from harness.errors import DrivelineError
-from harness.reports.look import Look
-from models.block.declaration import Integer, variables
+from driveline.fmus.building.options import file as a_file
+from driveline.fmus.building.options import folder, output_folder
+from driveline.fmus.building.parameter_files import seeds
+from driveline.fmus.catalogue import FMUS
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.commands.options import assignment, figure_options, megabytes, seconds, seed, window
+from driveline.harness.loop.places import BUILD
+from driveline.harness.views.figure_options import FigureOptions
+from driveline.models.block.declaration import Integer, variables
 from tests import ROOT
 
 
@@ -65,19 +65,23 @@ def test_what_is_no_window_is_answered_with_one(text):
 
 
 def test_a_window_shows_something_of_every_run():
-    def asked(start, end):
-        return look(Namespace(window=(start, end), figures=None), "", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0))
+    def options_for(start, end):
+        return figure_options(
+            Namespace(window=(start, end), figures=None), "", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0)
+        )
 
-    assert asked(5.99, 9.0).shown(0.0, 6.0) == (5.99, 6.0)
-    assert asked(-1.0, 0.1).shown(0.0, 6.0) == (0.0, 0.1)
+    assert options_for(5.99, 9.0).clipped(0.0, 6.0) == (5.99, 6.0)
+    assert options_for(-1.0, 0.1).clipped(0.0, 6.0) == (0.0, 0.1)
     for start, end in ((6.0, 9.0), (-1.0, 0.0), (30.0, 40.0)):
         with pytest.raises(DrivelineError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
-            asked(start, end)
+            options_for(start, end)
 
 
 def test_figures_are_of_the_kinds_that_are_asked_for_each_once():
-    assert look(Namespace(window=None, figures=["svg", "png", "svg"]), "said") == Look("said", None, ("svg", "png"))
-    assert look(Namespace(window=None, figures=None), "") == Look("", None, ("png", "pdf"))
+    assert figure_options(Namespace(window=None, figures=["svg", "png", "svg"]), "said") == FigureOptions(
+        "said", None, ("svg", "png")
+    )
+    assert figure_options(Namespace(window=None, figures=None), "") == FigureOptions("", None, ("png", "pdf"))
 
 
 def test_a_seed_is_what_the_blocks_declare():
@@ -151,9 +155,9 @@ def test_a_file_is_no_folder(tmp_path):
 def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
     assert BUILD == ROOT / "build"
     copytree(ROOT / "harness", tmp_path / "site" / "harness", ignore=ignore_patterns("__pycache__", "*.so"))
-    asked = "from harness.control_loop import BUILD; print(BUILD)"
+    statement = "from driveline.harness.loop.places import BUILD; print(BUILD)"
     done = subprocess.run(
-        [sys.executable, "-c", asked],
+        [sys.executable, "-c", statement],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
         capture_output=True,

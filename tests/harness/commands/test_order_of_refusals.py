@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from harness.cli import main
-from harness.manoeuvres.town_drive import PATH
+from driveline.harness.commands.cli import main
+from driveline.harness.manoeuvres.town_drive import PATH
 
 FIRST = {
     "simulate": "TwoMassDriveline_tipin15_on.csv",
@@ -18,12 +18,12 @@ FIRST = {
 
 
 @pytest.fixture
-def said(both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def message(both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     """What a command says that must not run, into a folder with results of nobody knows which run."""
     folder = tmp_path / "results"
     folder.mkdir()
 
-    def said(command: str, *options: str) -> str:
+    def message(command: str, *options: str) -> str:
         (folder / FIRST[command]).touch()
         file = [str(PATH)] if command == "replay" else []
         code = main([command, *file, "--fmus", str(both_built), "--output", str(folder), "--quiet", *options])
@@ -31,12 +31,12 @@ def said(both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
         assert [path.name for path in folder.iterdir()] == [FIRST[command]]
         return capsys.readouterr().err
 
-    return said
+    return message
 
 
 @pytest.mark.parametrize("command", FIRST)
-def test_a_folder_with_other_results_is_named(said, command: str) -> None:
-    assert f"{FIRST[command]} is there" in said(command)
+def test_a_folder_with_other_results_is_named(message, command: str) -> None:
+    assert f"{FIRST[command]} is there" in message(command)
 
 
 @pytest.mark.parametrize(
@@ -51,15 +51,15 @@ def test_a_folder_with_other_results_is_named(said, command: str) -> None:
     ],
 )
 def test_an_option_that_no_run_can_have_is_named_before_the_folder(
-    said, command: str, option: str, value: str, reason: str
+    message, command: str, option: str, value: str, reason: str
 ) -> None:
-    (line,) = said(command, option, value).splitlines()
+    (line,) = message(command, option, value).splitlines()
     assert line.startswith(f"driveline {command}: {reason}")
 
 
-def test_two_plants_of_one_name_are_named_before_the_folder(said, native: Path, tmp_path: Path) -> None:
+def test_two_plants_of_one_name_are_named_before_the_folder(message, native: Path, tmp_path: Path) -> None:
     plants = []
     for name in ("mine", "theirs"):
         (tmp_path / name).mkdir()
         plants += ["--plant", shutil.copy(native / "TwoMassDriveline.fmu", tmp_path / name)]
-    assert "two plants are called TwoMassDriveline" in said("faults", *plants)
+    assert "two plants are called TwoMassDriveline" in message("faults", *plants)

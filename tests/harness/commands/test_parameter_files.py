@@ -2,9 +2,9 @@
 
 import pytest
 
-from harness.cli import main, parser
-from harness.commands.settings import settings
-from harness.errors import DrivelineError, WiringError
+from driveline.harness.base.errors import DrivelineError, WiringError
+from driveline.harness.commands.cli import main, parser
+from driveline.harness.commands.settings import settings
 from tests import ROOT
 from tests.foreign import build_car
 

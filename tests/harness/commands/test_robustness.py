@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from fmus.catalogue import EVERY
-from harness import many
-from harness.cli import main
-from harness.robustness import report
+from driveline.fmus.catalogue import EVERY
+from driveline.harness.commands.cli import main
+from driveline.harness.simulation import many_runs
+from driveline.harness.studies.robustness import robustness_report
 
 
 @pytest.fixture(scope="module")
@@ -28,10 +28,10 @@ def robustness(
     fmus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> Callable[..., int]:
     """Runs the command in this process, on the design model, into the folder `results`."""
-    monkeypatch.setattr(many, "_cores", lambda: 1)
+    monkeypatch.setattr(many_runs, "_cores", lambda: 1)
     if "page" not in request.node.name:  # figures take seconds
         for plot in ("plot_distributions", "plot_draw"):
-            monkeypatch.setattr(report, plot, lambda *args: [])
+            monkeypatch.setattr(robustness_report, plot, lambda *args: [])
     given = ["robustness", "--fmus", str(fmus), "--build", "native", "--plant", "TwoMassDriveline"]
     given += ["--output", str(tmp_path / "results")]
     return lambda *more: main([*given, *more])
@@ -44,7 +44,7 @@ def test_the_folder_gets_the_runs_the_page_and_the_figures(
     robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert robustness("--cases", "2", *ALL) == 0
-    folder, said = tmp_path / "results", capsys.readouterr().out
+    folder, message = tmp_path / "results", capsys.readouterr().out
     names = {"runs.csv", "draws.csv", "summary.csv", "robustness.md", "robustness.json", "figures"}
     assert {path.name for path in folder.iterdir()} == names
     page = (folder / "robustness.md").read_text()
@@ -56,7 +56,9 @@ def test_the_folder_gets_the_runs_the_page_and_the_figures(
     assert (folder / "draws.csv").read_text().splitlines()[
         0
     ] == "number,noise,J_2,C,phi_B,tau,m,delay,g_T,o_T,g_w2,loss"
-    goal = next(line for line in said.splitlines() if line.startswith("TwoMassDriveline, DampingController: bounded"))
+    goal = next(
+        line for line in message.splitlines() if line.startswith("TwoMassDriveline, DampingController: bounded")
+    )
     assert goal.rpartition(": ")[2] in page
     record = json.loads((folder / "robustness.json").read_text())
     assert record["files"][:4] == ["runs.csv", "draws.csv", "summary.csv", "robustness.md"]
@@ -125,7 +127,7 @@ def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["--cases", "0"], "'0' is not a whole number from 1 to 100000"),
         (["--case", "1.5"], "'1.5' is not a whole number"),
@@ -133,12 +135,12 @@ def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
     ],
 )
 def test_what_no_campaign_can_use_is_refused(
-    robustness: Callable[..., int], options: list[str], said: str, capsys: pytest.CaptureFixture[str]
+    robustness: Callable[..., int], options: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as end:
         robustness(*options)
     assert end.value.code == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(

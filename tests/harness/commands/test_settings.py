@@ -4,16 +4,16 @@ from argparse import ArgumentParser
 
 import pytest
 
-from harness.commands import compare, replay, simulate
-from harness.commands.settings import caption
-from harness.compare import Case
+from driveline.harness.commands import compare, replay, simulate
+from driveline.harness.commands.settings import caption
+from driveline.harness.studies.compare.compare import Case
 
 COMMANDS = {simulate: [], compare: [], replay: ["trip.csv"]}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ("", ""),
         ("--fmus /somewhere --build native --quiet", ""),
@@ -21,10 +21,10 @@ COMMANDS = {simulate: [], compare: [], replay: ["trip.csv"]}
         ("--vehicle van.toml --controller mine.fmu", "--controller mine.fmu --vehicle van.toml"),
     ],
 )
-def test_a_figure_says_what_was_set(command, options: str, said: str) -> None:
+def test_a_figure_says_what_was_set(command, options: str, message: str) -> None:
     parser = ArgumentParser()
     command.add_arguments(parser)
-    assert caption(parser.parse_args([*COMMANDS[command], *options.split()])) == said
+    assert caption(parser.parse_args([*COMMANDS[command], *options.split()])) == message
 
 
 def test_a_figure_says_which_controllers_were_asked_for() -> None:

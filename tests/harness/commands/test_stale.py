@@ -6,14 +6,14 @@ from shutil import copytree
 
 import pytest
 
-from fmus import origin
-from harness import built
-from harness import stale as judging
-from harness.cli import main
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.many import run_many
-from harness.simulate import simulate
-from harness.told import warn_once
+from driveline.fmus import origin
+from driveline.harness.base.collected_warnings import warn_once
+from driveline.harness.commands.cli import main
+from driveline.harness.loop import built_fmus
+from driveline.harness.loop import stale_fmus as judging
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 
@@ -52,26 +52,26 @@ def test_a_stale_file_is_named(
 def test_those_of_the_project_are_built_again_and_it_is_said_once(
     stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(built, "BUILD", stale)
+    monkeypatch.setattr(built_fmus, "BUILD", stale)
     given = [*RUN, "--build", "python", "--fmus", str(stale), "--output", str(tmp_path / "results")]
     for _ in range(2):
         assert main(given) == 0
-    (said,) = [text for text in caplog.messages if text.startswith("built")]
-    assert said.startswith(f"built, as missing or stale: {stale / 'MotorTorqueLoop.fmu'}")
+    (message,) = [text for text in caplog.messages if text.startswith("built")]
+    assert message.startswith(f"built, as missing or stale: {stale / 'MotorTorqueLoop.fmu'}")
     assert not origin.is_stale(stale / "TwoMassDriveline.fmu")
     assert origin.is_stale(stale / "ValidationVehicle.fmu"), "this run does not need it"
 
 
 def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(built, "BUILD", both_built)
+    monkeypatch.setattr(built_fmus, "BUILD", both_built)
     plant = both_built / "mine.fmu"
-    assert built.built(str(plant), both_built, "python") == "python"
+    assert built_fmus.built(str(plant), both_built, "python") == "python"
 
 
 def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
     stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(built, "BUILD", stale)
+    monkeypatch.setattr(built_fmus, "BUILD", stale)
     monkeypatch.setenv("CC", "no-such-compiler")
     assert main([*RUN, "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 0
     assert "no native FMUs: there is no C compiler 'no-such-compiler'" in caplog.text
@@ -81,7 +81,7 @@ def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
 @pytest.mark.parametrize("workers", [1, 2])
 def test_runs_from_python_name_them_once(stale: Path, caplog: pytest.LogCaptureFixture, workers: int) -> None:
     def end(k_d: float) -> float:
-        from fmus import origin  # in a worker everything is imported anew
+        from driveline.fmus import origin  # in a worker everything is imported anew
 
         origin.sources_digest = lambda: "others"
         short = replace(MANOEUVRES["tipin15"], duration=0.01)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.cli import main
+from driveline.harness.commands.cli import main
 from tests import ROOT
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
@@ -34,7 +34,7 @@ def test_it_takes_the_car_and_its_gains(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("entry", "controller", "said"),
+    ("entry", "controller", "message"),
     [
         ("J_1 = 0.05", "DampingController", "line 1: J_1 does not belong here"),
         ("k_d = 1e9", "DampingController", "k_d = 1e+09"),
@@ -42,12 +42,12 @@ def test_it_takes_the_car_and_its_gains(tmp_path: Path) -> None:
     ],
 )
 def test_what_does_not_belong_to_the_controller_is_refused(
-    entry: str, controller: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    entry: str, controller: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     gains = tmp_path / "gains.toml"
     gains.write_text(f"{entry}\n", encoding="utf-8")
     assert exported(tmp_path / "c", "--parameters", str(gains), "--controller", controller) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not (tmp_path / "c").exists()
 
 
@@ -73,12 +73,12 @@ def test_a_wrong_action_is_answered_with_the_nearest(capsys: pytest.CaptureFixtu
 
 
 def test_every_action_teaches(capsys: pytest.CaptureFixture[str]) -> None:
-    from harness.commands.target import ACTIONS
+    from driveline.harness.commands.target import ACTIONS
 
     for action in ACTIONS:
         with pytest.raises(SystemExit) as end:
             main(["target", action, "--help"])
         assert end.value.code == 0
-        said = capsys.readouterr().out
-        assert f"driveline target {action}" in said
-        assert "examples:" in said
+        message = capsys.readouterr().out
+        assert f"driveline target {action}" in message
+        assert "examples:" in message

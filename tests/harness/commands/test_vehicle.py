@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.cli import main
+from driveline.harness.commands.cli import main
 from tests.foreign import build_car
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from harness.control_loop import loop
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.runs import run
-from harness.cosimulation.system import Scheme
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.loop.places import loop
 
 STEPS, STEP_SIZE = 400, 1e-3
 T_DRIVER = 60.0

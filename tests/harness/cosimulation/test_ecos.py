@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.control_loop import BUILDS, PLANTS
+from driveline.harness.loop.places import BUILDS, PLANTS
 from tests.harness.cosimulation.hosts import check_loop
 
 if find_spec("ecospy") is None:

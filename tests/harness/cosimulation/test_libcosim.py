@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.control_loop import BUILDS, PLANTS
+from driveline.harness.loop.places import BUILDS, PLANTS
 from tests.harness.cosimulation.hosts import check_loop
 
 pytest.importorskip("libcosimpy", reason="libcosimpy has no wheel for this platform")

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.control_loop import PLANTS, loop
-from harness.cosimulation import loading
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.runs import run
-from harness.cosimulation.system import Connection, Scheme, System
-from harness.errors import SimulationError, WiringError
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import signals, start
+from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.cosimulation import loading
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Connection, Scheme, System
+from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import signals, start
 from tests.foreign import build_relay
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)
@@ -119,7 +119,7 @@ def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "said"),
+    ("name", "value", "message"),
     [
         ("a.b", 0.5, r"a\.b = 0\.5: it must be true \(1\) or false \(0\)"),
         ("a.b", np.nan, r"a\.b = nan: it must be true"),
@@ -131,9 +131,9 @@ def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
         ("a.u", [None] * 11, r"a\.u = None: an input is a number"),
     ],
 )
-def test_an_input_gets_what_suits_its_type(relay, name, value, said):
+def test_an_input_gets_what_suits_its_type(relay, name, value, message):
     with loaded(System({"a": relay})) as running:
-        with pytest.raises(WiringError, match=said):
+        with pytest.raises(WiringError, match=message):
             running.run(Experiment(0.01, inputs={name: value}))
         assert len(running.run(Experiment(0.01, inputs={"a.b": 1.0, "a.n": 2**31 - 1, "a.u": True}))) == 11
 

@@ -6,15 +6,15 @@ from math import pi
 import numpy as np
 import pytest
 
-from harness.control_loop import PLANTS, loop
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.mapping import parsed
-from harness.cosimulation.steps import interpreted
-from harness.errors import WiringError
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import signals, simulate, start
+from driveline.harness.base.errors import WiringError
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.mapping import parsed
+from driveline.harness.cosimulation.steps import interpreted
+from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import signals, simulate, start
 from tests.foreign import build_car, tampered
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 
-from harness.control_loop import PLANTS
-from harness.cosimulation.experiment import Experiment, instants
-from harness.cosimulation.runs import run
-from harness.cosimulation.system import Connection, Scheme, System
-from harness.errors import SimulationError, WiringError
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.reports.csv_file import write_csv
-from harness.simulate import simulate
+from driveline.harness.base.csv_file import write_csv
+from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.cosimulation.experiment import Experiment, instants
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Connection, Scheme, System
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.fmus.host import opened
 from tests.foreign import build_relay
@@ -163,9 +163,9 @@ def test_csv_gives_the_same_numbers_back(relay, tmp_path):
 def test_the_host_ends_with_exit_code_0(relay):
     script = (
         "from pathlib import Path\n"
-        "from harness.cosimulation.experiment import Experiment\n"
-        "from harness.cosimulation.runs import run\n"
-        "from harness.cosimulation.system import System\n"
+        "from driveline.harness.cosimulation.experiment import Experiment\n"
+        "from driveline.harness.cosimulation.runs import run\n"
+        "from driveline.harness.cosimulation.system import System\n"
         f"system = System({{'a': Path({str(relay)!r}), 'b': Path({str(relay)!r})}}, ())\n"
         "for _ in range(3): run(system, Experiment(0.01))\n"
     )

@@ -5,11 +5,11 @@ from shutil import copyfile
 import numpy as np
 import pytest
 
-from harness.cosimulation import runs
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
-from harness.cosimulation.system import System
-from harness.errors import SimulationError, WiringError
+from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.cosimulation import runs
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
+from driveline.harness.cosimulation.system import System
 from tests.foreign import build_relay
 
 

@@ -6,16 +6,16 @@ from typing import Any
 
 import pytest
 
-from harness.control_loop import loop
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.feedthrough import Feedthrough, declared
-from harness.cosimulation.interface import Interface
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.runs import run
-from harness.cosimulation.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
-from harness.cosimulation.system import Connection, Scheme, System
-from harness.cosimulation.wiring import fit
-from harness.errors import SimulationError, WiringError
+from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.feedthrough import Feedthrough, declared
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
+from driveline.harness.cosimulation.system import Connection, Scheme, System
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.loop.places import loop
 from tests.foreign import build_relay, tampered
 
 

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.control_loop import PLANTS, loop
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.steps import interpreted
-from harness.cosimulation.system import Connection, Scheme, System
-from harness.errors import SimulationError
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import signals, start
+from driveline.harness.base.errors import SimulationError
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.steps import interpreted
+from driveline.harness.cosimulation.system import Connection, Scheme, System
+from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import signals, start
 from tests.foreign import build_relay
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")

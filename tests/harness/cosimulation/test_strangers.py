@@ -11,19 +11,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.control_loop import loop as looped
-from harness.cosimulation import apart
-from harness.cosimulation.answers import LENGTH, Answer, Forged, receive, send
-from harness.cosimulation.apart import Apart
-from harness.cosimulation.compiled import LIBRARY, CompiledSteps
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.limits import Limits
-from harness.cosimulation.loading import loaded
-from harness.cosimulation.runs import kept_loaded, run
-from harness.cosimulation.steps import interpreted
-from harness.cosimulation.system import System
-from harness.cosimulation.whereabouts import current, note
-from harness.errors import SimulationError, WiringError
+from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.cosimulation import isolated_process
+from driveline.harness.cosimulation.call_trace import current, note
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.isolated_process import IsolatedProcess
+from driveline.harness.cosimulation.limits import Limits
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.process_answers import LENGTH, Answer, InvalidAnswer, receive, send
+from driveline.harness.cosimulation.runs import kept_loaded, run
+from driveline.harness.cosimulation.steps import interpreted
+from driveline.harness.cosimulation.system import System
+from driveline.harness.loop.places import loop as looped
 from tests import ROOT
 from tests.foreign.stranger import build_stranger
 
@@ -105,7 +105,7 @@ def test_every_call_is_counted_in_both_languages(native):
 
 
 def test_a_stranger_that_cuts_off_its_process_has_not_crashed(tmp_path, monkeypatch):
-    monkeypatch.setattr(apart, "PATIENCE", 0.3)
+    monkeypatch.setattr(isolated_process, "PATIENCE", 0.3)
     does = f"{LATER} {{ for (int k = 3; k < 20; k++) close(k); for (;;) usleep(1000); }}"
     with pytest.raises(SimulationError, match=r"gave no more answers and was ended, in fmi2DoStep at 0\.1 s"):
         run(System({"car": build_stranger(tmp_path, IN_DO_STEP=does)}), Experiment(0.3))
@@ -125,7 +125,7 @@ def slow_after_a_call():
 
 
 def test_writing_a_large_answer_is_no_call_that_hangs():
-    process = Apart(["stranger.fmu"], 0.2)
+    process = IsolatedProcess(["stranger.fmu"], 0.2)
     assert process.ask(slow_after_a_call) == ["slow"]
     process.close()
 
@@ -153,8 +153,8 @@ class Harmful:
         return Path.touch, (self.path,)
 
 
-def framed(told):
-    line = json.dumps(told).encode()
+def framed(header):
+    line = json.dumps(header).encode()
     return LENGTH.pack(len(line)) + line
 
 
@@ -184,7 +184,7 @@ def test_nothing_that_a_stranger_writes_among_the_answers_is_run(tmp_path, noted
     ],
 )
 def test_what_is_no_answer_to_the_question_is_forged(bytes_):
-    with pytest.raises(Forged):
+    with pytest.raises(InvalidAnswer):
         receive(BytesIO(bytes_).read, lambda: 3)
 
 

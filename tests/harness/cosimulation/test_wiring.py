@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import pytest
 
-from harness.control_loop import PLANTS, chosen_build, loop
-from harness.cosimulation import unpacked
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.interface import Interface, unit_of
-from harness.cosimulation.runs import run
-from harness.cosimulation.system import Connection, System
-from harness.cosimulation.wiring import beyond, fit
-from harness.errors import WiringError
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import simulate
+from driveline.harness.base.errors import WiringError
+from driveline.harness.cosimulation import unpacked_fmu
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.interface import Interface, unit_of
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Connection, System
+from driveline.harness.cosimulation.wiring import fit, out_of_bounds
+from driveline.harness.loop.places import PLANTS, chosen_build, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
 from tests.foreign import tampered
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)
@@ -25,7 +25,7 @@ SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)
 def nothing_is_unpacked(request, monkeypatch):
     """Whatever is wrong is found before any FMU is unpacked."""
     if "runs" not in request.node.name:
-        monkeypatch.setattr(unpacked, "unpack", lambda *_: pytest.fail("an FMU was unpacked"))
+        monkeypatch.setattr(unpacked_fmu, "unpack", lambda *_: pytest.fail("an FMU was unpacked"))
 
 
 def face(path):
@@ -48,12 +48,14 @@ def test_parameters_are_those_that_are_given_and_where_the_fmus_start(native):
 def test_bounds_are_those_of_the_fmu_in_the_units_of_the_loop(native):
     fitted = fit(loop("TwoMassDriveline", folder=native.parent, build="native"))
     bounds = 0.001, 10.0
-    assert list(beyond(fitted, {"plant.J_1": bounds[0], "plant.C": 1e3, "plant.unknown": 7.0})) == []
+    assert list(out_of_bounds(fitted, {"plant.J_1": bounds[0], "plant.C": 1e3, "plant.unknown": 7.0})) == []
     for value in (math.nextafter(bounds[0], 0.0), math.nextafter(bounds[1], 11.0)):
-        assert len(list(beyond(fitted, {"plant.J_1": value}))) == 1
+        assert len(list(out_of_bounds(fitted, {"plant.J_1": value}))) == 1
     fitted.interfaces["plant"].factors["J_1"] = 0.1
-    assert list(beyond(fitted, {"plant.J_1": 0.0001})) == []
-    assert list(beyond(fitted, {"plant.J_1": 1.1})) == ["plant.J_1 = 1.1: TwoMassDriveline.fmu takes 0.0001 to 1 kg.m2"]
+    assert list(out_of_bounds(fitted, {"plant.J_1": 0.0001})) == []
+    assert list(out_of_bounds(fitted, {"plant.J_1": 1.1})) == [
+        "plant.J_1 = 1.1: TwoMassDriveline.fmu takes 0.0001 to 1 kg.m2"
+    ]
 
 
 def test_both_plants_have_one_interface(built):

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fmus.catalogue import EVERY
+from driveline.fmus.catalogue import EVERY
 
 
 @pytest.fixture(scope="session")

@@ -15,9 +15,9 @@ from typing import Any
 
 import pytest
 
-from fmus.parameter_files import read_parameters, read_vehicle
-from harness.cli import main
-from harness.reports.colours import BLUE, GREY, VERMILION
+from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
+from driveline.harness.commands.cli import main
+from driveline.harness.views.colours import BLUE, GREY, VERMILION
 from tests import ROOT
 from tests.browser import Browser
 
@@ -33,7 +33,7 @@ class Served:
         blocks = ["--controller", "DampingController", "--controller", "SpeedWashout"]
         command = ["explore", *blocks, "--fmus", str(fmus), "--output", str(folder), "--port", "0", "--build", "native"]
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "harness", *command],
+            [sys.executable, "-m", "driveline", *command],
             cwd=ROOT,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -69,7 +69,7 @@ def running(with_washout: Path, tmp_path_factory: pytest.TempPathFactory) -> Ite
 
 
 @pytest.fixture
-def desk(chromium: Browser, running: Served) -> Browser:
+def view(chromium: Browser, running: Served) -> Browser:
     chromium.open(running.address)
     eventually(lambda: "without control" in metrics(chromium))
     return chromium
@@ -87,66 +87,66 @@ def model(name: str) -> str:
     return f"Bokeh.documents[0].get_model_by_name({json.dumps(name)})"
 
 
-def put(desk: Browser, name: str, value: Any, property_: str = "value") -> None:
+def put(view: Browser, name: str, value: Any, property_: str = "value") -> None:
     """What a move of the control of that name does."""
-    desk.js(f"void ({model(name)}.{property_} = {json.dumps(value)})")
+    view.js(f"void ({model(name)}.{property_} = {json.dumps(value)})")
 
 
-def metrics(desk: Browser) -> str:
-    return desk.js(f"{model('metrics')}.text")
+def metrics(view: Browser) -> str:
+    return view.js(f"{model('metrics')}.text")
 
 
-def status(desk: Browser) -> str:
-    return desk.js(f"{model('status')}.text")
+def status(view: Browser) -> str:
+    return view.js(f"{model('status')}.text")
 
 
-def test_curves_follow_a_slider_and_the_run_without_control_stays(desk: Browser) -> None:
-    torque = desk.figure("gear torque, N·m")
+def test_curves_follow_a_slider_and_the_run_without_control_stays(view: Browser) -> None:
+    torque = view.figure("gear torque, N·m")
     eventually(lambda: torque.pixels(BLUE) > 300)
     assert torque.pixels(GREY) > 300
-    before = metrics(desk)
-    put(desk, "k_d", 1.0)
-    eventually(lambda: metrics(desk) != before)
-    rows = [re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in metrics(desk).split("<tr>")]
+    before = metrics(view)
+    put(view, "k_d", 1.0)
+    eventually(lambda: metrics(view) != before)
+    rows = [re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in metrics(view).split("<tr>")]
     earlier = [re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in before.split("<tr>")]
     assert rows[2] == earlier[2]  # without control
     assert float(rows[3][2]) > 2.0 * float(earlier[3][2])  # overshoot with half of the damping
-    assert not [line for line in desk.console() if "ERROR" in line]
+    assert not [line for line in view.console() if "ERROR" in line]
 
 
-def test_a_slider_can_be_dragged(desk: Browser) -> None:
-    before = metrics(desk)
-    handle = desk.js(
+def test_a_slider_can_be_dragged(view: Browser) -> None:
+    before = metrics(view)
+    handle = view.js(
         "(() => { const view = [...Bokeh.index.query((view) => view.model.name === 'phi_B')][0];"
         " const r = view.shadow_el.querySelector('.noUi-handle').getBoundingClientRect();"
         " return [r.left + r.width / 2, r.top + r.height / 2] })()"
     )
-    desk.drag((handle[0], handle[1]), (handle[0] + 60, handle[1]))
-    eventually(lambda: metrics(desk) != before)
-    assert desk.js(f"{model('phi_B')}.value") > 0.2
+    view.drag((handle[0], handle[1]), (handle[0] + 60, handle[1]))
+    eventually(lambda: metrics(view) != before)
+    assert view.js(f"{model('phi_B')}.value") > 0.2
 
 
-def test_control_can_be_switched_off_and_others_stand_beside(desk: Browser) -> None:
-    torque = desk.figure("gear torque, N·m")
-    put(desk, "control", False, "active")
-    eventually(lambda: "DampingController" not in metrics(desk))
-    desk.painted()
+def test_control_can_be_switched_off_and_others_stand_beside(view: Browser) -> None:
+    torque = view.figure("gear torque, N·m")
+    put(view, "control", False, "active")
+    eventually(lambda: "DampingController" not in metrics(view))
+    view.painted()
     eventually(lambda: torque.pixels(BLUE) == 0)
-    put(desk, "others", [0], "active")
-    eventually(lambda: "SpeedWashout" in metrics(desk))
+    put(view, "others", [0], "active")
+    eventually(lambda: "SpeedWashout" in metrics(view))
     eventually(lambda: torque.pixels(VERMILION) > 100)
 
 
-def test_plant_and_manoeuvre_are_chosen(desk: Browser) -> None:
-    before = metrics(desk)
-    put(desk, "plant", "ValidationVehicle")
-    eventually(lambda: metrics(desk) != before)
-    put(desk, "manoeuvre", "creep")
-    eventually(lambda: desk.figure("gear torque, N·m").x() == (0.0, 12.0))
+def test_plant_and_manoeuvre_are_chosen(view: Browser) -> None:
+    before = metrics(view)
+    put(view, "plant", "ValidationVehicle")
+    eventually(lambda: metrics(view) != before)
+    put(view, "manoeuvre", "creep")
+    eventually(lambda: view.figure("gear torque, N·m").x() == (0.0, 12.0))
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("plant.m=10", "takes 300 to 10000 kg"),
         ("plant.mass=1000", "there is no parameter plant.mass"),
@@ -155,58 +155,58 @@ def test_plant_and_manoeuvre_are_chosen(desk: Browser) -> None:
         ("<img src=x onerror=alert(1)>=1", "&lt;img"),
     ],
 )
-def test_a_bad_value_is_told_and_the_next_good_one_runs(desk: Browser, text: str, told: str) -> None:
-    put(desk, "more", text)
-    eventually(lambda: told in status(desk))
-    before = metrics(desk)
-    put(desk, "more", "plant.m=3000")
-    eventually(lambda: metrics(desk) != before)
-    assert status(desk) == ""
+def test_a_bad_value_is_told_and_the_next_good_one_runs(view: Browser, text: str, message: str) -> None:
+    put(view, "more", text)
+    eventually(lambda: message in status(view))
+    before = metrics(view)
+    put(view, "more", "plant.m=3000")
+    eventually(lambda: metrics(view) != before)
+    assert status(view) == ""
 
 
-def test_what_a_page_of_ones_own_sends_is_kept_within_the_slider(desk: Browser) -> None:
-    before = metrics(desk)
-    put(desk, "m", 1e9)
-    eventually(lambda: metrics(desk) != before)
-    assert "takes" not in status(desk)
+def test_what_a_page_of_ones_own_sends_is_kept_within_the_slider(view: Browser) -> None:
+    before = metrics(view)
+    put(view, "m", 1e9)
+    eventually(lambda: metrics(view) != before)
+    assert "takes" not in status(view)
 
 
-def test_two_tabs_do_not_see_each_other_and_one_that_vanishes_disturbs_nobody(desk: Browser, running: Served) -> None:
-    first, before = desk.chrome.current_window_handle, metrics(desk)
-    desk.chrome.switch_to.new_window("tab")
-    desk.open(running.address)
-    eventually(lambda: metrics(desk) == before)
+def test_two_tabs_do_not_see_each_other_and_one_that_vanishes_disturbs_nobody(view: Browser, running: Served) -> None:
+    first, before = view.chrome.current_window_handle, metrics(view)
+    view.chrome.switch_to.new_window("tab")
+    view.open(running.address)
+    eventually(lambda: metrics(view) == before)
     for k in range(20):
-        put(desk, "k_d", 1.0 + 0.05 * k)
-    desk.chrome.close()
-    desk.chrome.switch_to.window(first)
-    assert metrics(desk) == before
-    put(desk, "k_d", 1.0)
-    eventually(lambda: metrics(desk) != before)
+        put(view, "k_d", 1.0 + 0.05 * k)
+    view.chrome.close()
+    view.chrome.switch_to.window(first)
+    assert metrics(view) == before
+    put(view, "k_d", 1.0)
+    eventually(lambda: metrics(view) != before)
     assert running.process.poll() is None
 
 
-def test_clicks_save_the_car_the_gains_and_a_report(desk: Browser, running: Served) -> None:
-    put(desk, "phi_B", 0.3)
-    put(desk, "k_d", 2.0)
-    press(desk, "save car and gains")
-    eventually(lambda: "gains_1.toml" in status(desk))
+def test_clicks_save_the_car_the_gains_and_a_report(view: Browser, running: Served) -> None:
+    put(view, "phi_B", 0.3)
+    put(view, "k_d", 2.0)
+    press(view, "save car and gains")
+    eventually(lambda: "gains_1.toml" in status(view))
     assert read_vehicle(running.folder / "car_1.toml") == {"phi_B": 0.3}
     assert read_parameters(running.folder / "gains_1.toml")["k_d"] == 2.0
-    press(desk, "save report")
-    eventually(lambda: "report_1.html" in status(desk))
-    desk.open((running.folder / "report_1.html").as_uri())
-    assert desk.figure("gear torque, N·m").pixels(BLUE) > 300
+    press(view, "save report")
+    eventually(lambda: "report_1.html" in status(view))
+    view.open((running.folder / "report_1.html").as_uri())
+    assert view.figure("gear torque, N·m").pixels(BLUE) > 300
 
 
-def press(desk: Browser, name: str) -> None:
-    box = desk.js(
+def press(view: Browser, name: str) -> None:
+    box = view.js(
         "(() => { const view = [...Bokeh.index.query((view) => view.model.name === arguments[0])][0];"
         " view.el.scrollIntoView({block: 'center'}); const r = view.el.getBoundingClientRect();"
         " return [r.left + r.width / 2, r.top + r.height / 2] })()",
         name,
     )
-    desk.click(tuple(box))
+    view.click(tuple(box))
 
 
 def test_only_this_machine_is_answered_and_no_page_of_another_origin(running: Served) -> None:

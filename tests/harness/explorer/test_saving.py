@@ -4,24 +4,26 @@ from pathlib import Path
 
 import pytest
 
-from fmus.parameter_files import read_parameters, read_vehicle
-from harness.cosimulation.runs import kept_loaded
-from harness.explorer.bench import Bench
-from harness.explorer.saving import save_files, save_report
-from harness.explorer.wanted import Wanted
+from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
+from driveline.harness.cosimulation.runs import kept_loaded
+from driveline.harness.explorer.request import Request
+from driveline.harness.explorer.request_runs import RequestRunner
+from driveline.harness.explorer.saving import save_files, save_report
 
 
 @pytest.fixture
-def bench(both_built: Path) -> Bench:
+def runner(both_built: Path) -> RequestRunner:
     given = {"parameters": {}, "controller": "DampingController", "folder": both_built, "build": "native"}
-    return Bench({("TwoMassDriveline", "DampingController"): ("TwoMassDriveline", given)})
+    return RequestRunner({("TwoMassDriveline", "DampingController"): ("TwoMassDriveline", given)})
 
 
-WANTED = Wanted("TwoMassDriveline", "tipin15", car={"phi_B": 0.3, "m": 2000.0}, gains={"k_d": 2.0})
+REQUEST = Request("TwoMassDriveline", "tipin15", car={"phi_B": 0.3, "m": 2000.0}, gains={"k_d": 2.0})
 
 
-def test_other_commands_read_the_files_and_what_was_given_at_the_start_is_in_them(bench: Bench, tmp_path: Path) -> None:
-    car, gains = save_files(bench, WANTED, {"L_phi": -0.007, "k_d": 9.0}, {"J_1": 0.06, "m": 1.0}, tmp_path)
+def test_other_commands_read_the_files_and_what_was_given_at_the_start_is_in_them(
+    runner: RequestRunner, tmp_path: Path
+) -> None:
+    car, gains = save_files(runner, REQUEST, {"L_phi": -0.007, "k_d": 9.0}, {"J_1": 0.06, "m": 1.0}, tmp_path)
     assert read_vehicle(car) == {"J_1": 0.06, "m": 2000.0, "phi_B": 0.3}
     read = read_parameters(gains)
     assert read["k_d"] == 2.0
@@ -29,23 +31,23 @@ def test_other_commands_read_the_files_and_what_was_given_at_the_start_is_in_the
     assert "rad, half the backlash" in car.read_text(encoding="utf-8")
 
 
-def test_the_gains_of_a_character_are_those_that_ran(bench: Bench, tmp_path: Path) -> None:
-    wanted = WANTED.but(character=1.0)
-    _, gains = save_files(bench, wanted, {}, {}, tmp_path)
-    ran = bench.parameters(wanted, "DampingController")
+def test_the_gains_of_a_character_are_those_that_ran(runner: RequestRunner, tmp_path: Path) -> None:
+    request = REQUEST.replaced(character=1.0)
+    _, gains = save_files(runner, request, {}, {}, tmp_path)
+    ran = runner.parameters(request, "DampingController")
     assert read_parameters(gains)["k_d"] == pytest.approx(ran["controller.k_d"], rel=1e-5)
 
 
-def test_no_file_is_replaced(bench: Bench, tmp_path: Path) -> None:
+def test_no_file_is_replaced(runner: RequestRunner, tmp_path: Path) -> None:
     (tmp_path / "gains_1.toml").write_text("mine", encoding="utf-8")
-    assert [path.name for path in save_files(bench, WANTED, {}, {}, tmp_path)] == ["car_2.toml", "gains_2.toml"]
-    assert [path.name for path in save_files(bench, WANTED, {}, {}, tmp_path)] == ["car_3.toml", "gains_3.toml"]
+    assert [path.name for path in save_files(runner, REQUEST, {}, {}, tmp_path)] == ["car_2.toml", "gains_2.toml"]
+    assert [path.name for path in save_files(runner, REQUEST, {}, {}, tmp_path)] == ["car_3.toml", "gains_3.toml"]
 
 
-def test_the_report_tells_the_car_and_the_gains(bench: Bench, tmp_path: Path) -> None:
+def test_the_report_tells_the_car_and_the_gains(runner: RequestRunner, tmp_path: Path) -> None:
     with kept_loaded():
-        page = save_report(bench, bench.answer(WANTED), [None], tmp_path)
+        page = save_report(runner, runner.answer(REQUEST), [None], tmp_path)
     text = page.read_text(encoding="utf-8")
     assert page.name == "report_1.html"
-    assert "wanted car phi_B" in text
+    assert "request car phi_B" in text
     assert "in 1 of 1 runs" in text

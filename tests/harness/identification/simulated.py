@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.identification.drive_train import STEPS, Parameters
-from harness.identification.driven import Drive
-from harness.identification.prediction import Noise
-from harness.identification.simulation import Simulator
-from harness.identification.torque_loop import TorqueLoop
-from harness.manoeuvres.prbs import shift_register
+from driveline.harness.identification.drive_train import STEPS, Parameters
+from driveline.harness.identification.model_inputs import Drive
+from driveline.harness.identification.prediction import Noise
+from driveline.harness.identification.segment_simulation import Simulator
+from driveline.harness.identification.torque_loop import TorqueLoop
+from driveline.harness.manoeuvres.prbs import shift_register
 
 T_S = 0.002
 P = Parameters(J_1=0.055, J_2=0.3, C=117.4, d=0.3, phi_B=0.157, g_T=1.02, g_L=0.99)

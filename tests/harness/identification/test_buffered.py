@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from harness.identification.buffered import Buffered
+from driveline.harness.identification.buffered import Buffered
 
 X, Y = ca.SX.sym("X", 2, 3), ca.SX.sym("y")
 FUNCTION = ca.Function("f", [X, Y], [X * Y, ca.sum1(X)])

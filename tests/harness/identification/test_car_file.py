@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fmus.parameter_files import read_vehicle
-from harness.identification import car_file
-from harness.identification.equivalent import equivalent
-from harness.identification.identify import WITH_LOAD, WITHOUT_LOAD, Identified
-from harness.identification.quality import Quality
-from harness.identification.response import Tyre
-from harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop
+from driveline.fmus.building.parameter_files import read_vehicle
+from driveline.harness.identification import car_file
+from driveline.harness.identification.drive_train_response import Tyre
+from driveline.harness.identification.identify import WITH_LOAD, WITHOUT_LOAD, Identified
+from driveline.harness.identification.quality import Quality
+from driveline.harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop
+from driveline.harness.identification.two_mass_equivalent import equivalent
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "g_L")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from harness.identification import drive_train
-from harness.identification.drive_train import STEPS, Y_D, Parameters
+from driveline.harness.identification import drive_train
+from driveline.harness.identification.drive_train import STEPS, Y_D, Parameters
 
 with_numbers: Any = drive_train
 """What is written for symbols takes numbers as well."""

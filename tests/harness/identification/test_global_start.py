@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from harness.identification.global_start import best_start
-from harness.identification.identify import BROAD
-from harness.identification.maximum_likelihood import maximise
-from harness.identification.prediction import Noise, Predictor
+from driveline.harness.identification.global_start import best_start
+from driveline.harness.identification.identify import WIDE_LOAD_NOISE
+from driveline.harness.identification.maximum_likelihood import maximise
+from driveline.harness.identification.prediction import Noise, Predictor
 from tests.harness.identification.simulated import NOISE, P, simulated
 
-WIDE = Noise(NOISE.omega_1, NOISE.T_mot, BROAD)
+WIDE = Noise(NOISE.omega_1, NOISE.T_mot, WIDE_LOAD_NOISE)
 FREE = ("J_2", "C", "phi_B", "d")
 
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.identification.drive_train import Parameters
-from harness.identification.global_start import best_start
-from harness.identification.identify import BROAD
-from harness.identification.maximum_likelihood import Found, maximise, moved, scales
-from harness.identification.prediction import Noise, Predictor
+from driveline.harness.identification.drive_train import Parameters
+from driveline.harness.identification.global_start import best_start
+from driveline.harness.identification.identify import WIDE_LOAD_NOISE
+from driveline.harness.identification.maximum_likelihood import Found, maximise, moved, scales
+from driveline.harness.identification.prediction import Noise, Predictor
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "g_L", "d")
@@ -18,7 +18,7 @@ FREE = ("J_2", "C", "phi_B", "g_L", "d")
 def found(start: Parameters, free: tuple[str, ...] = FREE, **drive: float) -> Found:
     """As `driveline identify` does: from the best of many starts, through a wide filter first."""
     given, predictor = simulated(**{"seed": 3, **drive}), Predictor(free)  # pyright: ignore[reportArgumentType]
-    wide = Noise(NOISE.omega_1, NOISE.T_mot, BROAD)
+    wide = Noise(NOISE.omega_1, NOISE.T_mot, WIDE_LOAD_NOISE)
     broad = maximise(predictor, given, best_start(predictor, given, start, wide), wide)
     return maximise(predictor, given, broad.p, NOISE, most=12)
 

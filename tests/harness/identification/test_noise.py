@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.identification.noise import white_noise
-from harness.manoeuvres.prbs import binary_torque
-from harness.simulate import simulate
+from driveline.harness.identification.noise import white_noise
+from driveline.harness.manoeuvres.prbs import binary_torque
+from driveline.harness.simulation.simulate import simulate
 from tests.harness.recordings.car import drive
 
 WITHIN = 0.1

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.identification.driven import Drive
-from harness.identification.output_error import Segments, _Linear, _Point
-from harness.identification.prediction import filtered
-from harness.identification.quality import near_starts
-from harness.identification.simulation import Simulator
+from driveline.harness.identification.model_inputs import Drive
+from driveline.harness.identification.output_error import Segments, _Linear, _Point
+from driveline.harness.identification.prediction import filtered
+from driveline.harness.identification.quality import near_starts
+from driveline.harness.identification.segment_simulation import Simulator
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "d")

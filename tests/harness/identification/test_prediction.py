@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.identification.drive_train import Parameters
-from harness.identification.driven import Drive
-from harness.identification.prediction import Innovations, Noise, Predictor, filtered
+from driveline.harness.identification.drive_train import Parameters
+from driveline.harness.identification.model_inputs import Drive
+from driveline.harness.identification.prediction import Innovations, Noise, Predictor, filtered
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 SETTLED = 100

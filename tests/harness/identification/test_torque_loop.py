@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop, fitted
-from harness.manoeuvres.prbs import binary_torque, shift_register
-from harness.recordings.source import RecordingError
-from harness.simulate import simulate
+from driveline.harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop, fitted
+from driveline.harness.manoeuvres.prbs import binary_torque, shift_register
+from driveline.harness.recordings.source import RecordingError
+from driveline.harness.simulation.simulate import simulate
 
 T_S = 0.002
 LOOP = TorqueLoop(tau=0.003, gain=1.02, offset=1.5, delay=0.0007)

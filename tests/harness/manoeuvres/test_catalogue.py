@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.manoeuvres.catalogue import COMPARED, MANOEUVRES
-from harness.manoeuvres.prbs import shift_register
-from harness.manoeuvres.signals import Held, lines
+from driveline.harness.manoeuvres.catalogue import COMPARED, MANOEUVRES
+from driveline.harness.manoeuvres.prbs import shift_register
+from driveline.harness.manoeuvres.signals import Held, lines
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.errors import DrivelineError
-from harness.manoeuvres.manoeuvre_file import read_manoeuvre
-from harness.manoeuvres.parts import KINDS
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
+from driveline.harness.manoeuvres.parts import KINDS
 from tests import ROOT
 
 EXAMPLE = ROOT / "examples" / "manoeuvres" / "overtaking.toml"
@@ -56,7 +56,7 @@ def test_only_the_duration_is_needed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("", "it is empty; a manoeuvre has description, duration"),
         ("# nothing", "it is empty"),
@@ -98,8 +98,8 @@ def test_only_the_duration_is_needed(tmp_path):
         ('duration = 5\nT_driver = [{ kind = "prbs", amplitude = 3, order = 9.0 }]', "order = 9.0: it must be a whole"),
     ],
 )
-def test_what_is_wrong_is_said_in_one_line_with_file_key_and_value(tmp_path, text, said):
-    with pytest.raises(DrivelineError, match=said) as refusal:
+def test_what_is_wrong_is_said_in_one_line_with_file_key_and_value(tmp_path, text, message):
+    with pytest.raises(DrivelineError, match=message) as refusal:
         read(tmp_path, text)
     assert str(refusal.value).startswith(f"{tmp_path / 'mine.toml'}: ")
     assert str(refusal.value).isprintable()
@@ -129,7 +129,7 @@ def test_a_table_needs_the_demand_alone_and_may_have_gaps(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("rows", "said"),
+    ("rows", "message"),
     [
         ("0,1\n2,3\n1,4\n", "line 4: time 1 s does not come after 2 s"),
         ("0,1\n2,nan\n", "line 3, column T_driver .*: nan is not a finite number"),
@@ -138,6 +138,6 @@ def test_a_table_needs_the_demand_alone_and_may_have_gaps(tmp_path):
         ("0,1\n3601,2\n", "it lasts 3601 s"),
     ],
 )
-def test_a_bad_table_is_refused(tmp_path, rows, said):
-    with pytest.raises(DrivelineError, match=said):
+def test_a_bad_table_is_refused(tmp_path, rows, message):
+    with pytest.raises(DrivelineError, match=message):
         read(tmp_path, f"Time [s],T_driver [Nm]\n{rows}", "mine.csv")

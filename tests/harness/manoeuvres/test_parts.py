@@ -3,9 +3,20 @@
 import numpy as np
 import pytest
 
-from harness.manoeuvres.parts import ManoeuvreError, chirp, constant, points, prbs, pulse, ramp, sine, step, summed
-from harness.manoeuvres.prbs import shift_register
-from harness.manoeuvres.signals import Lines
+from driveline.harness.manoeuvres.parts import (
+    ManoeuvreError,
+    chirp,
+    constant,
+    points,
+    prbs,
+    pulse,
+    ramp,
+    sine,
+    step,
+    summed,
+)
+from driveline.harness.manoeuvres.prbs import shift_register
+from driveline.harness.manoeuvres.signals import Lines
 
 T = np.arange(6001) * 1e-3
 
@@ -59,7 +70,7 @@ def test_a_sum_is_the_sum_at_every_instant_and_of_lines_again_lines():
 
 
 @pytest.mark.parametrize(
-    ("part", "said"),
+    ("part", "message"),
     [
         (lambda: step(float("nan"), 1.0), "at = nan: it must be a finite number"),
         (lambda: step(-0.1, 1.0), "at = -0.1: it must be 0 to 3600 s"),
@@ -71,8 +82,8 @@ def test_a_sum_is_the_sum_at_every_instant_and_of_lines_again_lines():
         (lambda: points([(0.0, float("inf"))]), "point 1: its value inf must be a finite number"),
     ],
 )
-def test_a_part_that_cannot_be_is_refused(part, said):
-    with pytest.raises(ManoeuvreError, match=said):
+def test_a_part_that_cannot_be_is_refused(part, message):
+    with pytest.raises(ManoeuvreError, match=message):
         part()
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from harness.manoeuvres import town_drive
-from harness.recordings.drive import read_drive
+from driveline.harness.manoeuvres import town_drive
+from driveline.harness.recordings.drive import read_drive
 
 
 def test_the_bundled_file_is_what_its_script_writes(tmp_path):

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import pytest
 
-from harness.metrics.declaration import Column, Metric, declared
-from harness.metrics.record import Metrics, RideMetrics
+from driveline.harness.metrics.declaration import Column, Metric, declared
+from driveline.harness.metrics.run_metrics import Metrics, RideMetrics
 
 
 @dataclass

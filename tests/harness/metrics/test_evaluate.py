@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.manoeuvres.signals import lines
-from harness.metrics.damage import damage
-from harness.metrics.declaration import Absent, declared
-from harness.metrics.evaluate import COLUMNS, T_S, evaluate, impact_speed
-from harness.metrics.oscillation import amplitude
-from harness.metrics.record import Metrics
-from harness.metrics.spectrum import band_rms
-from models.controller import supervision
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.signals import lines
+from driveline.harness.metrics.damage import damage
+from driveline.harness.metrics.declaration import Absent, declared
+from driveline.harness.metrics.evaluate import COLUMNS, T_S, evaluate, impact_speed
+from driveline.harness.metrics.oscillation import amplitude
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.metrics.spectrum import band_rms
+from driveline.models.controller import supervision
 
 
 def run(duration=6.0, interval=1e-3, **signals):

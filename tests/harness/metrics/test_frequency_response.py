@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from harness.metrics.frequency_response import amplitude_spectrum, frequency_response
+from driveline.harness.metrics.frequency_response import amplitude_spectrum, frequency_response
 
 T_s = 0.002
 

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 from scipy.signal import lsim
 
-from harness.manoeuvres.prbs import shift_register
+from driveline.harness.manoeuvres.prbs import shift_register
 
 RATIO, RADIUS = 9.0, 0.29
 J_1, J_2, J_V, C, D, K, T_0 = 0.055, 0.3, 1.5, 117.4, 0.3, 30.0, 6.0

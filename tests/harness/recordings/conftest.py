@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.recordings.measurement import Measurement, read_measurement
-
-from .car import RADIUS, RATIO
+from driveline.harness.recordings.measurement import Measurement, read_measurement
+from tests.harness.recordings.car import RADIUS, RATIO
 
 Write = Callable[[Mapping[str, np.ndarray]], Path]
 Read = Callable[..., Measurement]

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from harness.recordings.alignment import aligned
-from harness.recordings.channels import Channel
-from harness.recordings.source import RecordingError
-from harness.recordings.written import Written
+from driveline.harness.recordings.alignment import aligned
+from driveline.harness.recordings.channels import Channel
+from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.recordings.source import RecordingError
 
 
 def channel(quantity: str, time: np.ndarray, values: np.ndarray) -> Channel:
-    return Channel(quantity, quantity, "N.m", time, values, lambda k: f"sample {k + 1}", Written("N.m"))
+    return Channel(quantity, quantity, "N.m", time, values, lambda k: f"sample {k + 1}", FileUnit("N.m"))
 
 
 FAST, SLOW = np.arange(0.0, 1.0, 0.002), np.arange(0.001, 1.0, 0.004)

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.errors import MissingExtra
-from harness.recordings.channels import Channels
-from harness.recordings.drive import read_drive
-from harness.recordings.opening import opened
-from harness.recordings.source import RecordingError
+from driveline.harness.base.errors import MissingExtra
+from driveline.harness.recordings.channels import Channels
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.format_detection import opened
+from driveline.harness.recordings.source import RecordingError
 
 DBC = """VERSION ""
 BU_: ECU
@@ -116,7 +116,7 @@ def test_error_frames_and_remote_frames_hold_no_signals(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("frames", "said"),
+    ("frames", "expected"),
     [
         ([], "has no frames"),
         ([message(0.0, 0x123, b"\x00")], r"no frame is in .*bus\.dbc; there are 0x123"),
@@ -126,9 +126,9 @@ def test_error_frames_and_remote_frames_hold_no_signals(tmp_path: Path) -> None:
     ],
     ids=["empty", "unknown", "short", "backwards", "gap"],
 )
-def test_a_bad_log_is_refused_in_one_line(tmp_path: Path, frames: list, said: str) -> None:
+def test_a_bad_log_is_refused_in_one_line(tmp_path: Path, frames: list, expected: str) -> None:
     path, databases = write(tmp_path, frames)
-    with pytest.raises(RecordingError, match=said) as refusal:
+    with pytest.raises(RecordingError, match=expected) as refusal:
         Channels(path, databases=databases).read("T_mot")
     assert str(path) in str(refusal.value)
     assert str(refusal.value).isprintable()

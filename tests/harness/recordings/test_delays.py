@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from harness.recordings.delays import estimated
-
-from .car import drive
-from .conftest import Read
+from driveline.harness.recordings.delays import estimated
+from tests.harness.recordings.car import drive
+from tests.harness.recordings.conftest import Read
 
 
 def late(name: str, time: float) -> dict[str, np.ndarray]:

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.cosimulation.interface import Interface
-from harness.manoeuvres.follower import drive, needed_force
-from harness.manoeuvres.road import RoadLoad, Track, torque_limit
-from harness.recordings.drive import read_drive
-from harness.recordings.source import RecordingError
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.manoeuvres.road_load import RoadLoad, Track, torque_limit
+from driveline.harness.manoeuvres.speed_following import drive, needed_force
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.source import RecordingError
 from tests import ROOT
 
 HEADER = "Time [s],Velocity [km/h],Elevation [m],Throttle [%],Motor Torque [Nm]"
@@ -50,10 +50,10 @@ def test_columns_are_found_by_name_and_turned_into_si_units(write):
 
 def test_it_is_known_how_the_file_writes_speed_and_torque(write):
     path = write("0,36,1", "1,36,2", header="Time [s],Velocity [km/h],M [kNm]")
-    written = read_drive(path, {"T_mot": "-M"}).written
-    assert {name: str(each) for name, each in written.items()} == {"v": "in km/h", "T_mot": "in kNm"}
-    assert written["v"].factor == pytest.approx(1.0 / 3.6)
-    assert written["T_mot"].factor == 1e3, "a sign that was turned is no unit"
+    file_units = read_drive(path, {"T_mot": "-M"}).file_units
+    assert {name: str(each) for name, each in file_units.items()} == {"v": "in km/h", "T_mot": "in kNm"}
+    assert file_units["v"].factor == pytest.approx(1.0 / 3.6)
+    assert file_units["T_mot"].factor == 1e3, "a sign that was turned is no unit"
 
 
 def test_kilometres_per_hour_and_newton_metres(write):
@@ -63,7 +63,7 @@ def test_kilometres_per_hour_and_newton_metres(write):
 
 
 @pytest.mark.parametrize(
-    ("header", "said"),
+    ("header", "message"),
     [
         ("Time [s],Velocty [km/h],Elevation [m],Motor Torque [Nm]", r"no column Velocity.*did you mean Velocty"),
         (
@@ -81,8 +81,8 @@ def test_kilometres_per_hour_and_newton_metres(write):
         ("Time [s],Speed [m/s],x,Speed [m/s],Torque [Nm]", r"2 columns are called Speed \[m/s\]; rename all but one"),
     ],
 )
-def test_a_header_that_does_not_fit_is_explained(write, header, said):
-    with pytest.raises(RecordingError, match=said):
+def test_a_header_that_does_not_fit_is_explained(write, header, message):
+    with pytest.raises(RecordingError, match=message):
         read_drive(write("0,1,2,3", header=header))
 
 
@@ -110,7 +110,7 @@ def test_what_a_refused_cell_holds_is_shown_in_one_short_line(write):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (b"", "is empty"),
         (b"\xff\xfe", "is empty"),
@@ -120,10 +120,10 @@ def test_what_a_refused_cell_holds_is_shown_in_one_short_line(write):
         (b"0.0,36,500,1\n0.1,36,500,1\n", "line 1: there is no line of names"),
     ],
 )
-def test_what_is_no_text_or_no_csv_is_refused(tmp_path, content, said):
+def test_what_is_no_text_or_no_csv_is_refused(tmp_path, content, message):
     path = tmp_path / "trip.csv"
     path.write_bytes(content)
-    with pytest.raises(RecordingError, match=said):
+    with pytest.raises(RecordingError, match=message):
         read_drive(path)
 
 
@@ -134,15 +134,15 @@ def test_without_elevation_the_road_is_level(write):
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "message"),
     [
         ("0.1,721,501,3,1", r"line 3: Velocity \[km/h\] is 200\.278 m/s; at most 200 m/s"),
         ("0.1,36,-10001,3,1", r"line 3: Elevation \[m\] is -10001 m; at most 10000 m"),
         ("0.1,36,501,3,10001", r"line 3: Motor Torque \[Nm\] is 10001 N\.m; at most 10000 N\.m"),
     ],
 )
-def test_what_no_car_can_have_recorded_is_refused_with_its_line(write, line, said):
-    with pytest.raises(RecordingError, match=said):
+def test_what_no_car_can_have_recorded_is_refused_with_its_line(write, line, message):
+    with pytest.raises(RecordingError, match=message):
         read_drive(write(*rows(1), line))
 
 

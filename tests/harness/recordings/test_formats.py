@@ -6,16 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.errors import MissingExtra
-from harness.recordings.drive import Drive, read_drive
-from harness.recordings.source import RecordingError
-
-from .variants import TEXTS, Written, recording, table, write_arrow, write_mdf
+from driveline.harness.base.errors import MissingExtra
+from driveline.harness.recordings.drive import Drive, read_drive
+from driveline.harness.recordings.source import RecordingError
+from tests.harness.recordings.variants import TEXTS, Columns, recording, table, write_arrow, write_mdf
 
 DRIVE = recording()
 
 
-def as_read(drive: Written) -> Drive:
+def as_read(drive: Columns) -> Drive:
     """What reading must give."""
     time, v, elevation, T_mot = (values for values, _ in drive.values())
     return Drive("drive", time, v / 3.6, elevation, T_mot, {})

@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.recordings.measurement import Measurement, read_measurement
-from harness.recordings.source import RecordingError
-
-from .car import RADIUS, RATIO, drive
-from .conftest import Write
+from driveline.harness.recordings.measurement import Measurement, read_measurement
+from driveline.harness.recordings.source import RecordingError
+from tests.harness.recordings.car import RADIUS, RATIO, drive
+from tests.harness.recordings.conftest import Write
 
 RPM = 2.0 * np.pi / 60.0
 MOTOR = {
@@ -44,37 +43,39 @@ def test_the_speed_of_the_wheels_in_every_form(write: Write, wheels: dict[str, n
 
 
 @pytest.mark.parametrize(
-    ("heading", "factor", "said"),
+    ("heading", "factor", "message"),
     [
         ("Wheel Speed [rpm]", RATIO * RPM, "in rpm, wheel side"),
         ("Wheel Speed [km/h]", RATIO / RADIUS / 3.6, "in km/h, over ground"),
         ("omega_2 [1/min]", RPM, "in 1/min, motor side"),
     ],
 )
-def test_it_is_known_how_the_file_writes_the_wheel_speed(write: Write, heading: str, factor: float, said: str) -> None:
+def test_it_is_known_how_the_file_writes_the_wheel_speed(
+    write: Write, heading: str, factor: float, message: str
+) -> None:
     column = drive()["omega_2"] / factor
     found = read_measurement(write(MOTOR | {heading: column}), RATIO, RADIUS)
-    written = found.written["omega_2"]
-    assert str(written) == said
-    assert found.omega_2 / written.factor == pytest.approx(column)
-    assert found.omega_1 / found.written["omega_1"].factor == pytest.approx(MOTOR["Motor Speed [rpm]"])
-    assert str(found.written["T_mot"]) == "in Nm"
+    file_unit = found.file_units["omega_2"]
+    assert str(file_unit) == message
+    assert found.omega_2 / file_unit.factor == pytest.approx(column)
+    assert found.omega_1 / found.file_units["omega_1"].factor == pytest.approx(MOTOR["Motor Speed [rpm]"])
+    assert str(found.file_units["T_mot"]) == "in Nm"
 
 
 @pytest.mark.parametrize(
-    ("heading", "factor", "said"),
+    ("heading", "factor", "message"),
     [
         ("Wheel Torque [kNm]", -1e3 / RATIO, "in kNm, wheel side"),
         ("Load Torque [N.m]", 1.0, "in N·m, motor side"),
     ],
 )
-def test_it_is_known_how_the_file_writes_the_load(write: Write, heading: str, factor: float, said: str) -> None:
+def test_it_is_known_how_the_file_writes_the_load(write: Write, heading: str, factor: float, message: str) -> None:
     column = drive()["T_load"] / factor
     path = write(MOTOR | {"Wheel Speed [rad/s]": WHEEL, heading: column})
     found = read_measurement(path, RATIO, RADIUS)
-    assert str(found.written["T_load"]) == said
+    assert str(found.file_units["T_load"]) == message
     assert found.T_load is not None
-    assert abs(found.T_load) / found.written["T_load"].factor == pytest.approx(abs(column))
+    assert abs(found.T_load) / found.file_units["T_load"].factor == pytest.approx(abs(column))
 
 
 @pytest.mark.parametrize(

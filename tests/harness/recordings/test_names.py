@@ -5,14 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.recordings.headings import after_underscores, split
-from harness.recordings.measurement import read_measurement
-from harness.recordings.quantities import QUANTITIES, aliases
-from harness.recordings.source import RecordingError
-from harness.recordings.units import factor_to, is_unit
-
-from .car import RADIUS, RATIO, drive
-from .conftest import Write
+from driveline.harness.recordings.headings import after_underscores, split
+from driveline.harness.recordings.measurement import read_measurement
+from driveline.harness.recordings.quantities import QUANTITIES, aliases
+from driveline.harness.recordings.recording_units import factor_to, is_unit
+from driveline.harness.recordings.source import RecordingError
+from tests.harness.recordings.car import RADIUS, RATIO, drive
+from tests.harness.recordings.conftest import Write
 
 
 @pytest.mark.parametrize(
@@ -99,7 +98,7 @@ def test_names_of_a_file_are_known_beside_ours(write: Write, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         ("omega1 = ['n']", "omega1 is no quantity; did you mean omega_1"),
         ("omega_1 = 'n'", "omega_1 = n; it must be a list"),
@@ -108,10 +107,10 @@ def test_names_of_a_file_are_known_beside_ours(write: Write, tmp_path: Path) -> 
         ("omega_1 = [", r"names\.toml is not TOML: Invalid value"),
     ],
 )
-def test_a_file_of_names_that_is_refused(tmp_path: Path, content: str, said: str) -> None:
+def test_a_file_of_names_that_is_refused(tmp_path: Path, content: str, message: str) -> None:
     path = tmp_path / "names.toml"
     path.write_text(content, encoding="utf-8")
-    with pytest.raises(RecordingError, match=said):
+    with pytest.raises(RecordingError, match=message):
         aliases(path)
     with pytest.raises(RecordingError, match=r"there is no file of names .*none\.toml"):
         aliases(tmp_path / "none.toml")

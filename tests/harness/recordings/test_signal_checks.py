@@ -5,14 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.recordings.channels import Channel
-from harness.recordings.quantities import QUANTITIES
-from harness.recordings.signal_checks import CLIPPED, SHORTEST, check_signal
-from harness.recordings.source import RecordingError
-from harness.recordings.written import Written
-
-from .car import drive
-from .conftest import Read
+from driveline.harness.recordings.channels import Channel
+from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.recordings.quantities import QUANTITIES
+from driveline.harness.recordings.signal_checks import CLIPPED, SHORTEST, check_signal
+from driveline.harness.recordings.source import RecordingError
+from tests.harness.recordings.car import drive
+from tests.harness.recordings.conftest import Read
 
 
 def cut(samples: int, stride: int = 1) -> dict[str, np.ndarray]:
@@ -49,7 +48,7 @@ def test_a_channel_that_hardly_varies(name: str) -> None:
 
     def channel(swing: float) -> Channel:
         values = 100.0 + swing * (wave - wave.min()) / np.ptp(wave)
-        return Channel(name, name, QUANTITIES[name].unit, drive()["time"], values, str, Written("N.m"))
+        return Channel(name, name, QUANTITIES[name].unit, drive()["time"], values, str, FileUnit("N.m"))
 
     check_signal(Path("measured.csv"), channel(least + 1e-6))
     with pytest.raises(RecordingError, match=rf"{name} varies by .*; more than {least:g} .* are needed"):

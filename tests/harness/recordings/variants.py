@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-Written = dict[str, tuple[np.ndarray, str]]
+Columns = dict[str, tuple[np.ndarray, str]]
 """Name -> values and unit, in the units of the car's sensors."""
 
 
-def recording(samples: int = 200, interval: float = 0.01) -> Written:
+def recording(samples: int = 200, interval: float = 0.01) -> Columns:
     """A short drive; its numbers are exact in few decimals, so that every variant can hold them."""
     k = np.arange(samples)
     return {
@@ -22,7 +22,7 @@ def recording(samples: int = 200, interval: float = 0.01) -> Written:
 
 
 def table(
-    drive: Written,
+    drive: Columns,
     separator: str = ",",
     decimal: str = ".",
     heading: Callable[[str, str], str] = lambda name, unit: f"{name} [{unit}]",
@@ -48,7 +48,7 @@ def bare(name: str, unit: str) -> str:
     return name
 
 
-TEXTS: dict[str, Callable[[Written], bytes]] = {
+TEXTS: dict[str, Callable[[Columns], bytes]] = {
     "logger, comma, UTF-8": lambda drive: table(drive).encode(),
     "spreadsheet in German, semicolon, decimal comma, Latin-1": lambda drive: table(
         drive, ";", ",", lambda name, unit: f"{name} [{unit.replace('Nm', 'N·m')}]", end="\r\n"
@@ -82,7 +82,7 @@ TEXTS: dict[str, Callable[[Written], bytes]] = {
 }
 
 
-def write_mdf(drive: Written, path: Path) -> None:
+def write_mdf(drive: Columns, path: Path) -> None:
     """As a logger with two rates: the speed of the car in a group of its own, at every other sample."""
     from asammdf import MDF, Signal
 
@@ -96,7 +96,7 @@ def write_mdf(drive: Written, path: Path) -> None:
         file.save(path, overwrite=True)
 
 
-def write_arrow(drive: Written, path: Path, units_beside: bool = False) -> None:
+def write_arrow(drive: Columns, path: Path, units_beside: bool = False) -> None:
     """Parquet or Feather, by the ending of the file."""
     import pyarrow as pa
     from pyarrow import feather, parquet

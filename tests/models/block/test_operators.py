@@ -10,11 +10,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
-from models.block import operators
-from models.block.declaration import Boolean, Integer, Quantity, Real, variables
-from models.block.runner import runner
-from models.block.types import Block
+from driveline.models import (
+    damping_controller,
+    motor_torque_loop,
+    two_mass_driveline,
+    validation_vehicle,
+    wheel_speed_can,
+)
+from driveline.models.block import operators
+from driveline.models.block.declaration import Boolean, Integer, Quantity, Real, variables
+from driveline.models.block.runner import runner
+from driveline.models.block.types import Block
 
 BLOCKS = [
     model.BLOCK

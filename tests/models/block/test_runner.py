@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import two_mass_driveline
-from models.block.declaration import Real
-from models.block.integrator import Integrator
-from models.block.runner import Runner, runner
-from models.block.types import Block, SampledBlock
+from driveline.models import two_mass_driveline
+from driveline.models.block.declaration import Real
+from driveline.models.block.integrator import Integrator
+from driveline.models.block.runner import Runner, runner
+from driveline.models.block.types import Block, SampledBlock
 from tests.models.block.test_operators import every_block
 
 

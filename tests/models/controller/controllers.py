@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 
-from models import damping_controller
-from models.block.declaration import with_defaults
-from models.block.types import SampledBlock
-from models.comparators import speed_washout
-from models.controller.supervision import T_S, Input, State
+from driveline.models import damping_controller
+from driveline.models.block.declaration import with_defaults
+from driveline.models.block.types import SampledBlock
+from driveline.models.comparators import speed_washout
+from driveline.models.controller.supervision import T_S, Input, State
 
 OURS = damping_controller.BLOCK
 OTHER = replace(
@@ -58,7 +58,7 @@ def run_with_motor(block: SampledBlock, inputs: Iterable[Input], **parameters: f
     return states
 
 
-def driven(seconds: float, **changes: Any) -> list[Input]:
+def drive_inputs(seconds: float, **changes: Any) -> list[Input]:
     """A vehicle that speeds up evenly, a message every 20 ms; the motor signals are never the same twice."""
     inputs, oldest = [], OURS.Parameters().T_age
     for k in range(round(seconds / T_S)):
@@ -74,7 +74,7 @@ def driven(seconds: float, **changes: Any) -> list[Input]:
 def shaken(seconds: float, **changes: Any) -> list[Input]:
     """The drive train swings at 8 Hz, so that the damping torque is large."""
     swing = [6.0 * math.sin(2.0 * math.pi * 8.0 * k * T_S) for k in range(round(seconds / T_S))]
-    pairs = zip(driven(seconds, **changes), swing, strict=True)
+    pairs = zip(drive_inputs(seconds, **changes), swing, strict=True)
     return [u._replace(omega_1_meas=u.omega_1_meas + a) for u, a in pairs]
 
 

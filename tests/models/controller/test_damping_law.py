@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import damping_controller
-from models.controller import damping_law as law
-from models.controller.damping_law import LawState
-from models.controller.parts import Addition, Motion
+from driveline.models import damping_controller
+from driveline.models.controller import damping_law as law
+from driveline.models.controller.damping_law import LawState
+from driveline.models.controller.interfaces import Addition, Motion
 
 P = damping_controller.BLOCK.Parameters(
     phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, t_land=1.0, t_return=0.5

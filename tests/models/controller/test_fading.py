@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.controller.fading import toward
+from driveline.models.controller.fading import toward
 
 P = SimpleNamespace(t_fade=1.0)
 T_S = 0.25

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harness.analysis import monolithic
-from harness.metrics.spectrum import band_rms
-from models import two_mass_driveline, validation_vehicle
-from models.block.types import ContinuousBlock
-from models.controller.supervision import FALLBACK
+from driveline.harness.metrics.spectrum import band_rms
+from driveline.harness.studies.coupling import monolithic
+from driveline.models import two_mass_driveline, validation_vehicle
+from driveline.models.block.types import ContinuousBlock
+from driveline.models.controller.supervision import FALLBACK
 
 V_0 = 15.0
 ONSET, END, DURATION = 0.3, 0.9, 1.5
@@ -34,7 +34,7 @@ both_plants = pytest.mark.parametrize(
 
 
 @cache
-def driven(plant: ContinuousBlock, T_driver: float, enable: bool = True, fault: str | None = None) -> np.ndarray:
+def simulated(plant: ContinuousBlock, T_driver: float, enable: bool = True, fault: str | None = None) -> np.ndarray:
     def received(t: float, sent: Any) -> Any:
         faulty = fault is not None and ONSET <= t < END
         return sent._replace(omega_1_meas=FAULTS[fault or ""](sent.omega_1_meas)) if faulty else sent
@@ -49,7 +49,7 @@ def test_a_wrong_speed_of_a_coasting_car_leads_to_fallback_for_as_long_as_it_las
     plant: ContinuousBlock, fault: str
 ) -> None:
     """And half a second later all is as if it had never been."""
-    y, healthy = driven(plant, 0.0, fault=fault), driven(plant, 0.0)
+    y, healthy = simulated(plant, 0.0, fault=fault), simulated(plant, 0.0)
     t, fallback = y["time"], y["controller.status"] == FALLBACK
     assert all(fallback[(t >= ONSET + FOUND) & (t < END)])
     assert not any(fallback[(t < ONSET) | (t >= END + BACK)])
@@ -61,7 +61,11 @@ def test_a_wrong_speed_of_a_coasting_car_leads_to_fallback_for_as_long_as_it_las
 @pytest.mark.parametrize("fault", ["wrong sign", "halved"])
 def test_a_wrong_speed_under_torque_does_not_shake_the_gear(plant: ContinuousBlock, fault: str) -> None:
     """By more than 1.2 times what it does without control, or than the noise of the sensors makes it with control."""
-    y, alone, healthy = (driven(plant, 40.0, fault=fault), driven(plant, 40.0, enable=False), driven(plant, 40.0))
+    y, alone, healthy = (
+        simulated(plant, 40.0, fault=fault),
+        simulated(plant, 40.0, enable=False),
+        simulated(plant, 40.0),
+    )
     shaken, *others = (band_rms(run["plant.T_gear"], monolithic.INTERVAL) for run in (y, alone, healthy))
     assert shaken < 1.2 * max(others) + 0.1
     assert max(others) < 0.2

@@ -5,11 +5,11 @@ from collections.abc import Iterable
 
 import pytest
 
-from models.controller import signal_monitor as monitor
-from models.controller import torque_loop
-from models.controller.signal_monitor import MonitorState
-from models.controller.supervision import Input, Parameters
-from models.controller.torque_loop import LoopState
+from driveline.models.controller import signal_monitor as monitor
+from driveline.models.controller import torque_loop
+from driveline.models.controller.signal_monitor import MonitorState
+from driveline.models.controller.supervision import Input, Parameters
+from driveline.models.controller.torque_loop import LoopState
 
 P = Parameters(T_max=100.0, omega_max=500.0, e_jump=40.0, t_bad=1.0, t_frozen=1.0)
 T_S = 0.25

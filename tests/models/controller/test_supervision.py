@@ -9,10 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.block.declaration import Enumeration, variables
-from models.block.types import SampledBlock
-from models.controller import supervision
-from models.controller.supervision import FALLBACK, OFF, T_S, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
+from driveline.models.block.declaration import Enumeration, variables
+from driveline.models.block.types import SampledBlock
+from driveline.models.controller import supervision
+from driveline.models.controller.supervision import (
+    FALLBACK,
+    OFF,
+    T_S,
+    WITH_WHEEL_SPEED,
+    WITHOUT_WHEEL_SPEED,
+    Input,
+    State,
+)
 from tests import ROOT
 from tests.models.controller.controllers import (
     ABSURD,
@@ -22,7 +30,7 @@ from tests.models.controller.controllers import (
     any_input,
     any_signal,
     bump,
-    driven,
+    drive_inputs,
     every_controller,
     run,
     run_with_motor,
@@ -31,15 +39,17 @@ from tests.models.controller.controllers import (
 
 P = OTHER.Parameters()
 
-TOLD = re.compile(r"`(T_take_max|T_add_max|[te]_[a-z]+)`,? \(?([0-9.]+) (ms|s|rad/s|N\.m)\b")
+DOCUMENTED = re.compile(r"`(T_take_max|T_add_max|[te]_[a-z]+)`,? \(?([0-9.]+) (ms|s|rad/s|N\.m)\b")
 """A parameter with its default, as in "`e_jump`, 8 rad/s" or "`t_proof` (0.15 s)"."""
 
 
 def test_the_docs_tell_the_defaults() -> None:
     page = (ROOT / "docs" / "control.md").read_text(encoding="utf-8")
-    told = {name: float(value) * (1e-3 if unit == "ms" else 1.0) for name, value, unit in TOLD.findall(page)}
-    assert told.keys() >= {"T_take_max", "T_add_max", "t_bad", "t_apart", "t_proof", "e_jump", "e_wheel"}
-    assert told == {name: getattr(P, name) for name in told}
+    documented = {
+        name: float(value) * (1e-3 if unit == "ms" else 1.0) for name, value, unit in DOCUMENTED.findall(page)
+    }
+    assert documented.keys() >= {"T_take_max", "T_add_max", "t_bad", "t_apart", "t_proof", "e_jump", "e_wheel"}
+    assert documented == {name: getattr(P, name) for name in documented}
 
 
 @every_controller
@@ -111,7 +121,7 @@ def test_bad_motor_signals_lead_to_the_demand_of_the_driver_and_back(
 @every_controller
 @pytest.mark.parametrize("bad", [*ABSURD, 150.0 + 2.0 * P.e_max])
 def test_an_absurd_wheel_speed_only_ends_its_mode(block: SampledBlock, bad: float) -> None:
-    states = run(block, [u._replace(omega_2_can=bad) if k >= 100 else u for k, u in enumerate(driven(0.5))])
+    states = run(block, [u._replace(omega_2_can=bad) if k >= 100 else u for k, u in enumerate(drive_inputs(0.5))])
     assert states[100].status == WITH_WHEEL_SPEED
     assert {x.status for x in states[100 + round(P.t_stale / T_S) + 10 :]} == {WITHOUT_WHEEL_SPEED}
     assert states[-1].T_ref == pytest.approx(50.0, abs=3.0)
@@ -119,7 +129,7 @@ def test_an_absurd_wheel_speed_only_ends_its_mode(block: SampledBlock, bad: floa
 
 @every_controller
 def test_a_wheel_speed_that_is_not_valid_ends_its_mode_at_once(block: SampledBlock) -> None:
-    states = run(block, [u._replace(valid=not 100 <= k < 150) for k, u in enumerate(driven(0.5))])
+    states = run(block, [u._replace(valid=not 100 <= k < 150) for k, u in enumerate(drive_inputs(0.5))])
     without = [k for k, x in enumerate(states) if x.status == WITHOUT_WHEEL_SPEED]
     assert without == list(range(101, 151)), "messages came all the time"
 
@@ -127,7 +137,7 @@ def test_a_wheel_speed_that_is_not_valid_ends_its_mode_at_once(block: SampledBlo
 @every_controller
 def test_a_change_of_input_appears_one_sample_later(block: SampledBlock) -> None:
     """What is computed from the inputs at k T_s appears at (k+1) T_s, not before."""
-    p, states = block.Parameters(), run(block, driven(0.2, enable=False))
+    p, states = block.Parameters(), run(block, drive_inputs(0.2, enable=False))
     jump = ROLLING._replace(T_driver=90.0, enable=False)
     assert block.output(states[-1], jump, p).T_ref == 50.0
     assert block.output(block.update(states[-1], jump, p), ROLLING, p).T_ref == 90.0
@@ -288,7 +298,7 @@ def test_what_is_no_number_gives_estimator_and_law_a_new_start_when_it_is_over()
 
 def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> None:
     """For as long as it does: both cannot be right, and nothing says which one is."""
-    states = run(OTHER, [u._replace(omega_2_can=240.0) if k < 200 else u for k, u in enumerate(driven(1.0))])
+    states = run(OTHER, [u._replace(omega_2_can=240.0) if k < 200 else u for k, u in enumerate(drive_inputs(1.0))])
     statuses = [x.status for x in states]
     first = statuses.index(FALLBACK)
     assert first * T_S == pytest.approx(P.t_apart, abs=2.0 * T_S)
@@ -326,7 +336,7 @@ def test_a_motor_that_sets_off_against_its_torque_is_not_believed(block: Sampled
 def test_damping_that_feeds_an_oscillation_lets_go_until_it_is_calm_and_confirmed() -> None:
     swinging = shaken(0.5, valid=False)
     swinging = [u._replace(omega_1_meas=150.0 + 4.0 * (u.omega_1_meas - 150.0)) for u in swinging]
-    alone, confirmed = driven(0.5, valid=False), driven(0.5)
+    alone, confirmed = drive_inputs(0.5, valid=False), drive_inputs(0.5)
     statuses = [x.status for x in run_with_motor(OTHER, swinging + alone + confirmed)[1:]]
     let_go = statuses.index(FALLBACK)
     assert let_go * T_S < 0.35
@@ -410,17 +420,17 @@ def test_the_state_moves_by_one_sample_a_sample() -> None:
 @every_controller
 def test_a_lost_motor_speed_is_answered_within_a_fifth_of_a_period_of_the_drive_train(block: SampledBlock) -> None:
     """22 ms at 8 Hz, but not before a tenth: single lost samples must not end the damping."""
-    good = driven(0.3)
+    good = drive_inputs(0.3)
     lost = [u._replace(omega_1_meas=math.nan) if k >= 100 else u for k, u in enumerate(good)]
     statuses = [x.status for x in run(block, lost)][100:]
     assert statuses[round(0.012 / T_S)] != FALLBACK
     assert statuses[round(0.022 / T_S)] == FALLBACK
 
 
-@pytest.mark.parametrize(("bad", "apart", "doubtful"), [(0.0, 0.0, False), (T_S, 0.0, True), (0.0, T_S, True)])
+@pytest.mark.parametrize(("bad", "mismatch_time", "suspect"), [(0.0, 0.0, False), (T_S, 0.0, True), (0.0, T_S, True)])
 def test_motor_signals_are_doubtful_from_the_first_bad_or_contradicted_sample_on(
-    bad: float, apart: float, doubtful: bool
+    bad: float, mismatch_time: float, suspect: bool
 ) -> None:
     x = OTHER.start(Input(), P)
-    signals, heard = x.monitor._replace(bad=bad), x.wheels._replace(apart=apart)
-    assert supervision.is_doubtful(signals, heard) is doubtful
+    signals, wheel_state = x.monitor._replace(bad=bad), x.wheels._replace(mismatch_time=mismatch_time)
+    assert supervision.is_suspect(signals, wheel_state) is suspect

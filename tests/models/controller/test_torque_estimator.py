@@ -5,11 +5,11 @@ from itertools import pairwise
 
 import pytest
 
-from models import damping_controller
-from models.block.declaration import Real, variables
-from models.controller import torque_estimator as estimator
-from models.controller.supervision import T_S
-from models.controller.torque_estimator import HISTORY, Estimate, EstimatorState
+from driveline.models import damping_controller
+from driveline.models.block.declaration import Real, variables
+from driveline.models.controller import torque_estimator as estimator
+from driveline.models.controller.supervision import T_S
+from driveline.models.controller.torque_estimator import HISTORY, Estimate, EstimatorState
 from tests.models.controller.controllers import ROLLING
 
 BLOCK = damping_controller.BLOCK
@@ -75,8 +75,8 @@ def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
 
 def test_a_new_start_forgets_the_estimate_alone() -> None:
     x = EstimatorState(140.0, IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25)
-    again = estimator.restart(x, 90.0, -20.0, P)
-    assert again == x._replace(base=90.0, estimate=estimator.start(90.0, -20.0, True, P).estimate)
+    repeated = estimator.restart(x, 90.0, -20.0, P)
+    assert repeated == x._replace(base=90.0, estimate=estimator.start(90.0, -20.0, True, P).estimate)
 
 
 GAINS = P._replace(

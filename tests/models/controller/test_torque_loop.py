@@ -5,9 +5,9 @@ from math import cos, exp, sin, sqrt
 
 import pytest
 
-from models.controller import torque_loop
-from models.controller.supervision import T_S, Parameters
-from models.controller.torque_loop import LoopState
+from driveline.models.controller import torque_loop
+from driveline.models.controller.supervision import T_S, Parameters
+from driveline.models.controller.torque_loop import LoopState
 
 P = Parameters(T_max=180.0, tau=0.003)
 

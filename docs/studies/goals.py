@@ -1,0 +1,205 @@
+"""What the controller is to reach, beside what it reaches with noise that no tuning has seen.
+
+    python -m docs.studies.goals --parameters my_gains.toml
+    python -m docs.studies.goals --draws 300        # the row of the Monte-Carlo too
+
+Each figure is the mean over the seeds that are held out. Without a file it is that of the gains as they are stored.
+"""
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from driveline.fmus.building.parameter_files import read_parameters
+from driveline.harness.base.interruption import script
+from driveline.harness.design.design_trials import loop_parameters
+from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
+from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
+from driveline.harness.loop.places import BUILD, PLACES, PLANTS
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
+from driveline.harness.studies.robustness.case_runs import CaseRunner
+from driveline.harness.studies.robustness.robustness_campaign import campaign
+from driveline.harness.studies.robustness.summary import goal as told
+from driveline.harness.studies.robustness.summary import summaries
+from driveline.harness.views.terminal import print_table
+
+
+class Goal(NamedTuple):
+    """What a metric of a manoeuvre is to be at most, in the units of the table, on each of the plants.
+
+    Attributes:
+        over_none: it is what control adds to the metric.
+    """
+
+    manoeuvre: str
+    metric: str
+    values: tuple[float, float]
+    deviation: Deviation = NOMINAL
+    over_none: bool = False
+
+
+STEPS = ("tipin15", "tipin50", "tipin0", "tipout")
+
+GOALS = (
+    Goal("tipin15", "settling_time", (75, 100)),
+    Goal("tipin15", "overshoot", (11, 10)),
+    Goal("tipin15", "jerk_rms_to_50_Hz", (4.8, 10.5)),
+    Goal("tipin15", "impact_speed", (27, 25)),
+    Goal("tipin50", "settling_time", (70, 118)),
+    Goal("tipin50", "overshoot", (6, 5)),
+    Goal("tipin0", "settling_time", (80, 80)),
+    Goal("tipin0", "overshoot", (10, 8)),
+    Goal("tipout", "settling_time", (70, 114)),
+    Goal("tipout", "overshoot", (6, 6)),
+    Goal("tipout", "response_delay", (66, 86)),
+    Goal("launch", "settling_time", (125, 124)),
+    Goal("launch", "overshoot", (9, 4.5)),
+    Goal("launch", "jerk_rms_to_50_Hz", (3.8, 4.6)),
+    Goal("tipin15r", "gear_torque_rms", (1.2, 1.25)),
+    Goal("tipin15r", "impact_speed", (9.5, 9.5)),
+    Goal("drive", "gear_torque_rms", (1.95, 1.85)),
+    Goal("drive", "impact_speed", (13, 12)),
+    Goal("drive", "plateau_swing", (0.16, 0.20)),
+    Goal("creep", "gear_torque_rms", (1.2, 1.3)),
+    Goal("prbs", "gear_torque_rms", (5.6, 5.5)),
+    Goal("prbs", "jerk_rms_to_50_Hz", (7.4, 22.5)),
+    *(Goal(name, "response_delay", (18, 27), over_none=True) for name in STEPS),
+    Goal("launch", "response_delay", (31, 35), over_none=True),
+    *(Goal(name, "withheld_time", (12, 14)) for name in STEPS),
+    *(Goal(name, "stationary_torque_change", (0.02, 0.02)) for name in STEPS),
+    Goal("tipin15", "overshoot", (22, 20), SLOW_MOTOR),
+)
+
+MONTE_CARLO = ("100 %; 0.21 / 0.25 s", "100 %; 0.21 / 0.19 s")
+"""What `monte_carlo` is to say of each of the plants."""
+
+UNITS = {"settling_time": (1e3, "ms"), "response_delay": (1e3, "ms"), "withheld_time": (1e3, "ms")} | {
+    "overshoot": (1e2, "%"),
+    "jerk_rms_to_50_Hz": (1.0, "m/s3"),
+    "impact_speed": (1.0, "rad/s"),
+    "gear_torque_rms": (1.0, "N.m"),
+    "plateau_swing": (1.0, "N.m"),
+    "stationary_torque_change": (1.0, "N.m"),
+}
+"""Of the table: factor and name, by metrics."""
+
+
+MET = 1.005
+"""Share of a goal that rounds to it."""
+
+Reached = Mapping[tuple[Goal, str], float]
+"""The magnitude of what a goal is set for on a plant, in the unit of the table."""
+
+
+class Run(NamedTuple):
+    """One that is measured."""
+
+    plant: str
+    manoeuvre: str
+    deviation: Deviation
+    control: bool
+    seed: int
+
+
+def runs(goals: tuple[Goal, ...] = GOALS, seeds: tuple[int, ...] = HELD_OUT_SEEDS) -> list[Run]:
+    """Those that tell how far the goals are reached, each once."""
+    found = [(plant, goal.manoeuvre, goal.deviation, True) for plant in PLANTS for goal in goals]
+    found += [(plant, goal.manoeuvre, goal.deviation, False) for plant in PLANTS for goal in goals if goal.over_none]
+    return [Run(*each, seed) for each in dict.fromkeys(found) for seed in seeds]
+
+
+def measured(run: Run, parameters: Mapping[str, Any], folder: Path = BUILD, build: str | None = None) -> Metrics:
+    """The metrics of a run with these parameters of the controller."""
+    manoeuvre = MANOEUVRES[run.manoeuvre]
+    given = deviating(parameters, run.plant, PLACES["controller"][0], run.deviation)
+    results = simulate(manoeuvre, run.plant, run.control, parameters=given, seed=run.seed, folder=folder, build=build)
+    return evaluate(results, manoeuvre)
+
+
+def all_measured(parameters: Mapping[str, Any]) -> dict[Run, Metrics]:
+    """The metrics of all runs with these parameters of the controller, made on all cores."""
+    todo = runs()
+    return dict(zip(todo, run_many(lambda run: measured(run, parameters), todo), strict=True))
+
+
+def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
+    """The magnitude of what a goal is set for, in the unit of the table: its mean over the seeds."""
+
+    def mean(control: bool) -> float:
+        its = (plant, goal.manoeuvre, goal.deviation, control)
+        return float(np.mean([abs(getattr(metrics, goal.metric)) for run, metrics in found.items() if run[:4] == its]))
+
+    value = mean(True) - mean(False) if goal.over_none else mean(True)
+    return UNITS[goal.metric][0] * value
+
+
+def all_reached(found: Mapping[Run, Metrics]) -> dict[tuple[Goal, str], float]:
+    """Of all goals on all plants."""
+    return {(goal, plant): reached(goal, plant, found) for goal in GOALS for plant in PLANTS}
+
+
+def most(goal: Goal, plant: str) -> float:
+    """What is to be reached."""
+    return goal.values[PLANTS.index(plant)]
+
+
+def missed(values: Reached) -> list[tuple[Goal, str]]:
+    """The goals that are not reached."""
+    return [key for key, value in values.items() if value > MET * most(*key)]
+
+
+def monte_carlo(draws: int, parameters: Mapping[str, Any], folder: Path = BUILD, build: str | None = None) -> list[str]:
+    """What is bounded and quiet, and 95 % of the settling times of tip-in and launch, of so many draws on each plant.
+
+    Args:
+        parameters: of the controller.
+    """
+    controller = PLACES["controller"][0]
+    common = {"folder": folder, "build": build}
+    settings = {plant: common | {"parameters": loop_parameters(parameters, plant)} for plant in PLANTS}
+    runner = CaseRunner({(plant, controller): (plant, settings[plant]) for plant in PLANTS}, seed=1)
+    found = summaries(campaign(runner, range(1, draws + 1)))
+    return [told(found, plant, controller) for plant in PLANTS]
+
+
+def title(goal: Goal) -> str:
+    """The goal in words."""
+    slow = f", tau x{goal.deviation.tau:g}" if goal.deviation.tau != 1.0 else ""
+    over = " over none" if goal.over_none else ""
+    return f"{goal.manoeuvre}{slow}: {goal.metric.replace('_', ' ')}{over}, {UNITS[goal.metric][1]}"
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--parameters", type=Path, help="of the controller")
+    parser.add_argument("--draws", type=int, default=0, help="of the Monte-Carlo (default: none)")
+    args = parser.parse_args(arguments)
+    parameters = read_parameters(args.parameters) if args.parameters else {}
+    found = all_measured(parameters)
+    table = Table("goal", *(f"{plant}: is" if k == 0 else "at most" for plant in PLANTS for k in range(2)))
+    for goal in GOALS:
+        cells = [
+            f"{value:.3g}"
+            for plant, value in zip(PLANTS, goal.values, strict=True)
+            for value in (reached(goal, plant, found), value)
+        ]
+        table.add_row(title(goal), *cells)
+    if args.draws > 0:
+        pairs = zip(monte_carlo(args.draws, parameters), MONTE_CARLO, strict=True)
+        table.add_row(
+            f"{args.draws} draws: bounded and quiet; 95 % of settling of tip-in / launch",
+            *(cell for pair in pairs for cell in pair),
+        )
+    print_table(table)
+
+
+if __name__ == "__main__":
+    script(main)

@@ -1,0 +1,50 @@
+"""Active damping of electric drive trains: the closed loop of FMI 2.0 co-simulation FMUs, from Python.
+
+    import driveline
+
+    tipin = driveline.MANOEUVRES["tipin15"]
+    results = driveline.simulate(tipin, plant="ValidationVehicle")
+    print(driveline.evaluate(results, tipin).settling_time)  # in s
+
+What stands in `__init__.pyi` is public; all else can change from one release to the next. A name is imported when it
+is asked for first, so that a program waits for nothing that it does not use.
+"""
+
+import ast
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+_CHECKOUT = Path(__file__).resolve().parents[1]
+if (_CHECKOUT / "build_fmus.py").is_file():  # its folders models, fmus and harness are packages of this one
+    __path__.insert(0, str(_CHECKOUT))
+
+
+@cache
+def _public() -> dict[str, tuple[str, str]]:
+    """Module and name there of each public name, as `__init__.pyi` declares them."""
+    declared = ast.parse(Path(__file__).with_suffix(".pyi").read_bytes())
+    return {
+        alias.asname or alias.name: (f".{node.module}", alias.name)
+        for node in declared.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__all__":
+        return __dir__()
+    if name not in _public():
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    place, attribute = _public()[name]
+    module = import_module(place, __name__)
+    if not hasattr(module, attribute):  # a module in a package
+        return import_module(f"{place}.{attribute}", __name__)
+    globals()[name] = found = getattr(module, attribute)
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted(_public())

@@ -1,0 +1,1 @@
+"""Building FMUs: those of the project, those of a user, with the parameters of files."""

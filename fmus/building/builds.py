@@ -1,0 +1,201 @@
+"""Building FMUs: those of the project by name, or one of a Python file of the user's own."""
+
+import logging
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from difflib import get_close_matches
+from functools import partial
+from importlib.util import find_spec
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from ..description.variables import interface
+from ..errors import BuildError
+from ..fmu import Fmu
+from ..origin import is_stale, origin_of
+from .own_file import fmu_in, place
+
+BUILDS = ("python", "native", "both")
+PLATFORMS = ("host", "all")
+
+NATIVE_FOLDER = "native"
+"""Folder of the native builds, in that of the others."""
+
+LOG = logging.getLogger(__name__)
+
+Builder = Callable[[Fmu, Path], Path]
+"""Builds an FMU into a folder and returns the path of its file."""
+
+
+class NotPossible(BuildError):
+    """Something that a build needs is missing; the text says what."""
+
+
+def build_fmus(
+    names: Sequence[str | Fmu],
+    folder: Path,
+    builds: str | None = None,
+    platform: str = "host",
+    vehicle: Path | None = None,
+    parameters: Path | None = None,
+) -> Iterator[Path]:
+    """Builds FMUs, one after the other; yields the path of each file.
+
+    Args:
+        names: of FMUs of the project, or paths of Python files with a block of the user's own, of which there is a
+            native build only, or these blocks themselves; none for all of the project but the comparators.
+        folder: for the files; the native ones go to NATIVE_FOLDER in it.
+        builds: one of BUILDS; None for each that is possible here.
+        platform: of the native builds, one of PLATFORMS.
+        vehicle, parameters: files with start values of the car's and of the controller's parameters.
+
+    Raises:
+        BuildError: a name is unknown, a build is not possible here, a file is refused, or a block of the user's own
+            cannot be built.
+    """
+    from ..catalogue import EVERY, FMUS
+    from .parameter_files import read_files, require_taken
+
+    fmus = [name if isinstance(name, Fmu) else _named(name) for name in _each_once(names or list(FMUS))]
+    own = [fmu for fmu in fmus if fmu not in EVERY.values()]
+    built = [fmu.name for fmu in fmus]
+    if same := sorted({name for name in built if built.count(name) > 1}):
+        raise BuildError(f"{same[0]} is the name of several FMUs, which would overwrite each other")
+    if own and builds in ("python", "both"):
+        raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
+    of_the_project = builders(builds, platform) if len(own) < len(fmus) else []
+    files = [Path(name) for name in names if isinstance(name, str) and name.endswith(".py")]
+    of_own = [_guarded(builder, files) for builder in builders("native", platform)] if own else []
+    start_values = read_files(vehicle, parameters, own)
+    require_taken(parameters, {name for fmu in fmus for name in fmu.block.Parameters._fields}, " or ".join(built))
+    for fmu in fmus:
+        for build in of_own if fmu in own else of_the_project:
+            yield build(fmu.started_with(start_values), folder)
+
+
+def _each_once(names: Sequence[str | Fmu]) -> list[str | Fmu]:
+    return [name for k, name in enumerate(names) if name not in names[:k]]
+
+
+def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
+    """Builds those FMUs of the project that are missing or stale, as they were built: with their start values and
+    for their platforms.
+
+    Args:
+        names: of FMUs of the project.
+        folder: of the files; the native ones are in NATIVE_FOLDER in it.
+        build: "python" or "native".
+
+    Returns:
+        The files that were made; none if all were there and up to date.
+
+    Raises:
+        NotPossible: there is something to build, and it is not possible here.
+        BuildError: start values that one was built with are refused by what it is now.
+    """
+    where = folder / NATIVE_FOLDER if build == "native" else folder
+    made = []
+    for name in names:
+        if is_stale(path := where / f"{name}.fmu"):
+            from ..catalogue import EVERY  # what is up to date is found to be so without
+
+            origin = origin_of(path)
+            platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
+            fmu = _as_built(EVERY[name], origin.start_values, path) if origin else EVERY[name]
+            made += [builder(fmu, folder) for builder in builders(build, platform)]
+    return made
+
+
+def _as_built(fmu: Fmu, start_values: Mapping[str, Any], path: Path) -> Fmu:
+    """The FMU as it is now, with the start values that the one at `path` was built with.
+
+    Raises:
+        BuildError: it does not take them any more.
+    """
+    parameters = {variable.name: variable for variable in interface(fmu.block) if variable.causality == "parameter"}
+    for name, value in start_values.items():
+        low, high = parameters[name].bounds() if name in parameters else (inf, -inf)
+        if not low <= value <= high:
+            allowed = parameters[name].allowed() if name in parameters else "no such parameter"
+            raise BuildError(
+                f"{path} is stale and was built with {name} = {value!r}; {fmu.name} now takes {allowed}: "
+                f"build it again with --vehicle and --parameters"
+            )
+    return fmu.started_with(start_values)
+
+
+def _named(name: str) -> Fmu:
+    from ..catalogue import EVERY
+
+    if name in EVERY:
+        return EVERY[name]
+    if name.endswith(".py"):
+        return fmu_in(Path(name))
+    if name.endswith(".toml"):
+        raise BuildError(f"{name} is no FMU; a car is given as --vehicle {name}, its gains as --parameters")
+    near = get_close_matches(name, EVERY, n=2, cutoff=0.5)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(EVERY)}"
+    raise BuildError(f"unknown FMU {name}; {hint}")
+
+
+def builders(builds: str | None, platform: str = "host") -> list[Builder]:
+    """What makes the chosen builds.
+
+    Args:
+        builds: one of BUILDS; None for each that is possible.
+        platform: of the native build, one of PLATFORMS.
+
+    Raises:
+        NotPossible: a build that is asked for cannot be made here. Why native is left out otherwise is logged.
+    """
+    from ..python.packaging import build
+
+    if builds == "python":
+        return [build]
+    try:
+        native = _native_builder(platform)
+    except NotPossible as reason:
+        if builds is None and platform == "host":
+            LOG.warning("there is no native build: %s", reason)
+            return [build]
+        raise
+    return [native] if builds == "native" else [build, native]
+
+
+def _native_builder(platform: str) -> Builder:
+    if find_spec("casadi") is None:
+        raise NotPossible(
+            "the native build needs the package casadi: "
+            "install the extra `native`, as in pip install 'driveline-damping[native]'"
+        )
+    from ..native import compiler
+    from ..native.packaging import build_native
+
+    try:
+        if platform == "all":
+            compiler.zig_compiler()
+        else:
+            compiler.host_compiler()
+    except compiler.CompilerError as reason:
+        raise NotPossible(str(reason)) from reason
+    binaries = compiler.all_binaries if platform == "all" else compiler.host_binaries
+    return partial(_into_own_folder, partial(build_native, binaries=binaries))
+
+
+def _into_own_folder(builder: Builder, fmu: Fmu, folder: Path) -> Path:
+    return builder(fmu, folder / NATIVE_FOLDER)
+
+
+def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
+    """The builder for blocks that are not ours, of these files or a notebook: whatever goes wrong is a BuildError."""
+
+    def build(fmu: Fmu, folder: Path) -> Path:
+        try:
+            return builder(fmu, folder)
+        except OSError:
+            raise
+        except Exception as error:
+            where = f"{place(error, files)}: " if files else ""
+            raise BuildError(f"{where}{fmu.name} cannot be built: {type(error).__name__}: {error}") from error
+
+    return build

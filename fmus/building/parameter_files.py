@@ -1,0 +1,186 @@
+"""Parameters in files: what belongs to a car in one, what is set in its controller in the other.
+
+Both are flat TOML, `J_1 = 0.09`, with the names and units that the blocks declare. An entry of a vehicle file
+is one for every block that declares the name: plant, motor, bus and the controller's model of them. What no
+file names keeps its start value.
+"""
+
+import re
+import tomllib
+from collections.abc import Collection, Iterable, Mapping
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from ...models.block.declaration import Integer, Real
+from .. import two_mass_driveline
+from ..catalogue import EVERY, FMUS
+from ..description.variables import LARGEST, Variable, interface
+from ..errors import ParameterFileError
+from ..fmu import Fmu
+
+OF_A_RUN = {
+    "v_0": "the manoeuvre sets it",
+    "T_0": "the manoeuvre sets it",
+    "seed": "--seed sets it for a run",
+    "recorded_load": "--set plant.recorded_load=true sets it for a run",
+}
+"""Parameters that stand in no file, and what sets them."""
+
+OF_CAR = "it is one of the car, for the file of --vehicle"
+OF_CONTROLLER = "it is one of the controller, for the file of --parameters"
+
+KINDS: Mapping[str, tuple[Any, str]] = {
+    "Real": (int | float, "a finite number"),
+    "Integer": (int, "a whole number"),
+    "Boolean": (bool, "true or false"),
+}
+"""By FMI type the Python type of an entry, and what it is called."""
+
+Owners = Mapping[str, Collection[tuple[str, Variable]]]
+"""For each parameter the FMUs that have it, and how each declares it."""
+
+
+def read_files(
+    vehicle: Path | None, parameters: Path | None, own: Iterable[Fmu] = (), others: Collection[str] = ()
+) -> dict[str, Any]:
+    """The entries of both files, of which either may be absent; see `read_vehicle` and `read_parameters`."""
+    of_car = read_vehicle(vehicle, own, others) if vehicle else {}
+    return of_car | (read_parameters(parameters) if parameters else {})
+
+
+def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = ()) -> dict[str, Any]:
+    """The entries of a vehicle file by name.
+
+    Args:
+        own: FMUs with blocks of the user's own, whose parameters may stand in it too.
+        others: names of parameters that may stand in it too, of FMUs that someone else has made.
+
+    Raises:
+        ParameterFileError: names the lines with what is not known, no number or out of range.
+    """
+    everything, of_car = _owners([*EVERY.values(), *own]), _of_car(own)
+    of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
+    return _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
+
+
+def read_parameters(path: Path) -> dict[str, Any]:
+    """The entries of a file with parameters of the controller, as `driveline design` writes it, by name.
+
+    Raises:
+        ParameterFileError: as for `read_vehicle`.
+    """
+    everything, of_car = _owners(EVERY.values()), dict.fromkeys(_of_car(), OF_CAR)
+    of_controller = {name: everything[name] for name in everything if name not in of_car}
+    return _read(path, of_controller, (), of_car | OF_A_RUN)
+
+
+def require_taken(parameters: Path | None, taken: Collection[str], by: str) -> None:
+    """Refuses a file with parameters of a controller that is not there, which would change nothing.
+
+    Args:
+        taken: the names of the parameters of all that the file is for.
+        by: what that is.
+
+    Raises:
+        ParameterFileError: names the entries that nothing takes.
+    """
+    if parameters and (lacking := [name for name in read_parameters(parameters) if name not in taken]):
+        raise ParameterFileError(f"{parameters}: {by} has no parameter {', '.join(lacking)}")
+
+
+def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[str]]) -> dict[str, Any]:
+    """Entries of a file as parameters of a loop, `instance.name` -> value, for every instance that has the name.
+
+    Args:
+        instances: the names of the parameters of each instance.
+    """
+    return {
+        f"{instance}.{name}": values[name] for instance, names in instances.items() for name in values if name in names
+    }
+
+
+def units() -> dict[str, str]:
+    """The unit of every entry that our own blocks have and that is a Real; "1" for none."""
+    declared = {name: owners[0][1].declaration for name, owners in _owners(EVERY.values()).items()}
+    return {name: declaration.unit for name, declaration in declared.items() if isinstance(declaration, Real)}
+
+
+def seeds() -> tuple[int, int]:
+    """The least and the largest seed that all blocks with noise take."""
+    declared = [variable.declaration for _, variable in _owners(EVERY.values())["seed"]]
+    bounds = [(of.minimum, of.maximum) for of in declared if isinstance(of, Integer)]
+    return max(least for least, _ in bounds), min(most for _, most in bounds)
+
+
+def of_plants() -> set[str]:
+    """Names of the parameters of a car that the design model has."""
+    return {quantity for quantity in two_mass_driveline.FMU.block.Parameters._fields if quantity not in OF_A_RUN}
+
+
+def _of_car(own: Iterable[Fmu] = ()) -> list[str]:
+    """Names of the parameters of everything but the controllers, which are what takes the driver's demand."""
+    fmus = [fmu for fmu in FMUS.values() if "T_driver" not in fmu.block.Input._fields]
+    return [name for name in _owners([*fmus, *own]) if name not in OF_A_RUN]
+
+
+def _owners(fmus: Iterable[Fmu]) -> dict[str, list[tuple[str, Variable]]]:
+    found: dict[str, list[tuple[str, Variable]]] = {}
+    for fmu in fmus:
+        for variable in interface(fmu.block):
+            if variable.causality == "parameter":
+                found.setdefault(variable.name, []).append((fmu.name, variable))
+    return found
+
+
+def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Mapping[str, str]) -> dict[str, Any]:
+    if not path.is_file():
+        raise ParameterFileError(f"there is no file {path}")
+    try:
+        text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+        entries = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, brackets in brackets
+        raise ParameterFileError(f"{path} is not TOML: {error}") from error
+    values, problems = {}, []
+    for name, entry in entries.items():
+        try:
+            if isinstance(entry, dict):
+                raise ParameterFileError(f"{name} is a table; an entry stands alone, for all that have it: J_1 = 0.09")
+            if name in set_elsewhere:
+                raise ParameterFileError(f"{name} does not belong here: {set_elsewhere[name]}")
+            if name not in known and name not in others:
+                raise ParameterFileError(f"{name} is not known{_nearest(name, {*known, *others})}")
+            values[name] = _value(name, entry, known.get(name, ()))
+        except ParameterFileError as problem:
+            problems.append(f"{path}, line {_line(text, name)}: {problem}")
+    if problems:
+        raise ParameterFileError("\n".join(problems))
+    return values
+
+
+def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> Any:
+    """The value of an entry, which all that have the parameter must allow."""
+    kind = next((variable.fmi_type for _, variable in owners), "Real")
+    python_type, meant = KINDS[kind]
+    if (
+        not isinstance(entry, python_type)
+        or isinstance(entry, bool) != (kind == "Boolean")
+        or not abs(entry) <= LARGEST
+    ):
+        raise ParameterFileError(f"{name} = {entry!r:.40}: it must be {meant}")
+    for fmu, variable in owners:
+        low, high = variable.bounds()
+        if not low <= entry <= high:
+            raise ParameterFileError(f"{name} = {entry:g}: {fmu} takes {variable.allowed()}")
+    return float(entry) if kind == "Real" else entry
+
+
+def _nearest(name: str, known: Collection[str]) -> str:
+    near = get_close_matches(name, sorted(known), n=3)
+    return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+def _line(text: str, name: str) -> int:
+    """Number of the line where the entry or table of that name begins."""
+    begins = re.compile(rf"""\s*\[*\s*["']?{re.escape(name)}["']?\s*[=.\]]""")
+    return next((k for k, line in enumerate(text.splitlines(), 1) if begins.match(line)), 1)

@@ -1,1 +1,0 @@
-"""Design and analysis with the models themselves; nothing else in the harness imports them."""

@@ -1,0 +1,84 @@
+"""What `driveline identify --design` does with a car: gains, the rebuilt controller, and what they are worth."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from shlex import quote
+from typing import Any
+
+from rich.table import Table
+
+from ..base.errors import DrivelineError
+from ..loop.built_fmus import built
+from ..loop.places import BUILD, PLACES, PLANTS
+from .design import designed
+from .printing import Printer
+from .search_options import write_gains
+
+
+def require_fmus() -> None:
+    """Builds the FMUs in which controllers are compared, where they are missing or stale.
+
+    Raises:
+        DrivelineError: they cannot be built.
+    """
+    for plant in PLANTS:
+        built(plant, BUILD)
+
+
+def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer) -> Iterator[Path]:
+    """Gains for the car of a vehicle file and the controller built with both, beside it; yields the paths.
+
+    What the controller was before and what it is now on that car is printed.
+
+    Args:
+        vehicle: entries of the vehicle file that was known before.
+        replace: whether other gains may be replaced.
+
+    Raises:
+        DesignError: there is no controller for this car.
+        DrivelineError: there are other gains, the vehicle file has what the controller cannot be set to, or the
+            controller cannot be built.
+    """
+    from ...fmus.building.builds import build_fmus
+    from ...fmus.building.parameter_files import read_files, read_vehicle
+    from ...fmus.errors import BuildError
+    from ..design.design_weights import WEIGHTS
+    from ..design.redesign import softened
+
+    gains = car.with_name(f"{car.stem}_gains.toml")
+    weights = softened(read_vehicle(car), vehicle)
+    if weights != WEIGHTS:
+        share = weights.washout / WEIGHTS.washout
+        out.say(
+            f"washout at {share:.2f} of its frequency, for less overshoot in the mean than before: "
+            "torque is withheld longer"
+        )
+    try:
+        write_gains(designed(car, weights), gains, replace)
+        yield gains
+        yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
+    except BuildError as reason:
+        raise DrivelineError(str(reason)) from reason
+    out.say(f"to drive with them: driveline simulate --vehicle {quote(str(car))} --parameters {quote(str(gains))}")
+    if not out.silent:
+        from ..views.terminal import print_table
+
+        print_table(_compared(read_files(car, None), vehicle, read_files(car, gains)))
+
+
+def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]) -> Table:
+    """The car, by the entries of its vehicle file, with what the controller assumed before and after."""
+    from ..design.redesign import MANOEUVRES, worth
+
+    table = Table(title="settling time in ms and overshoot in %; each plant with what the vehicle file has of it")
+    table.add_column("plant")
+    table.add_column("manoeuvre")
+    for what in ("settling", "overshoot"):
+        for when in ("before", "after"):
+            table.add_column(f"{what}\n{when}", justify="right")
+    for plant in PLANTS:
+        for manoeuvre in MANOEUVRES:
+            both = [worth(plant, manoeuvre, car, assumed) for assumed in (before, after)]
+            cells = [f"{1e3 * settling:.0f}" for settling, _ in both] + [f"{1e2 * over:.1f}" for _, over in both]
+            table.add_row(plant, manoeuvre, *cells)
+    return table

@@ -1,0 +1,137 @@
+"""The steps of the master as compiled code, steps.c: what is left beside the FMUs is next to nothing.
+
+The shared library is made when the project is installed, where there is a C compiler. Without it, or if
+its source has changed since, the loop runs in Python, with the same results.
+"""
+
+from collections.abc import Sequence
+from ctypes import CDLL, Structure, addressof, byref, c_char, c_double, c_int32, c_size_t, c_uint32, c_void_p, cast
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .call_trace import NUMBERS, current
+from .calls import Call
+from .input_lines import Line
+from .steps import Refusal
+
+SOURCE = Path(__file__).with_name("steps.c")
+"""It is there in a checkout, where it can change."""
+
+
+def _library() -> CDLL | None:
+    spec = find_spec(f"{__package__}._steps")
+    if not (spec and spec.origin):
+        return None
+    if SOURCE.is_file() and SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
+        return None
+    return CDLL(spec.origin)
+
+
+LIBRARY = _library()
+
+
+def why_not() -> str | None:
+    """Why a library that was made does not run; None if it does or there is none."""
+    spec = find_spec(f"{__package__}._steps")
+    if LIBRARY or not (spec and spec.origin):
+        return None
+    return f"{spec.origin} is older than {SOURCE.name}; the steps run in Python until the next `make setup`"
+
+
+class CompiledLine(Structure):
+    """`Line` in steps.c."""
+
+    _fields_ = (
+        ("sent", c_void_p),
+        ("factor", c_double),
+        ("end", c_void_p),
+        ("before", c_void_p),
+        ("after", c_void_p),
+    )
+
+
+class CompiledCall(Structure):
+    """`Call` in steps.c."""
+
+    _fields_ = (
+        ("access", c_void_p),
+        ("do_step", c_void_p),
+        ("component", c_void_p),
+        ("references", c_void_p),
+        ("count", c_size_t),
+        ("values", c_void_p),
+        ("sources", c_void_p),
+        ("factors", c_void_p),
+        ("real", c_int32),
+        ("step_size", c_void_p),
+        ("instance", c_int32),
+        ("function", c_int32),
+        ("rates", c_void_p),
+        ("orders", c_void_p),
+        ("lines", c_void_p),
+    )
+
+
+class CompiledSteps:
+    """The same as `harness.cosimulation.steps.interpreted`; only where there is a LIBRARY."""
+
+    def __init__(self, begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> None:
+        assert LIBRARY is not None
+        self._make_steps = LIBRARY.make_steps
+        self._make_steps.restype = c_size_t
+        self._turn = len(begin)
+        calls = self._calls = [*begin, *end]
+        c_void_p.in_dll(LIBRARY, "call_record").value = addressof(current())
+        # the records hold bare addresses: of these, and of what the calls keep
+        self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
+        self._factors = [(c_double * len(call.factors))(*call.factors) for call in calls]
+        self._lines = [(CompiledLine * len(call.lines))(*map(_line, call.lines)) for call in calls]
+        self._loop = (
+            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors, self._lines)),
+            c_size_t(self._turn),
+            c_size_t(len(calls)),
+            (c_char * len(row)).from_buffer(row),
+            c_size_t(known),
+        )
+
+    def __call__(self, table: np.ndarray, numbers: range) -> Refusal | None:
+        refused, status = c_size_t(), c_int32()
+        rows, size = c_void_p(table.ctypes.data), c_size_t(table.itemsize)
+        first, last = c_size_t(numbers.start), c_size_t(numbers.stop)
+        step = self._make_steps(*self._loop, rows, size, first, last, byref(refused), byref(status))
+        if step == numbers.stop:
+            return None
+        return Refusal(self._calls[refused.value], status.value, step, step + (refused.value >= self._turn))
+
+
+def _line(line: Line) -> CompiledLine:
+    return CompiledLine(_address(line.sent), line.factor, *map(_address, (line.end, line.before, line.after)))
+
+
+def _address(number: c_double | None) -> int | None:
+    return None if number is None else addressof(number)
+
+
+def _record(call: Call, sources: Any, factors: Any, lines: Any) -> CompiledCall:
+    record = CompiledCall(component=call.instance.component)
+    record.instance, record.function = call.instance.number, NUMBERS[call.function]
+    function = cast(call.instance.slave.dll[call.function], c_void_p)
+    record.step_size = _address(call.step_size)
+    if call.function == "fmi2DoStep":
+        record.do_step = function
+        return record
+    references, count, *orders, values = call.arguments
+    if orders:
+        record.rates, record.orders = function, addressof(orders[0])
+    else:
+        record.access = function
+    record.count, record.references, record.values = count, addressof(references), addressof(values)
+    record.sources = addressof(sources) if call.sources else None
+    # only what is real and was got is looked at
+    record.real = values._type_ is c_double and (bool(call.sources) or not call.instance.interface.any_value)
+    record.factors = addressof(factors) if call.factors else None
+    record.lines = addressof(lines) if call.lines else None
+    return record

@@ -1,0 +1,74 @@
+"""How units that are written as in Modelica and FMI convert into each other."""
+
+import re
+from functools import cache
+from typing import Any
+
+SYMBOL = r"(?:[A-Za-zµΩ%°]+(?:\^?[+-]?[1-9]\d*)?|1)"
+PRODUCT = rf"{SYMBOL}(?:[.*]{SYMBOL})*"
+UNIT = re.compile(rf"{PRODUCT}(?:/(?:{SYMBOL}|\({PRODUCT}\)))?")
+"""A product, over one symbol or a product in brackets: N.m, kg.m2, s-1, N.m/rad, J/(kg.K), 1."""
+
+ALIASES = {
+    # speeds in revolutions; as plain frequencies they would be off by 2 pi
+    **dict.fromkeys(("rpm", "rev/min", "r/min", "1/min", "min-1"), "turn/min"),
+    "rev": "turn",
+    "Nm": "N.m",
+}
+"""Units as some tools write them, which pint takes for something else or not at all."""
+
+SI = "SI"
+"""Stands for the unit of the SI, whatever the dimension."""
+
+
+def factor(unit: str, target_unit: str) -> float:
+    """What a value in a unit is multiplied by to be in the wanted one.
+
+    An angle is a dimension here: Hz and rad/s, or N.m and N.m/rad, do not convert into each other.
+
+    Raises:
+        ValueError: a unit is not known, or they do not convert by a factor; the message is to stand after
+            the name of the variable.
+    """
+    if unit == target_unit:
+        return 1.0
+    registry = _registry()
+    given = _parsed(unit, registry)
+    base = registry.get_base_units(given)[1] if target_unit == SI else _parsed(target_unit, registry)
+    if not given.is_compatible_with(base):
+        raise ValueError(f"is in {unit}, which does not convert into {target_unit}")
+    zero, one = (registry.convert(value, given, base) for value in (0.0, 1.0))
+    if zero:
+        raise ValueError(f"is in {unit}, which has an offset to {target_unit}; only factors are converted")
+    return float(one)
+
+
+def known(unit: str) -> bool:
+    """Whether the text is a unit."""
+    try:
+        _parsed(unit, _registry())
+    except ValueError:
+        return False
+    return True
+
+
+@cache
+def _registry() -> Any:
+    import pint  # takes half a second, which only those who convert should pay
+
+    registry = pint.UnitRegistry(on_redefinition="ignore")
+    registry.define("radian = [angle] = rad")
+    return registry
+
+
+def _parsed(unit: str, registry: Any) -> Any:
+    import pint
+
+    text = ALIASES.get(unit, unit)
+    try:
+        if not UNIT.fullmatch(text):
+            raise ValueError(unit)
+        powers = re.sub(r"([^\W\d_]|[%°])\^?([+-]?\d+)", r"\1**(\2)", text)
+        return registry.Unit(powers.replace(".", "*"))
+    except (ValueError, pint.PintError) as error:
+        raise ValueError(f"is in {unit!r}, which is not a known unit (known are those such as N.m/rad)") from error

@@ -1,0 +1,44 @@
+"""An FMU with its files in a folder that vanishes."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import fmpy
+
+from ..base.errors import UnpackingError
+from .call_trace import rest
+from .fmu_archive import unpack
+from .interface import Interface
+
+
+class Unpacked(NamedTuple):
+    """An FMU and the folder that has its files."""
+
+    interface: Interface
+    folder: str
+
+
+@contextmanager
+def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpacked]:
+    """The FMU with its files, which vanish at the end.
+
+    Args:
+        folder: in which it is unpacked; None: that for temporary files.
+
+    Raises:
+        UnpackingError: it cannot be unpacked, or has no binary for this platform.
+    """
+    path = interface.path
+    with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as files:
+        if not files.isascii():
+            raise UnpackingError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
+        rest()  # unpacking may take longer than a call may
+        unpack(path, files)
+        platforms = fmpy.supported_platforms(files)
+        if fmpy.platform not in platforms:
+            has = ", ".join(platforms) or "none"
+            raise UnpackingError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
+        yield Unpacked(interface, files)

@@ -1,0 +1,1 @@
+"""From a vehicle to the gains of the controller."""

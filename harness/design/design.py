@@ -1,0 +1,104 @@
+"""Design of the damping controller for a car: Riccati equations and a few formulas, with dimensionless weights.
+
+The estimator's gains are those of a Kalman filter (kalman). The damping law follows from three times of the
+car (weights): the drive train swings at omega_0, the vehicle would swing on it at omega_v if the motor were
+held, and the loop acts T_dead late.
+"""
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Any
+
+from ...fmus.description.variables import Variable
+from .design_weights import CAN, MOTOR, PARAMETERS, PLANT, WEIGHTS, Can, DriveTrain, Motor, Plant, Weights, drive_train
+from .kalman import DesignError, estimator_gains
+
+
+def design(plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS) -> dict[str, float]:
+    """All parameters of the controller that are designed, by name, in SI units.
+
+    Args:
+        plant, motor, can: the car.
+
+    Raises:
+        DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
+    """
+    train = drive_train(plant, motor, can, weights)
+    of_messages = possible({"T_age": train.T_age})
+    gains = estimator_gains(plant, motor, can, train, weights)
+    law = damping_law(plant, motor, train, weights)
+    return possible({"lambda_v": train.lambda_v, **gains, **of_messages, **law})
+
+
+def literal_observer(
+    plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS
+) -> dict[str, float]:
+    """The gains of the paper's observer taken literally, by name; args and errors as of `design`."""
+    return possible(estimator_gains(plant, motor, can, drive_train(plant, motor, can, weights), weights, literal=True))
+
+
+def possible(parameters: dict[str, float]) -> dict[str, float]:
+    """The parameters, if the controller can be set to them.
+
+    Raises:
+        DesignError: names those that are out of their bounds.
+    """
+    problems = []
+    for name, value in parameters.items():
+        low, high = PARAMETERS[name].bounds()
+        if not low <= value <= high:
+            problems.append(f"{name} would be {value:.4g}; the controller takes {PARAMETERS[name].allowed()}")
+    if problems:
+        raise DesignError("\n".join(problems))
+    return parameters
+
+
+def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights) -> dict[str, float]:
+    """The parameters of the damping law.
+
+    In contact k_d damps the drive train with the ratio k_d/(2 J_1 omega_0). Above the resonance, where J_1 alone
+    is left, the loop crosses over at k_d/J_1, and there the dead time takes the phase T_dead k_d/J_1. After a step
+    of the torque the washout of k_T takes its impulse away for k_T/omega_w.
+    """
+    k_d = plant.J_1 * max(2.0 * weights.damping_ratio * train.omega_0, weights.phase / train.T_dead)
+    omega_w = weights.washout * train.omega_0
+    return {
+        "T_pred": weights.look_ahead * sqrt(2.0) * motor.tau,
+        "k_d": k_d,
+        "k_T": omega_w * weights.withheld / train.omega_v,
+        "omega_w": omega_w,
+        "k_gap": weights.k_gap,
+        "T_gap": largest_landing(plant, motor, weights),
+        "bounce": weights.bounce,
+        "brake": weights.brake,
+        "haste": weights.haste,
+        "omega_slow": weights.recent * train.omega_v,
+        "t_return": weights.comeback / train.omega_0,
+        "t_land": weights.longest_landing / train.omega_v,
+    }
+
+
+def largest_landing(plant: Plant, motor: Motor, weights: Weights) -> float:
+    """T_gap in N.m: a share of T_max, or less where the flight from flank to flank would begin too fast.
+
+    The motor may begin it with omega_land at d = 2 phi_B. Turned into twist by the spring, that is the torque T_peak
+    of (bounce T)^2 + 4 brake C phi_B T = T_peak^2.
+    """
+    T_peak, flight = weights.impact * motor.T_max, 2.0 * weights.brake * plant.C * plant.phi_B
+    bearable = T_peak**2 / (flight + sqrt(flight**2 + (weights.bounce * T_peak) ** 2))
+    return min(weights.landing * motor.T_max, bearable)
+
+
+def gains_file(parameters: Mapping[str, float], comment: str, declared: Mapping[str, Variable] = PARAMETERS) -> str:
+    """Designed parameters as TOML, to six significant digits, each with its unit and meaning, under a comment.
+
+    Args:
+        declared: the parameters of the controller.
+    """
+    entries = [f"{name} = {float(f'{value:.6g}')!r}" for name, value in parameters.items()]
+    width = max(map(len, entries))
+    lines = [f"# {line}" for line in comment.splitlines()] + [""]
+    for name, entry in zip(parameters, entries, strict=True):
+        declaration: Any = declared[name].declaration
+        lines.append(f"{entry:{width}}  # {declaration.unit}, {declaration.description}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,106 @@
+"""What a design is worth: a car without damping, with the gains of the default car, and with its own."""
+
+from collections.abc import Mapping, Sequence
+from enum import Enum
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...fmus.building.parameter_files import for_instances, read_vehicle
+from ...fmus.catalogue import EVERY
+from ..loop.places import BUILD, PLACES
+from ..manoeuvres.catalogue import MANOEUVRES
+from ..metrics.declaration import declared
+from ..metrics.evaluate import evaluate
+from ..metrics.run_metrics import Metrics
+from ..simulation.simulate import simulate
+from .design import design
+from .design_weights import records
+
+
+class Gains(Enum):
+    """What the controller is given; the car that its estimator works with is always the true one."""
+
+    NONE = "no damping"
+    DEFAULT = "default gains"
+    OWN = "own gains"
+
+
+class Trial(NamedTuple):
+    """A car by its vehicle file (None: the default car), a plant and a manoeuvre by name, and the gains."""
+
+    vehicle: Path | None
+    plant: str
+    manoeuvre: str
+    gains: Gains
+
+
+@cache
+def own_gains(vehicle: Path | None) -> dict[str, float]:
+    """The gains designed for the car of a vehicle file."""
+    return design(*records(read_vehicle(vehicle) if vehicle else {}))
+
+
+def loop_records(plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
+    """The declared parameters of the blocks of a loop, by their places, with a plant and a controller of ours."""
+    blocks = {place: names[0] for place, names in PLACES.items()} | {"plant": plant, "controller": controller}
+    return {place: EVERY[name].block.Parameters for place, name in blocks.items()}
+
+
+def loop_parameters(values: Mapping[str, Any], plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
+    """Entries of parameter files as parameters of the loop with a plant and a controller of ours, `instance.name` ->
+    value."""
+    records = loop_records(plant, controller)
+    return for_instances(values, {place: record._fields for place, record in records.items()})
+
+
+def of_controller(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
+    """Those of the controller alone: what it assumes, whatever the car is."""
+    return {name: value for name, value in loop_parameters(values, plant).items() if name.startswith("controller.")}
+
+
+def settled(plant: str, manoeuvre: str, parameters: Mapping[str, Any], seed: int = 1) -> tuple[float, float]:
+    """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value."""
+    course = MANOEUVRES[manoeuvre]
+    metrics = evaluate(simulate(course, plant, True, parameters=parameters, seed=seed), course)
+    return metrics.settling_time, metrics.overshoot
+
+
+def parameters(trial: Trial) -> dict[str, Any]:
+    """What a trial gives the loop."""
+    values = read_vehicle(trial.vehicle) if trial.vehicle else {}
+    if trial.gains is Gains.OWN:
+        values = values | own_gains(trial.vehicle)
+    return loop_parameters(values, trial.plant)
+
+
+def measured(
+    trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), folder: Path = BUILD, build: str | None = None
+) -> Metrics:
+    """The metrics of a trial, each the mean over the seeds of the noise.
+
+    Args:
+        folder, build: see `driveline.simulate`.
+    """
+    manoeuvre = MANOEUVRES[trial.manoeuvre]
+    runs = [
+        simulate(
+            manoeuvre,
+            plant=trial.plant,
+            control=trial.gains is not Gains.NONE,
+            parameters=parameters(trial),
+            seed=seed,
+            folder=folder,
+            build=build,
+        )
+        for seed in seeds
+    ]
+    return mean([evaluate(results, manoeuvre) for results in runs])
+
+
+def mean(found: Sequence[Metrics]) -> Metrics:
+    """Each metric as the mean over runs; it has no value where one of them has none."""
+    means = {metric.name: float(np.mean([metric.of(metrics) for metrics in found])) for metric in declared(Metrics)}
+    return Metrics(**means, absent={name: why for metrics in found for name, why in metrics.absent.items()})

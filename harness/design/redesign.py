@@ -1,0 +1,58 @@
+"""Gains for a car that has become known: no worse than those that it had, as far as what is known of it goes."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..loop.places import PLANTS
+from .design import design
+from .design_trials import loop_parameters, of_controller, settled
+from .design_weights import WEIGHTS, Weights, records
+
+MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
+"""In which controllers are compared."""
+
+SOFTER, SOFTEST = 0.8, 0.25
+"""Factor on the washout's frequency from one design to the next, and the last of them."""
+
+MARGIN = 0.95
+"""Of the overshoot before, at which it is surely no worse: noise and sensors of the true car are not known."""
+
+
+def worth(plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[str, Any]) -> tuple[float, float]:
+    """Settling time in s and overshoot (1) of a car whose controller assumes another one.
+
+    Args:
+        car: entries of a vehicle file, for plant, motor and bus.
+        assumed: entries of a vehicle file and of gains, for the controller.
+    """
+    true, of_car = loop_parameters(car, plant), of_controller(car, plant)
+    others = {name: value for name, value in true.items() if name not in of_car}
+    return settled(plant, manoeuvre, others | of_controller(assumed, plant))
+
+
+def softened(car: Mapping[str, Any], before: Mapping[str, Any]) -> Weights:
+    """Weights of a design with which the car swings over less than before on both plants, in the mean over MANOEUVRES.
+    A lower washout does that; its price is torque that is withheld for longer.
+
+    Args:
+        car: entries of the vehicle file of the car as it is known now.
+        before: entries of what its controller assumed until now.
+
+    Raises:
+        DesignError: there is no controller for this car.
+    """
+    bearable = MARGIN * _overshoots(car, before)
+    weights = WEIGHTS
+    while np.any(_overshoots(car, {**car, **design(*records(car), weights=weights)}) > bearable):
+        if weights.washout * SOFTER < WEIGHTS.washout * SOFTEST:
+            break
+        weights = replace(weights, washout=SOFTER * weights.washout)
+    return weights
+
+
+def _overshoots(car: Mapping[str, Any], assumed: Mapping[str, Any]) -> np.ndarray:
+    """Of each plant."""
+    return np.mean([[worth(plant, name, car, assumed)[1] for plant in PLANTS] for name in MANOEUVRES], axis=0)

@@ -1,0 +1,109 @@
+"""Costs of a controller: on a car, in the runs that count, against what the reference makes of them.
+
+```python
+evaluation = CostEvaluation("SpeedWashout")
+with evaluation.opened() as costs_of:
+    print([costs.total() for costs in costs_of([{"k_v": 1.5}, {"k_v": 2.5}])])
+```
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ...cosimulation.system import System
+from ...loop.places import BUILD, PLACES, loop
+from ...metrics.evaluate import evaluate
+from ...metrics.run_metrics import Metrics
+from ...simulation.many_runs import many
+from ...simulation.simulate import simulate
+from ..design import design
+from ..design_weights import records
+from ..uncertainty_box import deviating
+from .controller_cost import Costs, costs
+from .tuning_runs import RUNS, Run
+
+REFERENCE = PLACES["controller"][0]
+"""The controller with the gains that `driveline design` computes for the car."""
+
+
+class Trial(NamedTuple):
+    """A run with a controller and parameters of it."""
+
+    controller: str
+    parameters: Mapping[str, float]
+    run: Run
+
+    def __str__(self) -> str:
+        return f"{self.run} with {self.controller} {dict(self.parameters)}"
+
+
+@dataclass(frozen=True)
+class CostEvaluation:
+    """A controller on a car.
+
+    Attributes:
+        controller: by name.
+        car: entries of the vehicle file.
+        folder, build: of the FMUs, see `driveline.simulate`.
+        runs: that count.
+    """
+
+    controller: str = REFERENCE
+    car: Mapping[str, Any] = field(default_factory=dict)
+    folder: Path = BUILD
+    build: str | None = None
+    runs: Sequence[Run] = field(default_factory=lambda: RUNS)
+
+    def system(self, plant: str, controller: str) -> System:
+        """The loop with a plant and a controller."""
+        return loop(plant, self.folder, self.build, controller=controller)
+
+    def measured(self, trial: Trial) -> Metrics:
+        """The metrics of one run."""
+        controller, parameters, run = trial
+        results = simulate(
+            run.manoeuvre,
+            plant=run.plant,
+            controller=controller,
+            parameters=deviating({**self.car, **parameters}, run.plant, controller, run.deviation),
+            seed=run.seed,
+            folder=self.folder,
+            build=self.build,
+        )
+        return evaluate(results, run.manoeuvre)
+
+    def reference(self) -> dict[str, float]:
+        """The gains that are computed for the car."""
+        return design(*records(self.car))
+
+    @contextmanager
+    def opened(
+        self, workers: int | None = None
+    ) -> Iterator[Callable[[Sequence[Mapping[str, float]]], Iterator[Costs]]]:
+        """What gives the costs of candidates (parameters of the controller by name), in their order, on all cores.
+
+        The same candidates cost the same, whoever stands beside them and however many processes share the runs.
+
+        Args:
+            workers: see `harness.simulation.many_runs.run_many`.
+        """
+        with many(self.measured, workers) as answers:
+
+            def metrics(controller: str, candidates: Sequence[Mapping[str, float]]) -> Iterator[list[Metrics]]:
+                found = answers(Trial(controller, candidate, run) for candidate in candidates for run in self.runs)
+                for _ in candidates:
+                    yield [next(found) for _ in self.runs]
+
+            @cache
+            def reference() -> list[Metrics]:
+                return next(metrics(REFERENCE, [self.reference()]))
+
+            def costs_of(candidates: Sequence[Mapping[str, float]]) -> Iterator[Costs]:
+                for found in metrics(self.controller, candidates):
+                    yield costs(self.runs, found, reference())
+
+            yield costs_of

@@ -1,0 +1,133 @@
+"""Rules for what an FMU does. Each function is given it unpacked, runs it and yields what it does wrong."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from ...cosimulation.unpacked_fmu import Unpacked
+from .host import Outputs, hosted
+from .rule import Rules, Severity
+
+STEPS = 100
+"""Communication steps of a run that is compared with another."""
+
+MOST_STEPS = 2000
+"""Communication steps of the default experiment that are tried."""
+
+STEP_FACTORS = (1.0, 0.1, 3.7, 1e-3, 10.0, 1.0)
+"""Communication steps of different sizes, relative to that of the default experiment."""
+
+RUNS = "the default experiment runs, outputs are finite"
+
+
+def _claims(fmu: Unpacked, capability: str) -> bool:
+    return bool(getattr(fmu.interface.description.coSimulation, capability))
+
+
+def _not_finite(outputs: Outputs, when: str) -> Iterator[str]:
+    for name, value in outputs:
+        if isinstance(value, float) and not isfinite(value):
+            yield f"{name} is {value} {when}"
+
+
+def _differences(expected: list[Outputs], actual: list[Outputs], when: str) -> Iterator[str]:
+    """Each output that differs, at the first step at which it does."""
+    reported: set[str] = set()
+    for k, (before, after) in enumerate(zip(expected, actual, strict=True)):
+        for (name, one), (_, other) in zip(before, after, strict=True):
+            same = one == other or (one != one and other != other)
+            if not same and name not in reported:
+                reported.add(name)
+                yield f"{name} is {other} {when}, but was {one}, at step {k}"
+
+
+BEHAVIOUR_RULES = Rules()
+
+
+@BEHAVIOUR_RULES.rule("runs", Severity.ERROR, RUNS)
+def default_experiment(fmu: Unpacked, most_steps: int = MOST_STEPS) -> Iterator[str]:
+    """Runs the default experiment; every variable can be read before and after."""
+    with hosted(fmu) as host:
+        host.start()
+        everything = list(fmu.interface.variables.values())
+        host.read(everything)
+        first = last = host.outputs()
+        for _ in range(round(min(host.stop / host.step_size, most_steps))):
+            last = host.advance(host.step_size)
+        host.read(everything)
+    yield from _not_finite(first, "at the start")
+    yield from _not_finite(last, "at the end")
+
+
+@BEHAVIOUR_RULES.rule("steps", Severity.ERROR, "steps of any size are accepted, if it claims so")
+def any_step_size(fmu: Unpacked) -> Iterator[str]:
+    """Small, large and odd steps, if the FMU says that it can handle them."""
+    if not _claims(fmu, "canHandleVariableCommunicationStepSize"):
+        return
+    with hosted(fmu) as host:
+        host.start()
+        for factor in STEP_FACTORS:
+            size = factor * host.step_size
+            yield from _not_finite(host.advance(size), f"after a step of {size:g} s")
+
+
+@BEHAVIOUR_RULES.rule("reset", Severity.ERROR, "a second run after reset is the same")
+def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
+    """The same run before and after fmi2Reset."""
+    with hosted(fmu) as host:
+        host.start()
+        first = host.run(STEPS)
+        host.instance.call("reset")
+        host.start()
+        yield from _differences(first, host.run(STEPS), "after reset")
+
+
+@BEHAVIOUR_RULES.rule("instances", Severity.ERROR, "two instances do not see each other")
+def instances_are_separate(fmu: Unpacked) -> Iterator[str]:
+    """One instance alone, and the same beside another one that runs ahead of it."""
+    if _claims(fmu, "canBeInstantiatedOnlyOncePerProcess"):
+        return
+    with hosted(fmu) as host:
+        host.start()
+        alone = host.run(STEPS)
+    with hosted(fmu, "checked") as host, hosted(fmu, "other") as other:
+        other.start()
+        other.run(STEPS // 2)
+        host.start()
+        beside = [host.outputs()]
+        for _ in range(STEPS):
+            other.advance(other.step_size)
+            beside.append(host.advance(host.step_size))
+        yield from _differences(alone, beside, "beside another instance")
+
+
+@BEHAVIOUR_RULES.rule("states", Severity.ERROR, "saved states are restored, if it claims so")
+def states_are_restored(fmu: Unpacked) -> Iterator[str]:
+    """The run after a restored state is the one before, bit by bit, if the FMU claims so."""
+    if not _claims(fmu, "canGetAndSetFMUstate"):
+        return
+    with hosted(fmu) as host:
+        host.start()
+        host.run(STEPS)
+        position = host.step, host.time
+        state = host.instance.call("getFMUstate")
+        first = host.run(STEPS)
+        host.instance.call("setFMUstate", state)
+        host.step, host.time = position
+        yield from _differences(first, host.run(STEPS), "after the state was restored")
+        if _claims(fmu, "canSerializeFMUstate"):
+            saved = host.instance.call("serializeFMUstate", state)
+            revived = host.instance.call("deSerializeFMUstate", saved)
+            host.instance.call("setFMUstate", revived)
+            host.step, host.time = position
+            yield from _differences(first, host.run(STEPS), "after the state was written and read")
+            host.instance.call("freeFMUstate", revived)
+        host.instance.call("freeFMUstate", state)
+
+
+QUICK_RULES = Rules()
+
+
+@QUICK_RULES.rule("runs", Severity.ERROR, RUNS)
+def beginning(fmu: Unpacked) -> Iterator[str]:
+    """The first steps of the default experiment."""
+    yield from default_experiment(fmu, STEPS)

@@ -1,0 +1,105 @@
+"""Whether an FMU keeps the FMI 2.0 standard for Co-Simulation, and our rules beyond it."""
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+from ...base.errors import DrivelineError, SimulationError
+from ...base.plain_text import plain
+from ...cosimulation import fmu_archive
+from ...cosimulation.interface import Interface
+from ...cosimulation.isolated_process import IsolatedProcess
+from ...cosimulation.limits import USUAL, Limits
+from ...cosimulation.unpacked_fmu import Unpacked, unpacked
+from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
+from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
+from .description_rules import DESCRIPTION_RULES
+from .rule import Rule, Severity, Verdict
+
+READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU")
+
+RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BEHAVIOUR_RULES)
+
+
+def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Collection[str] = ()) -> Iterator[Verdict]:
+    """Checks an FMU, one verdict after the other; one that cannot be unpacked or read is not looked at any further.
+
+    The behaviours are tried in a process of their own; an FMU that ends it in the default experiment is not tried
+    any further.
+
+    Args:
+        quick: whether only the beginning of the default experiment is tried.
+        ignored: names of rules that are left out.
+
+    Raises:
+        DrivelineError: there is no such file.
+    """
+    if not path.is_file():
+        raise DrivelineError(f"there is no FMU {path}")
+    return _verdicts(path, limits, quick, ignored)
+
+
+def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str]) -> Iterator[Verdict]:
+    def kept(rules: Iterable[Rule]) -> Iterator[Rule]:
+        return (rule for rule in rules if rule.name not in ignored)
+
+    try:
+        contents = Archive(path, fmu_archive.entries(path), limits)
+    except DrivelineError as error:
+        yield READABLE.verdict([str(error)])
+        return
+    refused = [rule.judge(contents) for rule in kept(REFUSING_RULES)]
+    yield from refused
+    if any(verdict.problems for verdict in refused):
+        return
+    yield from (rule.judge(contents) for rule in kept(ARCHIVE_RULES))
+    try:
+        interface = Interface(path, limits)
+    except DrivelineError as error:
+        yield READABLE.verdict([str(error)])
+        return
+    yield READABLE.verdict([])
+    yield from (rule.judge(interface) for rule in kept(DESCRIPTION_RULES))
+    yield from _behaviour(interface, list(kept(QUICK_RULES if quick else BEHAVIOUR_RULES)), limits)
+
+
+def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> Iterator[Verdict]:
+    """Tries the FMU in a process, and in another one after it has ended that."""
+    isolated = None
+    try:
+        for rule in rules:
+            try:
+                if isolated is None:
+                    isolated = IsolatedProcess([interface.path.name] * 2, limits.call)
+                    isolated.ask(_receive, interface)
+                yield rule.verdict(isolated.ask(_judge, rule))
+            except SimulationError as error:
+                if isolated:
+                    isolated.close()
+                isolated = None
+                yield rule.verdict([str(error)])
+                if rule.name == BEHAVIOUR_RULES[0].name:
+                    yield from (other.verdict([], tried=False) for other in rules if other is not rule)
+                    return
+    finally:
+        if isolated:
+            isolated.close()
+
+
+# what follows runs in the other process
+
+_fmu: Unpacked
+_files = ExitStack()
+
+
+def _receive(interface: Interface) -> None:
+    """Unpacks it, once for all that is tried; the files vanish with those of the process."""
+    global _fmu
+    _fmu = _files.enter_context(unpacked(interface))
+
+
+def _judge(rule: Rule) -> list[str]:
+    try:
+        return rule.judge(_fmu).problems
+    except Exception as error:  # nobody foresees what an FMU makes of a rule
+        return [f"cannot be tried: {type(error).__name__}: {plain(error)}"]

@@ -1,0 +1,76 @@
+"""What runs an FMU for the rules of what it does."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from math import inf, sin
+from typing import Any
+
+from fmpy.model_description import ModelVariable
+
+from ...cosimulation.instance import Instance, instantiated
+from ...cosimulation.interface import type_of
+from ...cosimulation.unpacked_fmu import Unpacked
+
+Outputs = list[tuple[str, Any]]
+
+READABLE = ("Real", "Integer", "Boolean", "String")
+
+
+class Host:
+    """An instance that is fed with small oscillations around the start values of its Real inputs."""
+
+    def __init__(self, instance: Instance) -> None:
+        self.instance = instance
+        interface = instance.interface
+        default = interface.description.defaultExperiment
+        self.step_size = float(default.stepSize or 1e-3) if default else 1e-3
+        self.stop = float(default.stopTime or 1.0) if default else 1.0
+        self.inputs = [v for v in interface.of_causality("input") if v.type == "Real"]
+        self.step, self.time = 0, 0.0
+
+    def start(self) -> None:
+        """From instantiation or reset to the first step."""
+        self.step, self.time = 0, 0.0
+        self.instance.call("setupExperiment", startTime=0.0)
+        self.instance.call("enterInitializationMode")
+        self._feed()
+        self.instance.call("exitInitializationMode")
+
+    def advance(self, size: float) -> Outputs:
+        """Makes a communication step; the outputs after it."""
+        self._feed()
+        self.instance.call("doStep", self.time, size)
+        self.step, self.time = self.step + 1, self.time + size
+        return self.outputs()
+
+    def run(self, steps: int) -> list[Outputs]:
+        """Outputs at the beginning and after each step of the default size."""
+        return [self.outputs(), *(self.advance(self.step_size) for _ in range(steps))]
+
+    def outputs(self) -> Outputs:
+        return self.read(self.instance.interface.of_causality("output"))
+
+    def read(self, variables: Sequence[ModelVariable]) -> Outputs:
+        """Names and values of the variables."""
+        values: Outputs = []
+        for kind in READABLE:
+            alike = [v for v in variables if type_of(v) == kind]
+            if alike:
+                got = self.instance.call(f"get{kind}", [v.valueReference for v in alike])
+                values += [(v.name, value) for v, value in zip(alike, got, strict=True)]
+        return values
+
+    def _feed(self) -> None:
+        values = []
+        for v in self.inputs:
+            swing = 0.1 * float(v.nominal or 1.0) * sin(0.1 * self.step)
+            values.append(min(max(float(v.start or 0.0) + swing, float(v.min or -inf)), float(v.max or inf)))
+        if values:
+            self.instance.call("setReal", [v.valueReference for v in self.inputs], values)
+
+
+@contextmanager
+def hosted(fmu: Unpacked, name: str = "checked") -> Iterator[Host]:
+    with instantiated(name, fmu) as instance:
+        yield Host(instance)
+        instance.call("terminate")

@@ -1,0 +1,125 @@
+"""The system structure description (SSD): the FMUs of the loop, how they are connected, and their picture.
+
+Some tools know less than the standard. What is written for them:
+- libcosim: connections are between components alone, every element has a source, the step stands in an annotation,
+  and values belong to components;
+- FMPy: every input that is declared is connected;
+- OMSimulator: the type of a component is said even where it is the usual one.
+"""
+
+from collections.abc import Mapping
+
+from fmpy.model_description import ModelVariable
+
+from ...cosimulation.interface import unit_of
+from ...cosimulation.system import Connection
+from ...cosimulation.wiring import Fit
+from ...loop.places import STEP_SIZE
+from . import layout
+from .variables import outputs, their_name, typed, units
+from .xml import VERSION, Element, document, element
+
+DICTIONARY = "resources/signals.ssb"
+"""File of the signal dictionary."""
+
+OSP = "com.opensimulationplatform"
+"""Owner of the annotation that libcosim reads."""
+
+
+def structure(name: str, description: str, tool: str, fitted: Fit, sets: Mapping[str, str], stop_time: float) -> bytes:
+    """The file of a system structure description.
+
+    Args:
+        name: of the variant.
+        tool: that made it.
+        sets: instance -> file of its parameters.
+        stop_time: in s.
+    """
+    shown = _connectors(fitted)
+    system = element(
+        "ssd:System",
+        {"name": "loop", "description": description},
+        [
+            element("ssd:Elements", children=[_component(fitted, i, shown, sets) for i in fitted.interfaces]),
+            element("ssd:Connections", children=[_connection(fitted, c) for c in fitted.system.connections]),
+            element(
+                "ssd:SignalDictionaries",
+                children=[element("ssd:SignalDictionary", {"name": "signals", "source": DICTIONARY})],
+            ),
+            element("ssd:SystemGeometry", layout.CANVAS._asdict()),
+        ],
+    )
+    return document(
+        element(
+            "ssd:SystemStructureDescription",
+            {"version": VERSION, "name": name, "description": description, "generationTool": tool},
+            [system, *units("ssd", fitted, map(unit_of, shown.values())), _experiment(stop_time)],
+        )
+    )
+
+
+def _connectors(fitted: Fit) -> dict[str, ModelVariable]:
+    """All outputs, and the inputs that are connected."""
+    inputs = {}
+    for connection in fitted.system.connections:
+        instance, _, name = connection.target.partition(".")
+        inputs[connection.target] = fitted.interfaces[instance].variables[name]
+    return outputs(fitted) | inputs
+
+
+def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], sets: Mapping[str, str]) -> Element:
+    interface = fitted.interfaces[instance]
+    connectors = [
+        _connector(their_name(fitted.system, name), name, variable)
+        for name, variable in shown.items()
+        if name.partition(".")[0] == instance
+    ]
+    binding = element("ssd:ParameterBinding", {"source": sets[instance]})
+    return element(
+        "ssd:Component",
+        {
+            "name": instance,
+            "type": "application/x-fmu-sharedlibrary",
+            "source": f"resources/{interface.path.name}",
+            "implementation": "CoSimulation",
+            "description": interface.description.description or interface.path.stem,
+        },
+        [
+            element("ssd:Connectors", children=connectors),
+            element("ssd:ElementGeometry", layout.BOXES[instance]._asdict()),
+            element("ssd:ParameterBindings", children=[binding]),
+        ],
+    )
+
+
+def _connector(theirs: str, name: str, variable: ModelVariable) -> Element:
+    made = element(
+        "ssd:Connector",
+        {"name": theirs, "kind": variable.causality, "description": variable.description or name},
+        [typed("ssc", str(variable.type), unit_of(variable))],
+    )
+    if name in layout.PLACES:
+        made.append(element("ssd:ConnectorGeometry", layout.PLACES[name]._asdict()))
+    return made
+
+
+def _connection(fitted: Fit, connection: Connection) -> Element:
+    ends = {}
+    for end, name in {"start": connection.source, "end": connection.target}.items():
+        ends[f"{end}Element"] = name.partition(".")[0]
+        ends[f"{end}Connector"] = their_name(fitted.system, name)
+    made = element("ssd:Connection", ends)
+    if corners := layout.corners(connection.source, connection.target):
+        along = {f"points{axis}": " ".join(repr(corner[k]) for corner in corners) for k, axis in enumerate("XY")}
+        made.append(element("ssd:ConnectionGeometry", along))
+    return made
+
+
+def _experiment(stop_time: float) -> Element:
+    step = element("osp:FixedStepAlgorithm", {"baseStepSize": STEP_SIZE})
+    annotation = element("ssc:Annotation", {"type": OSP}, [element("osp:Algorithm", children=[step])])
+    return element(
+        "ssd:DefaultExperiment",
+        {"startTime": 0.0, "stopTime": stop_time},
+        [element("ssd:Annotations", children=[annotation])],
+    )

@@ -1,0 +1,101 @@
+"""What an SSP says of the variables of the FMUs: their types, units and values."""
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from fmpy.model_description import BaseUnit, ModelVariable
+
+from ...base.errors import DrivelineError
+from ...cosimulation.interface import type_of, unit_of
+from ...cosimulation.system import System
+from ...cosimulation.wiring import Fit
+from .xml import Element, element
+
+NUMBERS = ("Real", "Integer")
+
+
+class Value(NamedTuple):
+    """Of a parameter.
+
+    Attributes:
+        name: in its FMU.
+        type: "Real", "Integer" or "Boolean".
+        unit: None for none.
+    """
+
+    name: str
+    type: str
+    value: float | int | bool
+    unit: str | None
+    description: str | None
+
+
+def values(fitted: Fit, given: Mapping[str, float]) -> dict[str, list[Value]]:
+    """The parameters of the FMUs by their instances: all numbers, given or as they start, and what else is given."""
+    found: dict[str, list[Value]] = {instance: [] for instance in fitted.interfaces}
+    for instance, interface in fitted.interfaces.items():
+        for ours, variable in interface.variables.items():
+            if variable.causality != "parameter":
+                continue
+            name, kind = f"{instance}.{ours}", type_of(variable)
+            start = variable.start if kind in NUMBERS else None
+            value = given.get(name, start)
+            if value is not None:
+                as_typed = {"Real": float, "Integer": int, "Boolean": bool}[kind](value)
+                theirs = their_name(fitted.system, name)
+                found[instance].append(Value(theirs, kind, as_typed, unit_of(variable), variable.description))
+    return found
+
+
+def their_name(system: System, name: str) -> str:
+    """What the FMU calls a variable `instance.variable` of the loop."""
+    return system.mapping.get(name, name.partition(".")[2])
+
+
+def require_no_conversion(fitted: Fit) -> None:
+    """
+    Raises:
+        DrivelineError: a variable is converted on its way into the loop.
+    """
+    for instance, interface in fitted.interfaces.items():
+        for name, factor in interface.factors.items():
+            if factor != 1.0:
+                raise DrivelineError(
+                    f"{instance}.{name}: {interface.path.name} has it in another unit, and tools that open an SSP "
+                    f"convert none; it must be in {unit_of(interface.variables[name])}"
+                )
+
+
+def typed(prefix: str, kind: str, unit: str | None, value: object = None) -> Element:
+    """The element of a type, such as `ssc:Real`, with its unit and with a value if there is one."""
+    attributes = {} if value is None else {"value": value}
+    return element(f"{prefix}:{kind}", attributes | ({"unit": unit} if kind == "Real" and unit else {}))
+
+
+def units(prefix: str, fitted: Fit, names: Iterable[str | None]) -> list[Element]:
+    """The definitions of the units of these names, as the FMUs give them, in their order."""
+    bases = {
+        unit.name: unit.baseUnit
+        for interface in fitted.interfaces.values()
+        for unit in interface.description.unitDefinitions
+    }
+    used = sorted({name for name in names if name})
+    made = [element("ssc:Unit", {"name": name}, [_base(bases.get(name))]) for name in used]
+    return [element(f"{prefix}:Units", children=made)] if made else []
+
+
+def _base(unit: BaseUnit | None) -> Element:
+    names = ("kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset")
+    usual = BaseUnit()
+    given = {name: getattr(unit or usual, name) for name in names}
+    return element("ssc:BaseUnit", {name: value for name, value in given.items() if value != getattr(usual, name)})
+
+
+def outputs(fitted: Fit) -> dict[str, ModelVariable]:
+    """`instance.variable` -> numbers and truth values that the FMUs put out; enumerations stop libcosim."""
+    return {
+        f"{instance}.{name}": variable
+        for instance, interface in fitted.interfaces.items()
+        for name, variable in interface.variables.items()
+        if variable.causality == "output" and variable.type in (*NUMBERS, "Boolean")
+    }

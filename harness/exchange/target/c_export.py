@@ -1,0 +1,53 @@
+"""The C of a controller, for a car or with the parameters of a run."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ....fmus.building.parameter_files import read_files, require_taken
+from ....fmus.errors import ParameterFileError
+from ...base.errors import DrivelineError
+from ...base.optional_packages import required
+
+
+def exported(
+    controller: str, precision: str, vehicle: Path | None = None, parameters: Path | None = None
+) -> dict[str, str]:
+    """Its files by name.
+
+    Args:
+        controller: a name in `fmus.target.sources.CONTROLLERS`.
+        precision: float or double.
+        vehicle, parameters: files with values of its parameters.
+
+    Raises:
+        DrivelineError: a file is refused, or the extra `native` is not installed.
+    """
+    return with_values(controller, precision, values_of(controller, vehicle, parameters))
+
+
+def values_of(controller: str, vehicle: Path | None, parameters: Path | None) -> dict[str, Any]:
+    """What two files say of the parameters of a controller, by name.
+
+    Raises:
+        DrivelineError: a file is refused.
+    """
+    from ....fmus.catalogue import EVERY
+
+    try:
+        require_taken(parameters, EVERY[controller].block.Parameters._fields, controller)
+        return read_files(vehicle, parameters)
+    except ParameterFileError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+
+
+def with_values(controller: str, precision: str, values: Mapping[str, Any]) -> dict[str, str]:
+    """The same with these values of its parameters, by name; others are declared.
+
+    Raises:
+        MissingExtra: the extra `native` is not installed.
+    """
+    required("casadi", "the C of a controller", "native")
+    from ....fmus.target.sources import CONTROLLERS, PRECISIONS, target_sources
+
+    return target_sources(CONTROLLERS[controller].started_with(values), PRECISIONS[precision])

@@ -1,0 +1,83 @@
+"""The controller on the target beside the same C on this machine, sample by sample."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ....fmus.target.link import Answer, Link
+from .offline_cases import Case
+from .programs import Programs
+
+ABSOLUTE, RELATIVE = 1e-3, 1e-4
+"""How far T_ref in single precision may be from that in double: in N.m, and over the torque."""
+
+
+class Comparison(NamedTuple):
+    """A case on the target and on this machine.
+
+    Attributes:
+        differing: samples in which a bit of the outputs or of the state differs from the same C in single precision.
+        T_ref, T_gear_hat: in N.m, largest distance from double precision.
+        margin: of T_ref, over what it may be.
+        largest: in N.m, of T_ref.
+        instructions: mean and most of a sample.
+        stack: bytes.
+        finite: whether all outputs are.
+        traces: T_ref on the target and in double precision, N.m.
+        states: on the target, a row a sample.
+    """
+
+    case: Case
+    differing: int
+    T_ref: float
+    T_gear_hat: float
+    margin: float
+    largest: float
+    instructions: tuple[float, int]
+    stack: int
+    finite: bool
+    traces: tuple[np.ndarray, np.ndarray]
+    states: np.ndarray
+
+
+def responses(link: Link, case: Case) -> list[Answer]:
+    """What a program answers to the start and to each sample of a case but the last."""
+    rows = case.inputs.tolist()
+    with link:
+        answers = [link.start(rows[0])]
+        for k, u in enumerate(rows[:-1]):
+            if case.states is not None:
+                link.set_state(case.states[k].tolist())
+            answers.append(link.update(u))
+    return answers
+
+
+def compare(programs: Programs, case: Case, outputs: Sequence[str]) -> Comparison:
+    """Runs a case on all three.
+
+    Args:
+        outputs: names of the outputs in their order.
+
+    Raises:
+        TargetError: a program was lost, hung or crashed.
+    """
+    target, single, double = (responses(start(), case) for start in programs[:3])
+    there, here = (np.array([answer.outputs for answer in of]) for of in (target, double))
+    distance = np.abs(there - here)
+    T_ref, T_gear_hat = outputs.index("T_ref"), outputs.index("T_gear_hat")
+    allowed = ABSOLUTE + RELATIVE * np.abs(here[:, T_ref])
+    counts = [answer.count for answer in target[1:]]
+    return Comparison(
+        case=case,
+        differing=sum(one.bytes != other.bytes for one, other in zip(target, single, strict=True)),
+        T_ref=float(distance[:, T_ref].max()),
+        T_gear_hat=float(distance[:, T_gear_hat].max()),
+        margin=float((distance[:, T_ref] / allowed).max()),
+        largest=float(np.abs(here[:, T_ref]).max()),
+        instructions=(float(np.mean(counts)), max(counts)),
+        stack=max(answer.stack for answer in target[1:]),
+        finite=bool(np.isfinite(there).all()),
+        traces=(there[:, T_ref], here[:, T_ref]),
+        states=np.array([answer.state for answer in target]),
+    )

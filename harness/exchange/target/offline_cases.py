@@ -1,0 +1,105 @@
+"""What the controller is fed with off-line: what it got in the loop, and what no car would send."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf, nan
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...cosimulation.interface import Interface
+from ...cosimulation.system import System
+from ...manoeuvres.catalogue import MANOEUVRES
+from ...manoeuvres.manoeuvre import Manoeuvre
+from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
+from ...manoeuvres.town_drive import PATH as TOWN_DRIVE
+from ...metrics.evaluate import at_samples
+from ...recordings.drive import read_drive
+from ...simulation.simulate import signals, simulate
+from ...studies.drives.replay import followed
+
+SAMPLES = 5000
+"""Of each random case."""
+
+LARGEST, SMALLEST = float(np.finfo(np.float32).max), float(np.finfo(np.float32).smallest_subnormal)
+"""Numbers of single precision."""
+
+ABSURD = (nan, inf, -inf, LARGEST, -LARGEST, SMALLEST, -SMALLEST, 1e-40, 1e10, -1e10, 0.0, -0.0)
+"""1e-40 is a denormal number too."""
+
+OFTEN = 0.1
+"""Share of the absurd ones among the inputs."""
+
+WIDER = 1.5
+"""Over what a number of the state was in the manoeuvres, the range from which it is drawn."""
+
+
+class Case(NamedTuple):
+    """What the controller is fed with.
+
+    Attributes:
+        names: of the inputs, in the order of its record.
+        inputs: a row a sample.
+        states: a state that is set before each sample, a row each; None: it keeps its own.
+        drawn: at random; no loop gave it.
+    """
+
+    name: str
+    names: tuple[str, ...]
+    inputs: np.ndarray
+    states: np.ndarray | None = None
+    drawn: bool = False
+
+
+def recorded(manoeuvre: Manoeuvre, system: System, plant: str, names: Sequence[str], given: Mapping[str, Any]) -> Case:
+    """What the controller of a loop got in a manoeuvre.
+
+    Args:
+        names: of its inputs.
+        given: settings of the run, see `harness.commands.settings`.
+    """
+    return fed(manoeuvre, at_samples(simulate(manoeuvre, plant=plant, **given)), system, names)
+
+
+def fed(manoeuvre: Manoeuvre, results: np.ndarray, system: System, names: Sequence[str]) -> Case:
+    """What it got in a run, of which these are the results at its samples."""
+    sources = {name: name for name in signals(manoeuvre)} | {target: source for source, target, _ in system.connections}
+    columns = [np.asarray(results[sources[f"controller.{name}"]], float) for name in names]
+    return Case(manoeuvre.name, tuple(names), np.column_stack(columns))
+
+
+def cases_in_loop(
+    system: System, interfaces: Mapping[str, Interface], plant: str, names: Sequence[str], given: Mapping[str, Any]
+) -> Iterator[Case]:
+    """What it got in every manoeuvre and on the recorded drive; arguments as for `recorded`."""
+    for manoeuvre in MANOEUVRES.values():
+        yield recorded(manoeuvre, system, plant, names, given)
+    track = Track.of(read_drive(Path(TOWN_DRIVE)), torque_limit(interfaces["motor"], given["parameters"]))
+    load = RoadLoad.of_plant(interfaces["plant"], given["parameters"])
+    yield recorded(followed(track, load, plant, given)[0], system, plant, names, given)
+
+
+def random_inputs(cases: Sequence[Case], seed: int, samples: int = SAMPLES) -> Iterator[Case]:
+    """Random inputs from the ranges that the inputs of the cases have, and then absurd ones among them."""
+    draw = np.random.default_rng(seed)
+    inputs = np.concatenate([case.inputs for case in cases])
+    random = draw.uniform(inputs.min(axis=0), inputs.max(axis=0), (samples, inputs.shape[1]))
+    whole = np.all(inputs == np.round(inputs), axis=0)
+    random[:, whole] = np.round(random[:, whole])
+    names = cases[0].names
+    yield Case("random inputs", names, random, drawn=True)
+    absurd = np.where(draw.random(random.shape) < OFTEN, draw.choice(ABSURD, random.shape), random)
+    yield Case("absurd inputs", names, absurd, drawn=True)
+
+
+def random_states(random: Case, visited: np.ndarray, seed: int) -> Case:
+    """Every sample from a random state, with the inputs of a case.
+
+    Args:
+        visited: states that were, a row each.
+    """
+    draw = np.random.default_rng(seed)
+    low, high = visited.min(axis=0), visited.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.5 * WIDER * (high - low)
+    states = draw.uniform(middle - half, middle + half, (len(random.inputs), visited.shape[1]))
+    return random._replace(name="random states", states=states.astype(np.float32).astype(float))

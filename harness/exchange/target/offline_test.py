@@ -1,0 +1,107 @@
+"""The off-line test of the controller on the target: all cases, and what it writes."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....fmus.native.compiler import CompilerError
+from ....fmus.target.deviations import findings
+from ...base.atomic_files import write_text
+from ...base.csv_file import write_csv
+from ...base.errors import DrivelineError
+from ...base.progress import progress
+from ...cosimulation.system import System
+from ...cosimulation.wiring import fit
+from ...metrics.evaluate import T_S
+from .c_export import with_values
+from .comparison import Comparison, compare, responses
+from .in_loop import in_loop
+from .offline_cases import Case, cases_in_loop, random_inputs, random_states
+from .offline_figure import plot_comparison
+from .offline_results import TYPICAL, Part, Record
+from .programs import programs
+from .sample_timing import schedule
+from .size import size_of
+from .target_page import page
+
+MANY = 31
+"""Cases, about: for the bar of the progress."""
+
+PARTS = ("NoDamping", "LinearObserver", "PaperObserver")
+"""Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
+
+
+def record(controller: str, system: System, plant: str, given: Mapping[str, Any]) -> Record:
+    """Runs all cases on the target and on this machine, and every manoeuvre with the target in the loop.
+
+    Args:
+        controller: its name.
+        system: the loop with it.
+        plant: its name or file.
+        given: settings of the loop, see `harness.commands.settings`.
+
+    Raises:
+        DrivelineError: a compiler or the emulator is missing.
+        SimulationError: the target was lost, hung or crashed.
+    """
+    interfaces = fit(system).interfaces
+    own = interfaces["controller"]
+    inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
+    values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
+    values |= {name: given["parameters"].get(f"controller.{name}", value) for name, value in values.items()}
+    sources = with_values(controller, "float", values)
+    try:
+        found = findings(sources)
+    except CompilerError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
+    with programs(controller, values) as made, progress(MANY, "target") as done:
+        comparisons: list[Comparison] = []
+        cases = list(cases_in_loop(system, interfaces, plant, inputs, given))
+        cases += random_inputs(cases, given["seed"])
+        for case in cases:
+            comparisons.append(compare(made, case, outputs))
+            done(len(comparisons))
+        states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
+        comparisons.append(compare(made, random_states(cases[-2], states, given["seed"]), outputs))
+        loops = []
+        for loop in in_loop(made, controller, system, plant, inputs, given):
+            loops.append(loop)
+            done(len(comparisons) + len(loops))
+        with made.target() as link:
+            size = size_of(made.image, made.name, link)
+        typical = next(each for each in comparisons if each.case.name == TYPICAL)
+        parts = [_part(name, typical.case) for name in PARTS if name != controller]
+        parts.append(Part(controller, typical.instructions[1], size.flash))
+        return Record(comparisons, loops, schedule(sources), size, found, parts)
+
+
+def _part(controller: str, case: Case) -> Part:
+    with programs(controller, {}) as made:
+        most = max(answer.count for answer in responses(made.target(), case)[1:])
+        with made.target() as link:
+            return Part(controller, most, size_of(made.image, made.name, link).flash)
+
+
+def write(found: Record, controller: str, plant: str, folder: Path) -> list[Path]:
+    """Writes page, figure and the cases; returns the files."""
+    files = [folder / "target.md"]
+    write_text(page(found, controller, plant), files[0])
+    title = f"{controller} on the emulated Cortex-M4F"
+    files += plot_comparison(found.comparisons, title, folder / "figures" / "target")
+    for each in found.comparisons:
+        files.append(folder / f"{each.case.name.replace(' ', '_')}.csv")
+        write_csv(signals(each), files[-1])
+    return files
+
+
+def signals(comparison: Comparison) -> np.ndarray:
+    """Time, inputs, and the torque on the target and in double precision, as columns of a file."""
+    case, (target, model) = comparison.case, comparison.traces
+    columns = {"time": T_S * np.arange(len(target)), **dict(zip(case.names, case.inputs.T, strict=True))}
+    columns |= {"target.T_ref": target, "model.T_ref": model}
+    table = np.empty(len(target), dtype=[(name, float) for name in columns])
+    for name, column in columns.items():
+        table[name] = column
+    return table

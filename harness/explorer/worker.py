@@ -1,0 +1,57 @@
+"""A thread that runs what tabs ask for, each time the latest, so that none waits for an outdated request."""
+
+from collections.abc import Callable, Hashable
+from threading import Condition, Thread
+from typing import Any
+
+from ..base.progress import hidden
+from ..cosimulation.runs import KeptLoops, kept_by
+
+Job = Callable[[], Any]
+
+
+class Worker:
+    """Systems stay loaded in it. A job that has not begun when the same asker asks again is forgotten; askers take
+    turns."""
+
+    def __init__(self) -> None:
+        self._asked: dict[Hashable, Job] = {}
+        self._changed = Condition()
+        self._open = True
+        self._thread = Thread(target=self._work, name="worker", daemon=True)
+        self._thread.start()
+
+    def ask(self, asker: Hashable, job: Job) -> None:
+        """Has a job done; it answers errors itself."""
+        with self._changed:
+            self._asked[asker] = job
+            self._changed.notify()
+
+    def forget(self, asker: Hashable) -> None:
+        """Nothing more is done for someone who has gone."""
+        with self._changed:
+            self._asked.pop(asker, None)
+
+    def close(self) -> None:
+        """Ends the thread after the job that it does."""
+        with self._changed:
+            self._open = False
+            self._asked.clear()
+            self._changed.notify()
+        self._thread.join()
+
+    def _work(self) -> None:
+        loops = KeptLoops(None)
+        try:
+            with kept_by(loops), hidden():
+                while (job := self._next()) is not None:
+                    job()
+        finally:
+            loops.close()
+
+    def _next(self) -> Job | None:
+        with self._changed:
+            self._changed.wait_for(lambda: self._asked or not self._open)
+            if not self._open:
+                return None
+            return self._asked.pop(next(iter(self._asked)))

@@ -1,0 +1,225 @@
+"""Diagnostics: what may be wrong with a recording, or with what is taken as known, shows in the innovations."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.signal import welch
+
+from .drive_train import Parameters
+from .drive_train_response import Tyre
+from .maximum_likelihood import Found, maximise
+from .model_inputs import Drive
+from .prediction import Filtered, Noise, Predictor
+from .torque_loop import FittedLoop
+
+LIKELY = 15.1
+"""Twice the gain in likelihood of one more parameter up to which it is not asked for: more comes by chance once in ten
+thousand."""
+
+LATE = 0.004
+"""Time in s by which it is tried whether the load torque is late or early."""
+
+LEFT, SCATTER = 0.5, 0.1
+"""Share of what the innovations are too large by that a shift of the load torque may leave, and what they may be too
+large by where nothing is wrong (0.06 at most in 20 recordings of the design model)."""
+
+TRIAL = 8
+"""Passes that a trial may take."""
+
+DEMAND_LATE = 0.5
+"""Samples by which the torque demand must be late or early to be named."""
+
+LAG_OFF = 0.1
+"""Share of tau that the vehicle file may be wrong by without a warning."""
+
+SURELY = 3.0
+"""Standard deviations by which the gain of the motor torque must be off to be named."""
+
+UNKNOWN_GAIN, LOAD_GAIN = 0.3, 0.1
+"""Relative standard deviation of the gain of the load torque from which on it tells nothing, and what the gain may be
+off by: measurement wheels are right to some per cent."""
+
+WHITE = 0.25
+"""Autocorrelation of the innovations up to which they count as white; of a good recording it is about 0.07."""
+
+ZERO = 5.0
+"""Offset of a recorded torque in N.m from which on it is named; smaller ones are found and do no harm."""
+
+OUTLIER, LONELY = 10.0, 3.0
+"""Size of the innovation of an outlier, and over the median of the CROWD largest: where a model is wrong, many are
+large."""
+
+CROWD = 20
+
+COLOURED = 0.3
+"""Power of the motor speed in the last quarter of its band over that in the second, from which on it counts as white;
+0.5 and more as sampled, 0.25 and less interpolated or held."""
+
+EXPLAINS = 0.8
+"""Share that a tyre must explain of what the spectra of load torque and wheel speed tell."""
+
+FLANK = 0.02
+"""Share of the time that the teeth must spend on either flank."""
+
+CLOSE = 0.05
+"""Relative standard deviation from which on a parameter counts as undetermined."""
+
+
+def diagnose_load_delay(drive: Drive, found: Found, noise: Noise) -> list[str]:
+    """Whether the recording is explained better if the load torque is shifted: if half of what the innovations are too
+    large by is gone then, or all but chance. Whatever else is wrong, some shift makes it a little better."""
+    gains = []
+    samples = max(round(LATE / drive.T_s), 1)
+    for late, word in ((samples, "late"), (-samples, "early")):
+        shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
+        refit = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
+        if refit.innovations.rms - 1.0 < max(LEFT * (found.innovations.rms - 1.0), SCATTER):
+            gains.append((found.gain(refit), word))
+    gain, word = max(gains, default=(0.0, ""))
+    by = 1e3 * drive.T_s * samples
+    warning = f"the load torque looks {word}: shifted by {by:g} ms the recording is explained better"
+    return [warning] if gain > LIKELY else []
+
+
+def diagnose_motor_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """What a gain of the motor torque that is surely not 1 may mean."""
+    if abs(p.g_T - 1.0) <= SURELY * deviations.get("g_T", 0.0):
+        return []
+    return [
+        f"the recorded motor torque looks {p.g_T:.4g} times the true one, or J_1 = {p.J_1:g} kg.m2 should be "
+        f"{p.J_1 * p.g_T:.4g} (--free J_1); in the latter case J_2, C and d are {p.g_T:.4g} times as large too"
+    ]
+
+
+def diagnose_load_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """What a gain of the load torque that is not about 1 may mean."""
+    deviation = deviations.get("g_L", 0.0)
+    if deviation > UNKNOWN_GAIN * p.g_L:
+        return [
+            "the load torque tells nothing (its gain is not determined), so that J_2 is not that of the wheels: "
+            "leave its channel away"
+        ]
+    if abs(p.g_L - 1.0) <= max(LOAD_GAIN, SURELY * deviation):
+        return []
+    return [
+        f"the recorded load torque looks {p.g_L:.3g} times the true one: its unit, its gain or the gear ratio is wrong"
+    ]
+
+
+def diagnose_innovations(correlation: float) -> list[str]:
+    """Whether the intervals hold, by the largest autocorrelation of the innovations."""
+    if abs(correlation) <= WHITE:
+        return []
+    return [
+        f"the innovations are not white (correlation {correlation:.2f}): the intervals are too narrow; the recording "
+        "may be sampled too slowly, filtered or interpolated"
+    ]
+
+
+def diagnose_offsets(through: Filtered, p: Parameters) -> list[str]:
+    """What zeros of the recorded torques are off, as the filter has found at the end."""
+    motor, load = -through.states[-1, 3:5] * (p.g_T, p.g_L)
+    return [
+        f"the recorded {which} torque looks {abs(offset):.3g} N.m too {'large' if offset > 0.0 else 'small'}: "
+        "its zero, or that of the other torque, is off"
+        for which, offset in (("motor", motor), ("load", load))
+        if abs(offset) > ZERO
+    ]
+
+
+def diagnose_outliers(through: Filtered, T_s: float) -> list[str]:
+    """Samples of the motor speed that are off alone."""
+    size = np.abs(through.size[through.settled :])
+    largest = np.sort(size)[-CROWD:]
+    at = np.flatnonzero(size > max(OUTLIER, LONELY * float(np.median(largest)))) + through.settled
+    if not len(at):
+        return []
+    k = int(at[np.argmax(np.abs(through.size[at]))])
+    others = f" and {len(at) - 1} more" if len(at) > 1 else ""
+    return [
+        f"the motor speed {(k + 1) * T_s:.4g} s after the start is {through.errors[k]:+.3g} rad/s off{others}: "
+        "an outlier, which moves what is found; correct it"
+    ]
+
+
+def diagnose_spectrum(omega_1: np.ndarray) -> list[str]:
+    """Whether the motor speed has the white noise that a sensor has."""
+    f, power = welch(np.diff(omega_1), nperseg=min(1024, len(omega_1) - 1))
+    f, power = f[1:-1], power[1:-1] / np.sin(np.pi * f[1:-1]) ** 2  # of the speed, not of its differences
+    last, second = (float(np.median(power[(f > low) & (f < low + 0.125)])) for low in (0.375, 0.125))
+    if last >= COLOURED * second:
+        return []
+    return [
+        "the motor speed has no white noise (it looks interpolated, filtered or calculated): "
+        "the intervals do not hold, and J_2, C and phi_B may be wrong; give it as it was sampled"
+    ]
+
+
+def diagnose_excitation(
+    phi: np.ndarray, p: Parameters, deviations: Mapping[str, float], free: Sequence[str]
+) -> list[str]:
+    """What the excitation does not determine.
+
+    Args:
+        phi: twist in rad as the filter sees it, shape (n,).
+    """
+    warnings = []
+    driving, braking = (float(np.mean(side * phi > p.phi_B)) for side in (1.0, -1.0))
+    if min(driving, braking) < FLANK:
+        side = "never drive" if driving < FLANK else "never brake"
+        warnings.append(
+            f"phi_B is not determined: the teeth {side}, so that the gap is not crossed; excite about zero torque"
+        )
+    if "J_1" in free and "g_T" in free:
+        warnings.append(
+            "J_1 and the gain of the motor torque are both free, and nothing sets their scale: free one of them"
+        )
+    wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
+    if wide:
+        warnings.append(
+            f"{', '.join(wide)}: standard deviation of more than {100.0 * CLOSE:g} %; excite more or longer"
+        )
+    if p.d < -SURELY * deviations.get("d", 0.0):
+        warnings.append(f"d = {p.d:.3g} N.m.s/rad is negative, which no damper is: something else is wrong")
+    if deviations.get("d", 0.0) > CLOSE * abs(p.d):
+        warnings.append(
+            f"d is known to {100.0 * deviations['d'] / abs(p.d or 1.0):.0f} % only: without a measured wheel motion "
+            "damping is hardly seen"
+        )
+    return warnings
+
+
+def diagnose_tyre(behind: Tyre) -> list[str]:
+    """Whether the load torque is that of a tyre."""
+    if behind.explained >= EXPLAINS and min(behind.c_t, behind.d_t) > 0.0:
+        return []
+    why = (
+        f"{100.0 * behind.explained:.0f} % explained"
+        if behind.explained < EXPLAINS
+        else "spring or damper would be negative"
+    )
+    return [
+        f"the load torque is not that of a tyre with a vehicle behind it ({why}): "
+        "how the car answers on its own, and C in the vehicle file, are those of the drive train alone"
+    ]
+
+
+def diagnose_demand(loop: FittedLoop, T_s: float, tau: float) -> list[str]:
+    """What the torque demand tells against the recording or the vehicle file, where tau is the lag in s."""
+    if not loop.answers:
+        return [
+            f"the torque demand explains {100.0 * loop.explained:.0f} % of the motor torque only, so that it is not "
+            "that of motor control: the recorded motor torque is used, and tau is not identified"
+        ]
+    warnings = []
+    if abs(loop.loop.delay) > DEMAND_LATE * T_s:
+        early = loop.loop.delay > 0.0
+        when, why = ("after", "") if early else ("before", ", or the two exchanged")
+        warnings.append(
+            f"the motor torque comes {1e3 * abs(loop.loop.delay):.2f} ms {when} its demand, "
+            f"beside the lag of motor control: one of the two channels looks shifted{why}"
+        )
+    if abs(loop.loop.tau / tau - 1.0) > LAG_OFF:
+        warnings.append(f"tau = {tau:g} s of the vehicle file looks wrong: motor control has {loop.loop.tau:.4g} s")
+    return warnings

@@ -1,0 +1,130 @@
+"""A recorded drive on even samples, and what the balance of forces along the road knows of a vehicle."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from math import inf
+from typing import Self
+
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+from scipy.ndimage import gaussian_filter1d
+
+from ..base.errors import WiringError
+from ..cosimulation.interface import Interface
+from ..recordings.drive import Drive
+
+ROTATING_MASS = 1.09
+"""Mass including the rotating parts, over the mass."""
+SLOPE_LIMIT = 0.08
+"""Steepest recorded road in rad."""
+SPEED_MIN = 3.0
+"""Speed in m/s below which the climb over the distance says nothing of the slope."""
+
+
+@dataclass(frozen=True)
+class RoadLoad:
+    """What the balance of forces along the road needs to know of a vehicle (parameters of the plant)."""
+
+    i: float
+    r: float
+    m: float
+    g: float
+    c_rr: float
+    c_wa: float
+
+    @classmethod
+    def of_plant(cls, plant: Interface, parameters: Mapping[str, float] | None = None) -> Self:
+        """The start values of the parameters of these names.
+
+        Args:
+            parameters: `plant.name` -> value, which a run sets instead; others are ignored.
+
+        Raises:
+            WiringError: the plant lacks one of them.
+        """
+        starts = {
+            name: float(variable.start) * plant.factors.get(name, 1.0)
+            for name, variable in plant.variables.items()
+            if variable.type == "Real" and variable.start
+        }
+        starts |= {name.removeprefix("plant."): value for name, value in (parameters or {}).items()}
+        names = [field.name for field in fields(cls)]
+        missing = [name for name in names if name not in starts]
+        if missing:
+            raise WiringError(
+                f"{plant.path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(names)} "
+                f"of the vehicle to work out the brakes"
+            )
+        return cls(*(starts[name] for name in names))
+
+    @property
+    def inertia(self) -> float:
+        """Mass in kg that is accelerated, with what rotates."""
+        return ROTATING_MASS * self.m
+
+    def motor_force(self, T_mot: np.ndarray) -> np.ndarray:
+        """Force in N with which the motor pushes: i T/r."""
+        return self.i * T_mot / self.r
+
+    def motion(self, v: np.ndarray, interval: float) -> np.ndarray:
+        """Force in N that a motion takes on a level road: 1.09 m dv/dt + m g c_rr sign(v) + c_wa v |v|.
+
+        Args:
+            v: speed in m/s, `interval` seconds apart.
+        """
+        resistance = self.m * self.g * self.c_rr * np.sign(v) + self.c_wa * v * np.abs(v)
+        return self.inertia * np.gradient(v, interval) + resistance
+
+
+def torque_limit(motor: Interface, parameters: Mapping[str, float] | None = None) -> float:
+    """T_max of a motor in N.m as `parameters` (`motor.T_max` -> value), else its start value says; inf without one."""
+    variable = motor.variables.get("T_max")
+    start = float(variable.start) * motor.factors.get("T_max", 1.0) if variable and variable.start else inf
+    return (parameters or {}).get("motor.T_max", start)
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """A recording from its start (time 0) to its last sample, resampled to its median interval.
+
+    Attributes:
+        name: of the recording.
+        interval: between the samples in s.
+        t: in s.
+        v: speed in m/s.
+        T_driver: motor torque in N.m within the limits of the motor: the driver's demand.
+        slope: of the road in rad, 0 where no elevation was recorded.
+    """
+
+    name: str
+    interval: float
+    t: np.ndarray
+    v: np.ndarray
+    T_driver: np.ndarray
+    slope: np.ndarray
+
+    @classmethod
+    def of(cls, recording: Drive, T_max: float = inf) -> Self:
+        """
+        Args:
+            T_max: largest torque of the motor in N.m.
+        """
+        time = recording.time - recording.time[0]
+        interval = round(float(np.median(np.diff(time))), 9)
+        t = np.arange(int(time[-1] / interval + 1e-6) + 1) * interval
+        v, T_mot = (np.interp(t, time, x) for x in (recording.v, recording.T_mot))
+        slope = np.zeros_like(v)
+        if recording.elevation is not None:
+            slope = road_slope(v, np.interp(t, time, recording.elevation), interval)
+        return cls(recording.name, interval, t, v, np.clip(T_mot, -T_max, T_max), slope)
+
+
+def road_slope(v: np.ndarray, elevation: np.ndarray, interval: float) -> np.ndarray:
+    """Slope in rad from coarse elevation (m) and speed (m/s), `interval` seconds apart.
+
+    Elevation is smoothed over 8 s (Gaussian), the slope over 2 s and limited to +-0.08.
+    """
+    distance = cumulative_trapezoid(v, dx=interval, initial=0.0)
+    climb = np.gradient(gaussian_filter1d(elevation, 8.0 / interval), interval)
+    advance = np.maximum(np.gradient(distance, interval), SPEED_MIN)
+    return np.clip(gaussian_filter1d(climb / advance, 2.0 / interval), -SLOPE_LIMIT, SLOPE_LIMIT)

@@ -1,0 +1,123 @@
+"""The metrics of a run and of a recorded drive, in SI units; NaN where one makes no sense, `absent` says why."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from .declaration import Column, Metric
+from .notebook_table import NotebookTable
+
+GearTorqueRms = Annotated[
+    float,
+    Metric(
+        "N.m", "rms from 5 to 50 Hz of the gear torque, which wears the gear", Column("torque\n5-50 Hz", "N.m", 1.0, 1)
+    ),
+]
+JerkRms = Annotated[
+    float,
+    Metric(
+        "m/s3",
+        "rms from 5 to 50 Hz of the jerk of the body, which the passengers feel",
+        Column("jerk\n5-50 Hz", "m/s3", 1.0, 1),
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Metrics(NotebookTable):
+    """Torques are those of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
+    T_ref - T_driver, the demand delayed by the one sample that every controller needs. Rms and peak values are those
+    from 0.2 s before a step to 4 s after it, in every other manoeuvre those of the whole record.
+    """
+
+    settling_time: Annotated[
+        float,
+        Metric("s", "time until the gear torque swings by less than 5 % of the step", Column("settling", "ms", 1e3, 0)),
+    ]
+    overshoot: Annotated[
+        float,
+        Metric(
+            "1",
+            "of the gear torque over the straight line of its final value, as share of its way",
+            Column("over-\nshoot", "%", 1e2, 0),
+        ),
+    ]
+    damping_ratio: Annotated[
+        float,
+        Metric(
+            "1",
+            "from the logarithmic decrement of the gear torque about that line; a rough figure",
+            Column("damping\nratio", "1", 1.0, 2),
+        ),
+    ]
+    gear_torque_rms: GearTorqueRms
+    jerk_rms: JerkRms
+    impact_speed: Annotated[
+        float,
+        Metric(
+            "rad/s",
+            "largest with which the teeth meet after the backlash, motor side",
+            Column("impact\nspeed", "rad/s", 1.0, 1),
+        ),
+    ]
+    response_delay: Annotated[
+        float,
+        Metric(
+            "s", "time until the gear torque has first made 90 % of its way", Column("delay\nto 90 %", "ms", 1e3, 0)
+        ),
+    ]
+    withheld_time: Annotated[
+        float,
+        Metric(
+            "s",
+            "impulse kept from the driver in the 2 s after a step, over its height: a lag",
+            Column("torque\nwithheld", "ms", 1e3, 1),
+        ),
+    ]
+    stationary_torque_change: Annotated[
+        float,
+        Metric(
+            "N.m",
+            "mean torque that the control adds in the last 0.6 s, after 0.9 s of the same demand",
+            Column("stat.\nchange", "N.m", 1.0, 2),
+        ),
+    ]
+    jerk_rms_to_50_Hz: Annotated[float, Metric("m/s3", "rms of the jerk of the body up to 50 Hz")]
+    added_torque_rms: Annotated[float, Metric("N.m", "rms of the torque that the control adds")]
+    added_torque_peak: Annotated[float, Metric("N.m", "largest magnitude of the torque that the control adds")]
+    end_swing: Annotated[float, Metric("N.m", "largest swing of the gear torque in the last second")]
+    plateau_swing: Annotated[
+        float,
+        Metric(
+            "N.m",
+            "mean swing of the gear torque about a straight line at the ends of the demand's plateaus",
+        ),
+    ]
+    absent: Mapping[str, str] = field(default_factory=dict)
+    """Why metrics have no value, by their names."""
+
+
+@dataclass(frozen=True)
+class RideMetrics(NotebookTable):
+    """The metrics of a recorded drive that was simulated."""
+
+    gear_torque_rms: GearTorqueRms
+    gear_damage: Annotated[
+        float,
+        Metric(
+            "N5.m5",
+            "fatigue by rainflow counting of the gear torque; only the ratio means something",
+            Column("gear\ndamage", "(N.m)^5", 1.0, 0),
+        ),
+    ]
+    jerk_rms: JerkRms
+    speed_error_rms: Annotated[
+        float,
+        Metric(
+            "m/s",
+            "rms of simulated less recorded speed",
+            Column("speed\nerror", "m/s", 1.0, 2),
+        ),
+    ]
+    absent: Mapping[str, str] = field(default_factory=dict)
+    """Why metrics have no value, by their names."""

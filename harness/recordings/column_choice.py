@@ -1,0 +1,146 @@
+"""Which column of a file holds which quantity."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from shlex import quote
+
+from ..base.known_names import nearest
+from ..base.plain_text import plain
+from .headings import after_underscores, key, split
+from .quantities import QUANTITIES, Aliases, example
+from .recording_units import factor_to, is_unit
+from .source import Column, RecordingError, Source
+
+NAMES_SHOWN = 3
+"""Other names of a quantity that a message gives where none is found."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A column that holds a quantity.
+
+    Attributes:
+        place: of the column in the file.
+        unit: of the SI, into which `factor` turns its values.
+        file_unit: the unit that they have in the file.
+    """
+
+    quantity: str
+    column: Column
+    place: int
+    unit: str
+    factor: float
+    file_unit: str
+
+
+@dataclass(frozen=True)
+class Chooser:
+    """Finds the columns of a file.
+
+    Attributes:
+        given: by quantity, the heading or name of the column in which somebody says it is, with or without a unit;
+            a minus before it says that its sign is the other one.
+    """
+
+    source: Source
+    names: Aliases
+    given: Mapping[str, str]
+
+    def needed(self, quantity: str) -> Choice:
+        """The column of a quantity.
+
+        Raises:
+            RecordingError: there is none; several; one of a unit that is none of this quantity.
+        """
+        choice = self.found(quantity)
+        if choice:
+            return choice
+        others = " or ".join(self.names[quantity][1 : 1 + NAMES_SHOWN])
+        known = f" (other names are {others})" if others else ""
+        raise RecordingError(
+            f"{self.source.headings}: no column {example(quantity, self.names)}{known}; "
+            f"{self._nearest(self.names[quantity][0])}"
+        )
+
+    def _nearest(self, name: str) -> str:
+        """What to say of a name that no column has."""
+        return plain(nearest(name, [column.name for column in self.source.columns], every="the file has"))
+
+    def found(self, quantity: str) -> Choice | None:
+        """The column of a quantity, None if there is none; else as `needed`."""
+        if quantity in self.given:
+            return self._given(quantity, self.given[quantity])
+        names = {key(name) for name in self.names[quantity]}
+        found = [
+            (place, unit)
+            for place, column in enumerate(self.source.columns)
+            for name, unit in _readings(column)
+            if key(name) in names and (unit == column.unit or is_unit(str(unit)))
+        ]
+        return self._one(quantity, found, 1.0) if found else None
+
+    def _given(self, quantity: str, text: str) -> Choice:
+        sign = -1.0 if text.startswith("-") else 1.0
+        name_given = text.removeprefix("-").strip()
+        name, unit = split(name_given)
+        columns = self.source.columns
+        found = [(place, column.unit) for place, column in enumerate(columns) if column.heading == name_given]
+        found = found or [
+            (place, unit or column.unit) for place, column in enumerate(columns) if key(column.name) == key(name)
+        ]
+        if not found:
+            raise RecordingError(
+                f"{self.source.headings}: no column {plain(name_given, 60)}, which --column gives for {quantity}; "
+                f"{self._nearest(name)}"
+            )
+        return self._one(quantity, found, sign)
+
+    def _one(self, quantity: str, found: Sequence[tuple[int, str | None]], sign: float) -> Choice:
+        columns = self.source.columns
+        if len(found) > 1:
+            raise RecordingError(
+                f"{self.source.headings}: {_doubled(quantity, [columns[k].heading for k, _ in found])}"
+            )
+        place, unit = found[0]
+        si, factor = self._factor(quantity, columns[place], unit)
+        return Choice(quantity, columns[place], place, si, sign * factor, unit or si)
+
+    def _factor(self, quantity: str, column: Column, unit: str | None) -> tuple[str, float]:
+        """Unit of the SI and the factor to it."""
+        declared = QUANTITIES[quantity]
+        if unit is None and declared.unit != "1":
+            raise RecordingError(
+                f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
+                f"{example(quantity, self.names)}, or give it with "
+                f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
+            )
+        if declared.also:
+            try:
+                return declared.also, factor_to(declared.also, unit or "1")
+            except ValueError:
+                pass  # then it must be of the first
+        try:
+            return declared.unit, factor_to(declared.unit, unit or "1")
+        except ValueError as reason:
+            raise RecordingError(
+                f"{self.source.headings}: {column.heading} {plain(reason, 200)}, as in the heading "
+                f"{example(quantity, self.names)}"
+            ) from reason
+
+
+def _readings(column: Column) -> Iterator[tuple[str, str | None]]:
+    """Name and unit as the column can be understood."""
+    yield column.name, column.unit
+    if column.unit is None:
+        yield from after_underscores(column.name)
+
+
+def _doubled(quantity: str, headings: Sequence[str]) -> str:
+    """What to say of several columns that could hold a quantity."""
+    distinct = [heading for heading in headings if headings.count(heading) == 1]
+    if not distinct:
+        return f"{len(headings)} columns are called {headings[0]}; rename all but one in the file"
+    return (
+        f"{' and '.join(headings)} could each be {quantity} ({QUANTITIES[quantity].meaning}); say which one is meant, "
+        f"as in --column {quantity}={quote(distinct[0])}"
+    )

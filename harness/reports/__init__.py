@@ -1,1 +1,0 @@
-"""Results for people and tools: tables, CSV files, figures."""

@@ -1,0 +1,58 @@
+"""What `driveline.simulate` takes from Python: a value of another kind gets one line that names it."""
+
+from collections.abc import Callable, Mapping
+from numbers import Integral, Real
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import WiringError
+from ..base.plain_text import plain
+from ..cosimulation.limits import Limits
+from ..cosimulation.system import Scheme
+from ..manoeuvres.manoeuvre import Manoeuvre
+
+
+def _block(value: Any) -> bool:
+    return value is None or isinstance(value, str | PathLike)
+
+
+def _texts(value: Any, of: type) -> bool:
+    """Whether it maps texts to values of a type; None maps nothing."""
+    return value is None or (
+        isinstance(value, Mapping) and all(isinstance(k, str) and isinstance(v, of) for k, v in value.items())
+    )
+
+
+BLOCK = (_block, "the name of a block, or the path of an FMU")
+
+ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
+    "manoeuvre": (lambda value: isinstance(value, Manoeuvre), "a Manoeuvre, such as MANOEUVRES['tipin15']"),
+    "plant": BLOCK,
+    "controller": BLOCK,
+    "motor": BLOCK,
+    "can": BLOCK,
+    "control": (lambda value: isinstance(value, Real | np.bool_) and value in (True, False), "True or False"),
+    "parameters": (lambda value: _texts(value, object), "a dictionary such as {'plant.J_1': 0.06}"),
+    "step_size": (lambda value: isinstance(value, Real), "a number of seconds"),
+    "scheme": (lambda value: isinstance(value, Scheme | str), "a Scheme or its name"),
+    "seed": (lambda value: isinstance(value, Integral), "a whole number"),
+    "folder": (lambda value: isinstance(value, str | PathLike), "the path of a folder"),
+    "build": (lambda value: value is None or isinstance(value, str), "'native', 'python' or None"),
+    "mapping": (lambda value: _texts(value, str), "a dictionary such as {'plant.T_gear': 'Shaft.tau'}"),
+    "limits": (lambda value: isinstance(value, Limits), "Limits"),
+}
+"""Each argument with what tells whether it takes a value, and with what it must be."""
+
+
+def require_arguments(**given: Any) -> None:
+    """Refuses values that no run can take, whatever the FMUs are.
+
+    Raises:
+        WiringError: names the argument, the value and what is allowed.
+    """
+    for name, value in given.items():
+        takes, allowed = ARGUMENTS[name]
+        if not takes(value):
+            raise WiringError(f"{name} = {plain(repr(value), 60)}: it must be {allowed}")

@@ -1,0 +1,146 @@
+"""Many runs on a Dask cluster in place of the cores of this machine.
+
+The answer to a case is fetched as soon as it is there: a worker that is lost after that takes nothing with it, and what
+it had not answered is run again by another one. Every worker needs this package and the files that the cases read, at
+the same paths.
+"""
+
+import asyncio
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from importlib.metadata import version
+from pathlib import Path
+from pickle import loads
+from threading import Lock, local
+from typing import Any
+from uuid import uuid4
+
+from cloudpickle import dumps
+from distributed import Client, KilledWorker, Worker, WorkerPlugin, get_worker
+from distributed.comm.core import connect
+
+from ..base.collected_warnings import warn_once
+from ..base.errors import DrivelineError, SimulationError
+from ..cosimulation.runs import KeptLoops, kept_by
+
+Lost = KilledWorker
+"""Is raised where worker after worker ended while it ran a case."""
+
+TIMEOUT = 10.0
+"""Seconds in which the scheduler must answer."""
+
+MOST_UNDER_WAY = 64
+"""Cases that are sent at a time, unless the cluster has more than half as many threads."""
+
+
+@contextmanager
+def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[Any], Any]]:
+    """What submits a case and gives its future.
+
+    Args:
+        function: of a case; its systems of FMUs stay loaded on the workers.
+        address: of the scheduler.
+
+    Raises:
+        DrivelineError: no scheduler answers there, or a worker has another version of the package.
+    """
+    with _connected(address) as client:
+        name = f"driveline-{uuid4().hex}"
+        try:
+            client.register_plugin(Runner(function, version("driveline-damping")), name=name)
+        except Exception as refusal:
+            raise DrivelineError(f"a worker of {address} cannot be used: {refusal}") from refusal
+        threads: Any = client.nthreads()
+        pool = ThreadPoolExecutor(max(MOST_UNDER_WAY, 2 * sum(threads.values())))
+        try:
+            yield lambda case: pool.submit(_result, client, name, address, case)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            with suppress(OSError):  # the scheduler may have gone
+                client.unregister_worker_plugin(name)
+
+
+@contextmanager
+def _connected(address: str) -> Iterator[Client]:
+    try:
+        with ThreadPoolExecutor(1) as pool:  # a notebook has an event loop of its own in this thread
+            pool.submit(lambda: asyncio.run(_knock(address))).result()  # a client complains long after
+    except (OSError, ValueError) as reason:
+        raise DrivelineError(f"no Dask scheduler answers at {address!r}: {reason}") from reason
+    with Client(address, timeout=TIMEOUT, set_as_default=False) as client:
+        if not client.scheduler_info()["workers"]:
+            warn_once(f"the scheduler at {address} has no workers yet; the cases wait for them")
+        yield client
+
+
+async def _knock(address: str) -> None:
+    await (await connect(address, timeout=TIMEOUT)).close()
+
+
+def _result(client: Client, name: str, address: str, case: Any) -> Any:
+    """Of one case. The thread that waits for it fetches it at once, before its worker can be lost."""
+    try:
+        return client.submit(_run, dumps(case), runner=name, pure=False).result()
+    except CancelledError as reason:
+        raise SimulationError(f"the Dask scheduler at {address} has gone") from reason
+
+
+def _run(case: bytes, runner: str) -> Any:
+    """On a worker: what its plugin of that name makes of a case."""
+    plugin: Any = get_worker().plugins[runner]
+    return plugin.answer(loads(case))
+
+
+class Runner(WorkerPlugin):
+    """On a worker: answers cases; each thread keeps its systems of FMUs loaded.
+
+    Args:
+        function: of a case.
+        expected: the version of the package.
+    """
+
+    def __init__(self, function: Callable[[Any], Any], expected: str) -> None:
+        self._function = dumps(function)
+        self._expected = expected
+
+    def setup(self, worker: Worker) -> None:
+        from .many_runs import collect_warnings
+
+        if (here := version("driveline-damping")) != self._expected:
+            raise DrivelineError(f"it has driveline-damping {here}, and {self._expected} is needed")
+        collect_warnings()
+        self._answer = loads(self._function)
+        self._folder = Path(worker.local_directory)
+        self._threads: list[Thread] = []
+        self._here = local()
+        self._ended = False
+
+    def answer(self, case: Any) -> Any:
+        """In one of the threads of the worker."""
+        if not hasattr(self._here, "thread"):
+            self._here.thread = Thread(self._folder)
+            self._threads.append(self._here.thread)
+        thread: Thread = self._here.thread
+        with thread.busy:
+            with kept_by(thread.loops):
+                answer = self._answer(case)
+            if self._ended:
+                thread.loops.close()
+            return answer
+
+    def teardown(self, worker: Worker) -> None:
+        """Unloads what no thread uses; what is used is unloaded when its case has been answered."""
+        self._ended = True
+        for thread in self._threads:
+            if thread.busy.acquire(blocking=False):
+                thread.loops.close()
+                thread.busy.release()
+
+
+class Thread:
+    """What a thread of a worker has: its loops, and a lock that it holds while it uses them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.loops = KeptLoops(folder)
+        self.busy = Lock()

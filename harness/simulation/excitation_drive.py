@@ -1,0 +1,127 @@
+"""The test drive: the car is excited by a pseudo-random binary torque, and recorded as its sensors see it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import asin
+
+import numpy as np
+
+from ..base.errors import WiringError
+from ..cosimulation.interface import Interface
+from ..manoeuvres.road_load import RoadLoad
+from ..manoeuvres.speed_following import SIN_MAX
+from ..metrics.evaluate import T_S, at_samples
+from ..recordings.quantities import QUANTITIES, aliases
+
+RECORDED = {
+    "omega_1": "motor.omega_1_meas",
+    "T_mot": "motor.T_mot_est",
+    "T_ref": "controller.T_ref",
+    "omega_wheel": "can.omega_2_can",
+    "valid": "can.valid",
+    "counter": "can.counter",
+    "T_wheel": "plant.T_rim",
+}
+"""The quantities of a test drive beside the time, and the output `instance.variable` from which each is recorded."""
+
+DECIMALS = 6
+"""Of the values in the file, far below what any sensor resolves."""
+
+
+@dataclass(frozen=True)
+class MeasurementWheels:
+    """What the torque of the measurement wheels is off by, both wheels together, wheel side.
+
+    Attributes:
+        noise: standard deviation in N.m of each sample, T_S apart.
+        offset: in N.m.
+        gain_error: share of the torque.
+    """
+
+    noise: float = 10.0
+    offset: float = 8.0
+    gain_error: float = 0.01
+
+    def measured(self, T_rim: np.ndarray, seed: int) -> np.ndarray:
+        """The torque in N.m that they show of the true one between rim and hub, positive when it drives."""
+        noise = np.random.default_rng(seed).standard_normal(len(T_rim))
+        return (1.0 + self.gain_error) * T_rim + self.offset + self.noise * noise
+
+
+def require_demand(mean: float, amplitude: float, clock: float, T_max: float) -> None:
+    """Refuses a demand that the car would not follow.
+
+    Args:
+        mean, amplitude: in N.m.
+        clock: in s.
+        T_max: largest torque of the motor in N.m.
+
+    Raises:
+        WiringError: the motor would cut it off, or the controller would miss pulses between its samples.
+    """
+    if abs(mean) + amplitude > T_max:
+        raise WiringError(
+            f"a demand of {mean:g} +- {amplitude:g} N.m is beyond the {T_max:g} N.m of the motor (motor.T_max)"
+        )
+    if clock < T_S:
+        raise WiringError(f"a clock of {clock:g} s is shorter than the {T_S:g} s between samples of the controller")
+
+
+def require_sensors(interfaces: Mapping[str, Interface]) -> None:
+    """
+    Raises:
+        WiringError: an FMU lacks an output that is recorded.
+    """
+    recorded: dict[str, list[str]] = {}
+    for output in RECORDED.values():
+        instance, _, name = output.partition(".")
+        recorded.setdefault(instance, []).append(name)
+    for instance, outputs in recorded.items():
+        lacking = [name for name in outputs if name not in interfaces[instance].variables]
+        if lacking:
+            raise WiringError(
+                f"{interfaces[instance].path} has no {', '.join(lacking)}; a test drive records {', '.join(outputs)}"
+            )
+
+
+def holding_slope(load: RoadLoad, mean: float, v_0: float) -> float:
+    """Slope in rad of the road on which a mean torque (N.m) holds a speed (m/s), but for the friction that the balance
+    of forces along the road does not know.
+
+    Raises:
+        WiringError: it would be steeper than any road.
+    """
+    surplus = load.motor_force(np.array(mean)) - load.motion(np.full(2, v_0), T_S)[0]
+    sine = float(surplus) / (load.m * load.g)
+    if abs(sine) > SIN_MAX:
+        raise WiringError(
+            f"a mean torque of {mean:g} N.m holds {3.6 * v_0:g} km/h on a slope of {100.0 * sine:.0f} % only; "
+            f"at most {100.0 * SIN_MAX:.0f} % can be"
+        )
+    return asin(sine)
+
+
+def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) -> np.ndarray:
+    """What the sensors of the car have recorded, every T_S: a field for each column of the file, with its unit in
+    brackets, as `harness.recordings` reads it.
+
+    The speed of the wheels is that of the last message, its validity and counter as received. The torque demand is what
+    motor control receives at the sample and holds until the next.
+
+    Args:
+        results: of a run of the loop.
+        i: gear ratio.
+        seed: of the noise of the measurement wheels.
+    """
+    sampled = at_samples(results)
+    columns = {"time": sampled["time"]} | {quantity: sampled[output] for quantity, output in RECORDED.items()}
+    columns["omega_wheel"] = columns["omega_wheel"] / i
+    columns["T_wheel"] = wheels.measured(columns["T_wheel"], seed)
+    names = aliases()
+    headings = [f"{names[quantity][0]} [{QUANTITIES[quantity].unit}]" for quantity in columns]
+    whole = ("valid", "counter")
+    kinds = [(heading, int if q in whole else float) for heading, q in zip(headings, columns, strict=True)]
+    recording = np.empty(len(sampled), dtype=kinds)
+    for heading, values in zip(headings, columns.values(), strict=True):
+        recording[heading] = np.round(values.astype(float), DECIMALS)
+    return recording

@@ -1,0 +1,210 @@
+"""What made a result: a JSON file beside it, and by it two runs that are not the same are told apart."""
+
+import hashlib
+import json
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from ..base.atomic_files import alone, remove, replaceable, write_text
+from ..base.errors import DrivelineError
+from ..cosimulation import row_layout
+from ..cosimulation.system import System
+from ..cosimulation.wiring import Fit, fit
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Made:
+    """What a run writes, see `recorded`.
+
+    Attributes:
+        files: that it has written.
+    """
+
+    def __init__(
+        self, record: Path, systems: Mapping[str, System], require: Callable[[], None], kept: ExitStack
+    ) -> None:
+        """Args:
+        require: refuses if there are results of another run.
+        kept: what lasts until the record is written.
+        """
+        self.files: list[Path] = []
+        self._record = record
+        self._systems = systems
+        self._require = require
+        self._kept = kept
+        self._begun = False
+
+    @cached_property
+    def fits(self) -> dict[str, Fit]:
+        """The systems that run, by their plants."""
+        return {plant: fit(system) for plant, system in self._systems.items()}
+
+    def begin(self, *others: Path) -> None:
+        """From now on files are replaced, so their records go: a run that stops leaves none that is not theirs.
+
+        Other runs into the folder wait until the record is written.
+
+        Args:
+            others: records of parts of the results.
+
+        Raises:
+            DrivelineError: another run has written its results in the meantime.
+        """
+        if not self._begun:
+            self._kept.enter_context(alone(self._record.parent))
+            self._require()
+            self._begun = True
+        for record in (self._record, *others):
+            remove(record)
+
+
+@contextmanager
+def recorded(
+    record: Path,
+    run: Mapping[str, Any],
+    systems: Mapping[str, System],
+    inputs: Sequence[Path | None],
+    results: Sequence[Path] = (),
+    replace: bool = False,
+) -> Iterator[Made]:
+    """Within it a run is made and written; at its end the record tells what made the files.
+
+    Args:
+        record: the JSON file beside the results.
+        run: all that distinguishes it.
+        systems: that run, by their plants.
+        inputs: files beside the FMUs that it reads.
+        results: files that it will write, as far as their names are known.
+        replace: whether results of another run may be replaced.
+
+    Raises:
+        DrivelineError: there are results of another run, or a folder in the place of one; nothing has been run.
+    """
+
+    def require() -> None:
+        if folder := next((path for path in (*results, record) if path.is_dir()), None):
+            raise DrivelineError(f"{folder} is a folder; a file is needed")
+        if not replace:
+            require_same_run(record, run, results)
+
+    require()
+    with ExitStack() as kept:
+        made = Made(record, systems, require, kept)
+        yield made
+        write_record(record, run, made.fits, made.files, inputs)
+
+
+def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Path]) -> None:
+    """Refuses to replace results of another run.
+
+    Args:
+        record: the JSON file that tells what made the results that are there.
+        run: all that distinguishes the run that is to be made.
+        results: files that it will write, as far as their names are known.
+
+    Raises:
+        DrivelineError: there are results of another run, or of one that nothing tells of.
+    """
+    there = next((path for path in results if path.is_file()), record if record.is_file() else None)
+    if there is None:
+        return
+    try:
+        before = json.loads(record.read_text(encoding="utf-8") if record.is_file() else "")["run"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        reason = f"is there, and {record} does not tell of which run it is"
+    else:
+        changed = next(_differences(before, json.loads(_text(run))), None)
+        if changed is None:
+            return
+        reason = f"is of another run ({changed})"
+    raise DrivelineError(f"{there} {reason}; choose another --output, or --replace it")
+
+
+def require_same_text(text: str, path: Path) -> None:
+    """Refuses to replace a file that has another text.
+
+    Raises:
+        DrivelineError: the file at `path` has.
+    """
+    if replaceable(path) and path.read_bytes() != text.encode():
+        raise DrivelineError(f"{path} is there with another content; choose another --output, or --replace it")
+
+
+def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
+    """In what two runs differ, in words."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in sorted(before.keys() | now.keys()):
+            yield from _differences(before.get(key), now.get(key), f"{name} {key}".strip())
+    elif before in ({}, None) and now in ({}, None):
+        return  # nothing is set in either
+    elif isinstance(before, dict) and now is None:
+        yield f"{name} there, not here"
+    elif before is None and isinstance(now, dict):
+        yield f"{name} here, not there"
+    elif before != now:
+        yield f"{name}: {'not set' if before is None else before} there, {'not set' if now is None else now} here"
+
+
+def write_record(
+    record: Path, run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
+) -> None:
+    """Writes what made the files of a run; the arguments are those of `content`."""
+    write_text(_text(content(run, fits, files, inputs)), record)
+
+
+def content(
+    run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
+) -> dict[str, Any]:
+    """What made the files of a run.
+
+    Args:
+        run: all that distinguishes it.
+        fits: the systems that ran, by their plants.
+        files: that it has written.
+        inputs: files beside the FMUs that it has read.
+    """
+    return {
+        "program": f"driveline-damping {version('driveline-damping')}",
+        "commit": commit(),
+        "command_line": shlex.join(sys.argv),
+        "run": run,
+        "fmus": {
+            plant: {name: {"file": path, "digest": digest(path)} for name, path in fit.system.instances.items()}
+            for plant, fit in fits.items()
+        },
+        "inputs": {str(path): digest(path) for path in inputs if path is not None},
+        "files": [path.name for path in files],
+        "units": {name: unit for fit in fits.values() for name, unit in _units(fit).items()},
+    }
+
+
+def _units(fit: Fit) -> dict[str, str]:
+    return row_layout.units(fit.interfaces, [port.name for port in fit.system.inputs])
+
+
+def commit() -> str | None:
+    """The commit of the checkout, with -dirty if files have changed since; None if there is none."""
+    if not (ROOT / ".git").exists():
+        return None
+    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+def digest(path: Path) -> str:
+    """Of the content of a file."""
+    return f"sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}"
+
+
+def _text(content: Any) -> str:
+    return json.dumps(content, indent=2, default=str) + "\n"

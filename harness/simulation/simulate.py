@@ -1,0 +1,147 @@
+"""One manoeuvre with one loop: the function that everything else runs the loop with."""
+
+import logging
+from collections.abc import Mapping
+from numbers import Real
+from pathlib import Path
+from sys import float_info
+from typing import Any
+
+import numpy as np
+
+from ..base.collected_warnings import warn_once
+from ..base.errors import WiringError
+from ..cosimulation.experiment import Experiment, Source, require_steps
+from ..cosimulation.limits import USUAL, Limits
+from ..cosimulation.results import Results
+from ..cosimulation.runs import run
+from ..cosimulation.system import Port, Scheme, System
+from ..loop.places import BUILD, INPUTS, PARAMETERS, STEP_SIZE, NameOrFile, loop
+from ..loop.stale_fmus import warn_of_stale
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.signals import Signal
+from ..metrics.evaluate import T_S
+from .arguments import require_arguments
+
+LOG = logging.getLogger(__name__)
+
+
+def simulate(
+    manoeuvre: Manoeuvre,
+    plant: NameOrFile | None = None,
+    control: bool = True,
+    parameters: Mapping[str, float] | None = None,
+    step_size: float = STEP_SIZE,
+    scheme: Scheme = Scheme.PROPAGATED,
+    seed: int = 1,
+    folder: str | Path = BUILD,
+    build: str | None = None,
+    *,
+    controller: NameOrFile | None = None,
+    motor: NameOrFile | None = None,
+    can: NameOrFile | None = None,
+    mapping: Mapping[str, str] | None = None,
+    limits: Limits = USUAL,
+) -> Results:
+    """Drives the closed loop through a manoeuvre.
+
+    Args:
+        plant, controller, motor, can: name of a block of the project, or path of an FMU; see
+            `harness.loop.places.loop`.
+        control: whether the damping control is enabled.
+        parameters: `instance.variable` -> value, beside the start and the seeds that this sets.
+        step_size: communication step in s.
+        seed: of all noise and jitter.
+        folder: of the built FMUs.
+        build: "native" or "python"; None: see `harness.loop.places.chosen_build`.
+        mapping: names of the loop -> names of an FMU, see `harness.cosimulation.mapping`.
+        limits: of FMUs that are given by their path.
+
+    Returns:
+        Structured array, see `harness.cosimulation.master.Loop.run`, with the units of its columns.
+
+    Raises:
+        WiringError: a block, a parameter or an argument does not fit.
+        MemoryError: the results of so many steps do not fit in memory.
+        SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
+    """
+    blocks: dict[str, Any] = {"plant": plant, "controller": controller, "motor": motor, "can": can}
+    require_arguments(manoeuvre=manoeuvre, **blocks, control=control, parameters=parameters, step_size=step_size)
+    require_arguments(scheme=scheme, seed=seed, folder=folder, build=build, mapping=mapping, limits=limits)
+    given = _checked(start(manoeuvre, seed) | dict(parameters or {}))
+    require_steps(manoeuvre.duration, step_size)
+    _warn(manoeuvre, given, step_size)
+    system = loop(folder=Path(folder), build=build, mapping=mapping, limits=limits, **blocks)
+    warn_of_stale(system)
+    return run(
+        system,
+        Experiment(
+            duration=manoeuvre.duration,
+            step_size=step_size,
+            inputs=signals(manoeuvre, control, step_size),
+            parameters=given,
+            scheme=scheme,
+            label=manoeuvre.name,
+        ),
+    )
+
+
+def looped(plant: NameOrFile, settings: Mapping[str, Any]) -> System:
+    """The loop that `simulate` runs with a plant and these further arguments."""
+    return loop(plant, **{name: value for name, value in settings.items() if name not in ("parameters", "seed")})
+
+
+def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:
+    """Names what makes a run that is hardly meant."""
+    if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
+        LOG.warning(
+            "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
+            "and swings from the first instant on",
+            given["plant.T_0"],
+            manoeuvre.T_0,
+        )
+    if step_size > T_S * (1.0 + 1e-9):
+        warn_once(
+            f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "
+            "the damping control: it gets its signals late, does not damp with long steps, and the run has no metrics"
+        )
+
+
+def _checked(parameters: dict[str, Any]) -> dict[str, Any]:
+    """The parameters, which are finite numbers.
+
+    Raises:
+        WiringError: one is none.
+    """
+    for name, value in parameters.items():
+        if not (isinstance(value, Real | np.bool_) and abs(value) <= float_info.max):  # type: ignore[operator]
+            raise WiringError(f"{name} = {value!r:.40}: a parameter is a finite number")
+    return parameters
+
+
+def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) -> dict[str, Source]:
+    """What the loop is given from outside during a manoeuvre.
+
+    The controller samples its inputs at the instants. The plant holds brake and slope for a communication step of
+    `step_size` s; it gets what they are in the middle of the step, as straight lines are on average. Held from its
+    beginning, they would be late by half a step, and how a car comes to rest depends on that.
+    """
+    given = {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
+    return {
+        name: _ahead(value, 0.5 * step_size) if name.startswith("plant.") else value for name, value in given.items()
+    }
+
+
+def _ahead(signal: Signal, time: float) -> Signal:
+    """The signal as it is `time` s later."""
+    return lambda t: signal(t + time)
+
+
+def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:
+    """Parameters with which the loop starts a manoeuvre."""
+    return {port.name: _value(port, manoeuvre, seed=seed) for port in PARAMETERS}
+
+
+def _value(port: Port, manoeuvre: Manoeuvre, **settings: Any) -> Any:
+    """The setting of that name, or what the manoeuvre has under it."""
+    return settings[port.variable] if port.variable in settings else getattr(manoeuvre, port.variable)

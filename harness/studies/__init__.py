@@ -1,0 +1,1 @@
+"""What is asked of the loop, a room each."""

@@ -1,0 +1,1 @@
+"""The functions and both builds of every block, compared."""

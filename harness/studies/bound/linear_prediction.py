@@ -1,0 +1,207 @@
+"""What motor and design model do, as a linear function of the torque reference, for given contacts of the teeth."""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ...metrics.evaluate import T_S
+from ...metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
+from .contacts import GAP, PARTS, Contacts
+from .linear_car import OMEGA_1, OMEGA_2, PHI, STATES, LinearCar
+
+N = len(STATES)
+
+
+class Affine(NamedTuple):
+    """of @ u + at: quantities (m,) over the torque reference u (n,) in N.m."""
+
+    of: np.ndarray
+    at: np.ndarray
+
+    def rows(self, which: slice | np.ndarray) -> "Affine":
+        return Affine(self.of[which], self.at[which])
+
+    def times(self, factor: float) -> "Affine":
+        return Affine(factor * self.of, factor * self.at)
+
+    def less(self, other: "Affine") -> "Affine":
+        return Affine(self.of - other.of, self.at - other.at)
+
+    def mapped(self, matrix: np.ndarray) -> "Affine":
+        return Affine(matrix @ self.of, matrix @ self.at)
+
+    def value(self, u: np.ndarray) -> np.ndarray:
+        return self.of @ u + self.at
+
+
+class Horizon(NamedTuple):
+    """What is free, and what is looked at. Samples are counted from the first that control can change.
+
+    Attributes:
+        demand: (samples,) in N.m, as the motor gets it without control.
+        free: how many samples of the torque are chosen; after them it is the demand.
+        head: samples in which the teeth may change their side.
+        T_gear_before, a_body_before: (k,), outputs at the samples of the window that are before; no control changes
+            them.
+        window: samples of the window in which rms values are taken.
+    """
+
+    demand: np.ndarray
+    free: int
+    head: int
+    T_gear_before: np.ndarray
+    a_body_before: np.ndarray
+    window: int
+
+
+class Tail(NamedTuple):
+    """An output after the head: matrices over the state there, over 1, and over the free torques."""
+
+    x: np.ndarray
+    one: np.ndarray
+    u: np.ndarray
+
+
+class Spectrum(NamedTuple):
+    """What an rms is the norm of: its rows over the samples of the head, what is known before, and the tail."""
+
+    head: np.ndarray
+    before: np.ndarray
+    tail: Tail
+
+
+class Prediction(NamedTuple):
+    """For some contacts.
+
+    Attributes:
+        phi, slip: twist, and omega_1 - omega_2, at the beginnings of all parts of the head and at its end.
+        T_gear_head, a_body_head: at the samples of the head.
+        x: state at its end.
+    """
+
+    phi: Affine
+    slip: Affine
+    T_gear_head: Affine
+    a_body_head: Affine
+    x: Affine
+    T_gear_tail: Tail
+    T_gear_spectrum: Spectrum
+    jerk_spectrum: Spectrum
+
+    def T_gear(self, samples: np.ndarray) -> Affine:
+        """At these samples, which rise."""
+        head = len(self.T_gear_head.at)
+        early, late = samples[samples < head], samples[samples >= head] - head
+        here, there = self.T_gear_head.rows(early), self._after(self.T_gear_tail, late)
+        return Affine(np.vstack([here.of, there.of]), np.concatenate([here.at, there.at]))
+
+    def T_gear_parts(self) -> Affine:
+        """Their norm is the metric `gear_torque_rms`."""
+        return self._parts(self.T_gear_spectrum, self.T_gear_head)
+
+    def jerk_parts(self) -> Affine:
+        """Their norm is the metric `jerk_rms_to_50_Hz`."""
+        return self._parts(self.jerk_spectrum, self.a_body_head)
+
+    def _parts(self, spectrum: Spectrum, head: Affine) -> Affine:
+        tail = self._after(spectrum.tail, slice(None))
+        early = len(head.at)
+        tail.of[:, :early] += spectrum.head @ head.of[:, :early]
+        return Affine(tail.of, spectrum.before + spectrum.head @ head.at + tail.at)
+
+    def _after(self, tail: Tail, rows: slice | np.ndarray) -> Affine:
+        x, of = tail.x[rows], tail.u[rows].copy()
+        early = len(self.T_gear_head.at)
+        of[:, :early] += x @ self.x.of[:, :early]
+        return Affine(of, x @ self.x.at + tail.one[rows])
+
+
+class Predictor:
+    """The car of a manoeuvre; what does not depend on the switching times is computed once."""
+
+    def __init__(self, car: LinearCar, horizon: Horizon, last: int) -> None:
+        """last: side of the teeth after the head."""
+        self.car, self.horizon = car, horizon
+        head = slice(0, horizon.head)
+        self.heads = {side: car.steps(head, side, PARTS) for side in (-1, GAP, 1)}
+        self.a_head = car.acceleration(head)
+        self.T_gear_tail, a_tail = self._tails(last)
+        self.T_gear_spectrum = self._spectrum(horizon.T_gear_before, self.T_gear_tail, DRIVE_TRAIN, False)
+        self.jerk_spectrum = self._spectrum(horizon.a_body_before, a_tail, TO_50_HZ, True)
+
+    def predict(self, contacts: Contacts) -> Prediction:
+        """For contacts whose last side is that after the head."""
+        car, head = self.car, self.horizon.head
+        X = np.zeros((N, 1 + head))  # the state over 1 and the torques
+        X[:, 0] = car.x
+        every = np.empty((head * PARTS + 1, N, 1 + head))
+        sides = [contacts.side(part) for part in range(head * PARTS)]
+        for part, side in enumerate(sides):
+            every[part] = X
+            steps, k = self.heads[side], part // PARTS
+            X = steps.F[k] @ X
+            X[:, 0] += steps.d[k]
+            X[:, 1 + k] += steps.g[k]
+        every[-1] = X
+        samples, side = every[:-1:PARTS], np.array(sides[::PARTS])
+        T_gear = car.C * samples[:, PHI]
+        T_gear[:, 0] -= car.C * side * car.phi_B
+        T_gear[side == GAP] = 0.0
+        a_of, a_at = self.a_head
+        a_body = np.einsum("kn,knm->km", a_of, samples)
+        a_body[:, 0] += a_at
+        return Prediction(
+            phi=self._affine(every[:, PHI]),
+            slip=self._affine(every[:, OMEGA_1] - every[:, OMEGA_2]),
+            T_gear_head=self._affine(T_gear),
+            a_body_head=self._affine(a_body),
+            x=self._affine(X),
+            T_gear_tail=self.T_gear_tail,
+            T_gear_spectrum=self.T_gear_spectrum,
+            jerk_spectrum=self.jerk_spectrum,
+        )
+
+    def _affine(self, X: np.ndarray) -> Affine:
+        """Of rows over 1 and the torques of the head."""
+        of = np.zeros((len(X), self.horizon.free))
+        of[:, : self.horizon.head] = X[:, 1:]
+        return Affine(of, X[:, 0])
+
+    def _tails(self, last: int) -> tuple[Tail, Tail]:
+        """T_gear and the body's acceleration after the head."""
+        car, h = self.car, self.horizon
+        tail = slice(h.head, len(h.demand))
+        steps, (a_of, a_at) = car.steps(tail, last), car.acceleration(tail)
+        X = np.eye(N, N + 1 + h.free)  # the state over that at the end of the head, 1 and the torques
+        T_gear, a_body = (np.empty((len(a_at), N + 1 + h.free)) for _ in range(2))
+        for m, k in enumerate(range(h.head, len(h.demand))):
+            T_gear[m], a_body[m] = car.C * X[PHI], a_of[m] @ X
+            X = steps.F[m] @ X
+            X[:, N] += steps.d[m]
+            if k < h.free:
+                X[:, N + 1 + k] += steps.g[m]
+            else:
+                X[:, N] += steps.g[m] * h.demand[k]
+        T_gear[:, N] -= car.C * last * car.phi_B
+        a_body[:, N] += a_at
+        return _tail(T_gear), _tail(a_body)
+
+    def _spectrum(self, before: np.ndarray, tail: Tail, band: tuple[float, float], derivative: bool) -> Spectrum:
+        D = _parts_over_samples(self.horizon.window, band, derivative)
+        known, early = len(before), len(before) + self.horizon.head
+        rest = D[:, early:]
+        return Spectrum(
+            D[:, known:early], D[:, :known] @ before, Tail(*(rest @ part[: rest.shape[1]] for part in tail))
+        )
+
+
+def _tail(rows: np.ndarray) -> Tail:
+    return Tail(rows[:, :N], rows[:, N], rows[:, N + 1 :])
+
+
+@cache
+def _parts_over_samples(window: int, band: tuple[float, float], derivative: bool) -> np.ndarray:
+    """(rows, window): real and imaginary parts of `band_parts` over the samples of the window."""
+    parts = band_parts(np.eye(window), T_S, band, derivative)
+    return np.vstack([np.real(parts), np.imag(parts)])

@@ -1,0 +1,169 @@
+"""A convex programme over the torque reference, its solution, and the proof by duality that nothing is better.
+
+    minimise rho   over rho and u, lower <= u <= upper
+    subject to     G u + g <= a rho,   ||S_i u + s_i|| <= rho or <= 1
+
+rho is a ratio of what is possible to what is reached. Where a = 0 a row is a constraint that has to be kept, and so is
+a norm that is to be <= 1.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from ...base.errors import SimulationError
+from ...base.optional_packages import required
+from .linear_prediction import Affine
+
+cp = required("cvxpy", "computing bounds", "bound")
+
+MOST = 2.0
+"""Largest ratio that is looked at."""
+
+PENALTY = 20.0
+"""Ratio that violating all constraints by their unit costs: so every programme has a solution, and a bound."""
+
+KEPT = 1e-3
+"""Of its unit, by which a constraint may be violated numerically."""
+
+NEGLIGIBLE = 1e-5
+"""Over the largest, of singular values of a cone that are left out; that makes the norm no larger."""
+
+SOLVER = {"tol_gap_abs": 1e-5, "tol_gap_rel": 1e-5, "tol_feas": 1e-7, "max_threads": 1, "accept_unknown": True}
+"""Settings of Clarabel. The bound holds however accurate the solution is."""
+
+
+class Rows(NamedTuple):
+    """value <= share * rho; share (m,) in the unit of the value, unit (m,) what counts as much as another."""
+
+    value: Affine
+    share: np.ndarray
+    unit: np.ndarray
+
+
+class Cone(NamedTuple):
+    """||value|| <= rho where it counts, else <= 1."""
+
+    value: Affine
+    counts: bool
+
+
+class Programme(NamedTuple):
+    """The whole; lower and upper (n,) bound the torque reference in N.m."""
+
+    rows: Rows
+    cones: Sequence[Cone]
+    lower: np.ndarray
+    upper: np.ndarray
+
+
+class Solution(NamedTuple):
+    """The best torque reference among those that are held as long as is asked for.
+
+    Attributes:
+        u: (n,) in N.m.
+        ratio: that it reaches; inf where the constraints cannot be kept.
+        cost: ratio and penalty.
+        bound: no torque reference, however it is held, has a smaller ratio.
+    """
+
+    u: np.ndarray
+    ratio: float
+    cost: float
+    bound: float
+
+
+def joined(parts: Sequence[Rows]) -> Rows:
+    """All of them as one."""
+    of, at = zip(*(part.value for part in parts), strict=True)
+    share, unit = (np.concatenate([getattr(part, name) for part in parts]) for name in ("share", "unit"))
+    return Rows(Affine(np.vstack(of), np.concatenate(at)), share, unit)
+
+
+def solve(programme: Programme, holds: np.ndarray) -> Solution:
+    """Solves the programme for a torque that is held from each of the samples `holds` to the next one.
+
+    The torque is taken from the middle of its limits, in units of half their distance.
+
+    Raises:
+        SimulationError: the solver gave up.
+    """
+    rows, lower, upper = programme.rows, programme.lower, programme.upper
+    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+
+    def held(value: Affine) -> Affine:
+        return Affine(np.add.reduceat(value.of * half, holds, axis=1), value.value(middle))
+
+    G, units = held(rows.value), 1.0 / rows.unit
+    norms = [_shortened(held(cone.value)) for cone in programme.cones]
+    w, rho, sigma = cp.Variable(len(holds)), cp.Variable(nonneg=True), cp.Variable(nonneg=True)
+    below = cp.multiply(units, G.of @ w + G.at - rows.share * rho) <= sigma
+    within = [
+        cp.SOC(rho if cone.counts else 1.0 + sigma, norm.of @ w + norm.at)
+        for cone, (norm, _) in zip(programme.cones, norms, strict=True)
+    ]
+    problem = cp.Problem(cp.Minimize(rho + PENALTY * sigma), [below, cp.abs(w) <= 1.0, *within])
+    with catch_warnings():
+        simplefilter("ignore")  # of inaccurate solutions: ratio and bound are computed from what is found
+        try:
+            problem.solve(solver=cp.CLARABEL, **SOLVER)
+        except cp.SolverError as error:
+            raise SimulationError(f"the convex programme was not solved: {error}") from error
+    counts = np.diff([*holds, len(lower)])
+    u = middle + half * np.clip(np.repeat(_found(w.value), counts), -1.0, 1.0)
+    y = np.maximum(units * _found(below.dual_value), 0.0)
+    v = [-long @ np.ravel(_found(norm.dual_value)[1]) for norm, (_, long) in zip(within, norms, strict=True)]
+    ratio, violated = reached(programme, u)
+    cost = ratio + PENALTY * max(violated, 0.0)
+    return Solution(u, ratio if violated <= KEPT else np.inf, cost, bound(programme, y, v))
+
+
+def reached(programme: Programme, u: np.ndarray) -> tuple[float, float]:
+    """The ratio that a torque reference reaches, and by how much in its unit it violates a constraint most."""
+    rows = programme.rows
+    value, counts = rows.value.value(u), rows.share > 0.0
+    norms = [(cone.counts, float(np.linalg.norm(cone.value.value(u)))) for cone in programme.cones]
+    ratios = [*(value[counts] / rows.share[counts]), *(norm for its, norm in norms if its)]
+    violations = [*(value[~counts] / rows.unit[~counts]), *(norm - 1.0 for its, norm in norms if not its)]
+    return float(max([0.0, *ratios])), float(max(violations))
+
+
+def bound(programme: Programme, y: np.ndarray, v: Sequence[np.ndarray]) -> float:
+    """The least that the Lagrangian with these multipliers is for lower <= u <= upper, 0 <= rho <= MOST.
+
+    Whatever the multipliers y >= 0 of the rows and v of the cones are, no u that keeps the constraints has a smaller
+    ratio (S. Boyd, L. Vandenberghe, Convex Optimization, 2004, section 5.9).
+
+    Args:
+        y, v: (rows,), and for each cone (its rows,).
+    """
+    rows = programme.rows
+    gradient, constant, of_rho = rows.value.of.T @ y, float(y @ rows.value.at), 1.0 - float(y @ rows.share)
+    for cone, multiplier in zip(programme.cones, v, strict=True):
+        length = float(np.linalg.norm(multiplier))
+        gradient = gradient + cone.value.of.T @ multiplier
+        constant += float(multiplier @ cone.value.at) - (0.0 if cone.counts else length)
+        of_rho -= length if cone.counts else 0.0
+    least = np.minimum(gradient * programme.lower, gradient * programme.upper).sum()
+    return float(constant + least + min(of_rho * MOST, 0.0))
+
+
+def _found(value: Any) -> Any:
+    """What the solver has found.
+
+    Raises:
+        SimulationError: it has found nothing.
+    """
+    if value is None:
+        raise SimulationError("the convex programme was not solved")
+    return value
+
+
+def _shortened(value: Affine) -> tuple[Affine, np.ndarray]:
+    """The same norm of fewer rows, and what turns their multipliers into those of all rows."""
+    U, S, V = np.linalg.svd(np.column_stack(value), full_matrices=False)
+    kept = NEGLIGIBLE * S[0] < S
+    R = S[kept, None] * V[kept]
+    return Affine(R[:, :-1], R[:, -1]), U[:, kept]

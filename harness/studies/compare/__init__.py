@@ -1,0 +1,1 @@
+"""Every manoeuvre on every plant, without and with damping."""

@@ -1,0 +1,1 @@
+"""What the coupling of the FMUs costs, against the loop solved as one system."""

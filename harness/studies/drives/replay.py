@@ -1,0 +1,195 @@
+"""A recorded drive, driven by the simulated vehicle without damping and with each of several controllers."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.lib.recfunctions import repack_fields
+
+from ...base.errors import DrivelineError
+from ...manoeuvres.manoeuvre import Manoeuvre
+from ...manoeuvres.road_load import RoadLoad, Track
+from ...manoeuvres.speed_following import drive, lacking_force, needed_force
+from ...metrics.damage import damage, require_counting
+from ...metrics.declaration import given, measured
+from ...metrics.evaluate import at_samples, evaluate
+from ...metrics.run_metrics import RideMetrics
+from ...recordings.file_units import FileUnit
+from ...simulation.many_runs import run_many
+from ...simulation.simulate import simulate
+from ...views.figure_options import PLAIN, FigureOptions
+from ...views.metrics_table import values, write_metrics, write_rides
+from ...views.signals_file import write_signals
+
+KEPT = [
+    "time",
+    "controller.T_driver",
+    "plant.T_brake",
+    "plant.slope",
+    "controller.T_ref",
+    "plant.omega_1",
+    "plant.omega_2",
+    "plant.T_gear",
+    "plant.v",
+    "plant.a_body",
+]
+"""Columns that are kept of a ride; a trip of half an hour with all of them would not fit in memory."""
+
+STRIDE = 5
+"""Every so many samples of the controller go to the file of signals: 10 ms."""
+
+CLOSE = 0.1
+"""Speed error in m/s, rms, of a car without control from which on the force along the road is good enough."""
+
+MOST_DRIVES = 6
+"""Of the car without control, each with the force that the one before has lacked."""
+
+UNDAMPED = "without damping"
+"""The ride with which the others are compared, as tables name it."""
+
+Settings = Mapping[str, Any]
+"""Further arguments of `driveline.simulate`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ride:
+    """A recorded drive that was simulated; the signals are the columns KEPT at the samples of the controller.
+
+    Attributes:
+        controller: its name, or UNDAMPED.
+    """
+
+    controller: str
+    metrics: RideMetrics
+    signals: np.ndarray
+
+    @property
+    def control(self) -> bool:
+        return self.controller != UNDAMPED
+
+    @property
+    def suffix(self) -> str:
+        """Of the file of its signals."""
+        return self.controller if self.control else "off"
+
+
+def signals_of(manoeuvre: Manoeuvre, plant: str, control: bool, settings: Settings) -> np.ndarray:
+    """The columns KEPT of a run, at the samples of the controller."""
+    return repack_fields(at_samples(simulate(manoeuvre, plant=plant, control=control, **settings))[KEPT])
+
+
+def speed_error(signals: np.ndarray, track: Track) -> float:
+    """Rms of the simulated less the recorded speed in m/s."""
+    return float(np.sqrt(np.mean((signals["plant.v"] - np.interp(signals["time"], track.t, track.v)) ** 2)))
+
+
+def ride_of(controller: str, signals: np.ndarray, manoeuvre: Manoeuvre, track: Track) -> Ride:
+    """What a run of the manoeuvre of a track is worth."""
+    metrics = evaluate(signals, manoeuvre)
+    computed = {
+        "gear_torque_rms": lambda: given(metrics, "gear_torque_rms"),
+        "gear_damage": lambda: damage(signals["plant.T_gear"]),
+        "jerk_rms": lambda: given(metrics, "jerk_rms"),
+        "speed_error_rms": lambda: speed_error(signals, track),
+    }
+    return Ride(controller, RideMetrics(**measured(computed)), signals)
+
+
+def followed(
+    track: Track, load: RoadLoad, plant: str, settings: Settings, held: float | None = None
+) -> tuple[Manoeuvre, np.ndarray]:
+    """The manoeuvre in which the car without control keeps the recorded speed, and the signals of that run."""
+    F, lacking = needed_force(track, load), 0.0
+    for _ in range(MOST_DRIVES):
+        F = F + lacking
+        manoeuvre = drive(track, load, F, held)
+        signals = signals_of(manoeuvre, plant, False, settings)
+        if speed_error(signals, track) <= CLOSE:
+            break
+        lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
+    return manoeuvre, signals
+
+
+def replay(
+    track: Track, load: RoadLoad, plant: str, controllers: Mapping[str, Settings], held: float | None = None
+) -> list[Ride]:
+    """The ride without damping, then that with each controller, on the same road.
+
+    Args:
+        load: of the plant.
+        controllers: their names, and the settings of the loop with each; the first is the one that is switched off.
+        held: see `harness.manoeuvres.speed_following.drive`.
+
+    Raises:
+        MissingExtra: the package that counts load cycles is not installed.
+    """
+    require_counting()
+    first = next(iter(controllers.values()))
+    manoeuvre, undamped = followed(track, load, plant, first, held)
+    one = partial(_damped, manoeuvre, track, plant, controllers)
+    damped = run_many(one, controllers, workers=2, label=track.name)
+    return [ride_of(UNDAMPED, undamped, manoeuvre, track), *damped]
+
+
+def _damped(
+    manoeuvre: Manoeuvre, track: Track, plant: str, controllers: Mapping[str, Settings], controller: str
+) -> Ride:
+    return ride_of(controller, signals_of(manoeuvre, plant, True, controllers[controller]), manoeuvre, track)
+
+
+def by_name(controllers: Sequence[str]) -> dict[str, str]:
+    """The controllers (names or files), each once, by the names that tables and files give them.
+
+    Raises:
+        DrivelineError: two have the same name.
+    """
+    named: dict[str, str] = {}
+    for controller in controllers:
+        if named.setdefault(Path(controller).stem, controller) != controller:
+            raise DrivelineError(f"two controllers are called {Path(controller).stem}; rename the file of one")
+    return named
+
+
+def records(rides: Sequence[Ride], track: Track, plant: str) -> list[dict[str, Any]]:
+    """The rides for files: what they were, and all metrics by their keys."""
+    return [
+        {
+            "plant": plant,
+            "recording": track.name,
+            "control": ride.control,
+            "controller": ride.controller,
+            **values(ride.metrics),
+        }
+        for ride in rides
+    ]
+
+
+def write(
+    rides: Sequence[Ride],
+    track: Track,
+    plant: str,
+    folder: Path,
+    options: FigureOptions = PLAIN,
+    format: str = "csv",
+    file_units: Mapping[str, FileUnit] | None = None,
+) -> list[Path]:
+    """Writes metrics, table, signals (every 10 ms) and the figure of a replay; returns the files.
+
+    Args:
+        format: of the signals, see `harness.views.signals_file`.
+        file_units: see `harness.views.replay_figure.plot_replay`.
+    """
+    from ...views.replay_figure import plot_replay  # not for the workers, which draw nothing
+
+    files = [folder / f"{track.name}{end}" for end in ("_metrics.csv", "_table.md")]
+    write_metrics(records(rides, track, plant), files[0])
+    write_rides({ride.controller: ride.metrics for ride in rides}, f"{track.name} on {plant}", files[1])
+    for ride in rides:
+        stem = folder / f"{track.name}_{ride.suffix}"
+        files.append(write_signals(ride.signals[::STRIDE], stem, format))
+    drawn = {ride.controller: ride.signals for ride in rides}
+    title = f"{plant} on the recorded drive {track.name}"
+    return files + plot_replay(drawn, (track.t, track.v), title, folder / track.name, options, file_units)

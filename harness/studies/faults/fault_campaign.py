@@ -1,0 +1,79 @@
+"""A campaign: many cases on all cores, each with its verdict."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from ...simulation.many_runs import run_many
+from .evidence import Evidence
+from .fault_cases import Case, case
+from .fault_injection import FaultRunner, Limits, Runs, Settings
+from .judges import JUDGES
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A case that was run, and what each judge measured."""
+
+    case: Case
+    measured: Mapping[str, float]
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The judges that found more than their limit."""
+        return tuple(judge.name for judge in JUDGES if not self.measured[judge.name] <= judge.limit)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The names of what goes wrong."""
+        return tuple(fault.name for fault in self.case.faults)
+
+    @property
+    def plant(self) -> str:
+        return Path(self.case.plant).stem
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """The case for files: what it was, and what was measured."""
+        given: dict[str, Any] = {
+            "number": self.case.number,
+            "plant": self.plant,
+            "situation": self.case.situation,
+            "noise": self.case.noise,
+        }
+        for k in range(2):
+            fault = self.case.faults[k] if k < len(self.case.faults) else None
+            for name in ("name", "begin", "end", "size", "share"):
+                given[f"fault_{k + 1}" if name == "name" else f"{name}_{k + 1}"] = getattr(fault, name, None)
+        measured = {name.replace(" ", "_"): value if isfinite(value) else None for name, value in self.measured.items()}
+        return given | measured | {"clean": not self.failed}
+
+
+def count(outcomes: Iterable[Outcome], kind: str, judge: str | None = None) -> tuple[int, int]:
+    """How many of the cases with a kind of fault are not clean, in the eyes of one judge or of any; and how many there
+    are."""
+    cases = [outcome for outcome in outcomes if kind in outcome.kinds]
+    return sum(judge in each.failed if judge else bool(each.failed) for each in cases), len(cases)
+
+
+def campaign(
+    numbers: Sequence[int], seed: int, injector: Path, settings: Mapping[str, Settings], workers: int | None = None
+) -> list[Outcome]:
+    """Runs the cases of these numbers.
+
+    Args:
+        injector: FMU of SignalFaults.
+        settings: of the loop with each plant, in the order of the plants.
+        workers: see `harness.simulation.many_runs.run_many`.
+    """
+    runner = FaultRunner(injector, settings)
+    cases = [case(number, seed, tuple(settings)) for number in numbers]
+    return run_many(lambda each: judged(each, runner.runs(each), runner.limits(each.plant)), cases, workers, "faults")
+
+
+def judged(each: Case, runs: Runs, limits: Limits) -> Outcome:
+    """What the judges say of the runs of a case."""
+    seen = Evidence(runs, each.faults, limits)
+    return Outcome(each, {judge.name: judge.measure(seen) for judge in JUDGES})

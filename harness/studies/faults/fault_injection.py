@@ -1,0 +1,211 @@
+"""Fault injection: the loop with SignalFaults between sensors and controller, and the three runs of a case."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.lib.recfunctions import repack_fields
+
+from ...base.known_names import require_different
+from ...cosimulation.experiment import Experiment
+from ...cosimulation.runs import run
+from ...cosimulation.system import Connection, Port, System
+from ...cosimulation.wiring import Fit, fit
+from ...loop.stale_fmus import warn_of_stale
+from ...manoeuvres.manoeuvre import Manoeuvre
+from ...manoeuvres.signals import Signal, lines
+from ...metrics.evaluate import at_samples
+from ...simulation.simulate import looped, signals, start
+from .fault_cases import DURATION, SITUATIONS, Case, Fault
+from .fault_catalogue import ICE, LOCK, SPIN
+
+INSTANCE = "faults"
+"""Name of SignalFaults in the loop."""
+
+PASSES = {
+    "omega_1_meas": "omega_1_sent",
+    "T_mot_est": "T_mot_sent",
+    "omega_2_can": "omega_2_sent",
+    "valid": "valid_sent",
+    "counter": "counter_sent",
+}
+"""What the controller gets from SignalFaults, and what that gets in its place."""
+
+JUDGED = (
+    Port("controller.status", None),
+    Port("controller.T_damp", "N.m"),
+    Port("motor.omega_1_meas", "rad/s"),
+    Port("can.valid", None),
+)
+"""What judges and figures read beside what every loop puts out."""
+
+KEPT = ["controller.status", "controller.T_damp", "plant.T_gear"]
+"""What they read of the runs without faults, of which hundreds are kept."""
+
+SLIPPERY = {"mu": ICE, "c_slip": 1e4}
+"""Parameters of a plant that make ice, the first that it has. Tyres without a limit of friction get slip instead."""
+
+Settings = Mapping[str, Any]
+"""Arguments of `driveline.simulate` for the loop with a plant."""
+
+
+class Runs(NamedTuple):
+    """The runs of a case at the samples of the controller: with the faults of its signals, without these, and without
+    control. What happens on ice happens in all of them."""
+
+    faulty: np.ndarray
+    healthy: np.ndarray
+    undamped: np.ndarray
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the controller may demand, what it may add to the driver's demand, and take from it, N.m; and the largest
+    speed that it takes for plausible, rad/s."""
+
+    T_max: float
+    T_add_max: float
+    T_take_max: float
+    omega_max: float
+
+
+class FaultRunner:
+    """Runs cases; runs without faults that several cases have in common are made once."""
+
+    def __init__(self, injector: Path, settings: Mapping[str, Settings]) -> None:
+        """
+        Args:
+            injector: FMU of SignalFaults.
+            settings: of the loop with each plant.
+
+        Raises:
+            DrivelineError: two plants have the same name, by which the cases are distinguished.
+        """
+        require_different(settings)
+        self._injector = injector
+        self._settings = settings
+        self._made: dict[Any, np.ndarray] = {}
+        self._fitted: dict[str, Fit] = {}
+
+    def runs(self, case: Case) -> Runs:
+        """The three runs of a case."""
+        on_ice = tuple(fault for fault in case.faults if not fault.kind.number)
+        common = case.plant, case.situation, case.noise, on_ice
+        return Runs(
+            faulty=self._run(*common, faults=tuple(fault for fault in case.faults if fault.kind.number)),
+            healthy=self._shared(*common, control=True),
+            undamped=self._shared(*common, control=False),
+        )
+
+    def limits(self, plant: str) -> Limits:
+        """As the parameters of the controller say."""
+        controller = self._fit(plant).interfaces["controller"]
+        given = self._settings[plant]["parameters"]
+
+        def value(name: str) -> float:
+            variable = controller.variables.get(name)
+            start = float(variable.start) if variable and variable.start else np.inf
+            return float(given.get(f"controller.{name}", start))
+
+        return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"))
+
+    def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
+        key = plant, situation, noise, on_ice, control
+        if on_ice:
+            return self._run(*key[:4], control=control)
+        if key not in self._made:
+            self._made[key] = repack_fields(self._run(*key[:4], control=control)[KEPT])
+        return self._made[key]
+
+    def _run(
+        self,
+        plant: str,
+        situation: str,
+        noise: int,
+        on_ice: tuple[Fault, ...],
+        faults: Sequence[Fault] = (),
+        control: bool = True,
+    ) -> np.ndarray:
+        manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
+        parameters = start(manoeuvre, noise) | (_slippery(self._fit(plant)) if on_ice else {})
+        parameters |= dict(self._settings[plant]["parameters"]) | _parameters(faults, noise)
+        given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
+        return at_samples(run(self._system(plant), Experiment(DURATION, **given)))
+
+    def _fit(self, plant: str) -> Fit:
+        if plant not in self._fitted:
+            warn_of_stale(system := self._system(plant))
+            self._fitted[plant] = fit(system)
+        return self._fitted[plant]
+
+    def _system(self, plant: str) -> System:
+        return with_faults(looped(plant, self._settings[plant]), self._injector)
+
+
+def with_faults(system: System, injector: Path) -> System:
+    """The loop with SignalFaults, an FMU, between the sensors and the controller."""
+    connections: list[Connection] = []
+    for connection in system.connections:
+        name = connection.target.removeprefix("controller.")
+        if connection.target.startswith("controller.") and name in PASSES:
+            connections.append(connection._replace(target=f"{INSTANCE}.{PASSES[name]}"))
+            connections.append(connection._replace(source=f"{INSTANCE}.{name}"))
+        else:
+            connections.append(connection)
+    instances = dict(system.instances)
+    controller = instances.pop("controller")
+    others = {name: instances.pop(name) for name in list(instances) if name != "motor"}
+    return replace(
+        system,
+        instances={**instances, INSTANCE: injector, "controller": controller, **others},
+        connections=tuple(connections),
+        outputs=(*system.outputs, *JUDGED),
+        own=system.own | {INSTANCE},
+        any_value=frozenset({INSTANCE}),
+    )
+
+
+def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
+    """Of SignalFaults."""
+    given: dict[str, float] = {f"{INSTANCE}.seed": seed}
+    for k, fault in enumerate(faults, 1):
+        values = {
+            "kind": fault.kind.number,
+            "signal": fault.kind.signal,
+            "begin": fault.begin,
+            "end": fault.end,
+            "size": fault.size,
+            "share": fault.share,
+        }
+        given |= {f"{INSTANCE}.{name}_{k}": value for name, value in values.items()}
+    return given
+
+
+def _slippery(fitted: Fit) -> dict[str, float]:
+    """Parameters of the plant on ice."""
+    has = fitted.interfaces["plant"].variables
+    return next(({f"plant.{name}": value} for name, value in SLIPPERY.items() if name in has), {})
+
+
+def _with(on_ice: Sequence[Fault], manoeuvre: Manoeuvre) -> Manoeuvre:
+    """The manoeuvre with brakes or torque that make the wheels lock or spin."""
+    for fault in on_ice:
+        pulse = lines((fault.begin, 0.0), (fault.begin, fault.size), (fault.end, fault.size), (fault.end, 0.0))
+        if fault.name == LOCK:
+            manoeuvre = replace(manoeuvre, T_brake=Sum(manoeuvre.T_brake, pulse))
+        elif fault.name == SPIN:
+            manoeuvre = replace(manoeuvre, T_driver=Sum(manoeuvre.T_driver, pulse))
+    return manoeuvre
+
+
+@dataclass(frozen=True)
+class Sum:
+    """The sum of two signals."""
+
+    first: Signal
+    second: Signal
+
+    def __call__(self, t: Any) -> np.ndarray:
+        return self.first(t) + self.second(t)

@@ -1,0 +1,79 @@
+"""What a campaign leaves: a table on the terminal, files, figures."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
+from ...base.atomic_files import write_text
+from ...base.csv_file import write_csv
+from ...views.metrics_table import write_metrics
+from ...views.terminal import print_table
+from .fault_campaign import Outcome, judged
+from .fault_cases import case
+from .fault_figures import plot_case, plot_matrix, plot_pairs
+from .fault_injection import FaultRunner, Settings
+from .fault_page import HEADINGS, NOT_CLEAN, matrix_rows, page
+from .judges import JUDGES
+
+
+def announce(outcomes: Sequence[Outcome]) -> None:
+    """Prints the rows of the matrix that are not clean, if there are any, and a summary; of a single case, what each
+    judge measured."""
+    if len(outcomes) == 1:
+        print_table(_verdicts(outcomes[0]))
+        return
+    table = Table(title="cases that are not clean", title_justify="left", box=SIMPLE_HEAD, padding=0)
+    for heading in HEADINGS:
+        table.add_column(heading, justify="left" if heading == "kind" else "right", no_wrap=heading == "kind")
+    failed = sum(bool(outcome.failed) for outcome in outcomes)
+    for row in matrix_rows(outcomes):
+        if row[NOT_CLEAN] != "0":
+            table.add_row(*row)
+    if failed:
+        print_table(table)
+    print(f"{len(outcomes)} cases, {len(outcomes) - failed} clean, {failed} not clean")
+
+
+def _verdicts(outcome: Outcome) -> Table:
+    table = Table(box=SIMPLE_HEAD)
+    for heading in ("judge", "measured", "limit", "unit", "", "what it measures"):
+        table.add_column(heading, justify="right" if heading in ("measured", "limit") else "left")
+    for judge in JUDGES:
+        verdict = "[red]not clean[/red]" if judge.name in outcome.failed else "clean"
+        limit = f"{round(judge.limit, 6):g}"
+        table.add_row(judge.name, f"{outcome.measured[judge.name]:.3g}", limit, judge.unit, verdict, judge.question)
+    return table
+
+
+def write(outcomes: Sequence[Outcome], arguments: str, folder: Path) -> list[Path]:
+    """Writes the cases as CSV, the page, and the matrices as figures; returns the files.
+
+    Args:
+        arguments: of the command beside how many cases, for the page.
+    """
+    cases, text, figures = folder / "faults.csv", folder / "faults.md", folder / "figures"
+    write_metrics([outcome.record for outcome in outcomes], cases)
+    write_text(page(outcomes, arguments), text)
+    files = [cases, text, *plot_matrix(outcomes, "single faults: runs that are not clean", figures / "faults")]
+    return [*files, *plot_pairs(outcomes, "pairs of faults: runs that are not clean", figures / "fault_pairs")]
+
+
+def write_case(
+    number: int, seed: int, injector: Path, settings: Mapping[str, Settings], folder: Path, caption: str = ""
+) -> tuple[Outcome, list[Path]]:
+    """Runs one case again, writes its signals and draws them.
+
+    Args:
+        seed, injector, settings: as of `harness.studies.faults.fault_campaign.campaign`.
+        caption: what was set, in small below the figure.
+    """
+    runner, each = FaultRunner(injector, settings), case(number, seed, tuple(settings))
+    runs = runner.runs(each)
+    outcome = judged(each, runs, runner.limits(each.plant))
+    stem = folder / f"case_{number}"
+    files = [stem.with_suffix(".csv")]
+    write_csv(runs.faulty, files[0])
+    verdict = f"not clean: {', '.join(outcome.failed)}" if outcome.failed else "clean"
+    return outcome, [*files, *plot_case(each, runs, verdict, stem, caption)]

@@ -1,0 +1,176 @@
+"""A controller as a linear sampled system, derived from its own functions where it works in contact.
+
+    x(k+1) = A x(k) + B y(k),    T_ref(k) = C x(k)
+
+The controller runs until it has settled, and there its update is differentiated. What the signals do not reach, and
+what does not act on T_ref, is left out. In a sample in which a message with the wheel speed arrives A and B are others.
+"""
+
+from collections.abc import Sequence
+from itertools import chain
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ....models.controller.supervision import FALLBACK, T_S
+from .averaged_messages import messages
+from .jacobians import NotLinear, Rates, like, names, numbers, rates
+from .linear_plant import MESSAGE, LinearPlant
+from .operating_point import Point
+
+SETTLING = 0.5
+"""Time in s for which a controller runs before it is differentiated."""
+
+LAST_DIGIT = 1e-9
+"""In rad/s; a motor speed that does not change by a digit is frozen."""
+
+NOT_MEASURED = ("T_driver", "valid", "counter", "enable")
+"""Inputs of a controller that carry no measurement."""
+
+
+class Sample(NamedTuple):
+    """What happens in a sample: matrices (n, n) and (n, m)."""
+
+    A: np.ndarray
+    B: np.ndarray
+
+
+class LinearController(NamedTuple):
+    """A controller, linear.
+
+    Attributes:
+        quiet, message: a sample without a message, and one in which a message arrives.
+        C: (n,), T_ref over the state.
+        signals: names of the m inputs.
+        states: names of the n states.
+    """
+
+    quiet: Sample
+    message: Sample
+    C: np.ndarray
+    signals: tuple[str, ...]
+    states: tuple[str, ...]
+
+    @property
+    def used(self) -> tuple[str, ...]:
+        """The signals that do act on T_ref."""
+        return tuple(
+            name for k, name in enumerate(self.signals) if self.quiet.B[:, k].any() or self.message.B[:, k].any()
+        )
+
+
+def linear_controller(point: Point, drive: LinearPlant) -> LinearController:
+    """The controller at a point with this motor and plant.
+
+    Raises:
+        NotLinear: it is not linear there.
+    """
+    return differentiated(point, [settled(point, drive)])[0]
+
+
+def controller_in_contact_and_gap(point: Point, drive: LinearPlant) -> tuple[LinearController, LinearController]:
+    """The same, and with the twist that it knows in the middle of the gap, over the same states."""
+    x, u, p = settled(point, drive)
+    values = [0.0 if name.endswith("estimate.phi") else value for name, value in zip(names(x), numbers(x), strict=True)]
+    known = {name: 0.0 for name in ("phi", "T_gear") if name in u._fields}
+    contact, gap = differentiated(point, [(x, u, p), (like(x, values), u._replace(**known), p)])
+    return contact, gap
+
+
+def differentiated(point: Point, places: Sequence[tuple[Any, Any, Any]]) -> list[LinearController]:
+    """The controller at some places, each a state, input and parameters, over the same states.
+
+    Raises:
+        NotLinear: it has a kink in one of them.
+    """
+    x, u, p = places[0]
+    n, fields = len(numbers(x)), u._fields
+    signals = tuple(name for name in fields if name not in NOT_MEASURED)
+    inputs = [n + fields.index(name) for name in signals]
+
+    def update(values: Sequence[Any], new: int) -> list[Any]:
+        given = u._make(values[n:])._replace(counter=u.counter + new)
+        return numbers(point.controller.update(like(x, values[:n]), given, p))
+
+    kinds = [lambda values, new=new: update(values, new) for new in ((0, 1) if point.wheel_speed_in_use else (0,))]
+    at = [(kind, [*numbers(x), *u]) for x, u, _ in places for kind in kinds]
+    reached = _reached(at, inputs)
+    found = [rates(kind, here, [*reached, *inputs]) for kind, here in at]
+    T_ref = names(x).index("T_ref")
+    kept = _acting([_moves(each) for each in found], reached, T_ref)
+    columns = [k for k, index in enumerate([*reached, *inputs]) if index in kept or index in inputs]
+    labels = [*names(x), *fields]
+    for each in found:
+        _require_straight(each, kept, columns, [labels[k] for k in (*reached, *inputs)], labels, point)
+    matrices = [each.mean[np.ix_(kept, columns)] for each in found]
+    samples = [Sample(matrix[:, : len(kept)], matrix[:, len(kept) :]) for matrix in matrices]
+    C, states = np.array([float(k == T_ref) for k in kept]), tuple(labels[k] for k in kept)
+    each = [samples[k * len(kinds) : (k + 1) * len(kinds)] for k in range(len(places))]
+    return [LinearController(kinds[0], kinds[-1], C, signals, states) for kinds in each]
+
+
+def settled(point: Point, drive: LinearPlant) -> tuple[Any, Any, Any]:
+    """State, input and parameters of the controller in a car that speeds up under the torque of the point.
+
+    Raises:
+        NotLinear: the controller does not damp there.
+    """
+    block, p, bus = point.controller, point.of("controller", point.controller), messages(point)
+    last = round(SETTLING / T_S)
+    given = {name: k for k, name in enumerate(drive.outputs) if name in block.Input._fields}
+
+    def signals(k: int) -> Any:
+        measured = {name: float(drive.y[j] + drive.dy[j] * (k - last) * T_S) for name, j in given.items()}
+        arrived = k // bus.cycle
+        late = (k - arrived * bus.cycle) * T_S + bus.age
+        measured[MESSAGE] -= float(drive.dy[given[MESSAGE]]) * late
+        measured["omega_1_meas"] += LAST_DIGIT * (k % 2)
+        return block.Input(T_driver=point.T, valid=point.wheel_speed_in_use, counter=arrived, enable=True, **measured)
+
+    x = block.start(signals(0), p)
+    for k in range(last):
+        x = block.update(x, signals(k), p)
+    if x.status == FALLBACK:
+        raise NotLinear(f"{block.name} does not damp at {point.v:g} m/s and {point.T:g} N.m: it is in fallback")
+    return x, signals(last)._replace(counter=(last - 1) // bus.cycle), p
+
+
+def _moves(found: Rates) -> np.ndarray:
+    """What changes with what."""
+    return (found.forward != 0.0) | (found.backward != 0.0)
+
+
+def _reached(at: Sequence[tuple[Any, Sequence[Any]]], inputs: Sequence[int]) -> list[int]:
+    """The numbers of the state that signals change, be it over others of them."""
+    found: set[int] = set()
+    new = list(inputs)
+    while new:
+        moving = chain.from_iterable(np.flatnonzero(_moves(rates(kind, here, new)).any(axis=1)) for kind, here in at)
+        new = sorted({int(k) for k in moving} - found)
+        found |= set(new)
+    return sorted(found)
+
+
+def _acting(moves: Sequence[np.ndarray], reached: Sequence[int], T_ref: int) -> list[int]:
+    """Those of them that act on T_ref, be it over others."""
+    found: set[int] = set()
+    new = {T_ref} & set(reached)
+    while new:
+        found |= new
+        over = np.concatenate([each[sorted(new)] for each in moves])[:, : len(reached)]
+        new = {reached[k] for k in np.flatnonzero(over.any(axis=0)).tolist()} - found
+    return sorted(found)
+
+
+def _require_straight(
+    found: Rates, kept: Sequence[int], columns: Sequence[int], over: Sequence[str], of: Sequence[str], point: Point
+) -> None:
+    """
+    Raises:
+        NotLinear: something has a kink.
+    """
+    for row, column in np.argwhere(found.has_kink[np.ix_(kept, columns)]):
+        raise NotLinear(
+            f"{point.controller.name} is not linear in contact at {point.v:g} m/s and {point.T:g} N.m: "
+            f"{of[kept[row]]} has a kink over {over[columns[column]]}"
+        )

@@ -1,0 +1,133 @@
+"""The report of `driveline robustness`: shares of the draws, their distributions, the worst of them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...base.errors import SimulationError
+from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from ...views.colours import COLOURS
+from ...views.html.figure_selector import chosen
+from ...views.html.linked_figures import Columns, Curve, Panel, linked, stacked, window
+from ...views.html.paired_runs import Pair, pair_sections
+from ...views.html.report_page import Section, write_report
+from ...views.html.report_tables import Heading, Row, Table
+from .case_runs import CaseRunner
+from .draws import draw
+from .outcome import METRICS, SHOWN, VERDICTS, Outcome
+from .summary import LEVELS, Summary, cells, goal, summaries
+
+SHARES = np.linspace(0.0, 100.0, 201)
+"""In %, of the runs, at which the distributions are drawn."""
+
+
+def report(outcomes: Sequence[Outcome], runner: CaseRunner, provenance: Mapping[str, Any], path: Path) -> None:
+    """Writes the page.
+
+    Args:
+        runner: runs the worst draws again.
+        provenance: see `harness.simulation.provenance.content`.
+    """
+    found = summaries(outcomes)
+    own = [summary for summary in found if summary.controller == found[0].controller and not summary.worst.reason]
+    drawn = dict(_worst_runs(own, runner))
+    sections = [
+        Section("All runs", _reading(), _table(found)),
+        _distributions(found),
+        Section(
+            f"The worst draws of {found[0].controller}", "Those that settle last.", _worst(own, drawn, runner.seed)
+        ),
+        *(pair_sections(drawn) if drawn else ()),
+    ]
+    count = len(found[0].outcomes)
+    write_report(f"{count} random cars and sensors", verdict(found), sections, provenance, path)
+
+
+def verdict(found: Sequence[Summary]) -> str:
+    """In one sentence."""
+    controller = found[0].controller
+    plants = list(dict.fromkeys(summary.plant for summary in found))
+    goals = "; ".join(f"{plant}: {goal(found, plant, controller)}" for plant in plants)
+    return f"Bounded and quiet with {controller}, and 95 % of its settling times of tip-in / launch: {goals}."
+
+
+def _reading() -> str:
+    return f"Of each metric what {' / '.join(f'{100 * level:g}' for level in LEVELS)} % of the runs do not exceed."
+
+
+def _table(found: Sequence[Summary]) -> Table:
+    verdicts = {"bounded and quiet, %": ("bounded", "quiet"), "good, %": ("good",)}
+    meanings = {metric.name: metric.description for metric in METRICS}
+    headings = [
+        *map(Heading, ("plant", "manoeuvre", "controller")),
+        *(Heading(text, "; ".join(VERDICTS[name] for name in names), True) for text, names in verdicts.items()),
+        *(Heading(f"{c.plain_heading}, {c.unit}", meanings[name], True) for name, c in SHOWN.items()),
+    ]
+    rows = [
+        Row([s.plant, s.manoeuvre, s.controller, *cells(s)], muted=s.controller != found[0].controller) for s in found
+    ]
+    return Table(headings, rows)
+
+
+def _distributions(found: Sequence[Summary]) -> Section:
+    """Of a manoeuvre on a plant the values that a share of the runs does not exceed, with each controller."""
+    controllers = list(dict.fromkeys(summary.controller for summary in found))
+    groups: dict[str, list[Summary]] = {}
+    for summary in found:
+        groups.setdefault(f"{summary.manoeuvre} on {summary.plant}", []).append(summary)
+    x_range = window(0.0, 100.0)
+    choices = {name: [_values(group)] for name, group in groups.items()}
+    control, (source,) = chosen("Runs", choices, dict.fromkeys(choices, (0.0, 100.0)), x_range, "distribution")
+    panels = [
+        Panel(
+            f"{column.plain_heading}, {column.unit}",
+            [
+                Curve(f"{metric} {name}", name, COLOURS[k % len(COLOURS)], width=2.2 if k == 0 else 1.2)
+                for k, name in reversed(list(enumerate(controllers)))
+            ],
+            "share",
+            "log",
+        )
+        for metric, column in SHOWN.items()
+        if metric in ("settling_time", "overshoot", "jerk_rms_to_50_Hz", "response_delay")
+    ]
+    text = "What a share of the draws does not exceed; a curve ends where the rest has no value, as what never settles."
+    figures = linked(panels, source, x_range, "share of the draws, %")
+    return Section("Distributions", text, figures=[control, stacked(figures)])
+
+
+def _values(group: Sequence[Summary]) -> Columns:
+    columns: dict[str, np.ndarray] = {"share": SHARES}
+    for summary in group:
+        for name, column in SHOWN.items():
+            values = np.array([outcome.magnitude(name) for outcome in summary.outcomes]) * column.factor
+            levels = np.quantile(values, SHARES / 100.0, method="inverted_cdf")
+            columns[f"{name} {summary.controller}"] = np.where(np.isfinite(levels), levels, np.nan)
+    return columns
+
+
+def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[str, Pair]]:
+    for summary in own:
+        case = summary.worst.case
+        with suppress(SimulationError):  # a car that is not fit to be driven without damping
+            runs = (runner.results(case, control) for control in (False, True))
+            yield _name(summary), Pair(CATALOGUE[case.manoeuvre], *runs)
+
+
+def _name(summary: Summary) -> str:
+    return f"{summary.manoeuvre} on {summary.plant}, draw {summary.worst.case.number}"
+
+
+def _worst(own: Sequence[Summary], drawn: Mapping[str, Pair], seed: int) -> Table:
+    column = SHOWN["settling_time"]
+    headings = [Heading("run"), Heading(f"{column.plain_heading}, {column.unit}", number=True), Heading("draw")]
+    rows = []
+    for summary in own:
+        value = column.factor * summary.worst.magnitude("settling_time")
+        settled = f"{value:.{column.decimals}f}" if np.isfinite(value) else "never"
+        name = _name(summary)
+        rows.append(Row([name, settled, str(draw(summary.worst.case.number, seed))], name if name in drawn else ""))
+    return Table(headings, rows)

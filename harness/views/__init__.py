@@ -1,0 +1,1 @@
+"""Results for people and tools: tables, figures, files of signals, pages."""

@@ -1,0 +1,73 @@
+"""Tables and verdicts on the terminal."""
+
+from collections.abc import Mapping, Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..metrics.declaration import declared
+from ..metrics.run_metrics import RideMetrics
+from .metrics_table import RIDES_SHOWN, SHOWN, Row, cells, ride_rows
+
+NUMBER_WIDTH = 5
+"""Columns of the terminal that a number may need."""
+
+
+def print_table(table: Table) -> None:
+    """Prints a table, wide enough where stdout is not a terminal, which has a width of its own."""
+    console = Console()
+    (console if console.is_terminal else Console(width=max(console.width, 120))).print(table)
+
+
+SEVERITY_STYLES = {"error": "red", "warning": "yellow", "note": "cyan"}
+
+
+def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str, tried: bool = True) -> None:
+    """Prints a rule, whether it is kept, and each problem on a line of its own; or that it was not tried."""
+    console = Console(highlight=False, soft_wrap=True)
+    if problems:
+        console.print(Text(f"  {severity:8}", style=SEVERITY_STYLES[severity]) + f"not: {title} [{rule}]", markup=False)
+    elif tried:
+        console.print(Text("  ok      ", style="green") + title)
+    else:
+        console.print(f"  -       not tried: {title}", markup=False)
+    for problem in problems:
+        console.print(Text(f"        - {problem}"))
+
+
+def runs_table(rows: Sequence[Row]) -> Table:
+    """Each plant is a section, each manoeuvre a pair of rows."""
+    table = Table(title="without (off) and with (on) active damping", title_justify="left", box=SIMPLE_HEAD, padding=0)
+    table.add_column("manoeuvre", no_wrap=True)
+    table.add_column("", min_width=3)
+    for _, column in SHOWN:
+        table.add_column(f"{column.heading}\n{column.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold")
+    for k, row in enumerate(rows):
+        if k == 0 or row.plant != rows[k - 1].plant:
+            table.add_section()
+            table.add_row(f"[bold]{row.plant}[/bold]")
+        table.add_row(*cells(row), style="dim" if not row.control else "")
+    return table
+
+
+def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:
+    """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
+    table.add_column("", no_wrap=True)
+    for _, column in RIDES_SHOWN:
+        table.add_column(f"{column.heading}\n{column.unit}", justify="right", no_wrap=True)
+    for row in ride_rows(rides):
+        table.add_row(*row)
+    return table
+
+
+def rides_reasons(rides: Mapping[str, RideMetrics]) -> list[str]:
+    """Why the table of the rides has dashes."""
+    return [
+        f"- {metric.column.plain_heading} {name}: {ride.absent[metric.name]}"
+        for metric in declared(RideMetrics)
+        for name, ride in rides.items()
+        if metric.column and metric.name in ride.absent
+    ]

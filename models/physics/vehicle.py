@@ -1,0 +1,60 @@
+"""What several blocks know of the vehicle: drive train, tyre, resistance to motion, start of the run."""
+
+from typing import Annotated, Any, NamedTuple
+
+from ..block.declaration import Real
+from ..block.operators import sin, tanh
+
+StartSpeed = Annotated[float, Real("m/s", "speed at the start, stationary rolling on level road", 0.0, 70.0, 10.0)]
+StartTorque = Annotated[float, Real("N.m", "stationary motor torque at a rolling start", -1000.0, 1000.0, 100.0)]
+MotorInertia = Annotated[float, Real("kg.m2", "inertia of the motor and its side of the gear", 0.001, 10.0)]
+WheelInertia = Annotated[float, Real("kg.m2", "inertia from the gear to the wheels, motor side", 0.001, 100.0)]
+Stiffness = Annotated[float, Real("N.m/rad", "stiffness of the drive train, motor side", 1.0, 1e5)]
+HalfGap = Annotated[float, Real("rad", "half the backlash, motor side", 0.0, 3.0)]
+MotorTorque = Annotated[float, Real("N.m", "largest torque of the motor, either sign", 1.0, 2000.0)]
+MotorLag = Annotated[float, Real("s", "time constant of the torque loop", 1e-3, 0.1)]
+GearRatio = Annotated[float, Real("1", "gear ratio, motor speed over wheel speed", 1.0, 30.0)]
+Mass = Annotated[float, Real("kg", "mass of the vehicle", 300.0, 10000.0)]
+WheelRadius = Annotated[float, Real("m", "radius of the driven wheels", 0.1, 1.0)]
+SlipStiffness = Annotated[float, Real("N", "longitudinal slip stiffness of the driven axle", 1e4, 1e6)]
+LowSpeedDamping = Annotated[float, Real("N.s/m", "tyre damping at standstill, fading with speed", 0.0, 20000.0)]
+LowSpeed = Annotated[float, Real("m/s", "speed at which the tyre damping has halved", 0.01, 10.0)]
+RollingResistance = Annotated[float, Real("1", "rolling resistance coefficient", 0.0, 0.1)]
+RollingSpeed = Annotated[float, Real("m/s", "speed at which rolling resistance sets in", 0.01, 10.0)]
+AirDrag = Annotated[float, Real("N.s2/m2", "air drag over the square of speed", 0.0, 10.0)]
+Gravity = Annotated[float, Real("m/s2", "gravitational acceleration", 1.0, 20.0)]
+
+
+class Vehicle(NamedTuple):
+    """The car that all blocks start with: where two of them know the same of it, they take it from here."""
+
+    J_1: MotorInertia = 0.055
+    J_2: WheelInertia = 0.30
+    C: Stiffness = 117.4
+    phi_B: HalfGap = 0.157
+    T_max: MotorTorque = 180.0
+    tau: MotorLag = 0.003
+    i: GearRatio = 9.0
+    m: Mass = 1450.0
+    r: WheelRadius = 0.29
+    c_slip: SlipStiffness = 140000.0
+    d_low: LowSpeedDamping = 4000.0
+    v_low: LowSpeed = 0.5
+    c_rr: RollingResistance = 0.012
+    v_rr: RollingSpeed = 0.1
+    c_wa: AirDrag = 0.42
+    g: Gravity = 9.81
+
+
+CAR = Vehicle()
+
+
+def resistance(v: Any, slope: Any, rolling_load: Any, p: Any) -> Any:
+    """Force in N against the motion: rolling (rolling_load in N), grade and air."""
+    return rolling_load * p.c_rr * tanh(v / p.v_rr) + p.m * p.g * sin(slope) + p.c_wa * v * abs(v)
+
+
+def standstill_damping(v: Any, p: Any) -> Any:
+    """Tyre damping in N.s/m that keeps a standing car from swinging."""
+    ratio = v / p.v_low
+    return p.d_low / (1.0 + ratio * ratio)

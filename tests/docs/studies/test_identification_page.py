@@ -1,0 +1,99 @@
+"""The tables of docs/identification.md say what was found."""
+
+from dataclasses import replace
+
+from docs.studies.identification_accuracy import TRAPS, Found, Judged, Method, Redesigned
+from docs.studies.identification_page import PAGE, TABLES, TRUE, _accuracy, _methods, _redesigned, _traps, _vehicle
+from driveline.harness.identification.drive_train import Parameters
+from driveline.harness.loop.places import PLANTS
+
+RIGHT = Found(
+    values={**TRUE, "g_L": 1.0},
+    deviations={name: 1e-3 * value for name, value in TRUE.items() if value},
+    warnings=(),
+    quality={"predicted": 95.0},
+    resonance=7.9,
+    seconds=6.0,
+)
+
+
+def with_values(**values: float) -> Found:
+    return replace(RIGHT, values={**RIGHT.values, **values})
+
+
+def row(table: str, name: str) -> list[str]:
+    (line,) = (line for line in table.splitlines() if line.startswith(f"| {name} |"))
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def test_accuracy_tells_rms_worst_and_the_share_within_the_interval() -> None:
+    # two standard deviations off is outside of the 95 % interval, 1.9 is inside
+    found = [RIGHT, with_values(J_2=0.3 * 1.002), with_values(J_2=0.3 * (1.0 - 0.0019)), RIGHT]
+    assert row(_accuracy(found, found), "J_2")[2:4] == ["0.138", "0.200"]
+    assert row(_accuracy(found, found), "J_2")[5] == "75"
+    assert row(_accuracy(found, found), "C")[5] == "100"
+
+
+def test_a_trap_is_passed_by_the_right_answer_or_by_naming_the_cause() -> None:
+    wrong = with_values(J_2=0.35)
+    named = replace(wrong, warnings=("the load torque looks late: ...",))
+    late = next(k for k, trap in enumerate(TRAPS) if trap.late)
+    every = [[RIGHT, RIGHT] for _ in TRAPS]
+    every[late] = [wrong, named]
+    assert row(_traps(every), TRAPS[late].name)[1:] == ["0", "50", "50"]
+    assert row(_traps(every), TRAPS[0].name)[1:] == ["100", "-", "100"]
+
+
+def test_a_wrong_J_1_is_only_passed_if_it_is_named() -> None:
+    k = next(k for k, trap in enumerate(TRAPS) if trap.J_1 != 1.0)
+    every = [[RIGHT] for _ in TRAPS]
+    assert row(_traps(every), TRAPS[k].name)[1:] == ["0", "0", "0"]
+
+
+def test_redesigned_controllers_are_compared_car_by_car() -> None:
+    before = {"tipin15": (0.2, 0.1), "launch": (0.2, 0.1)}
+    better, worse = {"tipin15": (0.1, 0.05), "launch": (0.1, 0.05)}, {"tipin15": (0.2, 0.1), "launch": (0.22, 0.1)}
+    cars = [
+        Redesigned(PLANTS[0], 1, before, better, {}),
+        Redesigned(PLANTS[0], 2, before, worse, {}),
+        Redesigned(PLANTS[0], 3, before, {}, {}, "the motor is too slow"),
+        Redesigned(PLANTS[1], 1, before, better, {}),
+    ]
+    cells = row(_redesigned(cars), PLANTS[0])
+    assert cells[1:3] == ["3", "1"]
+    assert cells[5:9] == ["50", "100", "50", "100"]
+    worse["launch"] = (0.222, 0.1)
+    assert row(_redesigned(cars), PLANTS[0])[8] == "50"
+
+
+def test_the_vehicle_is_told_with_and_without_load() -> None:
+    one = Judged(with_values(d=0.3), (95.0, 78.0), (98.0, 94.0), (0.2, 0.7), 8.0)
+    alone = replace(one, response=(float("nan"), 1.1), simulated=(93.0, 50.0))
+    table = _vehicle([one, one], [alone, alone])
+    assert row(table, "simulated 0.5 s: omega_1 - omega_2")[2:] == ["78.0", "50.0"]
+    assert row(table, "response 2 to 12 Hz with the true load, dB rms")[2:] == ["0.20", "-"]
+
+
+def test_both_methods_are_told_with_their_scatter() -> None:
+    near, far = Parameters(0.055, 0.3, 117.4, 0.2, 0.157), Parameters(0.055, 0.1, 100.0, 0.1, 0.1)
+    pair = (Method(near, 99.0, 2.0), Method(far, 90.0, 20.0))
+    other = (Method(near._replace(C=119.4), 98.0, 4.0), Method(far, 90.0, 20.0))
+    table = _methods({PLANTS[0]: [pair, other]})
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+    assert cells[0] == [
+        PLANTS[0],
+        "prediction error",
+        "0.3 +- 0 %",
+        "118.4 +- 1.2 %",
+        "0.157 +- 0 %",
+        "0.200",
+        "98.5",
+        "3.0",
+    ]
+    assert cells[1][1:] == ["output error", "0.1 +- 0 %", "100 +- 0 %", "0.1 +- 0 %", "0.100", "90.0", "20.0"]
+
+
+def test_the_page_has_a_place_for_every_table() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    for name in TABLES:
+        assert f"<!-- {name}, made by python -m docs.studies.identification_page -->" in text

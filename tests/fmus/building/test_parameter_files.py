@@ -1,0 +1,197 @@
+"""Files with the parameters of a car and of its controller: what may stand in them, and where it goes."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from driveline.fmus.building.parameter_files import (
+    OF_A_RUN,
+    for_instances,
+    read_files,
+    read_parameters,
+    read_vehicle,
+    units,
+)
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.errors import ParameterFileError
+from driveline.fmus.fmu import Fmu
+from driveline.models.block.declaration import variables
+from tests import ROOT
+
+EXAMPLES = sorted((ROOT / "examples" / "cars").glob("*.toml"))
+PARAMETERS = {name: {v.name: v for v in variables(fmu.block.Parameters)} for name, fmu in FMUS.items()}
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[[str], Path]:
+    def write(text: str) -> Path:
+        path = tmp_path / "car.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def refusal(read: Callable[[Path], Any], path: Path) -> str:
+    with pytest.raises(ParameterFileError) as found:
+        read(path)
+    return str(found.value)
+
+
+def test_a_vehicle_file_names_what_belongs_to_the_car(written: Callable[[str], Path]) -> None:
+    path = written("# mine\nJ_1 = 0.09  # kg.m2\nm = 2200\nT_cyc = 1e-2\nk_s = 3.0e4\n")
+    values = read_vehicle(path)
+    assert values == {"J_1": 0.09, "m": 2200.0, "T_cyc": 0.01, "k_s": 3e4}
+    assert all(type(value) is float for value in values.values())
+
+
+def test_a_file_of_gains_names_what_is_set_in_the_controller(written: Callable[[str], Path]) -> None:
+    assert read_parameters(written("k_d = 2.5\nT_take_max = 40\n")) == {"k_d": 2.5, "T_take_max": 40.0}
+    stored = read_parameters(ROOT / "models" / "controller" / "gains.toml")
+    assert {name: PARAMETERS["DampingController"][name].start for name in stored} == stored
+
+
+def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Callable[[str], Path]) -> None:
+    for name in {name for owned in PARAMETERS.values() for name in owned}:
+        start = next(owned[name].start for owned in PARAMETERS.values() if name in owned)
+        path = written(f"{name} = {str(start).lower()}\n")
+        read = []
+        for reader in (read_vehicle, read_parameters):
+            try:
+                read.append(reader(path))
+            except ParameterFileError as error:
+                assert f"{name} does not belong here" in str(error)  # noqa: PT017 (either may refuse)
+        assert read == ([] if name in OF_A_RUN else [{name: start}]), name
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ("J1 = 0.09", "J1 is not known; did you mean J_1"),
+        ("hat = 3", "hat is not known"),
+        ("J_1 = '0.09'", "J_1 = '0.09': it must be a finite number"),
+        ("J_1 = true", "J_1 = True: it must be a finite number"),
+        ("J_1 = [0.09]", "J_1 = [0.09]: it must be a finite number"),
+        ("J_1 = nan", "J_1 = nan: it must be a finite number"),
+        ("J_1 = -inf", "J_1 = -inf: it must be a finite number"),
+        (f"m = 1{400 * '0'}", "m = 1000000000000000000000000000000000000000: it must be a finite number"),
+        ("m = 299.9", "m = 299.9: TwoMassDriveline takes 300 to 10000 kg"),
+        ("m = 10001", "m = 10001: TwoMassDriveline takes 300 to 10000 kg"),
+        ("T_max = 0.5", "T_max = 0.5: MotorTorqueLoop takes 1 to 2000 N.m"),
+        ("v_0 = 3.0", "v_0 does not belong here: the manoeuvre sets it"),
+        ("seed = 3", "seed does not belong here: --seed sets it for a run"),
+        ("k_d = 2.0", "k_d does not belong here: it is one of the controller, for the file of --parameters"),
+        ("[plant]\nJ_1 = 0.09", "plant is a table; an entry stands alone, for all that have it: J_1 = 0.09"),
+        ("plant.J_1 = 0.09", "plant is a table"),
+    ],
+)
+def test_what_does_not_belong_in_a_vehicle_file_is_named_with_its_line(
+    written: Callable[[str], Path], entry: str, message: str
+) -> None:
+    path = written(f"# a car\nC = 117.4\n\n{entry}\n")
+    assert refusal(read_vehicle, path).startswith(f"{path}, line 4: {message}")
+
+
+def test_what_belongs_to_the_car_is_no_parameter_of_the_controller(written: Callable[[str], Path]) -> None:
+    path = written("k_d = 2.5\nJ_1 = 0.09\n")
+    expected = f"{path}, line 2: J_1 does not belong here: it is one of the car, for the file of --vehicle"
+    assert refusal(read_parameters, path) == expected
+
+
+def test_the_bounds_are_allowed_themselves(written: Callable[[str], Path]) -> None:
+    assert read_vehicle(written("m = 300\nphi_B = 0\nJ_1 = 10\n")) == {"m": 300.0, "phi_B": 0.0, "J_1": 10.0}
+
+
+def test_all_that_is_wrong_is_said_at_once(written: Callable[[str], Path]) -> None:
+    lines = refusal(read_vehicle, written("J1 = 1\nJ_2 = 0.3\n  'C' = 0\n")).splitlines()
+    assert [line.partition(", ")[2].partition(":")[0] for line in lines] == ["line 1", "line 3"]
+
+
+@pytest.mark.parametrize("text", ["J_1 = 0.09\nJ_1 = 0.1\n", "J_1 0.09\n", "J_1 =\n"])
+def test_what_is_no_toml_is_said_with_its_line(written: Callable[[str], Path], text: str) -> None:
+    message = refusal(read_vehicle, written(text))
+    assert "is not TOML" in message
+    assert "line" in message
+
+
+def test_a_file_that_is_absent_or_no_text_is_named(tmp_path: Path) -> None:
+    assert refusal(read_vehicle, tmp_path / "car.toml") == f"there is no file {tmp_path / 'car.toml'}"
+    (tmp_path / "car.toml").write_bytes(b"\xff\xfe")
+    assert "is not TOML" in refusal(read_vehicle, tmp_path / "car.toml")
+
+
+@pytest.mark.parametrize("text", [f"J_1 = {'1' * 5000}\n", f"J_1 = {'[' * 5000}\n"])
+def test_what_python_cannot_read_is_no_toml_either(written: Callable[[str], Path], text: str) -> None:
+    assert "is not TOML" in refusal(read_vehicle, written(text))
+
+
+def test_a_file_may_begin_with_the_mark_of_utf_8(written: Callable[[str], Path]) -> None:
+    assert read_vehicle(written("\ufeffJ_1 = 0.09\n")) == {"J_1": 0.09}
+
+
+def test_all_blocks_that_have_a_parameter_must_allow_it(written: Callable[[str], Path]) -> None:
+    from dataclasses import replace
+    from typing import Annotated, NamedTuple
+
+    from driveline.models.block.declaration import Integer, Real
+
+    class Narrow(NamedTuple):
+        J_1: Annotated[float, Real("kg.m2", "inertia", 0.05, 0.06)] = 0.055
+        gears: Annotated[int, Integer("number of gears", 1, 6)] = 1
+
+    own = Fmu(replace(FMUS["TwoMassDriveline"].block, name="Mine", Parameters=Narrow), stop_time=1.0)
+    path = written("J_1 = 0.07\n")
+    assert read_vehicle(path) == {"J_1": 0.07}
+    with pytest.raises(ParameterFileError, match=r"J_1 = 0\.07: Mine takes 0\.05 to 0\.06 kg\.m2"):
+        read_vehicle(path, [own])
+    assert read_vehicle(written("gears = 2\n"), [own]) == {"gears": 2}
+    with pytest.raises(ParameterFileError, match=r"gears = 2\.0: it must be a whole number"):
+        read_vehicle(written("gears = 2.0\n"), [own])
+
+
+def test_parameters_of_somebody_elses_fmu_are_taken_as_they_are(written: Callable[[str], Path]) -> None:
+    path = written("shaft = 3\nJ_1 = 0.09\n")
+    assert read_vehicle(path, others={"shaft"}) == {"shaft": 3.0, "J_1": 0.09}
+    assert "shaft is not known" in refusal(read_vehicle, path)
+
+
+def test_an_entry_goes_to_every_instance_that_has_the_name() -> None:
+    instances = {"plant": {"i", "m", "r"}, "can": {"i", "r"}, "controller": {"k_d"}}
+    placed = for_instances({"i": 10.5, "m": 2200.0, "k_d": 4.0, "k_s": 3e4}, instances)
+    assert placed == {"plant.i": 10.5, "plant.m": 2200.0, "can.i": 10.5, "controller.k_d": 4.0}
+
+
+def test_what_the_blocks_share_cannot_disagree() -> None:
+    """Ratio, radius, torque limit and the model of the drive train stand in more than one block."""
+    shared = {"i": 3, "r": 3, "T_max": 2, "J_1": 3, "J_2": 2, "C": 2, "phi_B": 3, "m": 2}
+    placed = for_instances(dict.fromkeys(shared, 1.0), PARAMETERS)
+    for name, count in shared.items():
+        assert sum(key.endswith(f".{name}") for key in placed) == count
+
+
+def test_either_file_may_be_absent(written: Callable[[str], Path]) -> None:
+    assert read_files(None, None) == {}
+    assert read_files(written("J_1 = 0.09"), None) == {"J_1": 0.09}
+    assert read_files(None, written("k_d = 3")) == {"k_d": 3.0}
+
+
+def test_the_unit_of_an_entry_is_the_declared_one() -> None:
+    assert {name: units()[name] for name in ("J_1", "i", "T_cyc")} == {"J_1": "kg.m2", "i": "1", "T_cyc": "s"}
+    assert "seed" not in units()
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_names_the_whole_car(path: Path) -> None:
+    values = read_vehicle(path)
+    assert {"J_1", "J_2", "C", "phi_B", "i", "r", "m", "tau", "T_max", "T_cyc", "d_min", "d_max"} <= values.keys()
+    assert {"J_w", "k_s", "k_g", "k_p", "F_z0", "J_y", "m_h", "c_slip"} <= values.keys()
+
+
+def test_there_are_the_three_cars_of_the_documentation() -> None:
+    cars = {path.stem: read_vehicle(path) for path in EXAMPLES}
+    default = {name: owned[name].start for owned in PARAMETERS.values() for name in owned}
+    assert set(cars) == {"mid_size", "small", "van"}
+    assert (cars["small"]["m"], cars["small"]["C"]) == (900.0, default["C"] / 2.0)
+    assert (cars["van"]["m"], cars["van"]["phi_B"]) == (3500.0, 2.0 * default["phi_B"])

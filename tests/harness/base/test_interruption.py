@@ -1,0 +1,168 @@
+"""However a command is stopped, it says so in one line and leaves nothing behind."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children
+from driveline.harness.commands.cli import main
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
+from tests import ROOT
+
+COMPARE = [sys.executable, "-m", "driveline", "compare"]
+"""Long enough to be stopped on its way: all manoeuvres on both plants."""
+
+
+@pytest.mark.parametrize(
+    ("number", "whole_group", "code"),
+    [(signal.SIGTERM, False, 143), (signal.SIGHUP, True, 129), (signal.SIGINT, True, 130)],
+)
+def test_a_signal_ends_the_workers_and_leaves_nothing(
+    native: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, code: int
+) -> None:
+    """A terminal that closes or Ctrl-C reaches every process of the group, a `kill` only the first."""
+    temporary, results = tmp_path / "temporary", tmp_path / "results"
+    temporary.mkdir()
+    process = subprocess.Popen(
+        [*COMPARE, "--fmus", str(native.parent), "--output", str(results)],
+        env=os.environ | {"TMPDIR": str(temporary)},
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),  # whoever runs the tests may ignore it
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(temporary.rglob("*.so")) and time.monotonic() < deadline:
+        time.sleep(0.02)  # until a worker has unpacked an FMU
+    os.killpg(process.pid, number) if whole_group else process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (code, "", "driveline compare: stopped\n")
+    assert list(temporary.iterdir()) == []
+    assert [path for path in results.rglob("*") if path.is_file()] == []
+
+
+def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "docs.studies.undetectable_faults"],
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.terminate()
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (143, "", "untold: stopped\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+MAINS = [
+    path
+    for path in [*(ROOT / "harness").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
+    if "\ndef main(" in (text := path.read_text(encoding="utf-8")) and '__name__ == "__main__"' in text
+]
+
+
+@pytest.mark.parametrize("path", MAINS, ids=lambda path: path.stem)
+def test_every_module_that_is_run_is_stopped_so(path: Path) -> None:
+    assert path.read_text(encoding="utf-8").endswith('\n\nif __name__ == "__main__":\n    script(main)\n')
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_stop_while_workers_begin_waits_until_they_are_known(number: signal.Signals) -> None:
+    known = []
+
+    def begin() -> None:
+        with stoppable(), uninterrupted_children():
+            signal.raise_signal(number)
+            known.append("worker")
+
+    with pytest.raises(Stopped):
+        begin()
+    assert known == ["worker"]
+
+
+class Ended(Exception):
+    """What the handler of a signal raises."""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
+    built: Path, number: signal.Signals
+) -> None:
+    def end(*_: object) -> None:
+        raise Ended
+
+    loop: dict[str, Any] = {"plant": "ValidationVehicle", "folder": built, "build": "python"}
+    simulate(replace(MANOEUVRES["drive"], duration=0.01), **loop)  # whose Python has been imported by then
+    before = signal.signal(number, end)
+    clock = threading.Timer(0.7, os.kill, (os.getpid(), number))
+    clock.start()
+    try:
+        with pytest.raises(Ended):
+            simulate(MANOEUVRES["drive"], **loop)
+        assert signal.getsignal(number) is end
+    finally:
+        clock.join()
+        signal.signal(number, before)
+
+
+def test_a_signal_that_is_ignored_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert main(["design", "--quiet"]) == 0
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize(("arguments", "code"), [(["--help"], 0), (["design"], 1), (["nothing"], 2)])
+def test_a_reader_that_has_gone_is_no_traceback(arguments: list[str], code: int) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "driveline", *arguments]
+    done = subprocess.run(command, cwd=ROOT, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+    assert "BrokenPipe" not in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_full_device_is_named_in_one_line() -> None:
+    command = [sys.executable, "-m", "driveline", "design"]
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "driveline design: standard output: No space left on device\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")
+@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
+def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
+    program = """
+from harness.cli import main
+from harness.many import run_many
+main(["design", "--quiet", "--output", "gains.toml"])
+with open("answers", "w") as file:
+    assert file.fileno() > 2
+    file.write(str(run_many(abs, [-1, -2], workers=2)))
+"""
+    shell = ["sh", "-c", f'exec "$0" -c "$1" {closed}', sys.executable, program]
+    done = subprocess.run(shell, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    assert done.returncode == 0
+    assert (tmp_path / "answers").read_text(encoding="utf-8") == "[1, 2]"
+    assert (tmp_path / "gains.toml").is_file()

@@ -1,0 +1,329 @@
+"""The command line: what it does, what it answers to mistakes, and its exit codes."""
+
+import json
+import os
+import subprocess
+import sys
+from importlib.metadata import version
+from xml.etree import ElementTree
+
+import pytest
+from fmpy.util import read_csv
+
+from driveline.harness.commands.cli import COMMANDS, SHELLS, main
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.metrics.declaration import declared
+from driveline.harness.metrics.run_metrics import Metrics
+from tests import ROOT
+from tests.foreign import build_car, tampered
+
+
+def answer(capsys, *arguments):
+    """Exit code and what stands on stdout and stderr."""
+    try:
+        code = main(arguments)
+    except SystemExit as end:
+        code = end.code
+    return code, *capsys.readouterr()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_teaches(capsys, command):
+    code, out, _ = answer(capsys, command, "--help")
+    assert code == 0
+    assert "examples:" in out
+    assert f"driveline {command}" in out
+
+
+def test_help_names_commands_and_exit_codes(capsys):
+    code, out, _ = answer(capsys, "--help")
+    assert code == 0
+    assert all(command in out for command in COMMANDS)
+    assert "0 done, 1 something went wrong or there are findings, 2 wrong use" in out
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    assert answer(capsys, "--version")[:2] == (0, f"driveline-damping {version('driveline-damping')}\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "hint"),
+    [
+        (["simulat"], "did you mean simulate"),
+        (["simulate", "--manoeuvre", "tipn15"], "did you mean tipin15"),
+        (["simulate", "--manoeuvre", ""], "an empty name is unknown"),
+        (["simulate", "--plant", "TwoMasDriveline"], "did you mean TwoMassDriveline"),
+        (["simulate", "--plnt", "x"], "did you mean --plant"),
+        (["simulate", "--set", "plant.J_1"], "plant.J_1=0.06"),
+        (["simulate", "--scheme", "gaus"], "gauss-seidel"),
+        (["simulate", "--seed", "1.5"], "'1.5' is not a whole number"),
+        *(
+            ([*command, "--seed", "1000001"], "argument --seed: '1000001' is not a whole number from 0 to 1000000")
+            for command in (["simulate"], ["compare"], ["replay", "trip.csv"], ["faults"])
+        ),
+        (["simulate", "--step", "nan"], "'nan' is not a time above 0 s"),
+        (["simulate", "--output", ""], "the name of the folder is empty"),
+        (["replay", "trip.csv", "--held", "0"], "'0' is not a time above 0 s"),
+        (["build", "TwoMass"], "did you mean TwoMassDriveline"),
+        (["build", "nothing.py"], "there is no file nothing.py"),
+        (["check", "nothing.fmu"], "there is no FMU nothing.fmu"),
+        (["check", "nothing.fmu", "--json", "--format", "junit"], "--format: not allowed with argument --json"),
+        (["check", "nothing.fmu", "--format", "text", "--json"], "--json: not allowed with argument --format"),
+        (["compare", "--manoeuvre", "launc"], "did you mean launch"),
+        (["--print-completion", "bsh"], "did you mean bash"),
+        ([], "COMMAND"),
+    ],
+)
+def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
+    code, _, err = answer(capsys, *arguments)
+    assert code == 2
+    assert hint in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["simulate", "--help"], ["simulate", "--manoeuvre", "tipn15"]])
+def test_help_and_mistakes_are_answered_without_the_packages_that_a_run_needs(arguments):
+    listed = f"""
+import sys
+from harness.cli import main
+try:
+    main({arguments})
+except SystemExit:
+    print(*sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", listed], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert "driveline.harness.commands.cli" in loaded
+    assert not loaded & {"numpy", "scipy", "matplotlib", "fmpy", "rich", "shtab"}
+
+
+def test_simulate_draws_nothing_unless_asked():
+    listed = (
+        "import sys, driveline.harness.commands.simulate, driveline.harness.simulation.simulate; print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", listed], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert not set(done.stdout.split()) & {"matplotlib", "scipy", "rich"}
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_completion_knows_commands_options_and_manoeuvres(capsys, shell):
+    code, out, _ = answer(capsys, "--print-completion", shell)
+    assert code == 0
+    assert all(word in out for word in ("back-to-back", "manoeuvre", "launch_brake"))
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("driveline sim", {"simulate"}),
+        ("driveline simulate --manoeuvre tipin1", {"tipin15", "tipin15r"}),
+        ("driveline replay --plant Val", {"ValidationVehicle"}),
+        ("driveline check my", {"my.fmu"}),
+        ("driveline simulate --plant my", {"my.fmu"}),
+        ("driveline compare --motor Mot", {"MotorTorqueLoop"}),
+    ],
+)
+def test_bash_completes_words(capsys, tmp_path, typed, offered):
+    _, completion, _ = answer(capsys, "--print-completion", "bash")
+    (tmp_path / "my.fmu").touch()
+    (tmp_path / "complete").write_text(completion, encoding="utf-8")
+    words = typed.split()
+    script = f"""
+source ./complete
+COMP_WORDS=({typed}); COMP_CWORD={len(words) - 1}
+_shtab_driveline
+printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert set(done.stdout.split()) == offered
+
+
+def test_the_module_builds_the_named_fmu(tmp_path):
+    command = [sys.executable, "-m", "driveline", "build", "MotorTorqueLoop", "--build", "python"]
+    done = subprocess.run([*command, "--output", str(tmp_path)], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [path.name for path in tmp_path.iterdir()] == ["MotorTorqueLoop.fmu"]
+    assert "MotorTorqueLoop.fmu" in done.stdout
+
+
+def test_a_quiet_build_says_nothing(capsys, tmp_path):
+    arguments = ("build", "WheelSpeedCan", "--build", "python", "--output", str(tmp_path), "--quiet")
+    assert answer(capsys, *arguments) == (0, "", "")
+    assert (tmp_path / "WheelSpeedCan.fmu").is_file()
+
+
+@pytest.fixture
+def simulate(capsys, built, tmp_path):
+    """Runs `driveline simulate` on the freshly built FMUs; gives its answer and the folder."""
+
+    def run(*arguments):
+        folder = tmp_path / "results"
+        return answer(capsys, "simulate", *arguments, "--fmus", str(built), "--output", str(folder)), folder
+
+    return run
+
+
+def test_simulate_writes_what_was_asked_for(simulate, built):
+    plant = str(built / f"{PLANTS[0]}.fmu")
+    arguments = ("--plant", plant, "--manoeuvre", "launch", "--control", "off", "--step", "0.002", "--build", "python")
+    (code, out, err), folder = simulate(*arguments, "--set", "motor.sigma_omega=0", "--set", "motor.q_omega=0")
+    assert (code, err) == (0, "")
+    path = folder / "TwoMassDriveline_launch_off.csv"
+    assert str(path) in out
+    assert "python FMUs" in out
+    signals = read_csv(path)
+    assert len(signals) == 3001
+    assert not signals["controller.enable"].any()
+    # undisturbed, the resolver shows the speed of the plant at the same instant
+    assert (signals["motor.omega_1_meas"] == signals["plant.omega_1"]).all()
+    assert "plant.T_mot is held, motor.omega_1 is held" in out
+
+
+def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):
+    message, folder = simulate("--step", "0.002", "--plot", "--quiet")
+    assert message == (0, "", "")
+    assert {path.name for path in folder.iterdir()} == {
+        f"TwoMassDriveline_tipin15_on.{kind}" for kind in ("csv", "json", "png", "pdf")
+    }
+
+
+def test_the_kind_of_the_figure_and_what_it_shows_are_chosen(simulate):
+    (code, out, _), folder = simulate("--step", "0.002", "--plot", "--window", "0.9,1.4", "--figures", "svg")
+    assert code == 0
+    assert "tipin15_on.svg" in out
+    assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".svg"}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--window", "1,2"), "--window is for the figure; ask for it with --plot"),
+        (("--figures", "svg"), "--figures is for the figure; ask for it with --plot"),
+        (("--plot", "--window", "7,8"), "--window 7,8: tipin15 is from 0 to 6 s"),
+    ],
+)
+def test_a_figure_that_cannot_be_is_refused_before_the_run(simulate, options, message):
+    (code, _, err), folder = simulate(*options)
+    assert (code, err) == (2, f"driveline simulate: {message}\n")
+    assert not folder.exists()
+
+
+def test_an_fmu_of_somebody_else_takes_its_place_under_its_own_names(simulate, tmp_path):
+    car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0), v=("speed", "km/h", 1 / 3.6))
+    renamed = ("--map", "plant.T_gear=Shaft.tau", "--map", "plant.v=speed")
+    (code, _, err), folder = simulate("--plant", str(car), *renamed, "--build", "python")
+    assert (code, err) == (0, "")
+    signals = read_csv(folder / "Theirs_tipin15_on.csv")
+    assert signals["plant.v"][0] == pytest.approx(15 / 3.6)
+    (code, _, err), _ = simulate("--plant", str(car), "--map", "plant.T_gear", "--build", "python")
+    assert code == 2
+    assert "plant.T_gear=Shaft.tau" in err
+
+
+@pytest.mark.parametrize("place", ["controller", "motor", "can"])
+def test_every_block_can_be_named(simulate, built, place):
+    names = {"controller": "DampingController", "motor": "MotorTorqueLoop", "can": "WheelSpeedCan"}
+    (code, _, err), _ = simulate(f"--{place}", str(built / f"{names[place]}.fmu"), "--step", "0.002")
+    assert (code, err) == (0, "")
+    (code, _, err), _ = simulate(f"--{place}", names[place][:-1])
+    assert code == 2
+    assert f"did you mean {names[place]}" in err
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("plant.J_1=0.0009", "plant.J_1 = 0.0009: TwoMassDriveline.fmu takes 0.001 to 10 kg.m2"),
+        ("plant.J_1=10.001", "plant.J_1 = 10.001: TwoMassDriveline.fmu takes 0.001 to 10 kg.m2"),
+        ("controller.T_max=0.5", "controller.T_max = 0.5: DampingController.fmu takes 1 to 2000 N.m"),
+    ],
+)
+def test_a_parameter_beyond_its_bounds_is_named_before_anything_runs(simulate, given, message):
+    (code, _, err), folder = simulate("--set", given, "--quiet")
+    assert (code, err) == (2, f"driveline simulate: {message}\n")
+    assert not folder.exists()
+
+
+def test_an_unknown_parameter_is_answered_with_exit_code_2(simulate):
+    (code, _, err), _ = simulate("--set", "plant.J1=0.06")
+    assert code == 2
+    assert "did you mean J_1" in err
+
+
+def test_a_run_that_does_not_fit_in_memory_is_refused_in_one_line(simulate):
+    (code, _, err), _ = simulate("--step", "1e-15")
+    assert code == 1
+    assert err.startswith("driveline simulate: not enough memory")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "made_by"), [([], "driveline build"), (["--build", "native"], "driveline build --build native")]
+)
+@pytest.mark.parametrize("command", ["simulate", "compare", "replay harness/manoeuvres/data/town_drive.csv"])
+def test_missing_fmus_are_answered_with_the_command_that_makes_them(capsys, tmp_path, command, arguments, made_by):
+    code, _, err = answer(capsys, *command.split(), "--fmus", str(tmp_path), *arguments)
+    assert code == 2
+    assert f"`{made_by} --output {tmp_path}` makes it" in err
+
+
+def test_compare_as_a_document_has_every_metric_of_every_run(capsys, built, tmp_path):
+    given = ("--fmus", str(built), "--output", str(tmp_path), "--manoeuvre", "prbs15", "--plant", PLANTS[0])
+    code, out, err = answer(capsys, "compare", *given, "--set", "controller.k_d=0", "--json")
+    assert (code, err) == (0, "")
+    document = json.loads(out)
+    off, on = document["runs"]
+    assert (off["plant"], off["manoeuvre"], off["control"], on["control"]) == (PLANTS[0], "prbs15", False, True)
+    assert set(off) == {"plant", "manoeuvre", "control", "absent", *(metric.key for metric in declared(Metrics))}
+    assert (off["settling_time_s"], off["absent"]["settling_time_s"]) == (None, "the manoeuvre is no step")
+    assert document["files"] == [str(tmp_path / "table.md"), str(tmp_path / "metrics.csv")]
+    # without gain only what it does in the gap and with the estimated torque is left
+    assert 0.0 < on["added_torque_rms_N_m"] < 20.0
+
+
+def test_what_the_system_refuses_is_one_line_of_words(capsys, tmp_path):
+    pipe = tmp_path / "gains.toml"
+    os.mkfifo(pipe)
+    message = f"driveline design: {pipe}: it is a pipe that nobody reads\n"
+    assert answer(capsys, "design", "--output", str(pipe)) == (1, "", message)
+
+
+def test_check_looks_at_no_fmu_where_one_is_missing(capsys, tmp_path):
+    faulty = tmp_path / "faulty.fmu"
+    faulty.write_text("no archive")
+    assert answer(capsys, "check", str(faulty), "nothing.fmu")[:2] == (2, "")
+
+
+def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
+    assert answer(capsys, "check", str(built / "MotorTorqueLoop.fmu"))[0] == 0
+    faulty = tmp_path / "faulty.fmu"
+    faulty.write_text("no archive")
+    code, out, _ = answer(capsys, "check", str(faulty))
+    assert code == 1
+    assert "not an FMU" in out
+    code, out, _ = answer(capsys, "check", "--quiet", str(faulty))
+    assert (code, len(out.splitlines())) == (1, 1)
+    assert out.startswith(f"{faulty}: ")
+    code, out, _ = answer(capsys, "check", "--json", str(faulty))
+    document = json.loads(out)
+    assert (code, document["findings"], document["fmus"][0]["fmu"]) == (1, 1, str(faulty))
+
+
+def test_check_fails_for_errors_alone_unless_it_is_strict(capsys, built, tmp_path):
+    path = tampered(built / "MotorTorqueLoop.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(' unit="s"', ""))
+    code, out, _ = answer(capsys, "check", "--quick", str(path))
+    assert code == 0
+    assert "has no unit" in out
+    assert answer(capsys, "check", "--quick", "--strict", str(path))[0] == 1
+    assert answer(capsys, "check", "--quick", "--strict", "--ignore", "units", str(path))[0] == 0
+    code, _, err = answer(capsys, "check", "--ignore", "unit", str(path))
+    assert code == 2
+    assert "did you mean units" in err
+
+
+def test_check_writes_junit(capsys, tmp_path):
+    faulty = tmp_path / "faulty.fmu"
+    faulty.write_text("no archive")
+    code, out, _ = answer(capsys, "check", "--format", "junit", str(faulty))
+    (suite,) = ElementTree.fromstring(out)
+    assert (code, suite.get("name"), suite.get("failures")) == (1, str(faulty), "1")
+    assert "not an FMU" in suite.findall("testcase/failure")[0].get("message", "")

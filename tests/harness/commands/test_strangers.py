@@ -1,0 +1,83 @@
+"""Commands and functions with a plant of somebody else's that misbehaves: one line, an exit code, nothing left."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from driveline.harness.base.errors import SimulationError
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
+from tests import ROOT
+from tests.foreign.stranger import build_stranger
+
+COMMANDS = {
+    "simulate": ["simulate"],
+    "compare": ["compare", "--manoeuvre", "tipin15"],
+    "replay": ["replay", "harness/manoeuvres/data/town_drive.csv"],
+}
+
+
+@pytest.fixture
+def drive(native, tmp_path):
+    """Starts a command with a plant; its files for others, and its folder for temporary ones."""
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+
+    def start(command, plant):
+        words = [*COMMANDS[command], "--plant", plant, "--fmus", native.parent, "--output", tmp_path / "out"]
+        return subprocess.Popen(
+            [sys.executable, "-m", "driveline", *words],
+            cwd=ROOT,
+            env=os.environ | {"TMPDIR": str(temporary)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    return start, temporary
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
+    start, temporary = drive
+    does = {"IN_DO_STEP": 'puts("hello"); if (time > 0.5) exit(0)'}
+    running = start(command, build_stranger(tmp_path, **does))
+    out, error = running.communicate()
+    assert running.returncode == 1
+    assert "hello" not in out + error
+    (line,) = [line for line in error.splitlines() if "stale" not in line]
+    assert line.startswith(f"driveline {command}: ")
+    assert "plant (stranger.fmu) ended the process that it ran in, with exit code 0, in fmi2DoStep at 0.5" in line
+    assert list(temporary.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_stranger_that_hangs_ends_with_the_command(drive, tmp_path, number):
+    start, temporary = drive
+    running = start("simulate", build_stranger(tmp_path, IN_DO_STEP="for (;;) usleep(1000)"))
+    while not list(temporary.glob("driveline-*/driveline-*/binaries")):
+        time.sleep(0.05)
+        assert running.poll() is None
+    hosts = subprocess.run(["pgrep", "-P", str(running.pid)], capture_output=True, text=True, check=True).stdout.split()
+    running.send_signal(number)
+    running.communicate()
+    assert running.returncode != 0
+    assert list(temporary.iterdir()) == []
+    assert not [host for host in hosts if os.path.exists(f"/proc/{host}")]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_many_runs_name_the_case_of_a_stranger(native, tmp_path, unpacked, workers):
+    plant = build_stranger(tmp_path, IN_DO_STEP="if (time > 0.5) raise(SIGSEGV)")
+
+    def end(v_0):
+        return simulate(MANOEUVRES["launch"], plant, parameters={"plant.v_0": v_0}, folder=native.parent)["time"][-1]
+
+    with pytest.raises(SimulationError, match=r"^case 1\.0: plant \(stranger\.fmu\) crashed \(SIGSEGV\) in fmi2DoStep"):
+        run_many(end, [1.0, 2.0], workers)
+    assert list(unpacked.iterdir()) == []

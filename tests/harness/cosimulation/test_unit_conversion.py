@@ -1,0 +1,62 @@
+"""Units as FMUs write them: by what factor they convert, and which do not."""
+
+from math import pi
+
+import pytest
+
+from driveline.harness.cosimulation.unit_conversion import SI, factor
+
+
+@pytest.mark.parametrize(
+    ("unit", "target_unit", "expected"),
+    [
+        ("N.mm", "N.m", 1e-3),
+        ("kN.m", "N.m", 1e3),
+        ("Nm", "N.m", 1.0),
+        ("N*m", "N.m", 1.0),
+        ("J", "N.m", 1.0),
+        ("rpm", "rad/s", pi / 30.0),
+        ("rev/min", "rad/s", pi / 30.0),
+        ("1/min", "rad/s", pi / 30.0),
+        ("deg/s", "rad/s", pi / 180.0),
+        ("deg", "rad", pi / 180.0),
+        ("rev", "rad", 2.0 * pi),
+        ("km/h", "m/s", 1.0 / 3.6),
+        ("cm/s2", "m/s2", 1e-2),
+        ("m.s-2", "m/s2", 1.0),
+        ("m/s^2", "m/s2", 1.0),
+        ("%", "1", 1e-2),
+        ("N.m/deg", "N.m/rad", 180.0 / pi),
+        ("g.cm2", SI, 1e-7),
+        ("kJ/(kg.K)", SI, 1e3),
+        ("N.m.s/rad", SI, 1.0),
+    ],
+)
+def test_a_unit_converts_by_its_factor(unit, target_unit, expected):
+    assert factor(unit, target_unit) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("unit", ["N.m", "parsec", "whatever it is called"])
+def test_the_same_unit_needs_no_factor_whether_it_is_known_or_not(unit):
+    assert factor(unit, unit) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("unit", "target_unit", "reason"),
+    [
+        ("rad", "N.m", "is in rad, which does not convert into N.m"),
+        # per second may be a frequency or an angular speed, and a stiffness is no torque
+        ("1/s", "rad/s", "does not convert into rad/s"),
+        ("Hz", "rad/s", "does not convert into rad/s"),
+        ("N.m/rad", "N.m", "does not convert into N.m"),
+        ("degC", SI, "is in degC, which has an offset"),
+        ("furlong per fortnight", "m/s", "'furlong per fortnight', which is not a known unit"),
+        ("Umin", "rad/s", "'Umin', which is not a known unit"),
+        ("J/kg.K", SI, "'J/kg.K', which is not a known unit"),
+        ("import", "m", "'import', which is not a known unit"),
+        ("", "m", "'', which is not a known unit"),
+    ],
+)
+def test_what_does_not_convert_is_refused_by_name(unit, target_unit, reason):
+    with pytest.raises(ValueError, match=reason):
+        factor(unit, target_unit)

@@ -1,0 +1,78 @@
+"""docs/derivation.md has every parameter, says the values that the code has, and its equations survive Markdown."""
+
+import re
+from math import atan, degrees, pi, sqrt
+
+import pytest
+
+from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train
+from driveline.models.controller import damping_law, torque_estimator
+from driveline.models.controller.supervision import T_S
+from tests import ROOT
+
+PAGE = (ROOT / "docs" / "derivation.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^\$\$\n(.*?)\n\$\$$", PAGE, re.DOTALL | re.MULTILINE)
+INLINE = re.findall(r"\$([^$\n]+)\$", re.sub(r"^\$\$\n.*?\n\$\$$", "", PAGE, flags=re.DOTALL | re.MULTILINE))
+
+LAW, OBSERVER = damping_law.Parameters(), torque_estimator.Parameters()
+DECLARED = OBSERVER._asdict() | LAW._asdict()
+TRAIN = drive_train(PLANT, MOTOR, CAN)
+CROSSOVER = LAW.k_d / LAW.J_1
+
+
+def test_every_parameter_of_observer_and_law_is_in_the_table() -> None:
+    table = PAGE.partition("## The parameters")[2]
+    rows = re.findall(r"^\| (`.*?) \|", table, re.MULTILINE)
+    assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == DECLARED.keys()
+
+
+def test_values_are_those_of_the_default_car() -> None:
+    documented = re.findall(r"\(`(\w+)`, ([\d.]+)( ms)?|`(\w+)` \(([\d.]+)\)", PAGE)
+    values = {
+        name or other: float(value or plain) * (1e-3 if ms else 1.0) for name, value, ms, other, plain in documented
+    }
+    assert values.pop("wheel_share") == pytest.approx(WEIGHTS.wheel_share, abs=0.005)
+    assert len(values) >= 9
+    assert values == pytest.approx({name: DECLARED[name] for name in values})
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        (r"vehicle, \$M = m r\^2/i\^2\$ of ([\d.]+) kg", TRAIN.M),
+        (r"\$\\sqrt\{C/J_1 \+ C/J_2\}\$ \(([\d.]+) Hz\)", sqrt(PLANT.C / PLANT.J_1 + PLANT.C / PLANT.J_2) / (2 * pi)),
+        (r"delay of \$\\sqrt2 \\tau\$ \(([\d.]+) ms\)", 1e3 * sqrt(2.0) * MOTOR.tau),
+        (r"\(([\d.]+) rad/s\)\nthe model in contact", TRAIN.omega_0),
+        (r"which is ([\d.]+) for \$k_d\$", CROSSOVER / (2.0 * TRAIN.omega_0)),
+        (r"for \$k_d\$ of ([\d.]+) N", LAW.k_d),
+        (r"for the hold, the rest for the motor; ([\d.]+) ms", 1e3 * TRAIN.T_dead),
+        (r"\$T_\\mathrm\{dead\} k_d/J_1\$ \(([\d.]+) rad\)", TRAIN.T_dead * CROSSOVER),
+        (r"which is ([\d.]+) Hz; the margins", (CROSSOVER / 2 + sqrt(CROSSOVER**2 / 4 + TRAIN.omega_0**2)) / (2 * pi)),
+        (r"a phase of ([\d.]+) degrees", degrees(atan(LAW.omega_w / TRAIN.omega_0))),
+        (r"\$k_T/\\omega_w\$ \(([\d.]+) ms\)", 1e3 * LAW.k_T / LAW.omega_w),
+        (r"over the whole gap make ([\d.]+) rad/s", sqrt(2.0 * 100.0 * 2.0 * LAW.phi_B / LAW.J_1)),
+        (r"rad/s, and ([\d.]+) N·m of twist", sqrt(2.0 * 100.0 * 2.0 * LAW.phi_B * LAW.C)),
+        (r"\$\\mathrm\{haste\}/\\omega_\\mathrm\{slow\}\$ \(([\d.]+) ms\)", 1e3 * LAW.haste / LAW.omega_slow),
+        (r"\$h = T_s\$ of ([\d.]+) ms", 1e3 * T_S),
+        (r"the last ([\d.]+) values", torque_estimator.HISTORY),
+    ],
+)
+def test_what_follows_is_computed_from_them(text: str, value: float) -> None:
+    (documented,) = re.findall(text, PAGE)
+    decimals = len(documented.partition(".")[2])
+    assert documented == f"{value:.{decimals}f}"
+
+
+@pytest.mark.parametrize("equation", BLOCKS + INLINE)
+def test_markdown_leaves_the_equations_alone(equation: str) -> None:
+    """It takes a backslash before punctuation away, and lines that begin like a list or a heading for one."""
+    assert not re.search(r"\\[^A-Za-z]", equation)
+    assert not re.search(r"^\s*[-+=#>]", equation, re.MULTILINE)
+    assert equation.count("{") == equation.count("}")
+    assert len(re.findall(r"\\left(?!arrow)", equation)) == len(re.findall(r"\\right(?!arrow)", equation))
+
+
+@pytest.mark.parametrize("equation", INLINE)
+def test_no_underscore_of_an_equation_in_a_line_begins_emphasis(equation: str) -> None:
+    assert not re.search(r"[^\w]_", equation)
+    assert equation == equation.strip()

@@ -1,0 +1,153 @@
+"""The stored gains are those of the design, and the design is what it says of itself."""
+
+from dataclasses import replace
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from driveline.harness.commands.design import designed
+from driveline.harness.design.design import design, literal_observer
+from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
+from driveline.harness.design.kalman import DesignError, motor_speed_gains, process_noise, speed_noise, transition
+from driveline.harness.studies.margins.modes import swing
+from driveline.models.block.declaration import variables
+from driveline.models.damping_controller import BLOCK
+from tests import ROOT
+
+STORED_DIGITS = 1e-5
+"""Six digits are stored."""
+
+SECOND_CAR = {"J_1": 0.09, "J_2": 0.45, "C": 210.0, "phi_B": 0.06, "i": 10.5, "m": 2200.0, "r": 0.34}
+
+
+def test_the_stored_gains_are_those_of_the_design() -> None:
+    stored = ROOT / "models" / "controller" / "gains.toml"
+    assert stored.read_text(encoding="utf-8") == designed(), f"driveline design --output {stored}"
+
+
+def test_the_gains_of_the_paper_s_observer_are_stationary_for_its_model() -> None:
+    """The covariance that they leave does not change over a sample, in which the third state feels no load."""
+    gains = literal_observer()
+    L = np.array([gains[f"L_{state}"] for state in ("omega_1", "omega_2", "phi")])
+    train = drive_train(PLANT, MOTOR, CAN)
+    A, Q = transition(PLANT, 0.0)[:3, :3], process_noise(PLANT, MOTOR, train, WEIGHTS)[:3, :3]
+    P = np.eye(3)
+    for _ in range(4000):
+        P = A @ P @ A.T + Q
+        K = P[:, 0] / (P[0, 0] + speed_noise(MOTOR))
+        P = P - np.outer(K, P[0])
+    assert pytest.approx(L, rel=1e-6) == K
+
+
+def test_the_controller_takes_its_defaults_from_the_design() -> None:
+    defaults = BLOCK.Parameters()._asdict()
+    for name, value in design().items():
+        assert defaults[name] == pytest.approx(value, rel=STORED_DIGITS), name
+
+
+def test_the_model_of_the_design_is_that_of_the_plant() -> None:
+    p = BLOCK.Parameters()
+    assert (p.J_1, p.J_2, p.C, p.phi_B) == (PLANT.J_1, PLANT.J_2, PLANT.C, PLANT.phi_B)
+
+
+def test_a_car_is_the_default_car_where_its_file_says_nothing() -> None:
+    plant, motor, can = records({"J_1": 0.09, "tau": 0.004, "d_max": 0.03, "k_s": 3e4})
+    assert plant == PLANT._replace(J_1=0.09)
+    assert motor == MOTOR._replace(tau=0.004)
+    assert can == CAN._replace(d_max=0.03)
+
+
+@pytest.mark.parametrize("scale", [0.4, 2.5])
+def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float) -> None:
+    """All inertias, stiffness and torques larger by one factor: the same motions, torques larger by that factor."""
+    plant = PLANT._replace(J_1=scale * PLANT.J_1, J_2=scale * PLANT.J_2, C=scale * PLANT.C, m=scale * PLANT.m)
+    gains, default = design(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
+    with_torque = {"k_d", "T_gap", *(f"{L}_T_l" for L in ("L", "Lw", "L_can"))}
+    for name, value in gains.items():
+        assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
+
+
+def test_the_vehicle_takes_its_share_of_the_gear_torque() -> None:
+    """With a wheel share of 1 the estimated wheels move as one with the vehicle."""
+    train = drive_train(PLANT, MOTOR, CAN, replace(WEIGHTS, wheel_share=1.0))
+    assert train.M == pytest.approx(1450.0 * 0.29**2 / 9.0**2)
+    assert (1.0 - train.lambda_v) / PLANT.J_2 == pytest.approx(1.0 / (PLANT.J_2 + train.M))
+    assert train.omega_0 / (2.0 * pi) == pytest.approx(swing(PLANT, MOTOR, design())[0].frequency, rel=1e-6)
+
+
+def test_of_light_wheels_the_vehicle_takes_all_that_the_controller_allows() -> None:
+    physical = PLANT._replace(J_2=1.9 / 81.0)
+    assert drive_train(physical, MOTOR, CAN).lambda_v == 0.99
+    assert swing(physical, MOTOR, design(physical))[1].damping_ratio > 0.4
+
+
+def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_the_phase() -> None:
+    stiff, soft = design(PLANT._replace(C=2.0 * PLANT.C)), design(PLANT._replace(C=0.5 * PLANT.C))
+    default, slow_motor = design(), design(PLANT._replace(C=0.5 * PLANT.C), MOTOR._replace(tau=2.0 * MOTOR.tau))
+    assert stiff["k_d"] == pytest.approx(default["k_d"] * sqrt(2.0), rel=STORED_DIGITS)
+    train = drive_train(PLANT, MOTOR, CAN)
+    assert soft["k_d"] == pytest.approx(WEIGHTS.phase * PLANT.J_1 / train.T_dead, rel=STORED_DIGITS)
+    assert slow_motor["k_d"] == pytest.approx(default["k_d"] * sqrt(0.5), rel=STORED_DIGITS), "the ratio asks for more"
+
+
+def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
+    """Washout, haste and return follow its frequencies, of which one is the motor's with it and one the vehicle's."""
+    stiff, default = design(PLANT._replace(C=4.0 * PLANT.C)), design()
+    assert stiff["omega_w"] == pytest.approx(2.0 * default["omega_w"], rel=STORED_DIGITS)
+    assert stiff["omega_slow"] == pytest.approx(2.0 * default["omega_slow"], rel=STORED_DIGITS)
+    assert stiff["t_return"] == pytest.approx(0.5 * default["t_return"], rel=STORED_DIGITS)
+    assert stiff["t_land"] == pytest.approx(0.5 * default["t_land"], rel=STORED_DIGITS)
+
+
+def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_too_fast() -> None:
+    def begins(T: float, phi_B: float) -> float:
+        return sqrt((WEIGHTS.bounce * T) ** 2 + 4.0 * WEIGHTS.brake * PLANT.C * phi_B * T)
+
+    narrow, wide = 0.5 * PLANT.phi_B, 2.0 * PLANT.phi_B
+    soft, hard = (design(PLANT._replace(phi_B=gap))["T_gap"] for gap in (narrow, wide))
+    assert soft == pytest.approx(WEIGHTS.landing * MOTOR.T_max)
+    assert begins(soft, narrow) < WEIGHTS.impact * MOTOR.T_max
+    assert begins(hard, wide) == pytest.approx(WEIGHTS.impact * MOTOR.T_max)
+    assert hard < WEIGHTS.landing * MOTOR.T_max
+
+
+def test_an_older_message_corrects_less() -> None:
+    late = CAN._replace(d_min=0.02, d_max=0.04)
+    assert design(can=late)["T_age"] == pytest.approx(design()["T_age"] + 0.017)
+    assert 0.0 < design(can=late)["L_can_omega_2"] < design()["L_can_omega_2"]
+
+
+def test_more_damping_is_asked_for_by_a_larger_damping_ratio() -> None:
+    ratios = [0.5, 0.6, 0.7]
+    found = [swing(PLANT, MOTOR, design(weights=replace(WEIGHTS, damping_ratio=ratio)))[1] for ratio in ratios]
+    assert [mode.damping_ratio for mode in found] == sorted(mode.damping_ratio for mode in found)
+
+
+def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
+    A = transition(PLANT, 0.9)
+    assert A[3].tolist() == [0.0, 0.0, 0.0, 1.0]
+    assert np.all(np.linalg.eigvalsh(process_noise(PLANT, MOTOR, drive_train(PLANT, MOTOR, CAN), WEIGHTS)) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("car", "message"),
+    [
+        ({"tau": 0.1}, r"T_pred would be 0\.0333\d; the controller takes 0 to 0\.02 s"),
+        ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.064 s"),
+        ({"J_1": 2.0}, r"k_d would be .*; the controller takes 0 to 20 N\.m\.s/rad"),
+        ({"sigma_omega": 0.0, "q_omega": 0.0}, "a motor speed without error leaves nothing to estimate"),
+    ],
+)
+def test_what_the_controller_cannot_be_set_to_is_said(car: dict[str, float], message: str) -> None:
+    with pytest.raises(DesignError, match=message):
+        design(*records(car))
+
+
+def test_a_filter_that_does_not_exist_shows_its_matrices() -> None:
+    with pytest.raises(DesignError, match=r"(?s)no stationary Kalman filter.*A =\n\[\[2\."):
+        motor_speed_gains(2.0 * np.eye(4), np.zeros((4, 4)), 1.0)
+
+
+def test_every_designed_parameter_is_one_of_the_controller() -> None:
+    assert design().keys() <= {variable.name for variable in variables(BLOCK.Parameters)}

@@ -1,0 +1,74 @@
+"""Gains for a car that has become known are softened until they are no worse than those before."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from driveline.harness.design import redesign
+from driveline.harness.design.design import design
+from driveline.harness.design.design_weights import WEIGHTS, records
+from driveline.harness.design.redesign import MANOEUVRES, MARGIN, SOFTER, SOFTEST, softened, worth
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.simulation.simulate import simulate
+
+CAR = {"C": 90.0}
+
+
+@pytest.fixture
+def overshoot(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
+    """Before, and by plant for each rad/s of the washout; twice that in one manoeuvre."""
+    of = {"before": 0.1, **dict.fromkeys(PLANTS, 0.0)}
+
+    def pretended(
+        plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[str, Any]
+    ) -> tuple[float, float]:
+        assert car == CAR
+        return 0.1, (of["before"] if "omega_w" not in assumed else of[plant] * assumed["omega_w"]) * (
+            2.0 if manoeuvre == MANOEUVRES[0] else 1.0
+        )
+
+    monkeypatch.setattr(redesign, "worth", pretended)
+    return of
+
+
+OMEGA_W = design(*records(CAR))["omega_w"]
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize(("times", "steps"), [(0.999, 0), (1.001, 1), (0.999 / SOFTER, 1), (1.001 / SOFTER, 2)])
+def test_the_washout_is_lowered_until_the_overshoot_is_less_on_both_plants(
+    overshoot: dict[str, float], plant: str, times: float, steps: int
+) -> None:
+    overshoot[plant] = times * MARGIN * overshoot["before"] / OMEGA_W
+    weights = softened(CAR, {})
+    assert weights.washout == pytest.approx(SOFTER**steps * WEIGHTS.washout)
+    assert {**vars(weights), "washout": 0.0} == {**vars(WEIGHTS), "washout": 0.0}
+
+
+def test_it_is_not_lowered_without_end(overshoot: dict[str, float]) -> None:
+    overshoot[PLANTS[0]] = 100.0
+    least = softened(CAR, {}).washout / WEIGHTS.washout
+    assert SOFTEST <= least < SOFTEST / SOFTER
+
+
+def test_what_a_controller_is_worth_depends_on_the_car_and_on_what_it_is_told(
+    both_built: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = []
+
+    def quick(*args: Any, **options: Any) -> Any:
+        given.append(options["parameters"])
+        return simulate(*args, **options, folder=both_built)
+
+    monkeypatch.setattr("driveline.harness.design.design_trials.simulate", quick)
+    car, gains = {"C": 90.0}, design(*records({"C": 90.0}))
+    settling, overshoot = worth("TwoMassDriveline", "tipin15", car, {})
+    assert worth("TwoMassDriveline", "tipin15", car, {**car, **gains}) != (settling, overshoot)
+    assert [parameters["plant.C"] for parameters in given] == [90.0, 90.0]
+    assert given[1]["controller.C"] == 90.0
+    assert given[1]["controller.k_d"] == gains["k_d"]
+    assert given[0].get("controller.C") != 90.0
+    assert 0.02 < settling < 0.5
+    assert 0.0 <= overshoot < 0.5

@@ -1,0 +1,229 @@
+"""The compliance checks: nothing to find in our FMUs, every planted fault found."""
+
+import os
+import re
+import tempfile
+from xml.etree import ElementTree
+from zipfile import ZipFile
+
+import pytest
+
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.cosimulation.limits import Limits
+from driveline.harness.exchange.compliance.behaviour_rules import BEHAVIOUR_RULES
+from driveline.harness.exchange.compliance.check import RULES, check
+from driveline.harness.exchange.compliance.junit import junit
+from driveline.harness.exchange.compliance.rule import Rule, Severity
+from driveline.harness.loop.places import PLANTS
+from tests import ROOT
+from tests.foreign import RELAY, build_relay, tampered
+from tests.foreign.archives import HOSTILE
+from tests.foreign.stranger import build_stranger
+
+PLANT = f"{PLANTS[0]}.fmu"
+
+
+def findings(path):
+    return [problem for verdict in check(path) for problem in verdict.problems]
+
+
+def file_findings(path):
+    """Those that need no run of the FMU."""
+    verdicts = check(path, ignored=[rule.name for rule in BEHAVIOUR_RULES])
+    return "\n".join(problem for verdict in verdicts for problem in verdict.problems)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [PLANT, "ValidationVehicle.fmu", "MotorTorqueLoop.fmu", "WheelSpeedCan.fmu", "DampingController.fmu"],
+)
+def test_our_fmus_have_no_findings(built, name):
+    assert findings(built / name) == []
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement", "finding"),
+    [
+        (r' unit="m/s2"', "", "a_body has no unit"),
+        (r'<Unknown index="\d+" dependencies="[^"]*"', lambda m: m[0].split(" dep")[0], "its dependencies"),
+        (r"<InitialUnknowns>.*?</InitialUnknowns>", "", "InitialUnknowns"),
+        (r' description="speed of the motor"', "", "omega_1 has no description"),
+        (r'min="-2000.0" ', 'min="1.0" ', r"T_mot starts at .* out of \[1\.0"),
+        (r'name="T_brake"', 'name="T_mot"', "not unique"),
+        (r"<DefaultExperiment[^>]*>", "", "DefaultExperiment"),
+        (r' fmiVersion="2.0"', ' fmiVersion="1.5"', "cannot be read|FMI 1.5"),
+    ],
+)
+def test_a_fault_in_the_description_is_found(built, tmp_path, pattern, replacement, finding):
+    def change(xml):
+        return re.sub(pattern, replacement, xml, count=1, flags=re.DOTALL)
+
+    faulty = tampered(built / PLANT, tmp_path / "faulty.fmu", change)
+    assert re.search(finding, file_findings(faulty))
+
+
+@pytest.mark.parametrize(
+    ("path", "finding"),
+    [
+        ("resources\\model.txt", "backslash"),
+        ("resources/__pycache__/model.pyc", "leftover"),
+        ("../escape.txt", "leaves the folder"),
+    ],
+)
+def test_a_fault_in_the_archive_is_found(built, tmp_path, path, finding):
+    faulty = tampered(built / PLANT, tmp_path / "faulty.fmu", str, **{path: b"x"})
+    assert finding in file_findings(faulty)
+
+
+def test_missing_pages_are_found(built, tmp_path):
+    with ZipFile(built / PLANT) as source, ZipFile(tmp_path / "bare.fmu", "w") as target:
+        for name in source.namelist():
+            if not name.startswith("documentation/") and name != "model.png":
+                target.writestr(name, source.read(name))
+    found = file_findings(tmp_path / "bare.fmu")
+    assert "documentation/index.html is missing" in found
+    assert "model.png is missing" in found
+
+
+FAULTS = {
+    "not_finite": ("t = current_time + step_size", "t = float('nan')", "t is nan"),
+    "shared": (
+        "self.t = current_time + step_size",
+        "self.t = Relay.total = getattr(Relay, 'total', 0.0) + step_size",
+        "beside another instance",
+    ),
+    "crash": ("self._pass_on()\n        self.t", "import os; os._exit(3)\n        self.t", "exit code 3"),
+    "refusal": ("step_size):", "step_size):\n        assert step_size < 5e-3", "answered fmi2DoStep"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_in_the_behaviour_is_found_and_leaves_nothing_behind(tmp_path, fault, monkeypatch):
+    old, new, finding = FAULTS[fault]
+    script = tmp_path / "relay.py"
+    text = RELAY.read_text()
+    assert old in text
+    script.write_text(text.replace(old, new))
+    relay = build_relay(tmp_path, script)
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    assert finding in "\n".join(findings(relay))
+    assert list(temporary.iterdir()) == []
+
+
+def test_a_binary_that_is_not_there_is_found(tmp_path):
+    faulty = tampered(
+        build_relay(tmp_path),
+        tmp_path / "faulty.fmu",
+        lambda xml: xml.replace('modelIdentifier="Relay"', 'modelIdentifier="Other"'),
+    )
+    assert "cannot be instantiated" in "\n".join(findings(faulty))
+
+
+@pytest.mark.parametrize("stop", ["1e300", "-1"])
+def test_any_default_experiment_is_tried(tmp_path, stop):
+    def change(xml):
+        return xml.replace('stopTime="0.2" stepSize="0.001"', f'stopTime="{stop}" stepSize="1e-20"')
+
+    assert "runs" not in broken(tampered(build_stranger(tmp_path), tmp_path / "odd.fmu", change), quick=True)
+
+
+def test_whatever_goes_wrong_in_a_rule_is_a_finding(tmp_path, monkeypatch):
+    rule = Rule("odd", Severity.ERROR, "an error that nobody foresees", os.listdir)
+    monkeypatch.setattr("driveline.harness.exchange.compliance.check.QUICK_RULES", (rule,))
+    severity, text = broken(build_stranger(tmp_path), quick=True)["odd"]
+    assert (severity, text.partition(",")[0]) == ("error", "cannot be tried: TypeError: listdir: path should be string")
+
+
+def test_what_cannot_be_read_gets_one_finding(tmp_path):
+    path = tmp_path / "text.fmu"
+    path.write_text("no archive")
+    assert len(findings(path)) == 1
+    with pytest.raises(DrivelineError, match="there is no FMU"):
+        findings(tmp_path / "none.fmu")
+
+
+def broken(path, **options):
+    """Rule, severity and what was found, of each rule that is broken."""
+    return {v.rule: (v.severity, "\n".join(v.problems)) for v in check(path, **options) if v.problems}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_a_hostile_archive_is_an_error_of_its_own_rule(tmp_path, unpacked, kind):
+    spoil, rule, message = HOSTILE[kind]
+    path = build_stranger(tmp_path)
+    spoil(path)
+    severity, text = broken(path, quick=True)[rule]
+    assert severity == "error"
+    assert re.search(message, text)
+    assert list(unpacked.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("does", "rules", "finding"),
+    [
+        ({"IN_DO_STEP": "exit(0)"}, {"runs"}, "exit code 0, in fmi2DoStep at 0 s"),
+        ({"IN_INSTANTIATE": "exit(0)"}, {"runs"}, "exit code 0, in fmi2Instantiate"),
+        ({"IN_DO_STEP": "raise(SIGSEGV)"}, {"runs"}, r"crashed \(SIGSEGV\) in fmi2DoStep"),
+        ({"IN_DO_STEP": "for (;;) {}"}, {"runs"}, r"did not return from fmi2DoStep at 0 s within 0\.5 s"),
+        ({"IN_RESET": "raise(SIGSEGV)"}, {"reset"}, r"crashed \(SIGSEGV\) in fmi2Reset"),
+        (
+            {"IN_DO_STEP": "return -1"},
+            {"runs", "steps", "reset", "instances"},
+            "answered fmi2DoStep with the status -1",
+        ),
+        ({"IN_GET_REAL": "values[0] = NAN"}, {"runs", "steps"}, "is nan"),
+    ],
+)
+def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, unpacked, does, rules, finding):
+    path = build_stranger(tmp_path, **does)
+    errors = {
+        name: text for name, (severity, text) in broken(path, limits=Limits(call=0.5)).items() if severity == "error"
+    }
+    assert errors.keys() == rules
+    assert all(re.search(finding, text) for text in errors.values())
+    assert list(unpacked.iterdir()) == []
+
+
+def test_many_short_calls_are_not_one_that_hangs(tmp_path):
+    def change(xml):
+        return xml.replace('stopTime="0.2"', 'stopTime="0.02"')
+
+    path = tampered(build_stranger(tmp_path, IN_GET_REAL="usleep(30000)"), tmp_path / "slow.fmu", change)
+    assert "runs" not in broken(path, quick=True, limits=Limits(call=0.3))
+
+
+def test_quick_makes_the_first_steps_alone(tmp_path):
+    later = build_stranger(tmp_path, IN_DO_STEP="if (time > 0.15) exit(0)", IN_RESET="exit(0)")
+    assert not {"runs", "reset"} & broken(later, quick=True).keys()
+    assert "runs" in broken(later)
+
+
+def test_instances_that_share_memory_are_found(tmp_path):
+    """They come from one file: an FMU is unpacked once for all that is tried."""
+    path = build_stranger(tmp_path, IN_GET_REAL="values[5] = now")
+    assert "beside another instance, but was 0.0, at step 0" in broken(path)["instances"][1]
+
+
+def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
+    path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
+    names = {rule.name for rule in BEHAVIOUR_RULES} - {"runs", "reset"}
+    verdicts = list(check(path, ignored=["reset"]))
+    assert {verdict.rule for verdict in verdicts if not verdict.tried} == names
+    (suite,) = ElementTree.fromstring(junit({"stranger.fmu": verdicts}, ["error"]))
+    assert (suite.get("skipped"), suite.get("failures")) == ("3", "1")
+    assert len(suite.findall("testcase/skipped")) == 3
+
+
+def test_an_ignored_rule_is_not_tried(tmp_path):
+    path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
+    severities = {rule: severity for rule, (severity, _) in broken(path).items()}
+    assert severities == {"archive-pages": "note", "dependencies": "warning", "origin": "note", "runs": "error"}
+    assert "runs" not in broken(path, ignored=["runs"])
+
+
+def test_the_page_lists_the_rules():
+    page = (ROOT / "docs" / "check.md").read_text()
+    rows = [line for line in page.splitlines() if line.startswith("| `")]
+    assert rows == [f"| `{rule.name}` | {rule.severity.value} | {rule.title} |" for rule in RULES]

@@ -1,0 +1,76 @@
+"""Other tools open the package and get what our master gets, which is given neither the package nor its source."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchmarks.ssp_hosts import PRESENT, run_in
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.master import Loop
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.exchange.ssp.loop_with_source import points, with_source
+from driveline.harness.loop.places import PLANTS, STEP_SIZE, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate, start
+
+STEPS = 1200
+TOLERANCE = 1e-9
+"""Of the largest value of a signal; what is smaller than 1 in its unit counts as 1."""
+
+FED_ALREADY = {"ecos": {"motor.omega_1_meas"}}
+"""What a tool shows as it follows from inputs that it has just handed on; what it hands on itself is as everywhere."""
+
+QUIET = {"motor.sigma_T": 0.0, "motor.sigma_omega": 0.0}
+
+
+def host(name: str) -> Any:
+    return pytest.param(name, marks=pytest.mark.skipif(not PRESENT[name], reason=f"{name} is not installed"))
+
+
+def compare(theirs: dict[str, np.ndarray], ours: np.ndarray, expected: set[str]) -> None:
+    """Fails unless all signals agree at the ends of the first steps; NaN is a row that is not there."""
+    common = theirs.keys() & set(ours.dtype.names or ())
+    assert expected <= common
+    for name in common:
+        values, right = theirs[name][:STEPS].astype(float), ours[name][1 : STEPS + 1].astype(float)
+        there = ~np.isnan(values)
+        assert np.mean(there) > 0.99, name
+        error = np.abs(values - right)[there].max()
+        assert error <= TOLERANCE * max(1.0, np.abs(right).max()), f"{name}: {error:g}"
+
+
+OUTPUTS = {"plant.T_gear", "plant.omega_1", "motor.T_mot", "controller.T_ref", "controller.T_gear_hat"}
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize("name", [host("libcosim"), host("ecos"), host("MasterSim")])
+def test_tools_that_hand_on_after_the_step_get_what_our_master_gets_under_jacobi(packaged, fmus, name, plant) -> None:
+    ours = simulate(MANOEUVRES["tipin15"], plant=plant, scheme=Scheme.JACOBI, folder=fmus, build="native")
+    theirs = run_in(name, packaged(), plant, STEPS)
+    compare({column: theirs[column] for column in theirs.keys() - FED_ALREADY.get(name, set())}, ours, OUTPUTS)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_fmpy_gets_that_too_where_the_zeros_are_right_that_it_begins_with(packaged, fmus, plant) -> None:
+    ours = simulate(MANOEUVRES["launch"], plant, True, QUIET, scheme=Scheme.JACOBI, folder=fmus)
+    quiet = [option for name, value in QUIET.items() for option in ("--set", f"{name}={value}")]
+    compare(run_in("FMPy", packaged("--manoeuvre", "launch", *quiet), plant, STEPS), ours, OUTPUTS)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_fmpy_gets_what_our_master_would_get_if_all_inputs_began_with_zero(packaged, fmus, plant, monkeypatch) -> None:
+    def zeros(self, wires, table) -> None:
+        data, row, known = table.view(np.uint8).data, wires.row, wires.layout.known
+        row[:] = bytes(len(row))
+        row[:known] = data[:known]
+
+    monkeypatch.setattr(Loop, "_propagate", zeros)
+    manoeuvre = MANOEUVRES["tipin15"]
+    system = with_source(loop(plant, fmus, "native"), fmus / "native" / "Manoeuvre.fmu")
+    given = start(manoeuvre) | points(manoeuvre, fit(system))
+    duration = STEPS * STEP_SIZE
+    ours = run(system, Experiment(duration, STEP_SIZE, {"controller.enable": True}, given, Scheme.JACOBI))
+    compare(run_in("FMPy", packaged(), plant, STEPS), ours, OUTPUTS)

@@ -1,0 +1,259 @@
+"""The package as a stranger finds it: the standard's schemas, what is in it, and what it says of the loop."""
+
+import tomllib
+import zipfile
+from itertools import pairwise
+from pathlib import Path
+
+import fmpy.ssp
+import numpy as np
+import pytest
+from fmpy.ssp.ssd import read_ssd, read_ssv
+from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
+
+from driveline.harness.commands.cli import main
+from driveline.harness.exchange.ssp.layout import BOXES, CANVAS, PLACES
+from driveline.harness.exchange.ssp.loop_with_source import SIGNALS, SOURCE
+from driveline.harness.loop.places import CONNECTIONS, PLANTS
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from tests import ROOT
+from tests.foreign import build_car
+
+SCHEMAS = {
+    ".ssd": "SystemStructureDescription.xsd",
+    ".ssv": "SystemStructureParameterValues.xsd",
+    ".ssb": "SystemStructureSignalDictionary.xsd",
+}
+
+NS = {
+    "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
+    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+    "ssb": "http://ssp-standard.org/SSP1/SystemStructureSignalDictionary",
+}
+
+SSDS = ("SystemStructure.ssd", "ValidationVehicle.ssd")
+
+
+def parsed(ssp: Path, name: str) -> etree._Element:
+    with zipfile.ZipFile(ssp) as archive:
+        return etree.fromstring(archive.read(name))
+
+
+def values(ssp: Path, name: str) -> dict[str, float]:
+    """The numbers of a parameter set."""
+    return {parameter.name: float(parameter.value) for parameter in read_ssv(ssp, name).parameters}
+
+
+def ends(connection: etree._Element) -> list[str]:
+    return [f"{connection.get(f'{end}Element')}.{connection.get(f'{end}Connector')}" for end in ("start", "end")]
+
+
+def test_every_document_is_valid_by_the_schemas_of_the_standard(packaged) -> None:
+    folder = Path(fmpy.ssp.__file__).parent / "schema"
+    with zipfile.ZipFile(packaged()) as archive:
+        documents = [name for name in archive.namelist() if Path(name).suffix in SCHEMAS]
+        assert len(documents) == 2 + 1 + 6 + 2
+        for name in documents:
+            schema = etree.XMLSchema(file=folder / SCHEMAS[Path(name).suffix])
+            schema.assertValid(etree.fromstring(archive.read(name)))
+
+
+def test_an_old_unpacker_can_read_the_archive(packaged) -> None:
+    with zipfile.ZipFile(packaged()) as archive:
+        assert archive.testzip() is None
+        assert max(entry.extract_version for entry in archive.infolist()) <= 20
+        assert all(name.isascii() and not name.startswith("/") for name in archive.namelist())
+
+
+def test_the_same_loop_is_the_same_bytes(packaged, fmus, tmp_path) -> None:
+    assert main(["ssp", "--fmus", str(fmus), "--output", str(tmp_path), "--quiet"]) == 0
+    assert (tmp_path / "driveline.ssp").read_bytes() == packaged().read_bytes()
+
+
+def test_each_plant_is_a_variant_and_the_first_one_the_default(packaged) -> None:
+    names = [parsed(packaged(), name).get("name") for name in SSDS]
+    assert names == list(PLANTS)
+    turned = packaged(*(option for plant in reversed(PLANTS) for option in ("--plant", plant)))
+    assert parsed(turned, "SystemStructure.ssd").get("name") == "ValidationVehicle"
+    assert parsed(turned, "TwoMassDriveline.ssd").get("name") == "TwoMassDriveline"
+
+
+@pytest.mark.parametrize("name", SSDS)
+def test_the_connections_are_those_of_the_loop_and_of_the_source(packaged, name) -> None:
+    found = {tuple(ends(connection)) for connection in parsed(packaged(), name).iterfind(".//ssd:Connection", NS)}
+    fed = {"T_driver": "controller.T_driver", "T_brake": "plant.T_brake", "slope": "plant.slope"}
+    sources = {(f"{SOURCE}.{signal}", fed[signal]) for signal in SIGNALS}
+    assert found == sources | {(connection.source, connection.target) for connection in CONNECTIONS}
+
+
+@pytest.mark.parametrize("name", SSDS)
+def test_it_keeps_to_what_the_tools_know_of_the_standard(packaged, name) -> None:
+    root = parsed(packaged(), name)
+    assert root.find("ssd:System/ssd:Connectors", NS) is None, "libcosim: connections are between components"
+    assert {child.tag for child in root.find("ssd:System/ssd:Elements", NS)} == {f"{{{NS['ssd']}}}Component"}
+    assert root.find(".//ssc:Enumeration", NS) is None, "libcosim stops at one"
+    fed = {ends(connection)[1] for connection in root.iterfind(".//ssd:Connection", NS)}
+    for component in root.iterfind(".//ssd:Component", NS):
+        assert component.get("type"), "OMSimulator has no default"
+        for connector in component.iterfind(".//ssd:Connector[@kind='input']", NS):
+            assert f"{component.get('name')}.{connector.get('name')}" in fed, "FMPy wants each input connected"
+
+
+@pytest.mark.parametrize("name", SSDS)
+def test_fmpy_reads_its_connectors_units_parameters_and_signals(packaged, name, tmp_path) -> None:
+    copy = tmp_path / "copy.ssp"
+    with zipfile.ZipFile(packaged()) as source, zipfile.ZipFile(copy, "w") as target:
+        for entry in source.namelist():
+            content = source.read(name if entry == "SystemStructure.ssd" else entry)
+            target.writestr(entry, content)
+    ssd = read_ssd(copy)
+    assert ssd.system is not None
+    assert {component.name for component in ssd.system.elements} == BOXES.keys()
+    signals = {entry.name: entry.unit for entry in ssd.system.signalDictionaries[0].entries}
+    assert signals["plant.T_gear"] == "N.m"
+    assert signals["motor.omega_1_meas"] == "rad/s"
+    assert all(component.parameterBindings[0].parameterValues[0].parameters for component in ssd.system.elements)
+
+
+def test_every_unit_is_defined_in_units_of_the_si(packaged) -> None:
+    with zipfile.ZipFile(packaged()) as archive:
+        documents = [name for name in archive.namelist() if Path(name).suffix in SCHEMAS]
+    for name in documents:
+        root = parsed(packaged(), name)
+        units = {unit.get("name"): dict(unit[0].attrib) for unit in root.iterfind(".//ssc:Unit", NS)}
+        used = {element.get("unit") for element in root.iter() if element.get("unit")}
+        assert used == units.keys(), name
+    assert units["N.m"] == {"kg": "1", "m": "2", "s": "-2"}
+    assert units["rad/s"] == {"s": "-1", "rad": "1"}
+
+
+def test_a_vehicle_file_its_gains_and_what_is_set_are_the_parameter_sets(packaged, tmp_path) -> None:
+    van, gains = ROOT / "examples" / "cars" / "van.toml", tmp_path / "gains.toml"
+    gains.write_text("k_d = 1.25\n")
+    ssp = packaged("--vehicle", str(van), "--parameters", str(gains), "--set", "motor.seed=7")
+    car = tomllib.loads(van.read_text())
+    for plant in PLANTS:
+        found = values(ssp, f"resources/plant_{plant}.ssv")
+        assert {name: found[name] for name in car.keys() & found.keys()} == {
+            name: car[name] for name in car.keys() & found.keys()
+        }
+        assert car.keys() & found.keys()
+        every = values(ssp, f"resources/{plant}.ssv")
+        assert every["controller.k_d"] == 1.25
+        assert every["motor.seed"] == 7
+        assert {name: every[f"plant.{name}"] for name in found} == found
+
+
+@pytest.mark.parametrize("name", [m for m in MANOEUVRES if m not in ("creep", "prbs", "prbs15")])
+def test_the_points_of_the_source_are_the_manoeuvre(packaged, name) -> None:
+    manoeuvre = MANOEUVRES[name]
+    found = values(packaged("--manoeuvre", name), "resources/manoeuvre_Manoeuvre.ssv")
+    count = sum(found[each] < 1e6 for each in found if each.startswith("time_"))
+    times = [found[f"time_{k}"] for k in range(1, count + 1)]
+    assert times == sorted(times)
+    instants = np.arange(round(manoeuvre.duration / 1e-3)) * 1e-3
+    for signal in SIGNALS:
+        corners = [found[f"{signal}_{k}"] for k in range(1, count + 1)]
+        drawn = np.interp(np.round(instants, 9), times, corners)
+        np.testing.assert_allclose(drawn, getattr(manoeuvre, signal)(instants), atol=1e-10, err_msg=signal)
+
+
+def test_it_starts_and_ends_as_the_manoeuvre_does(packaged) -> None:
+    plant = values(packaged("--manoeuvre", "tipin50"), "resources/plant_TwoMassDriveline.ssv")
+    assert (plant["v_0"], plant["T_0"]) == (MANOEUVRES["tipin50"].v_0, -12.0)
+    experiment = parsed(packaged("--manoeuvre", "drive"), SSDS[0]).find("ssd:DefaultExperiment", NS)
+    assert float(experiment.get("stopTime")) == MANOEUVRES["drive"].duration
+
+
+def test_in_the_picture_no_block_stands_on_another_and_lines_run_along_the_axes(packaged) -> None:
+    boxes = list(BOXES.values())
+    for k, a in enumerate(boxes):
+        assert CANVAS.x1 <= a.x1 < a.x2 <= CANVAS.x2
+        assert CANVAS.y1 <= a.y1 < a.y2 <= CANVAS.y2
+        assert all(a.x2 < b.x1 or b.x2 < a.x1 or a.y2 < b.y1 or b.y2 < a.y1 for b in boxes[k + 1 :])
+    for connection in parsed(packaged(), SSDS[0]).iterfind(".//ssd:Connection", NS):
+        start, end = ends(connection)
+        line = connection.find("ssd:ConnectionGeometry", NS)
+        between = [] if line is None else zip(*(map(float, line.get(f"points{a}").split()) for a in "XY"), strict=True)
+        points = [at(start), *between, at(end)]
+        for (x1, y1), (x2, y2) in pairwise(points):
+            assert x1 == pytest.approx(x2) or y1 == pytest.approx(y2), (start, end)
+
+
+def at(name: str) -> tuple[float, float]:
+    box, place = BOXES[name.partition(".")[0]], PLACES[name]
+    return box.x1 + place.x * (box.x2 - box.x1), box.y1 + place.y * (box.y2 - box.y1)
+
+
+def test_a_plant_of_somebody_else_has_its_own_names_there(fmus, packaged, tmp_path) -> None:
+    car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0))
+    ssp = packaged("--plant", str(car), "--map", "plant.T_gear=Shaft.tau")
+    plant = next(c for c in parsed(ssp, SSDS[0]).iterfind(".//ssd:Component", NS) if c.get("name") == "plant")
+    assert plant.find(".//ssd:Connector[@name='Shaft.tau']", NS) is not None
+    assert plant.get("source") == f"resources/{car.name}"
+
+
+def refused(fmus, folder: Path, capsys, *options: str) -> str:
+    assert main(["ssp", "--fmus", str(fmus), "--output", str(folder), *options]) == 2
+    assert not list(folder.rglob("*.ssp"))
+    return capsys.readouterr().err
+
+
+def test_units_that_no_tool_would_convert_are_refused(fmus, tmp_path, capsys) -> None:
+    car = build_car(tmp_path / "car", v=("v", "km/h", 1 / 3.6))
+    message = refused(fmus, tmp_path / "out", capsys, "--plant", str(car), "--map", "plant.v=v")
+    assert "plant.v: Theirs.fmu has it in another unit" in message
+    assert "it must be in m/s" in message
+
+
+@pytest.mark.parametrize("name", ["creep", "prbs"])
+def test_a_demand_that_is_not_made_of_straight_lines_is_refused(fmus, tmp_path, capsys, name) -> None:
+    message = refused(fmus, tmp_path / "out", capsys, "--manoeuvre", name)
+    assert f"{name}: T_driver is not made of straight lines" in message
+    assert message.count("\n") == 1
+
+
+@pytest.mark.parametrize(("count", "fits"), [(32, True), (33, False)])
+def test_more_points_than_the_source_has_are_refused(fmus, tmp_path, capsys, count, fits) -> None:
+    table = tmp_path / "zigzag.csv"
+    rows = [f"{0.1 * k:.1f},{k % 2}" for k in range(count)]
+    table.write_text("\n".join(["time [s],T_driver [N.m]", *rows]) + "\n")
+    options = ["--manoeuvre", str(table)]
+    if fits:
+        assert main(["ssp", "--fmus", str(fmus), "--output", str(tmp_path / "out"), *options]) == 0
+    else:
+        message = refused(fmus, tmp_path / "out", capsys, *options)
+        assert "zigzag: its lines have 33 points; other tools are given at most 32" in message
+
+
+def test_a_package_of_another_loop_stays_without_replace(fmus, tmp_path, capsys) -> None:
+    options = ["ssp", "--fmus", str(fmus), "--output", str(tmp_path), "--quiet"]
+    assert main(options) == 0
+    before = (tmp_path / "driveline.ssp").read_bytes()
+    assert main([*options, "--manoeuvre", "launch"]) == 2
+    assert "is of another run (" in capsys.readouterr().err
+    assert (tmp_path / "driveline.ssp").read_bytes() == before
+    assert main([*options, "--manoeuvre", "launch", "--replace"]) == 0
+    assert (tmp_path / "driveline.ssp").read_bytes() != before
+    assert {path.name for path in tmp_path.iterdir()} == {"driveline.ssp", "driveline.json"}
+
+
+def test_the_project_of_mastersim_names_what_is_in_the_package(packaged) -> None:
+    with zipfile.ZipFile(packaged()) as archive:
+        projects = [name for name in archive.namelist() if name.endswith(".msim")]
+        assert [Path(name).stem for name in projects] == list(PLANTS)
+        for name in projects:
+            text = archive.read(name).decode("ascii")
+            fmus = [line.split('"')[1] for line in text.splitlines() if line.startswith("simulator")]
+            assert {f"../../{entry}" for entry in archive.namelist()} >= set(fmus)
+            assert len(fmus) == len(BOXES)
+            assert f"parameter plant.v_0 {MANOEUVRES['tipin15'].v_0!r}\n" in text
+
+
+def test_another_default_variant_is_another_package(packaged, fmus, capsys) -> None:
+    folder = packaged("--plant", PLANTS[0], "--plant", PLANTS[1]).parent
+    same = ["ssp", "--fmus", str(fmus), "--output", str(folder), "--quiet"]
+    assert main([*same, "--plant", PLANTS[0], "--plant", PLANTS[1]]) == 0
+    assert main([*same, "--plant", PLANTS[1], "--plant", PLANTS[0]]) == 2
+    assert "is of another run (plants: " in capsys.readouterr().err

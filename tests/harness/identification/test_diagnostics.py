@@ -1,0 +1,339 @@
+"""Diagnostics name what is likely to be wrong, or is not determined; and only that."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from driveline.harness.identification.diagnostics import (
+    CLOSE,
+    COLOURED,
+    CROWD,
+    DEMAND_LATE,
+    FLANK,
+    LAG_OFF,
+    LIKELY,
+    LONELY,
+    OUTLIER,
+    TRIAL,
+    ZERO,
+    diagnose_demand,
+    diagnose_excitation,
+    diagnose_innovations,
+    diagnose_load_delay,
+    diagnose_load_gain,
+    diagnose_motor_gain,
+    diagnose_offsets,
+    diagnose_outliers,
+    diagnose_spectrum,
+    diagnose_tyre,
+)
+from driveline.harness.identification.drive_train_response import Tyre
+from driveline.harness.identification.identify import backward_elimination
+from driveline.harness.identification.maximum_likelihood import maximise
+from driveline.harness.identification.model_inputs import Drive
+from driveline.harness.identification.prediction import Filtered, Predictor, filtered
+from driveline.harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
+from tests.harness.identification.simulated import NOISE, T_S, P, simulated
+
+FREE = ("J_2", "C", "phi_B", "g_L")
+SHARP = {"J_2": 1e-4, "C": 1e-2, "phi_B": 1e-4}
+
+
+def twist(drive: Drive) -> np.ndarray:
+    return filtered(drive, P, NOISE).states[:, 2]
+
+
+CAR = P._replace(g_T=1.0, d=0.0)
+TRUE = P._replace(g_T=1.0, g_L=1.0)
+
+
+def shifted(drive: Drive, samples: int) -> Drive:
+    """Its load torque so many samples late."""
+    return replace(drive, T_load=np.roll(drive.T_load, samples, axis=0))
+
+
+def looked_for(drive: Drive) -> list[str]:
+    return diagnose_load_delay(drive, maximise(Predictor(FREE), drive, P, NOISE, most=12), NOISE)
+
+
+def test_nothing_is_said_of_a_drive_that_is_as_it_should_be() -> None:
+    drive = simulated(seed=6)
+    assert looked_for(drive) == []
+    assert diagnose_excitation(twist(drive), P, SHARP, FREE) == []
+
+
+@pytest.mark.parametrize(("samples", "word"), [(2, "late"), (-2, "early")])
+def test_a_load_torque_that_is_4_ms_late_or_early_is_named(samples: int, word: str) -> None:
+    assert looked_for(shifted(simulated(seed=6), samples)) == [
+        f"the load torque looks {word}: shifted by 4 ms the recording is explained better"
+    ]
+
+
+def test_it_is_named_from_a_gain_in_likelihood_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = shifted(simulated(seed=6), 2)
+    late = maximise(Predictor(FREE), drive, P, NOISE, most=12)
+    right = maximise(Predictor(FREE), shifted(drive, -2), late.p, NOISE, most=TRIAL)
+    gain = late.gain(right)
+    assert gain > LIKELY
+    for threshold, named in ((0.999 * gain, True), (1.001 * gain, False)):
+        monkeypatch.setattr("driveline.harness.identification.diagnostics.LIKELY", threshold)
+        assert bool(diagnose_load_delay(drive, late, NOISE)) == named
+
+
+@pytest.mark.parametrize("name", ["LEFT", "SCATTER"])
+def test_a_shift_that_leaves_most_of_the_innovations_is_not_spoken_of(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another fault is made a little smaller by some shift."""
+    drive = shifted(simulated(seed=6), 2)
+    late = maximise(Predictor(FREE), drive, P, NOISE, most=12)
+    right = maximise(Predictor(FREE), shifted(drive, -2), late.p, NOISE, most=TRIAL)
+    left = right.innovations.rms - 1.0
+    if name == "LEFT":
+        left /= late.innovations.rms - 1.0
+    monkeypatch.setattr("driveline.harness.identification.diagnostics.LEFT", 0.0)
+    monkeypatch.setattr("driveline.harness.identification.diagnostics.SCATTER", -1.0)
+    for threshold, named in ((left + 1e-6, True), (left - 1e-6, False)):
+        monkeypatch.setattr(f"driveline.harness.identification.diagnostics.{name}", threshold)
+        assert bool(diagnose_load_delay(drive, late, NOISE)) == named
+
+
+@pytest.mark.parametrize(
+    ("g_L", "deviation", "message"),
+    [
+        (1.09, 0.01, ""),
+        (1.11, 0.01, "1.11 times the true one"),
+        (0.5, 0.01, "0.5 times the true one"),
+        (1.25, 0.09, ""),
+        (1.0, 0.29, ""),
+        (1.0, 0.31, "tells nothing"),
+        (1097.0, 1e5, "tells nothing"),
+    ],
+)
+def test_a_load_torque_that_is_scaled_or_tells_nothing_is_named(g_L: float, deviation: float, message: str) -> None:
+    texts = diagnose_load_gain(P._replace(g_L=g_L), {"g_L": deviation})
+    assert [message in text for text in texts] == ([True] if message else [])
+
+
+def test_without_a_load_torque_its_gain_is_not_spoken_of() -> None:
+    assert diagnose_load_gain(P._replace(g_L=1.0), {}) == []
+
+
+@pytest.mark.parametrize(("correlation", "message"), [(0.24, False), (-0.24, False), (0.26, True), (-0.26, True)])
+def test_innovations_that_are_not_white_are_named(correlation: float, message: bool) -> None:
+    assert bool(diagnose_innovations(correlation)) == message
+
+
+@pytest.mark.parametrize(("d", "message"), [(-2.9, False), (-3.1, True)])
+def test_negative_damping_is_named_if_it_is_surely_so(d: float, message: bool) -> None:
+    texts = diagnose_excitation(np.tile([-1.0, 1.0], 50), P._replace(d=d), {"d": 1.0}, FREE)
+    assert any("negative" in text for text in texts) == message
+
+
+@pytest.mark.parametrize("factor", [1.03, 0.97])
+def test_a_motor_inertia_that_is_3_percent_wrong_is_named(factor: float) -> None:
+    """As the gain of the motor torque, which the data ask for: both cannot be told apart."""
+    drive = simulated(seed=6, p=CAR)
+    wrong = CAR._replace(J_1=factor * CAR.J_1)
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, wrong, NOISE, most=12)
+    best = backward_elimination(drive, found, NOISE, (), lambda _: None)
+    p, surely = best.p, {"g_T": float(np.sqrt(best.covariance[best.free.index("g_T"), best.free.index("g_T")]))}
+    assert p.g_T == pytest.approx(1.0 / factor, abs=0.005)
+    (text,) = diagnose_motor_gain(p, surely)
+    assert text.startswith(f"the recorded motor torque looks {p.g_T:.4g} times the true one")
+    assert f"or J_1 = {wrong.J_1:g} kg.m2 should be {p.g_T * wrong.J_1:.4g} (--free J_1)" in text
+    assert p.g_T * wrong.J_1 == pytest.approx(CAR.J_1, rel=0.005)
+
+
+def test_the_data_ask_for_neither_gain_nor_damping_where_there_is_none() -> None:
+    drive = simulated(seed=6, p=CAR)
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, CAR, NOISE, most=12)
+    best = backward_elimination(drive, found, NOISE, (), lambda _: None)
+    assert best.free == FREE
+    assert best.p.d == 0.0
+    assert best.p.g_T == 1.0
+    assert backward_elimination(drive, found, NOISE, ("d", "g_T"), lambda _: None) is found
+    assert diagnose_motor_gain(best.p, {}) == []
+    assert diagnose_motor_gain(P._replace(g_T=1.0029), {"g_T": 1e-3}) == []
+    assert diagnose_motor_gain(P._replace(g_T=1.0031), {"g_T": 1e-3})
+
+
+def test_the_data_ask_for_damping_where_there_is_some() -> None:
+    drive = simulated(seed=6, p=CAR._replace(d=P.d))
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, CAR, NOISE, most=12)
+    damped = backward_elimination(drive, found, NOISE, (), lambda _: None)
+    assert "d" in damped.free
+    assert damped.p.d == pytest.approx(P.d, rel=0.1)
+
+
+@pytest.mark.parametrize(("name", "neutral"), [("d", 0.0), ("g_T", 1.0)])
+def test_damping_and_gain_are_asked_for_from_a_likelihood_on(
+    name: str, neutral: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each while the other is free in any case."""
+    drive, others = simulated(seed=6, p=CAR), {"d", "g_T"} - {name}
+    found = maximise(Predictor((*FREE, "d", "g_T")), drive, CAR, NOISE, most=12)
+    k = found.free.index(name)
+    gain_of_likelihood = (getattr(found.p, name) - neutral) ** 2 / found.covariance[k, k]
+    for threshold, asks in ((0.999 * gain_of_likelihood, True), (1.001 * gain_of_likelihood, False)):
+        monkeypatch.setattr("driveline.harness.identification.identify.LIKELY", threshold)
+        best = backward_elimination(drive, found, NOISE, tuple(others), lambda _: None)
+        assert (name in best.free) == asks
+        assert (getattr(best.p, name) == neutral) != asks
+
+
+@pytest.mark.parametrize(("mean", "side"), [(120.0, "brake"), (-120.0, "drive")])
+def test_a_drive_that_never_crosses_the_gap_is_named(mean: float, side: str) -> None:
+    drive = simulated(seed=6, n=750, mean=mean)
+    (text,) = diagnose_excitation(twist(drive), P, SHARP, FREE)
+    assert text == (
+        f"phi_B is not determined: the teeth never {side}, so that the gap is not crossed; excite about zero torque"
+    )
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize(("samples", "named"), [(FLANK * 1000, False), (FLANK * 1000 - 1, True)])
+def test_teeth_must_spend_a_share_of_the_time_on_either_flank(side: float, samples: float, named: bool) -> None:
+    twists = np.full(1000, 1.1 * P.phi_B)
+    twists[: int(samples)] *= -1.0
+    assert bool(diagnose_excitation(side * twists, P, SHARP, FREE)) == named
+
+
+def message(deviations: dict[str, float], free: tuple[str, ...] = FREE) -> list[str]:
+    return diagnose_excitation(twist(simulated(seed=6, n=750)), P, {**SHARP, **deviations}, free)
+
+
+@pytest.mark.parametrize("name", ["J_2", "C", "phi_B"])
+def test_a_wide_interval_is_named(name: str) -> None:
+    close = CLOSE * getattr(P, name)
+    assert message({name: 0.999 * close}) == []
+    assert message({name: 1.001 * close}) == [f"{name}: standard deviation of more than 5 %; excite more or longer"]
+
+
+def test_several_wide_intervals_are_named_together() -> None:
+    assert message({"J_2": 0.1, "C": 20.0})[0].startswith("J_2, C: standard deviation")
+
+
+def test_damping_that_is_hardly_seen_is_named() -> None:
+    close = CLOSE * P.d
+    assert message({"d": 0.999 * close}) == []
+    (text,) = message({"d": 1.001 * close})
+    assert text.startswith("d is known to 5 % only")
+
+
+@pytest.mark.parametrize(
+    ("c_t", "d_t", "explained", "odd"),
+    [(480.0, 30.0, 0.81, False), (480.0, 30.0, 0.79, True), (-480.0, 30.0, 0.9, True), (480.0, -30.0, 0.9, True)],
+)
+def test_a_load_torque_that_is_no_tyre_is_named(c_t: float, d_t: float, explained: float, odd: bool) -> None:
+    assert bool(diagnose_tyre(Tyre(c_t, d_t, 1.5, explained))) == odd
+
+
+def test_a_scale_that_only_the_load_torque_sets_is_named() -> None:
+    assert message({}, free=(*FREE, "J_1")) == []
+    assert message({}, free=(*FREE, "g_T")) == []
+    (text,) = message({}, free=(*FREE, "J_1", "g_T"))
+    assert text.startswith("J_1 and the gain of the motor torque are both free")
+
+
+def fitted(tau: float = 0.003, delay: float = 0.0, explained: float = 1.0) -> FittedLoop:
+    return FittedLoop(TorqueLoop(tau, delay=delay), {}, 0.3, explained)
+
+
+@pytest.mark.parametrize(("sign", "word"), [(1.0, "after"), (-1.0, "before")])
+def test_a_demand_that_is_shifted_is_named(sign: float, word: str) -> None:
+    delay = sign * DEMAND_LATE * T_S
+    assert diagnose_demand(fitted(delay=0.999 * delay), T_S, 0.003) == []
+    (text,) = diagnose_demand(fitted(delay=1.01 * delay), T_S, 0.003)
+    assert text.startswith(f"the motor torque comes 1.01 ms {word} its demand")
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_wrong_lag_is_named(sign: float) -> None:
+    assert diagnose_demand(fitted(0.003 * (1.0 + sign * 0.999 * LAG_OFF)), T_S, 0.003) == []
+    tau = 0.003 * (1.0 + sign * 1.001 * LAG_OFF)
+    assert diagnose_demand(fitted(tau), T_S, 0.003) == [
+        f"tau = 0.003 s of the vehicle file looks wrong: motor control has {tau:.4g} s"
+    ]
+
+
+def test_a_demand_that_is_not_that_of_the_motor_torque_is_named_alone() -> None:
+    assert diagnose_demand(fitted(explained=1.001 * ANSWERS), T_S, 0.003) == []
+    (text,) = diagnose_demand(fitted(0.03, 0.01, 0.999 * ANSWERS), T_S, 0.003)
+    assert text.startswith("the torque demand explains 90 % of the motor torque only")
+
+
+def test_a_damper_that_drives_is_named() -> None:
+    phi = twist(simulated(seed=6, n=750))
+    assert diagnose_excitation(phi, P._replace(d=0.0), SHARP, FREE) == []
+    (text,) = diagnose_excitation(phi, P._replace(d=-0.01), SHARP, FREE)
+    assert text == "d = -0.01 N.m.s/rad is negative, which no damper is: something else is wrong"
+
+
+def through(size: np.ndarray, *offsets: float) -> Filtered:
+    states = np.zeros((len(size), 5))
+    states[-1, 3:] = offsets or (0.0, 0.0)
+    return Filtered(size, np.zeros(len(size)), 100, states)
+
+
+def test_a_zero_that_is_off_is_named_from_its_threshold_on() -> None:
+    size = np.ones(1000)
+    assert diagnose_offsets(through(size, 0.99 * ZERO, -0.99 * ZERO), TRUE) == []
+    (motor,) = diagnose_offsets(through(size, -1.01 * ZERO, 0.0), TRUE)
+    (load,) = diagnose_offsets(through(size, 0.0, 1.01 * ZERO), TRUE)
+    assert "motor torque looks 5.05 N.m too large" in motor
+    assert "load torque looks 5.05 N.m too small" in load
+
+
+def test_the_filter_finds_an_offset_as_recorded() -> None:
+    drive = simulated(seed=6)
+    warned = [
+        diagnose_offsets(filtered(replace(drive, T_mot=drive.T_mot + zero), P, NOISE), P) for zero in (20.0, 50.0)
+    ]
+    first, second = (
+        float(message.removeprefix("the recorded motor torque looks ").split()[0]) for (message,) in warned
+    )
+    assert second - first == pytest.approx(30.0, abs=0.11)
+
+
+@pytest.mark.parametrize("others", [1.0, 2.0 * OUTLIER / LONELY])
+def test_a_sample_that_is_off_alone_is_named_with_its_time(others: float) -> None:
+    least = max(OUTLIER, LONELY * others)
+    size = np.full(1000, others)
+    for factor, named in ((0.99, False), (1.01, True)):
+        size[499] = -factor * least
+        message = diagnose_outliers(through(size), T_S)
+        assert bool(message) == named
+    assert f"{500 * T_S:.4g} s after the start is {-1.01 * least:+.3g} rad/s off:" in message[0]
+
+
+def test_two_outliers_are_counted_and_a_crowd_is_none() -> None:
+    size = np.ones(1000)
+    size[[300, 700]] = 50.0, 60.0
+    (message,) = diagnose_outliers(through(size), T_S)
+    assert f"{701 * T_S:.4g} s after the start is +60 rad/s off and 1 more:" in message
+    size[: 100 + CROWD] = 50.0
+    assert diagnose_outliers(through(size), T_S) == []
+
+
+def test_what_comes_before_the_filter_has_settled_is_no_outlier() -> None:
+    size = np.ones(1000)
+    size[99] = 100.0
+    assert diagnose_outliers(through(size), T_S) == []
+
+
+def test_a_motor_speed_that_was_interpolated_is_named() -> None:
+    sampled = simulated(seed=6).omega_1
+    at = np.arange(0.0, len(sampled) - 1, 0.25)
+    assert diagnose_spectrum(sampled) == []
+    assert diagnose_spectrum(np.interp(at, np.arange(len(sampled)), sampled))
+    assert diagnose_spectrum(np.repeat(sampled, 4))
+
+
+def test_noise_counts_as_white_down_to_its_threshold() -> None:
+    """White noise, and in the last quarter of its band so much of it as is asked for."""
+    spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
+    for share, named in ((0.8 * COLOURED, True), (1.2 * COLOURED, False)):
+        shaped = spectrum * np.where(np.arange(len(spectrum)) > 0.7 * len(spectrum), np.sqrt(share), 1.0)
+        assert bool(diagnose_spectrum(np.fft.irfft(shaped))) == named

@@ -1,0 +1,132 @@
+"""Every block of the loop can be another one; what it need not have, it may lack."""
+
+import logging
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from driveline.harness.base.errors import WiringError
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.loop.places import CONNECTIONS, OPTIONAL, PLACES, PLANTS, chosen_build, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import signals, simulate, start
+from tests import ROOT
+from tests.foreign import RELAY, build_relay, tampered
+
+SHORT = replace(MANOEUVRES["tipin15"], duration=1.2)
+
+FEEDTHROUGH = {"controller.T_driver": "u", "controller.T_ref": "y", "controller.omega_1_meas": "w"}
+"""A relay with a second input in the place of the controller."""
+
+
+@pytest.fixture(scope="module")
+def relay(tmp_path_factory):
+    """Passes u on, and has an input w that it does not use."""
+    folder = tmp_path_factory.mktemp("relay")
+    script = folder / "relay.py"
+    text = RELAY.read_text().replace('{"u": Real,', '{"u": Real, "w": Real,')
+    script.write_text(text.replace("self.flag = False", "self.flag, self.w = False, 0.0"))
+    return build_relay(folder, script)
+
+
+@pytest.fixture(scope="module")
+def usual(native):
+    return simulate(SHORT, folder=native.parent)
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_file_takes_the_place_of_a_block(native, usual, tmp_path, place):
+    ours = native / f"{PLACES[place][0]}.fmu"
+    theirs = tampered(ours, tmp_path / "theirs.fmu", lambda xml: xml + "\n")
+    for path in (theirs, str(theirs)):
+        block: dict[str, Any] = {place: path}
+        assert loop(folder=native.parent, **block).instances[place] == theirs
+        np.testing.assert_array_equal(simulate(SHORT, folder=native.parent, **block), usual)
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "hint"),
+    [
+        ("plant", "ValidationVehicel", "did you mean ValidationVehicle"),
+        ("controller", "DampingControler", "did you mean DampingController"),
+        ("motor", "Motor", "known are: MotorTorqueLoop"),
+        ("can", "TwoMassDriveline", "known are: WheelSpeedCan"),
+    ],
+)
+def test_an_unknown_block_is_answered_with_those_of_its_place(place, name, hint):
+    block: dict[str, Any] = {place: name}
+    for function in (loop, chosen_build):
+        with pytest.raises(WiringError, match=rf"unknown {place} {name}; {hint}.*\.fmu"):
+            function(**block)
+
+
+def test_our_fmus_have_all_that_is_optional_and_take_their_inputs_from_the_loop(native):
+    system = loop(folder=native.parent)
+    interfaces = {name: Interface(path) for name, path in system.instances.items()}
+    for name in OPTIONAL:
+        instance, _, variable = name.partition(".")
+        assert variable in interfaces[instance].variables
+    fed = {connection.target for connection in CONNECTIONS} | {port.name for port in system.inputs}
+    have = {f"{name}.{v.name}" for name, interface in interfaces.items() for v in interface.of_causality("input")}
+    assert have - fed == {"plant.T_load_rec"}
+
+
+def test_a_controller_need_not_use_every_signal(built, relay, caplog):
+    results = simulate(SHORT, folder=built, controller=relay, mapping=FEEDTHROUGH)
+    np.testing.assert_array_equal(results["controller.T_ref"][1:], results["controller.T_driver"][:-1])
+    assert "controller.enable" not in (results.dtype.names or ())
+    assert results["plant.T_gear"][-1] > 50.0
+    noted = {record.getMessage().partition(":")[0] for record in caplog.records if record.levelno == logging.WARNING}
+    assert noted == {name for name in OPTIONAL if name.startswith("controller.")}
+
+
+def test_what_is_always_on_cannot_be_switched_off(built, relay):
+    with pytest.raises(WiringError, match=r"controller\.enable: Relay\.fmu does not have it and .* always 1"):
+        simulate(SHORT, folder=built, controller=relay, mapping=FEEDTHROUGH, control=False)
+    system = loop(PLANTS[0], built, controller=relay, mapping=FEEDTHROUGH)
+    at_times = signals(SHORT) | {"controller.enable": lambda t: t < 0.5}
+    with pytest.raises(WiringError, match=r"controller\.enable"):
+        run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))
+
+
+def test_what_is_not_optional_must_be_there(built, relay):
+    with pytest.raises(WiringError) as error:
+        simulate(SHORT, folder=built, controller=relay, mapping={"controller.T_ref": "y"})
+    assert [line.partition(":")[0] for line in str(error.value).splitlines()] == [
+        "controller.T_driver", "controller.omega_1_meas"
+    ]  # fmt: skip
+
+
+def test_a_motor_without_noise_has_no_seed(built, tmp_path):
+    plain = tampered(built / "MotorTorqueLoop.fmu", tmp_path / "plain.fmu", lambda xml: xml.replace("seed", "grain"))
+    results = simulate(SHORT, folder=built, motor=plain, seed=7)
+    assert results["motor.T_mot"][-1] > 50.0
+    with pytest.raises(WiringError, match="no parameter sed; did you mean seed"):
+        simulate(SHORT, folder=built, motor=built / "MotorTorqueLoop.fmu", parameters={"motor.sed": 1})
+
+
+def test_the_page_says_what_each_place_needs():
+    page = (ROOT / "docs" / "simulate.md").read_text(encoding="utf-8")
+    table = page.partition("| place |")[2].partition("\n\n")[0]
+    rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| `")]
+    documented = {}
+    for place, *cells in rows:
+        for causality, cell in zip(("input", "output", "parameter"), cells, strict=True):
+            needed, _, optional = cell.partition("(")
+            for text, may_lack in ((needed, False), (optional, True)):
+                for name, unit in re.findall(r"`(\w+)` ?([\w./]*)", text):
+                    documented[f"{place.strip(' `')}.{name}"] = causality, unit or None, may_lack
+    ports = [(causality, port) for causality, ports in loop().ports.items() for port in ports]
+    assert documented == {port.name: (causality, port.unit, port.name in OPTIONAL) for causality, port in ports}
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_an_empty_name_is_no_block(place):
+    blocks: dict[str, Any] = {place: ""}
+    with pytest.raises(WiringError, match=rf"unknown {place} \(an empty name\)"):
+        loop(**blocks)

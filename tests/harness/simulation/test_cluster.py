@@ -1,0 +1,135 @@
+"""Many runs on a Dask cluster: the same answers as here, and a worker that is lost takes no answer with it."""
+
+import asyncio
+import os
+import signal
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from driveline.harness.base.errors import DrivelineError, MissingExtra, SimulationError
+from driveline.harness.cosimulation.runs import KeptLoops
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.many_runs import many
+from driveline.harness.simulation.simulate import simulate
+
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed")
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """Two workers on this machine, each a process; one that ends is begun again."""
+    folder = str(tmp_path_factory.mktemp("workers"))
+    given = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": folder}
+    patience = {"distributed.deploy.lost-worker-timeout": "10 minutes"}  # else what is lost twice is given up
+    with dask.config.set(patience), distributed.LocalCluster(**given) as made:
+        yield made
+
+
+def answers(function, cases, cluster):
+    with many(function, scheduler=cluster.scheduler_address) as answered:
+        return list(answered(cases))
+
+
+def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
+    from driveline.harness.simulation.cluster import MOST_UNDER_WAY
+
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write(f"{os.getpid()} ")
+        time.sleep(0.01)
+        return case, os.getpid()
+
+    def times(case):
+        return len((tmp_path / f"{case}").read_text().split())
+
+    with many(run, scheduler=cluster.scheduler_address) as answered:
+        found = answered(range(300))
+        first = [next(found) for _ in range(200)]
+        os.kill(first[-1][1], signal.SIGKILL)
+        rest = list(found)
+    assert [case for case, _ in first + rest] == list(range(300))
+    again = sum(times(case) for case in range(300)) - 300
+    assert again <= MOST_UNDER_WAY  # and not the hundred that the lost one had answered
+
+
+def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
+    brief = replace(MANOEUVRES["tipin15"], duration=1.1)
+
+    def end(k_d):
+        settings = {"folder": native.parent, "build": "native"}
+        return simulate(brief, parameters={"controller.k_d": k_d}, **settings)[-1].tolist()
+
+    cases = [0.0, 1.0, 2.0, 3.0]
+    assert answers(end, cases, cluster) == [end(case) for case in cases]
+
+
+def test_a_notebook_has_an_event_loop_of_its_own(cluster):
+    async def cell():
+        return answers(abs, [-1, -2], cluster)
+
+    assert asyncio.run(cell()) == [1, 2]
+
+
+def test_what_goes_wrong_on_a_worker_names_its_case(cluster):
+    def fails(case):
+        if case >= 2:
+            raise DrivelineError(f"no {case}")
+        return case
+
+    with many(fails, scheduler=cluster.scheduler_address) as answered:
+        found = answered(range(5))
+        assert [next(found), next(found)] == [0, 1]
+        with pytest.raises(DrivelineError, match="case 2: no 2"):
+            next(found)
+
+
+def test_what_is_warned_of_on_a_worker_is_told_here(cluster, caplog):
+    def warns(case):
+        import logging
+
+        logging.getLogger("driveline.somewhere").warning("case %s is odd", case)
+
+    answers(warns, ["of the cluster"], cluster)
+    logged = [record.getMessage() for record in caplog.records if record.name == "harness"]
+    assert logged == ["case of the cluster is odd"]
+
+
+def test_a_case_that_ends_its_workers_is_named(cluster, monkeypatch):
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
+
+    def ends(case):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    with pytest.raises(SimulationError, match="a process crashed in case 'a bad one'"):
+        answers(ends, ["'a bad one'"], cluster)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "foo://here:80", ""])
+def test_no_scheduler_is_one_line(address, monkeypatch):
+    monkeypatch.setattr("driveline.harness.simulation.cluster.TIMEOUT", 0.3)
+    with pytest.raises(DrivelineError, match=f"^no Dask scheduler answers at '{address}': "):
+        many(abs, scheduler=address).__enter__()
+
+
+def test_without_the_package_the_extra_is_named(monkeypatch):
+    monkeypatch.delitem(sys.modules, "driveline.harness.simulation.cluster", raising=False)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(MissingExtra, match=r"the extra `cluster`.*driveline-damping\[cluster\]"):
+        many(abs, scheduler="tcp://127.0.0.1:1").__enter__()
+
+
+def test_loops_that_are_closed_are_loaded_again(native, tmp_path):
+    from driveline.harness.loop.places import loop
+
+    loops, system = KeptLoops(tmp_path), loop(folder=native.parent, build="native")
+    first = loops.loop(system, (), ())
+    assert loops.loop(system, (), ()) is first
+    loops.close()
+    assert not any(Path(tmp_path).iterdir())
+    assert loops.loop(system, (), ()) is not first
+    loops.close()

@@ -1,0 +1,206 @@
+"""Many runs in several processes: the same answers, in order; what fails names its case; nothing stays behind."""
+
+import os
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from driveline.harness.base.atomic_files import complete
+from driveline.harness.base.errors import DrivelineError, SimulationError
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
+from tests import ROOT
+
+TIPIN = replace(MANOEUVRES["tipin15"], duration=0.5)
+
+CASES = [
+    (plant, build, k_d)
+    for k_d in (0.0, 2.0)
+    for plant in ("TwoMassDriveline", "ValidationVehicle")
+    for build in ("native", "python")
+]
+
+
+THREADS = """
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.many import run_many
+from harness.simulate import simulate
+
+
+def end(k_d):
+    return simulate(MANOEUVRES["tipin15"], parameters={{"controller.k_d": k_d}}, folder=Path({0!r}))[-1].tolist()
+
+
+cases = [0.0, 1.0, 2.0]
+alone = [end(case) for case in cases]
+with ThreadPoolExecutor(3) as threads:
+    assert list(threads.map(lambda _: run_many(end, cases, workers=1), range(6))) == [alone] * 6
+"""
+"""Two threads that step the same instances end their process, so they get one of their own."""
+
+
+def in_folder(fmus):
+    """Gives the end of a tip-in for a plant, a build and a gain."""
+
+    def tip_in(case):
+        plant, build, k_d = case
+        settings = {"controller.k_d": k_d}
+        # under Jacobi both builds do the same, to the last bit
+        return simulate(TIPIN, plant, parameters=settings, scheme=Scheme.JACOBI, folder=fmus, build=build)[-1].tolist()
+
+    return tip_in
+
+
+def test_answers_do_not_depend_on_the_workers_nor_on_the_order(both_built, unpacked):
+    tip_in = in_folder(both_built)
+    here = run_many(tip_in, CASES, workers=1)
+    assert here == [tip_in(case) for case in CASES]
+    assert len(set(map(tuple, here))) == len(CASES) / 2
+    assert run_many(tip_in, CASES, workers=2) == here
+    assert run_many(tip_in, CASES[::-1], workers=3) == here[::-1]
+    assert list(unpacked.iterdir()) == []
+
+
+def process(_case):
+    return os.getpid()
+
+
+def test_one_worker_is_this_process_and_others_share_the_cases():
+    assert run_many(process, range(3), workers=1) == 3 * [os.getpid()]
+    assert run_many(process, range(1)) == [os.getpid()]
+    others = run_many(lambda case: (Path("/").exists(), process(case)), range(3), workers=2)
+    assert os.getpid() not in [number for _, number in others]
+    assert run_many(process, []) == []
+
+
+def test_threads_do_not_share_what_is_kept_loaded(native, tmp_path):
+    script = tmp_path / "threads.py"
+    script.write_text(THREADS.format(str(native.parent)), encoding="utf-8")
+    done = subprocess.run([sys.executable, script], cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    assert done.returncode == 0
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_refusal_names_its_case(native, workers, unpacked):
+    cases = [("TwoMassDriveline", "native", k_d) for k_d in (1.0, -1.0, 2.0, -2.0)]
+    with pytest.raises(SimulationError, match=r"^case \('TwoMassDriveline', 'native', -1\.0\): controller .* k_d = -1"):
+        run_many(in_folder(native.parent), cases, workers)
+    assert list(unpacked.iterdir()) == []
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_any_other_error_keeps_its_type_and_gets_a_note(workers):
+    with pytest.raises(ZeroDivisionError) as error:
+        run_many(lambda case: 1 / case, [2, 1, 0], workers)
+    assert error.value.__notes__ == ["in case 0"]
+
+
+class Foreign(Exception):
+    """Cannot be made of its message, as pickle does."""
+
+    def __init__(self, name, number):
+        super().__init__(f"{name} refused {number}")
+
+
+def foreign(case):
+    if case == "foreign":
+        raise Foreign("pump", 7)
+    if case == "exit":
+        sys.exit(0)
+    raise StopIteration(3)
+
+
+@pytest.mark.parametrize(
+    ("case", "expected"),
+    [("foreign", "Foreign: pump refused 7"), ("exit", "SystemExit: 0"), ("stop", "StopIteration: 3")],
+)
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_error_that_cannot_travel_is_named_with_its_case(case, expected, workers):
+    if (case, workers) == ("foreign", 1):
+        pytest.skip("it need not travel")
+    with pytest.raises(SimulationError, match=f"^case {case}: {expected}$"):
+        run_many(foreign, [case, "other"], workers)
+
+
+def test_a_long_case_is_shortened():
+    with pytest.raises(ValueError, match="could not convert") as error:
+        run_many(float, ["word " * 1000], workers=1)
+    (note,) = error.value.__notes__
+    assert note.startswith("in case word word")
+    assert len(note) < 220
+
+
+def test_a_crash_is_told(native, unpacked):
+    def crash(case):
+        in_folder(native.parent)(CASES[0])
+        return os._exit(3) if case == 1 else case
+
+    with pytest.raises(SimulationError, match="a process crashed in case"):
+        run_many(crash, range(4), workers=2)
+    assert list(unpacked.iterdir()) == []
+
+
+SCRIPT = """
+import sys, tempfile
+from pathlib import Path
+from harness.many import run_many
+from harness.manoeuvres.catalogue import MANOEUVRES
+from harness.simulate import simulate
+
+def end(seed):
+    return simulate(MANOEUVRES["tipin15"], seed=seed, folder=Path({folder!r}), step_size=0.002)["plant.v"][-1]
+
+one, other = run_many(end, [1, 2], workers=2), run_many(end, [1, 2], workers=1)
+print(one == other, "loky" in sys.modules, *Path(tempfile.gettempdir()).iterdir())
+"""
+
+
+@pytest.mark.parametrize("how", ["script", "stdin"])
+def test_no_guard_is_needed(native, tmp_path, how):
+    """Neither in a script nor where there is no file at all, as in an interactive session."""
+    text = SCRIPT.format(folder=str(native.parent))
+    script, temporary = tmp_path / "script.py", tmp_path / "temporary"
+    script.write_text(text)
+    temporary.mkdir()
+    done = subprocess.run(
+        [sys.executable, "-" if how == "stdin" else str(script)],
+        input=text if how == "stdin" else None,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(temporary)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout.split(), done.stderr) == (0, ["True", "True"], "")
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5])
+def test_a_number_of_workers_that_is_none_is_refused(workers):
+    with pytest.raises(DrivelineError, match="workers = "):
+        run_many(str, [1], workers=workers)
+
+
+def test_what_a_killed_worker_was_writing_goes_and_nothing_else(tmp_path):
+    def write(case):
+        if case == 0:
+            while not list(tmp_path.glob("signals.csv.*.part")):
+                time.sleep(0.01)
+            raise ValueError("this case fails while the other one writes")
+        with complete(tmp_path / "signals.csv") as unfinished:
+            unfinished.write_text("time")
+            time.sleep(60.0)
+
+    others = tmp_path / "theirs.123.part"
+    others.touch()
+    with pytest.raises(ValueError, match="this case fails"):
+        run_many(write, range(2), workers=2)
+    assert list(tmp_path.iterdir()) == [others]

@@ -1,0 +1,246 @@
+"""Results tell what made them, and are not replaced by those of another run."""
+
+import hashlib
+import json
+import os
+import threading
+import time
+from contextlib import nullcontext
+from pathlib import Path
+from shutil import copytree
+from typing import Any
+from zipfile import ZipFile
+
+import pytest
+from fmpy.util import read_csv
+
+from driveline.fmus.origin import ENTRY
+from driveline.harness.base.atomic_files import alone
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.commands.cli import main
+from driveline.harness.commands.settings import distinguishing
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.system import System
+from driveline.harness.loop.places import loop
+from driveline.harness.simulation import provenance, simulate
+from driveline.harness.simulation.provenance import require_same_run
+
+RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
+NAME = "TwoMassDriveline_prbs15_on"
+
+
+@pytest.fixture(scope="module")
+def made(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with the results of a run."""
+    folder = tmp_path_factory.mktemp("results")
+    gains = folder / "gains.toml"
+    gains.write_text("k_d = 2.5\n", encoding="utf-8")
+    given = ["--parameters", str(gains), "--set", "plant.J_1=0.07", "--seed", "5"]
+    assert main([*RUN, *given, "--fmus", str(both_built), "--output", str(folder)]) == 0
+    return folder
+
+
+def test_a_record_tells_what_made_the_signals(made: Path, both_built: Path) -> None:
+    record = json.loads((made / f"{NAME}.json").read_text(encoding="utf-8"))
+    assert record["program"].startswith("driveline-damping ")
+    assert record["files"] == [f"{NAME}.csv"]
+    assert (record["run"]["seed"], record["run"]["parameters"]["motor.seed"]) == (5, 5)
+    assert record["run"]["parameters"].items() >= {"plant.J_1": 0.07, "controller.k_d": 2.5}.items()
+    plant = both_built / "native" / "TwoMassDriveline.fmu"
+    entry = {"file": str(plant), "digest": f"sha256:{hashlib.sha256(plant.read_bytes()).hexdigest()}"}
+    assert record["fmus"]["TwoMassDriveline"]["plant"] == entry
+    assert list(record["inputs"]) == [str(made / "gains.toml")]
+
+
+def test_every_real_column_has_its_unit(made: Path, both_built: Path) -> None:
+    units = json.loads((made / f"{NAME}.json").read_text(encoding="utf-8"))["units"]
+    columns = read_csv(made / f"{NAME}.csv").dtype.names
+    assert units.keys() <= set(columns or ())
+    assert (units["time"], units["plant.T_gear"], units["controller.T_driver"]) == ("s", "N.m", "N.m")
+    reals = [v.name for v in Interface(both_built / "TwoMassDriveline.fmu").of_causality("output") if v.type == "Real"]
+    assert all(f"plant.{name}" in units for name in reals)
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["--seed", "6"], "seed: 5 there, 6 here"),
+        (["--set", "plant.J_1=0.08"], "parameters plant.J_1: 0.07 there, 0.08 here"),
+        (["--set", "plant.J_2=0.08"], "parameters plant.J_2: not set there, 0.08 here"),
+        (["--step", "0.001"], "step_size: 0.002 there, 0.001 here"),
+        (["--build", "python"], "fmus"),
+    ],
+)
+def test_another_run_does_not_replace_it(
+    made: Path, both_built: Path, capsys: pytest.CaptureFixture[str], options: list[str], named: str
+) -> None:
+    before = {path: path.read_bytes() for path in made.iterdir()}
+    given = ["--parameters", str(made / "gains.toml"), "--set", "plant.J_1=0.07", "--seed", "5"]
+    assert main([*RUN, *given, *options, "--fmus", str(both_built), "--output", str(made)]) == 2
+    message = capsys.readouterr().err
+    assert f"{made / NAME}.csv is of another run (" in message
+    assert named in message
+    assert {path: path.read_bytes() for path in made.iterdir()} == before
+
+
+@pytest.mark.parametrize("ending", [".csv", ".json"])
+def test_a_folder_in_the_place_of_a_result_is_found_before_anything_runs(
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, ending: str
+) -> None:
+    monkeypatch.setattr("driveline.harness.simulation.simulate.run", lambda *_: pytest.fail("it has run"))
+    (tmp_path / f"{NAME}{ending}").mkdir()
+    assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"driveline simulate: {tmp_path / NAME}{ending} is a folder; a file is needed\n"
+
+
+def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
+    assert [main(given), main(given)] == [0, 0]
+    assert main([*given, "--seed", "2"]) == 2
+    assert main([*given, "--seed", "2", "--replace"]) == 0
+    for content in ("", 100_000 * "["):
+        (tmp_path / f"{NAME}.json").write_text(content)
+        assert main([*given, "--seed", "2"]) == 2
+        assert "does not tell of which run it is" in capsys.readouterr().err
+
+
+def test_a_run_that_stops_leaves_no_record_beside_what_it_did_not_make(
+    both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
+    assert main(given) == 0
+    monkeypatch.setattr(provenance, "write_record", stopped)
+    assert main([*given, "--seed", "2", "--replace"]) != 0
+    assert {path.name for path in tmp_path.iterdir()} == {f"{NAME}.csv"}
+
+
+def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(
+    made: Path, both_built: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    before = {path: path.read_bytes() for path in made.iterdir()}
+    monkeypatch.setattr(simulate, "run", stopped)
+    assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(made)]) != 0
+    assert {path: path.read_bytes() for path in made.iterdir()} == before
+
+
+def test_of_two_runs_into_one_folder_at_once_the_later_is_refused(
+    made: Path, both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run_while_another_ends(*arguments: Any) -> Any:
+        copytree(made, tmp_path, dirs_exist_ok=True)
+        return run(*arguments)
+
+    run = simulate.run
+    monkeypatch.setattr(simulate, "run", run_while_another_ends)
+    assert main([*RUN, "--seed", "6", "--fmus", str(both_built), "--output", str(tmp_path)]) == 2
+    assert f"{NAME}.csv is of another run" in capsys.readouterr().err
+    for path in made.iterdir():
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="folders of Windows cannot be locked")
+def test_runs_write_into_a_folder_one_after_the_other(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    done: list[str] = []
+
+    def second() -> None:
+        with alone(tmp_path):
+            done.append("second")
+
+    waiting = threading.Thread(target=second)
+    with alone(tmp_path):
+        waiting.start()
+        deadline = time.monotonic() + 60.0
+        while not caplog.messages and time.monotonic() < deadline:
+            time.sleep(0.01)
+        done.append("first")
+    waiting.join()
+    assert done == ["first", "second"]
+    assert caplog.messages == [f"another run writes to {tmp_path}; this one waits for it"]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_record_that_is_a_link_stays_one(both_built: Path, tmp_path: Path) -> None:
+    given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
+    elsewhere, link = tmp_path / "elsewhere.json", tmp_path / f"{NAME}.json"
+    link.symlink_to(elsewhere)
+    assert main(given) == 0
+    assert main([*given, "--seed", "2", "--replace"]) == 0
+    assert link.is_symlink()
+    assert json.loads(elsewhere.read_text(encoding="utf-8"))["run"]["seed"] == 2
+
+
+def test_an_unknown_parameter_is_named_although_there_are_results_of_another_run(
+    made: Path, both_built: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*RUN, "--set", "plant.J1=0.07", "--fmus", str(both_built), "--output", str(made)]) == 2
+    assert "did you mean J_1" in capsys.readouterr().err
+
+
+def told_apart(system: System) -> dict[str, Any]:
+    return distinguishing({"parameters": {}, "seed": 1, "mapping": {}}, system, None)
+
+
+def test_an_fmu_that_was_built_for_another_car_makes_another_run(both_built: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "fmus"
+    copytree(both_built, folder)
+    before = told_apart(loop(folder=folder, build="python"))
+    assert told_apart(loop(folder=folder, build="python")) == before
+    path = folder / "TwoMassDriveline.fmu"
+    with ZipFile(path) as archive:
+        entry = json.loads(archive.read(ENTRY))
+    with ZipFile(path, "w") as archive:
+        archive.writestr(ENTRY, json.dumps(entry | {"start_values": {"m": 1200.0}}))
+    assert told_apart(loop(folder=folder, build="python")) != before
+
+
+def test_an_fmu_of_ones_own_that_was_built_again_makes_another_run(both_built: Path, tmp_path: Path) -> None:
+    plant = tmp_path / "mine.fmu"
+    plant.write_bytes(b"one")
+    before = told_apart(loop(plant, both_built))
+    assert told_apart(loop(plant, both_built)) == before
+    plant.write_bytes(b"another")
+    assert told_apart(loop(plant, both_built)) != before
+    assert before["digests"].keys() == {"plant"}
+
+
+def test_there_are_no_digests_of_fmus_of_ones_own_where_there_are_none(both_built: Path, tmp_path: Path) -> None:
+    same = told_apart(loop(folder=both_built))
+    assert "digests" not in same
+    (tmp_path / "table.md").touch()
+    for before, refused in ((same | {"digests": {}}, False), (same | {"digests": {"plant": "sha256:0"}}, True)):
+        (tmp_path / "compare.json").write_text(json.dumps({"run": before}), encoding="utf-8")
+        with pytest.raises(DrivelineError, match="digests") if refused else nullcontext():
+            require_same_run(tmp_path / "compare.json", same, [tmp_path / "table.md"])
+
+
+def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:
+    record, table = tmp_path / "compare.json", tmp_path / "table.md"
+    require_same_run(record, {"seed": 1}, [table])
+    table.touch()
+    with pytest.raises(DrivelineError, match="does not tell"):
+        require_same_run(record, {"seed": 1}, [table])
+    record.write_text('{"run": {"seed": 1}}', encoding="utf-8")
+    require_same_run(record, {"seed": 1}, [table])
+    with pytest.raises(DrivelineError, match=r"table\.md is of another run \(seed: 1 there, 2 here\)"):
+        require_same_run(record, {"seed": 2}, [table])
+
+
+@pytest.mark.parametrize(("before", "now", "message"), [(2, 1, "van there, not here"), (1, 2, "van here, not there")])
+def test_a_whole_car_that_is_new_or_gone_is_named_without_all_that_it_has(
+    before: int, now: int, message: str, tmp_path: Path
+) -> None:
+    cars = {"default": {"C": 117.4}, "van": {"C": 80.0, "m": 2500.0}}
+    runs = [dict(list(cars.items())[:number]) for number in (before, now)]
+    record, table = tmp_path / "compare.json", tmp_path / "table.md"
+    table.touch()
+    record.write_text(json.dumps({"run": runs[0]}), encoding="utf-8")
+    with pytest.raises(DrivelineError, match=rf"another run \({message}\)"):
+        require_same_run(record, runs[1], [table])

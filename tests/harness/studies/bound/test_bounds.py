@@ -1,0 +1,64 @@
+"""The bound of a manoeuvre stands beside a run that reaches it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from driveline.harness.base.errors import SimulationError
+from driveline.harness.studies.bound.bound_report import record, write
+from driveline.harness.studies.bound.bounds import Bounded, bounded
+
+
+@pytest.fixture(scope="module")
+def found(native: Path) -> Iterator[Bounded]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("driveline.harness.studies.bound.bounds.ALONE", ("jerk_rms_to_50_Hz",))
+        yield bounded("tipin0", {"folder": native.parent, "build": "native", "parameters": {}})
+
+
+def test_nothing_is_better_than_the_bound_and_a_run_reaches_it(found: Bounded) -> None:
+    ratio = found.ratio(found.jointly)
+    assert found.bound - 1e-4 <= ratio <= found.bound + 0.005
+    assert ratio < 1.0
+    assert found.jointly.deviation < 0.01
+
+
+def test_the_optimum_answers_the_driver_as_the_controller_does(found: Bounded) -> None:
+    reached, best = found.task.reached, found.jointly.metrics
+    assert best.response_delay == reached.response_delay
+    assert abs(best.withheld_time) <= reached.withheld_time + 1e-5
+    assert best.settling_time <= reached.settling_time
+    assert abs(best.stationary_torque_change) < 1e-9
+
+
+def test_one_metric_alone_can_be_smaller_than_all_jointly_and_the_others_are_kept(found: Bounded) -> None:
+    for name, optimum in found.alone.items():
+        assert getattr(optimum.metrics, name) <= 1.001 * getattr(found.jointly.metrics, name)
+        for other in found.task.metrics:
+            assert getattr(optimum.metrics, other) <= 1.005 * getattr(found.task.reached, other)
+        assert optimum.metrics.settling_time <= found.task.reached.settling_time
+
+
+def test_page_and_record_tell_the_same(found: Bounded, tmp_path: Path) -> None:
+    files = write([found], "DampingController", "", tmp_path)
+    page = files[0].read_text(encoding="utf-8")
+    assert all(file.is_file() for file in files)
+    assert f"| tipin0 | {1.0 / found.ratio(found.jointly):.3f} | {1.0 / found.bound:.3f} |" in page
+    assert "{" not in page
+    entry = record(found)
+    assert entry["jointly"]["ratio"] == pytest.approx(found.ratio(found.jointly))
+    assert entry["jointly"]["contacts_s"] == []
+    assert np.isfinite(entry["jointly"]["jerk_rms_to_50_Hz_m_per_s3"])
+
+
+def test_what_the_controller_does_not_reach_is_no_bound(native: Path) -> None:
+    """Undamped, with springs that hardly lose anything, the gear torque still swings when the run ends."""
+    settings = {
+        "folder": native.parent,
+        "build": "native",
+        "parameters": {"plant.c_slip": 1e6, "controller.k_d": 0.0, "controller.k_T": 0.0},
+    }
+    with pytest.raises(SimulationError, match=r"tipin0: no bound without settling_time: .* still swings"):
+        bounded("tipin0", settings)

@@ -1,0 +1,75 @@
+"""The main job on a part of its cases."""
+
+import csv
+
+import pytest
+
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.commands.cli import main
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.studies.compare.compare import cases, run_cases, write_figures, write_tables
+
+
+def test_runs_without_and_with_damping_are_neighbours():
+    todo = cases(["A", "folder/B.fmu"], ["drive", "creep"])
+    assert [case.file_name for case in todo] == [
+        "A_drive_off", "A_drive_on", "A_creep_off", "A_creep_on",
+        "B_drive_off", "B_drive_on", "B_creep_off", "B_creep_on",
+    ]  # fmt: skip
+
+
+def test_plants_of_the_same_name_are_refused():
+    with pytest.raises(DrivelineError, match="two plants are called A"):
+        cases(["A", "folder/A.fmu"], ["drive"])
+
+
+def test_an_unknown_plant_is_answered_with_the_nearest(capsys):
+    assert main(["compare", "--plant", "TwoMassDrivelin"]) == 2
+    assert "TwoMassDriveline" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def compared(native, tmp_path_factory):
+    """Folder with what a comparison of one step on both plants writes."""
+    folder = tmp_path_factory.mktemp("compare")
+    outcomes = list(
+        run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", {plant: {"folder": native.parent} for plant in PLANTS})
+    )
+    write_tables(outcomes, folder)
+    write_figures(outcomes, folder)
+    return folder
+
+
+def test_damping_settles_the_tip_in_on_both_plants(compared):
+    with (compared / "metrics.csv").open(newline="", encoding="utf-8") as file:
+        rows = {(row["plant"], row["control"]): row for row in csv.DictReader(file)}
+    assert len(rows) == 4
+    for plant in PLANTS:
+        off, on = rows[plant, "0"], rows[plant, "1"]
+        assert float(on["settling_time_s"]) < 0.4 * float(off["settling_time_s"])
+        assert float(on["gear_torque_rms_N_m"]) < 0.5 * float(off["gear_torque_rms_N_m"])
+        assert abs(float(on["stationary_torque_change_N_m"])) < 0.2
+        assert float(off["added_torque_peak_N_m"]) == 0.0
+
+
+def test_without_damping_the_design_model_rings_as_in_the_reference_study(compared):
+    with (compared / "metrics.csv").open(newline="", encoding="utf-8") as file:
+        off = next(csv.DictReader(file))
+    study = {
+        "settling_time_s": 1.758,
+        "overshoot_1": 1.16,
+        "gear_torque_rms_N_m": 26.5,
+        "jerk_rms_to_50_Hz_m_per_s3": 24.8,
+        "withheld_time_s": 0.0,
+    }
+    assert {name: float(off[name]) for name in study} == pytest.approx(study, rel=0.03, abs=1e-9)
+    # the coupled FMUs exchange their signals once a millisecond, the study integrated them together
+    assert float(off["response_delay_s"]) == pytest.approx(0.044, abs=0.005)
+
+
+def test_everything_that_is_announced_is_written(compared):
+    names = {path.relative_to(compared).as_posix() for path in compared.rglob("*") if path.is_file()}
+    assert {"table.md", "metrics.csv"} <= names
+    for plant in PLANTS:
+        assert {f"{plant}_tipin15.png", f"{plant}_tipin15.pdf"} <= names
+        assert {f"runs/{plant}_tipin15_off.csv", f"runs/{plant}_tipin15_on.csv"} <= names

@@ -1,0 +1,116 @@
+"""What co-simulation does to the loop: the error vanishes with the step, the dead time is as derived."""
+
+import numpy as np
+import pytest
+
+from driveline.harness.cosimulation.schedule import Transfer
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.studies.coupling import coupling
+from driveline.harness.studies.coupling.coupling import (
+    MANOEUVRES,
+    NOISELESS,
+    PLANTS,
+    SIGNALS,
+    T_S,
+    compare,
+    cosimulated,
+    reference,
+)
+from driveline.harness.studies.coupling.coupling_page import page
+from driveline.harness.studies.coupling.dead_time import dead_times, lateness
+from driveline.harness.studies.coupling.step_dependence import Case
+from tests.foreign import tampered
+
+IN_CONTACT = MANOEUVRES[0]
+
+
+@pytest.mark.parametrize("manoeuvre", MANOEUVRES, ids=lambda manoeuvre: manoeuvre.name)
+@pytest.mark.parametrize("plant", PLANTS)
+def test_propagated_comes_near_to_the_monolithic_solution_with_a_high_power_of_the_step(native, plant, manoeuvre):
+    """Lines through values and derivatives; nothing else differs."""
+    comparison = compare(plant, manoeuvre, Scheme.PROPAGATED, (2e-3, 1e-3), native.parent)
+    for signal in SIGNALS:
+        # the cubic between two instants is wrong by h^4; here no decision falls at another sample
+        assert comparison.order(signal) >= 3.5
+    allowed = 0.0003 if manoeuvre is IN_CONTACT else 0.001
+    assert comparison.deviations[1e-3]["plant.T_gear"].rms <= allowed
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_chords_are_wrong_by_the_square_of_the_step(native, tmp_path, plant):
+    """A motor that does not tell its derivatives."""
+    (tmp_path / "native").mkdir()
+    for file in native.glob("*.fmu"):
+        if file.stem == "MotorTorqueLoop":
+            tampered(
+                file, tmp_path / "native" / file.name, lambda xml: xml.replace(' maxOutputDerivativeOrder="1"', "")
+            )
+        else:
+            (tmp_path / "native" / file.name).symlink_to(file)
+    comparison = compare(plant, IN_CONTACT, Scheme.PROPAGATED, (2e-3, 1e-3), tmp_path)
+    for signal in SIGNALS:
+        assert comparison.order(signal) == pytest.approx(2.0, abs=0.1)
+    assert comparison.deviations[1e-3]["plant.T_gear"].rms <= 0.0003
+
+
+@pytest.mark.parametrize("scheme", [Scheme.GAUSS_SEIDEL, Scheme.JACOBI])
+@pytest.mark.parametrize("plant", PLANTS)
+def test_the_error_falls_with_the_first_power_of_the_step(built, plant, scheme):
+    comparison = compare(plant, IN_CONTACT, scheme, (1e-3, 5e-4, 2.5e-4), built)
+    for signal in ("plant.T_gear", "plant.omega_1", "motor.T_mot"):
+        # the next power adds h times a rate of the loop, less than 100/s: a tenth at 1 ms
+        assert comparison.order(signal) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("scheme", Scheme)
+def test_the_limit_of_small_steps_is_the_monolithic_solution(built, scheme):
+    plant = "TwoMassDriveline"
+    exact = reference(plant, IN_CONTACT, NOISELESS)
+    coarse, fine = (cosimulated(plant, IN_CONTACT, NOISELESS, step, scheme, built) for step in (2.5e-4, 1.25e-4))
+    for signal in SIGNALS:
+        limit = 2.0 * fine[signal] - coarse[signal]
+        # the part that falls with the step is taken out; what remains falls with its square
+        assert np.ptp(exact[signal]) > 10.0
+        left = coupling.deviation(limit, exact[signal]).rms
+        assert left < 0.15 * coupling.deviation(fine[signal], exact[signal]).rms
+
+
+@pytest.mark.parametrize(
+    ("scheme", "build", "steps"),
+    [
+        (Scheme.PROPAGATED, "native", (0.0,) * 10),
+        (Scheme.PROPAGATED, "python", (0.0, 0.5, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5)),
+        (Scheme.GAUSS_SEIDEL, "python", (0.0, -0.5, 1.0, 0.0, -1.0, -0.5, -1.0, -1.0, 0.0, -0.5)),
+        (Scheme.JACOBI, "python", (0.0, 0.5, 1.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.5)),
+    ],
+)
+def test_each_connection_is_late_by_what_the_scheme_makes_of_the_step(built, native, scheme, build, steps):
+    """A held value is late by half a step, one of the end of the step early by a half or a whole one."""
+    found = dead_times(scheme, 1e-3, native.parent if build == "native" else built)
+    # least squares take a shift for a multiple of another: (omega h)^2 of the sine and its harmonics
+    assert [t / 1e-3 for t in found.values()] == pytest.approx(steps, abs=0.05)
+
+
+def test_lateness_of_a_signal_that_is_late():
+    t = np.arange(0.0, 1.0, T_S)
+    exact, late, signal = (np.sin(20.0 * (t - d)) for d in (0.0, T_S, 0.4 * T_S))
+    assert lateness(signal, exact, late) == pytest.approx(0.4 * T_S, rel=0.01)
+
+
+def test_the_page_says_what_was_measured():
+    deviations = {step: dict.fromkeys(SIGNALS, coupling.Deviation(30.0 * step, 10.0 * step)) for step in (1e-3, 5e-4)}
+    comparison = coupling.Comparison("TwoMassDriveline", IN_CONTACT, Scheme.JACOBI, deviations)
+    assert comparison.order("plant.T_gear") == pytest.approx(1.0)
+    late = {(Scheme.JACOBI, 1e-3): {"T_mot to the plant": 5e-4}}
+    metrics = {
+        Case("TwoMassDriveline", "launch", control): {"overshoot": 0.002, "end_swing": 0.004}
+        for control in (True, False)
+    }
+    text = page([comparison], late, {"plant.T_mot": Transfer.INTERPOLATED}, ["motor", "plant"], 1e-3, metrics)
+    assert "it interpolates (`plant.T_mot`)" in text
+    assert "along its derivative (none here)" in text
+    assert "| T_mot to the plant | 0.50 |" in text
+    assert "| TwoMassDriveline | 20 to 100 N.m, the teeth stay in contact | jacobi | 3 / 1 |" in text
+    assert "| jacobi | 1 | 0.5 | 1.0 |" in text
+    assert "`motor`, `plant`" in text
+    assert "| TwoMassDriveline | launch | 0.4 (end swing) | 0.4 (end swing) |" in text

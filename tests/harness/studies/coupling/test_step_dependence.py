@@ -1,0 +1,46 @@
+"""How far metrics depend on the communication step: what counts as a deviation, and that there is hardly any."""
+
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from driveline.harness.metrics.declaration import declared
+from driveline.harness.metrics.evaluate import T_S
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.studies.coupling.step_dependence import Case, compare, deviations
+
+VALUES: dict[str, Any] = {metric.name: 2.0 for metric in declared(Metrics)}
+FINE = Metrics(**VALUES)
+
+
+@pytest.mark.parametrize(("later", "deviation"), [(1.0, 0.0), (-1.0, 0.0), (1.1, 1.1 * T_S / 2.0)])
+def test_a_time_that_is_one_sample_off_is_equal(later: float, deviation: float) -> None:
+    coarse = replace(FINE, settling_time=2.0 + later * T_S, withheld_time=2.0 + later * T_S)
+    found = deviations(coarse, FINE)
+    assert found["settling_time"] == pytest.approx(deviation)
+    assert found["withheld_time"] == pytest.approx(abs(later) * T_S / 2.0), "that is no time of a sample"
+    assert found["end_swing"] == 0.0
+
+
+def test_a_metric_that_only_one_run_has_deviates_without_bound() -> None:
+    lost = replace(FINE, overshoot=float("nan"), absent={"overshoot": "it still swings"})
+    assert deviations(lost, FINE)["overshoot"] == deviations(FINE, lost)["overshoot"] == inf
+    assert "overshoot" not in deviations(lost, lost)
+
+
+def test_anything_over_nothing_is_without_bound() -> None:
+    assert deviations(FINE, replace(FINE, end_swing=0.0))["end_swing"] == inf
+
+
+@pytest.mark.parametrize("manoeuvre", ["tipin15", "launch", "launch_brake", "hill_hold"])
+@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
+def test_every_metric_is_within_one_percent_of_that_with_half_the_step(
+    native: Path, plant: str, manoeuvre: str
+) -> None:
+    """The whole of it, at a tenth of the step, is measured by `driveline coupling`."""
+    found = compare(Case(plant, manoeuvre, True), native.parent, (1e-3, 5e-4))
+    assert len(found) >= 6
+    assert {name: share for name, share in found.items() if share > 0.01} == {}

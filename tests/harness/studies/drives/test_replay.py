@@ -1,0 +1,233 @@
+"""Recorded drives through the simulated vehicle."""
+
+import csv
+import json
+import sys
+from dataclasses import replace
+from functools import cache
+from itertools import islice
+from shutil import copyfile
+
+import numpy as np
+import pytest
+
+from driveline.harness.base.errors import MissingExtra, WiringError
+from driveline.harness.commands.cli import main
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.loop.places import STEP_SIZE
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.manoeuvres.road_load import RoadLoad, Track
+from driveline.harness.manoeuvres.signals import Lines
+from driveline.harness.manoeuvres.speed_following import drive, needed_force
+from driveline.harness.manoeuvres.town_drive import PATH
+from driveline.harness.metrics.evaluate import T_S
+from driveline.harness.metrics.spectrum import band_rms
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
+from tests import ROOT
+
+DATA = ROOT.parent / "shared" / "data"
+TRIPS = {"bmw_i3_trip_a01": (165.0, 260.0), "bmw_i3_trip_a11": (1005.0, 1060.0)}
+"""Recorded drives, and stretches of them in s with stops and hills."""
+
+PLANTS = ("TwoMassDriveline", "ValidationVehicle")
+
+
+@pytest.fixture(scope="module")
+def short_drive(tmp_path_factory):
+    """The first eight seconds of the bundled drive."""
+    path = tmp_path_factory.mktemp("recording") / "short.csv"
+    with PATH.open(encoding="utf-8") as file:
+        path.write_text("".join(islice(file, 82)), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def settings(native):
+    return {"folder": native.parent, "build": "native"}
+
+
+@pytest.fixture(scope="module")
+def load(native):
+    return RoadLoad.of_plant(Interface(native / "ValidationVehicle.fmu"))
+
+
+@pytest.fixture(scope="module")
+def replayed(settings, load, short_drive, tmp_path_factory):
+    """Rides of the short drive, two with the same controller, and the folder with their files."""
+    folder = tmp_path_factory.mktemp("replay")
+    track = Track.of(read_drive(short_drive))
+    controllers = {"DampingController": settings, "Again": settings}
+    rides = replay(track, load, "ValidationVehicle", controllers, held=0.5)
+    write(rides, track, "ValidationVehicle", folder)
+    return rides, folder
+
+
+def town():
+    return Track.of(read_drive(PATH), T_max=180.0)
+
+
+def hilly():
+    """The town drive by another car on another road: its torques and climbs do not fit its speeds."""
+    flat = town()
+    return replace(flat, T_driver=0.8 * flat.T_driver - 4.0 * (flat.v > 1.0), slope=0.06 * np.cos(flat.t / 9.0))
+
+
+def stretch(name):
+    """Part of a real drive."""
+    path = DATA / f"{name}.csv"
+    if not path.exists():
+        pytest.skip(f"recorded drive {path} is not on this machine")
+    recording, (begin, end) = read_drive(path), TRIPS[name]
+    part = (recording.time - recording.time[0] >= begin) & (recording.time - recording.time[0] <= end)
+    names = ("time", "v", "elevation", "T_mot")
+    return Track.of(replace(recording, **{name: getattr(recording, name)[part] for name in names}), T_max=180.0)
+
+
+DRIVES = {"town": town, "hilly": hilly, **{name: lambda name=name: stretch(name) for name in TRIPS}}
+
+
+@pytest.fixture(scope="module")
+def runs(settings, load):
+    """Of a drive by name on a plant: its track, and the signals without and with damping."""
+
+    @cache
+    def run(name, plant):
+        track = DRIVES[name]()
+        manoeuvre, undamped = followed(track, load, plant, settings)
+        return track, undamped, signals_of(manoeuvre, plant, True, settings)
+
+    return run
+
+
+def rolled_back(signals):
+    """Farthest in m that a car was behind where it had been."""
+    x = np.cumsum(signals["plant.v"]) * T_S
+    return (np.maximum.accumulate(x) - x).max()
+
+
+def standing(track, signals):
+    """When the recorded car has stood for a second, and will for another half."""
+    at = np.interp(signals["time"], track.t, track.v == 0.0) == 1.0
+    steps = round(1.0 / T_S), round(0.5 / T_S)
+    counted = np.concatenate(([0], np.cumsum(~at)))
+    k = np.arange(len(at))
+    begin, end = np.maximum(k - steps[0], 0), np.minimum(k + steps[1], len(at))
+    return counted[end] == counted[begin]
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize("name", DRIVES)
+def test_the_car_keeps_the_recorded_speed_stands_where_it_stood_and_never_rolls_back(runs, name, plant):
+    track, *both = runs(name, plant)
+    for signals in both:
+        assert speed_error(signals, track) < 1.5 * CLOSE
+        assert rolled_back(signals) < 0.05  # tyres and mounts give way as far as that
+        still = standing(track, signals)
+        assert np.count_nonzero(still) * T_S > 1.0
+        assert np.abs(signals["plant.v"][still]).max() < 0.05
+
+
+def test_from_the_recording_alone_a_car_of_other_inertia_does_not_keep_the_speed(runs, settings, load):
+    """Why the force along the road is found by driving."""
+    track = runs("town", "TwoMassDriveline")[0]
+    signals = signals_of(drive(track, load, needed_force(track, load)), "TwoMassDriveline", False, settings)
+    assert speed_error(signals, track) > 5.0 * CLOSE
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize(("begin", "end"), [(3.0, 18.0), (34.0, 50.0)])
+def test_what_damping_is_worth_is_the_same_as_on_a_level_road_without_it(settings, load, plant, begin, end):
+    whole = town()
+    part = (whole.t >= begin) & (whole.t <= end)
+    t = whole.t[part] - whole.t[part][0]
+    track = replace(whole, t=t, v=whole.v[part], T_driver=whole.T_driver[part], slope=whole.slope[part])
+    level = Manoeuvre("level", "", float(t[-1]), float(track.v[0]), Lines(t, track.T_driver))
+    manoeuvre, undamped = followed(track, load, plant, settings)
+    pairs = (
+        (undamped, signals_of(manoeuvre, plant, True, settings)),
+        tuple(signals_of(level, plant, control, settings) for control in (False, True)),
+    )
+    for signal, derivative in (("plant.T_gear", False), ("plant.a_body", True)):
+        with_it, without_it = (
+            band_rms(on[signal], T_S, derivative=derivative) / band_rms(off[signal], T_S, derivative=derivative)
+            for off, on in pairs
+        )
+        assert with_it == pytest.approx(without_it, rel=0.07, abs=0.012), "of the swing without control"
+
+
+def test_all_drive_on_the_same_road(replayed):
+    undamped, *damped = replayed[0]
+    for ride in damped:
+        for signal in ("time", "plant.T_brake", "plant.slope", "controller.T_driver"):
+            np.testing.assert_array_equal(ride.signals[signal], undamped.signals[signal])
+
+
+def test_a_demand_is_not_held_for_less_than_a_step(load, short_drive):
+    track = Track.of(read_drive(short_drive))
+    F = needed_force(track, load)
+    assert drive(track, load, F, held=STEP_SIZE).duration == drive(track, load, F).duration
+    for held in (0.999 * STEP_SIZE, 1e-300, float("nan")):
+        with pytest.raises(WiringError, match=r"it must be 0\.001 s or more"):
+            drive(track, load, F, held)
+
+
+def test_damping_lowers_oscillation_and_damage(replayed):
+    with (replayed[1] / "short_metrics.csv").open(newline="", encoding="utf-8") as file:
+        off, on, again = csv.DictReader(file)
+    assert (off["recording"], off["control"], off["controller"]) == ("short", "0", "without damping")
+    assert [(run["control"], run["controller"]) for run in (on, again)] == [("1", "DampingController"), ("1", "Again")]
+    for quantity in ("gear_torque_rms_N_m", "gear_damage_N5_m5", "jerk_rms_m_per_s3"):
+        assert float(on[quantity]) < 0.9 * float(off[quantity])
+        assert on[quantity] == again[quantity]
+
+
+def test_figure_and_signals_every_10_ms_are_written(replayed):
+    folder = replayed[1]
+    assert {path.name for path in folder.iterdir()} == {
+        "short_metrics.csv", "short_table.md", "short_off.csv", "short_DampingController.csv", "short_Again.csv",
+        "short.png", "short.pdf",
+    }  # fmt: skip
+    table = (folder / "short_table.md").read_text(encoding="utf-8").splitlines()
+    assert [row.split(" | ")[0] for row in table] == [
+        "| short on ValidationVehicle", "| ---", "| without damping", "| DampingController", "| Again"
+    ]  # fmt: skip
+    assert all(row.count("(1.000)") == (k == 2) * (row.count("|") - 2) for k, row in enumerate(table))
+    with (folder / "short_Again.csv").open(encoding="utf-8") as file:
+        times = [float(row["time"]) for row in csv.DictReader(file)]
+    assert times == pytest.approx(np.arange(801) * 0.01)
+
+
+def test_as_a_document_it_has_the_rides_of_all_controllers(native, short_drive, tmp_path, capsys):
+    mine = tmp_path / "Mine.fmu"
+    copyfile(native / "DampingController.fmu", mine)
+    given = ["--fmus", str(native.parent), "--output", str(tmp_path), "--set", "plant.m=1900"]
+    both = ["--controller", "DampingController", "--controller", str(mine), "--controller", "DampingController"]
+    assert main(["replay", str(short_drive), *given, *both, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    controllers = [run["controller"] for run in document["runs"]]
+    assert controllers == ["without damping", "DampingController", "Mine"]
+    assert [run["control"] for run in document["runs"]] == [False, True, True]
+    assert all(run["gear_torque_rms_N_m"] > 0.0 for run in document["runs"])
+    assert document["runs"][1]["jerk_rms_m_per_s3"] == document["runs"][2]["jerk_rms_m_per_s3"]
+    assert {str(tmp_path / "short_metrics.csv"), str(tmp_path / "short_Mine.csv")} <= set(document["files"])
+    assert main(["replay", str(short_drive), *given, "--quiet"]) == 2
+    assert "is of another run (controllers: ['DampingController', 'Mine'] there" in capsys.readouterr().err
+
+
+def test_two_controllers_of_one_name_are_refused(native, short_drive, tmp_path, capsys):
+    given = ["--controller", "DampingController", "--controller", str(native / "DampingController.fmu")]
+    assert main(["replay", str(short_drive), *given, "--output", str(tmp_path)]) == 2
+    assert "two controllers are called DampingController" in capsys.readouterr().err
+
+
+def test_a_missing_recording_is_named(capsys):
+    assert main(["replay", "nowhere.csv"]) != 0
+    assert "nowhere.csv" in capsys.readouterr().err
+
+
+def test_without_the_counting_package_the_extra_is_named_before_the_run(short_drive, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rainflow", None)
+    load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
+    with pytest.raises(MissingExtra, match="extra `replay`"):
+        replay(Track.of(read_drive(short_drive)), load, "ValidationVehicle", {"DampingController": {}})

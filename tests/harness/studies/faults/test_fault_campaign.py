@@ -1,0 +1,115 @@
+"""A campaign gives the same whatever the number of processes, and says what is not clean."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from driveline.harness.base.errors import DrivelineError, WiringError
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.loop.places import loop
+from driveline.harness.simulation.simulate import signals, start
+from driveline.harness.studies.faults import evidence, fault_catalogue
+from driveline.harness.studies.faults.fault_campaign import campaign
+from driveline.harness.studies.faults.fault_cases import SITUATIONS, Case, Fault, case
+from driveline.harness.studies.faults.fault_catalogue import KINDS, LOCK, SPIN
+from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
+from driveline.harness.studies.faults.fault_page import page
+from driveline.models import signal_faults
+from driveline.models.controller import supervision, wheel_monitor
+from tests.foreign import tampered
+
+PLANTS = ("TwoMassDriveline", "ValidationVehicle")
+
+
+def test_a_case_follows_from_seed_and_number_alone():
+    assert case(7, 1, PLANTS) == case(7, 1, PLANTS)
+    assert case(7, 2, PLANTS).faults != case(7, 1, PLANTS).faults
+
+
+def test_single_faults_go_through_all_kinds_and_situations_on_both_plants():
+    everything = 2 * len(PLANTS) * len(KINDS) * len(SITUATIONS)
+    singles = [each for n in range(1, everything + 1) if len((each := case(n, 1, PLANTS)).faults) == 1]
+    cells = Counter((each.plant, each.situation, each.faults[0].name) for each in singles)
+    assert set(cells.values()) == {1}
+    assert len(cells) == everything / 2
+
+
+def test_faults_and_states_are_numbered_as_in_the_models():
+    """The harness knows no models, so it declares them."""
+    signals_ = "MOTOR_SPEED", "MOTOR_TORQUE", "WHEEL_SPEED"
+    faults = "LATE", "FROZEN", "LOST", "GAIN", "OFFSET", "NOISE", "SPIKES", "NO_NUMBER", "FLAPPING", "JUMPING"
+    for name in signals_ + faults:
+        assert getattr(fault_catalogue, name) == getattr(signal_faults, name)
+    for name in ("WITH_WHEEL_SPEED", "WITHOUT_WHEEL_SPEED", "FALLBACK"):
+        assert getattr(evidence, name) == getattr(supervision, name)
+
+
+def test_a_contradiction_and_a_leap_are_what_the_controller_takes_for_them():
+    assert supervision.Parameters().e_wheel == evidence.APART
+    assert (wheel_monitor.SHARE, wheel_monitor.LEAP) == (evidence.SHARE, evidence.LEAP)
+
+
+def test_plants_of_the_same_name_are_refused(tmp_path):
+    with pytest.raises(DrivelineError, match="two plants are called car"):
+        campaign(range(1, 3), 1, tmp_path / "SignalFaults.fmu", {"mine/car.fmu": {}, "theirs/car.fmu": {}})
+
+
+def test_half_of_the_cases_are_pairs_of_different_kinds():
+    pairs = [each for n in range(1, 201) if len((each := case(n, 1, PLANTS)).faults) == 2]
+    assert len(pairs) == 100
+    assert all(first.name != second.name for first, second in (each.faults for each in pairs))
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant):
+    manoeuvre = SITUATIONS["gap"].manoeuvre
+    plain = loop(plant, settings[plant]["folder"], "native")
+    direct, through = (
+        run(system, Experiment(1.3, inputs=signals(manoeuvre), parameters=start(manoeuvre)))
+        for system in (plain, with_faults(plain, injector))
+    )
+    assert all(np.array_equal(direct[name], through[name]) for name in direct.dtype.names or ())
+
+
+@pytest.mark.parametrize("name", ["status", "T_damp"])
+def test_a_controller_without_what_the_judges_read_is_named(injector, settings, tmp_path, name):
+    def change(xml):
+        return xml.replace(f'name="{name}"', f'name="my_{name}"')
+
+    folder = settings["TwoMassDriveline"]["folder"]
+    mine = tampered(folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
+    with pytest.raises(WiringError, match=rf"controller\.{name}: mine\.fmu has no output {name}"):
+        fit(with_faults(loop(folder=folder, build="native", controller=mine), injector))
+
+
+def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):
+    fault = Fault("motor speed NaN", 1.0, 1.5, 1.0, 1.0)
+    runs = FaultRunner(injector, settings).runs(Case(1, "TwoMassDriveline", "coasting", (fault,), 1))
+    for run_ in (runs.healthy, runs.undamped):
+        assert run_.nbytes < 24 * len(runs.faulty)
+        assert run_.base is None
+
+
+def test_a_campaign_does_not_depend_on_the_number_of_processes(injector, settings):
+    one, two = (campaign(range(1, 9), 3, injector, settings, workers) for workers in (1, 2))
+    assert [outcome.record for outcome in one] == [outcome.record for outcome in two]
+    assert page(one, "") == page(two, "")
+
+
+@pytest.mark.parametrize(
+    ("plant", "least", "most"), [("TwoMassDriveline", 0.25, 1.1), ("ValidationVehicle", 0.05, 1.5)]
+)
+def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most):
+    runner = FaultRunner(injector, settings)
+
+    def speed_of_the_wheels(kind, size):
+        """Over that of rolling."""
+        fault = Fault(kind, 1.0, 1.5, size, 1.0)
+        undamped = runner.runs(Case(1, plant, "coasting", (fault,), 1)).undamped
+        return undamped["plant.omega_2"] / (undamped["plant.v"] * 9.0 / 0.29)
+
+    assert speed_of_the_wheels(LOCK, 4000.0).min() < least
+    assert speed_of_the_wheels(SPIN, 80.0).max() > most

@@ -1,0 +1,106 @@
+"""What a campaign leaves behind, and a case that is run again."""
+
+import csv
+import json
+import shlex
+from argparse import ArgumentParser
+from dataclasses import replace
+
+import pytest
+
+from driveline.harness.commands import faults
+from driveline.harness.commands.cli import main
+from driveline.harness.commands.settings import as_given
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.studies.faults import fault_injection
+from driveline.harness.studies.faults.fault_campaign import campaign
+from driveline.harness.studies.faults.fault_catalogue import KINDS
+from driveline.harness.studies.faults.fault_page import page
+from driveline.harness.studies.faults.fault_report import announce, write, write_case
+
+
+@pytest.fixture(scope="module")
+def outcomes(injector, settings):
+    return campaign(range(1, 7), 1, injector, settings, workers=1)
+
+
+def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path):
+    files = write(outcomes, "", tmp_path)
+    with (tmp_path / "faults.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["number"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
+    assert [row["clean"] for row in rows] == [str(int(not outcome.failed)) for outcome in outcomes]
+    assert [bool(row["fault_2"]) for row in rows] == [False, False, True, True, False, False]
+    assert all(file.is_file() for file in files)
+
+
+def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_path):
+    write(outcomes, " --cases 6", tmp_path)
+    page = (tmp_path / "faults.md").read_text(encoding="utf-8")
+    assert all(f"| {kind} |" in page for kind in KINDS)
+    for name in ("faults", "fault_pairs"):
+        assert f"figures/{name}.png" in page
+        assert (tmp_path / "figures" / f"{name}.png").is_file()
+
+
+def test_pairs_that_are_not_clean_are_named_too(outcomes):
+    bad = [replace(outcome, measured=dict.fromkeys(outcome.measured, 1e6)) for outcome in outcomes]
+    singles, pairs = page(bad, "").partition("## What is not clean")[2].split("Pairs of faults:")
+    for outcome in bad:
+        assert f"| {' + '.join(sorted(outcome.kinds))} |" in (pairs if len(outcome.kinds) == 2 else singles)
+    assert page([], "").count("There are no cases.") == 2
+
+
+def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
+    clean, bad = (
+        [replace(outcome, measured=dict.fromkeys(outcome.measured, value)) for outcome in outcomes]
+        for value in (-1e6, 1e6)
+    )
+    announce(clean)
+    assert capsys.readouterr().out == f"{len(clean)} cases, {len(clean)} clean, 0 not clean\n"
+    announce([bad[0], *clean[1:]])
+    message = capsys.readouterr().out
+    assert f"{len(clean)} cases, {len(clean) - 1} clean, 1 not clean\n" in message
+    assert [kind for kind in KINDS if f" {kind} " in message] == [kind for kind in KINDS if kind in bad[0].kinds]
+
+
+def test_the_page_tells_how_a_case_is_run_again(outcomes):
+    options = ["--plant", "my car.fmu", "--set", "controller.k_d=0.1", "--seed", "7", "--controller", "mine.fmu"]
+    parser = ArgumentParser()
+    faults.add_arguments(parser)
+    first = parser.parse_args(options)
+    text = page(outcomes, f" {as_given(first)}")
+    again = next(line for line in text.splitlines() if line.startswith("    driveline faults --case NUMBER"))
+    words = shlex.split(again)[2:]
+    assert vars(parser.parse_args(["--case", "3", *words[2:]])) == vars(first) | {"case": 3}
+
+
+def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path, monkeypatch):
+    runs = []
+    monkeypatch.setattr(fault_injection, "run", lambda *given: runs.append(1) or run(*given))
+    again, files = write_case(2, 1, injector, settings, tmp_path)
+    assert len(runs) == 3
+    assert again == outcomes[1]
+    assert [file.name for file in files] == ["case_2.csv", "case_2.png", "case_2.pdf"]
+
+
+def test_results_tell_what_made_them_and_nothing_else_is_written(native, tmp_path, capsys):
+    fmus, output = native.parent, tmp_path / "results"
+    before = set(fmus.rglob("*.fmu"))
+    plant = ["--plant", "TwoMassDriveline", "--fmus", str(fmus)]
+    given = ["faults", "--case", "2", *plant, "--output", str(output), "--quiet"]
+    assert main(given) in (0, 1)
+    assert set(fmus.rglob("*.fmu")) == before
+    record = json.loads((output / "case_2.json").read_text(encoding="utf-8"))
+    assert (record["run"]["case"], record["run"]["TwoMassDriveline"]["seed"]) == (2, 1)
+    assert record["fmus"]["TwoMassDriveline"]["faults"]["digest"].startswith("sha256:")
+    assert main([*given, "--seed", "2"]) == 2
+    assert "seed: 1 there, 2 here); choose another --output, or --replace it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", ["0", "-1", "1.5", "ten", "99999999", "١"])
+def test_a_number_of_cases_that_is_none_is_refused(number, capsys):
+    with pytest.raises(SystemExit) as refused:
+        main(["faults", "--cases", number])
+    assert refused.value.code == 2
+    assert "is not a whole number from 1 to 1000000" in capsys.readouterr().err

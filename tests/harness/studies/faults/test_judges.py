@@ -1,0 +1,216 @@
+"""Each judge, just below and just above its limit, on made-up runs."""
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+
+from driveline.harness.studies.faults.evidence import Evidence
+from driveline.harness.studies.faults.fault_cases import Fault
+from driveline.harness.studies.faults.fault_injection import Limits, Runs
+from driveline.harness.studies.faults.judges import JUDGES
+
+T = np.arange(2001) * 0.002
+BEGIN, END = 1.0, 1.5
+OTHERS = ("T_ref", "T_damp", "T_driver")
+
+
+def quiet():
+    """A run in which nothing happens, at 400 rad/s with a message every 20 ms."""
+    columns = {f"controller.{name}": np.zeros(len(T)) for name in OTHERS}
+    columns |= {"controller.status": np.full(len(T), 2), "plant.T_gear": np.zeros(len(T))}
+    speeds = ("plant.omega_2", "motor.omega_1_meas", "faults.omega_1_meas", "faults.omega_2_can")
+    columns |= {name: np.full(len(T), 400.0) for name in speeds}
+    columns |= {"faults.T_mot_est": np.zeros(len(T)), "faults.counter": np.arange(len(T)) // 10}
+    columns |= {"faults.valid": np.full(len(T), True), "can.valid": np.full(len(T), True)}
+    run = np.zeros(len(T), [("time", float), *((name, column.dtype) for name, column in columns.items())])
+    run["time"] = T
+    for name, column in columns.items():
+        run[name] = column
+    return run
+
+
+def between(start, end):
+    return (start - 1e-9 <= T) & (end - 1e-9 > T)
+
+
+def clean(judge, run, healthy=None, undamped=None, kind="motor speed offset", end=END):
+    """Whether a judge finds a run under a fault clean."""
+    runs = Runs(run, quiet() if healthy is None else healthy, quiet() if undamped is None else undamped)
+    seen = Evidence(runs, (Fault(kind, BEGIN, end, 1.0, 1.0),), Limits(180.0, 60.0, 100.0, 2000.0))
+    (found,) = (each for each in JUDGES if each.name == judge)
+    return found.measure(seen) <= found.limit
+
+
+def test_a_quiet_run_is_clean():
+    assert all(clean(judge.name, quiet()) for judge in JUDGES)
+
+
+@pytest.mark.parametrize(("T_ref", "verdict"), [(-180.0, True), (180.1, False), (nan, False), (-inf, False)])
+def test_T_ref_is_finite_and_limited(T_ref, verdict):
+    run = quiet()
+    run["controller.T_ref"][700] = T_ref
+    assert clean("limited", run) == verdict
+
+
+@pytest.mark.parametrize(
+    ("T_driver", "T_damp", "verdict"),
+    [(50.0, 60.0, True), (50.0, 60.1, False), (50.0, -100.0, True), (50.0, -100.1, False), (0.0, -60.1, False)],
+)
+def test_more_may_be_taken_from_the_demand_than_added(T_driver, T_damp, verdict):
+    run = quiet()
+    run["controller.T_driver"] = T_driver
+    run["controller.T_damp"][700] = T_damp
+    assert clean("authority", run) == verdict
+
+
+@pytest.mark.parametrize(("error", "after", "verdict"), [(65.0, 0.05, True), (65.0, 0.052, False), (63.0, 0.5, True)])
+def test_a_motor_speed_that_is_wrong_by_more_than_40_rad_s_and_6_percent_is_noticed_within_50_ms(error, after, verdict):
+    run = quiet()
+    run["faults.omega_1_meas"][between(BEGIN, END)] += error
+    run["controller.status"][between(BEGIN + after, END)] = 4
+    assert clean("noticed", run) == verdict
+
+
+@pytest.mark.parametrize(("after", "verdict"), [(0.11, True), (0.114, False)])
+def test_a_wheel_speed_that_becomes_known_is_heard_before_it_shows_that_the_motor_speed_is_wrong(after, verdict):
+    run = quiet()
+    run["faults.omega_1_meas"][between(0.0, END)] = 0.0
+    run["faults.valid"] = between(BEGIN, 5.0)
+    run["controller.status"][between(BEGIN + after, END)] = 4
+    assert clean("noticed", run) == verdict
+
+
+def test_without_a_good_message_a_wrong_motor_speed_need_not_be_noticed_but_no_number_must():
+    run = quiet()
+    run["faults.valid"] = False
+    run["faults.omega_1_meas"][between(BEGIN, END)] = 0.0
+    assert clean("noticed", run)
+    run["faults.omega_1_meas"][between(BEGIN, END)] = nan
+    assert not clean("noticed", run)
+
+
+@pytest.mark.parametrize(("after", "verdict"), [(0.15, True), (0.152, False)])
+def test_a_message_that_is_not_valid_does_not_count_for_long(after, verdict):
+    run = quiet()
+    run["faults.valid"][between(BEGIN, END)] = False
+    run["controller.status"][between(BEGIN + after, END)] = 3
+    assert clean("stale", run) == verdict
+
+
+@pytest.mark.parametrize(
+    ("kind", "start", "verdict"),
+    [
+        ("motor speed offset", 1.998, True),
+        ("motor speed offset", 2.0, False),
+        ("motor speed offset", 0.998, False),
+        ("wheel speed offset", 1.2, False),
+        ("motor torque ±30 %", 1.2, False),
+        ("wheel lock on ice", 1.2, False),
+    ],
+)
+def test_fallback_is_for_faults_of_motor_signals_alone_and_ends_with_them(kind, start, verdict):
+    run = quiet()
+    run["controller.status"][between(start, start + 0.002)] = 4
+    assert clean("false alarm", run, kind=kind) == verdict
+
+
+@pytest.mark.parametrize(("drift", "verdict"), [(19.0, True), (21.0, False)])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_nothing_tells_whether_motor_or_wheel_speed_is_wrong_that_drift_apart(side, drift, verdict):
+    """But messages that leap are themselves to be doubted."""
+    run = quiet()
+    run["faults.omega_2_can"][between(BEGIN, END)] += 40.0 * side
+    run["faults.omega_2_can"][between(BEGIN + 0.02, END)] += drift * side
+    run["controller.status"][between(BEGIN + 0.02, END + 0.5)] = 4
+    assert clean("false alarm", run, kind="wheel speed offset") == verdict
+
+
+@pytest.mark.parametrize(("known", "verdict"), [(BEGIN, True), (0.0, False)])
+def test_messages_that_are_wrong_from_the_first_have_not_leapt(known, verdict):
+    run = quiet()
+    run["faults.valid"] = known - 1e-9 <= T
+    run["faults.omega_2_can"][between(BEGIN, END)] += 60.0
+    run["controller.status"][between(BEGIN, END + 0.5)] = 4
+    assert clean("false alarm", run, kind="wheel speed offset") == verdict
+
+
+@pytest.mark.parametrize(("omega_1", "verdict"), [(1999.0, False), (-1999.0, False), (2001.0, True), (-2001.0, True)])
+def test_a_motor_that_turns_faster_than_is_plausible_is_not_believed(omega_1, verdict):
+    run = quiet()
+    run["motor.omega_1_meas"][between(BEGIN, END)] = omega_1
+    run["controller.status"][between(BEGIN, END + 0.5)] = 4
+    assert clean("false alarm", run, kind="wheel spin on ice") == verdict
+
+
+def test_it_need_not_be_back_while_the_motor_turns_too_fast():
+    run = quiet()
+    run["controller.status"][between(BEGIN, 3.0)] = 4
+    assert not clean("back", run)
+    run["motor.omega_1_meas"][between(BEGIN, 2.51)] = 2001.0
+    assert clean("back", run)
+
+
+@pytest.mark.parametrize("status", [3, 4])
+@pytest.mark.parametrize(("end", "verdict"), [(END + 0.5, True), (END + 0.502, False)])
+def test_everything_is_as_before_within_half_a_second(status, end, verdict):
+    run = quiet()
+    run["controller.status"][between(BEGIN, end)] = status
+    assert clean("back", run) == verdict
+
+
+@pytest.mark.parametrize(("T_damp", "verdict"), [(1.9, True), (2.1, False), (-2.1, False)])
+def test_no_kick_after_the_return(T_damp, verdict):
+    run = quiet()
+    run["controller.status"][between(BEGIN, END + 0.2)] = 4
+    run["controller.T_damp"][between(END + 0.25, END + 0.3)] = T_damp
+    assert clean("kick", run) == verdict
+    run["plant.T_gear"][between(END + 0.1, END + 0.24)] = 0.2
+    assert clean("kick", run)
+
+
+def test_a_wheel_speed_that_is_valid_one_message_later_than_without_the_fault_is_back_at_once():
+    """The controller answers with the next sample."""
+    run = quiet()
+    run["can.valid"] = run["faults.valid"] = T > 2.3 - 1e-9
+    run["controller.status"][between(0.0, 2.302)] = 3
+    assert clean("back", run)
+    run["controller.status"][between(0.0, 2.304)] = 3
+    assert not clean("back", run)
+
+
+@pytest.mark.parametrize(("T_damp", "verdict"), [(20.0, True), (22.1, False), (-1.9, True), (-2.1, False)])
+def test_less_than_is_added_without_the_fault_is_no_kick(T_damp, verdict):
+    run, healthy = quiet(), quiet()
+    healthy["controller.T_damp"] = 20.0
+    run["controller.status"][between(BEGIN, END + 0.2)] = 4
+    run["controller.T_damp"][between(END + 0.25, END + 0.3)] = T_damp
+    assert clean("kick", run, healthy=healthy) == verdict
+
+
+@pytest.mark.parametrize(("swing", "verdict"), [(4.9, True), (5.1, False)])
+def test_no_oscillation_is_left(swing, verdict):
+    run = quiet()
+    run["plant.T_gear"] = np.where(T > 3.5, swing, 0.0) * np.sin(50.0 * T)
+    assert clean("settled", run) == verdict
+
+
+@pytest.mark.parametrize("judge", ["rms", "swing"])
+@pytest.mark.parametrize("undamped", [0.0, 20.0])
+@pytest.mark.parametrize(("ratio", "verdict"), [(1.19, True), (1.21, False)])
+def test_the_drive_train_swings_little_more_than_without_control(judge, undamped, ratio, verdict):
+    least = {"rms": 1.0 * np.sqrt(2.0), "swing": 5.0}[judge]
+    run, off = quiet(), quiet()
+    wave = np.sin(2.0 * np.pi * 10.0 * (T - 0.9))
+    run["plant.T_gear"] = ratio * max(undamped, least) * wave
+    off["plant.T_gear"] = undamped * wave
+    assert clean(judge, run, undamped=off) == verdict
+
+
+@pytest.mark.parametrize(("ratio", "verdict"), [(1.19, True), (1.21, False)])
+def test_a_swing_that_is_there_without_the_fault_is_not_its_doing(ratio, verdict):
+    """Damping may swing later than the free drive train, and then more from the fault on."""
+    run, well = quiet(), quiet()
+    wave = np.sin(2.0 * np.pi * 10.0 * (T - 0.9))
+    run["plant.T_gear"], well["plant.T_gear"] = ratio * 20.0 * wave, 20.0 * wave
+    assert clean("swing", run, healthy=well) == verdict

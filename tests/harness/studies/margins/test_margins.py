@@ -1,0 +1,108 @@
+"""The margins are those of the true loop: just below them its swing dies away in contact, just above it grows."""
+
+from dataclasses import replace
+from math import ceil, floor, inf, isnan, pi
+
+import numpy as np
+import pytest
+
+from driveline.fmus.catalogue import EVERY
+from driveline.harness.studies.margins.jacobians import NotLinear
+from driveline.harness.studies.margins.linear_controller import settled
+from driveline.harness.studies.margins.linear_loop import linear_loop
+from driveline.harness.studies.margins.linear_plant import in_contact_and_gap
+from driveline.harness.studies.margins.margins import FREQUENCIES, margins
+from driveline.harness.studies.margins.operating_point import Point
+from driveline.models import validation_vehicle
+from driveline.models.block.types import SampledBlock
+from driveline.models.controller.supervision import T_S
+from tests.harness.studies.margins.contact import INTERVAL, growth, torque
+
+CONTROLLERS = {name: fmu.block for name, fmu in EVERY.items() if isinstance(fmu.block, SampledBlock)}
+
+FEEDING_BACK = ("DampingController", "SpeedWashout", "SpeedDifference", "PaperObserver", "PerfectState")
+"""The linear observer is ours as long as the teeth are in contact."""
+
+POINTS = {name: Point(controller=CONTROLLERS[name]) for name in FEEDING_BACK}
+POINTS["PaperObserver"] = POINTS["PaperObserver"].with_parameters(controller={"k_T": 2.0, "omega_w": 120.0})
+"""With its own gains it swings at half the rate of the messages, where two frequencies beat and no growth is seen."""
+POINTS["on the vehicle"] = Point(plant=validation_vehicle.BLOCK)
+
+every_loop = pytest.mark.parametrize("point", POINTS.values(), ids=POINTS)
+
+
+@every_loop
+def test_a_delay_just_below_the_margin_is_borne_and_one_just_above_is_not(point: Point) -> None:
+    """At least half an interval off, for at the margin itself the swing neither dies away nor grows."""
+    found = margins(linear_loop(point))
+    samples = found.delay_margin / INTERVAL
+    below, above = (replace(point, late=INTERVAL * k) for k in (floor(samples - 0.5), ceil(samples + 0.5)))
+    assert growth(below, found.delay_frequency) < 1.0 < growth(above, found.delay_frequency)
+
+
+@pytest.mark.parametrize("point", [POINTS[name] for name in FEEDING_BACK])
+def test_a_gain_just_below_the_margin_is_borne_and_one_just_above_is_not(point: Point) -> None:
+    """Between teeth the wheel speed is known only as well as that of their messages is a mean over a cycle."""
+    loop = linear_loop(point)
+    found, near = margins(loop), 0.05 if loop.cycle > 1 else 0.03
+    below, above = (
+        growth(point, found.gain_frequency, share * found.gain_margin) for share in (1.0 - near, 1.0 + near)
+    )
+    assert below < 1.0 < above
+
+
+@pytest.mark.parametrize("point", [point for name, point in POINTS.items() if name != "SpeedDifference"])
+def test_the_poles_leave_the_unit_circle_at_the_same_gain_and_delay(point: Point) -> None:
+    """Exactly, where the wheel speed is not used."""
+    point = replace(point, wheel=False)
+    loop = linear_loop(point)
+    found = margins(loop)
+    for share, stable in ((0.9999, True), (1.0001, False)):
+        assert bool(np.abs(np.linalg.eigvals(loop.closed(share * found.gain_margin))).max() < 1.0) is stable
+    late = linear_loop(replace(point, late=2.0 * T_S))
+    assert margins(late).delay_margin == pytest.approx(found.delay_margin - 2.0 * T_S, rel=1e-6), "whole samples"
+
+
+@every_loop
+def test_the_linear_loop_moves_as_the_true_one(point: Point) -> None:
+    """What a step of the demand adds to the gear torque, over 0.3 s."""
+    step, samples = 2.0, 150
+    stepped, kept = (torque(point, height, duration=samples * T_S) for height in (step, 0.0))
+    true = (stepped - kept)[:: round(T_S / INTERVAL)]
+    loop = linear_loop(point)
+    z, linear = np.zeros(len(loop.C)), []
+    for k in range(samples):
+        linear.append(loop.T_gear @ z)
+        A = loop.message if k % loop.cycle == 0 else loop.quiet
+        z = A @ z + loop.B * (loop.C @ z + (step if k >= 1 else 0.0))
+    assert np.abs(true - linear).max() < (0.03 if loop.cycle > 1 else 0.003) * np.ptp(true)
+
+
+def test_a_loop_that_feeds_nothing_back_bears_everything() -> None:
+    found = margins(linear_loop(Point(controller=CONTROLLERS["NoDamping"])))
+    assert (found.gain_margin, found.phase_margin, found.delay_margin, found.M_s) == (inf, inf, inf, 1.0)
+    assert isnan(found.gain_frequency)
+
+
+def test_the_loop_is_as_late_as_it_is_said_to_be() -> None:
+    """A dead time of whole samples turns the loop gain and does nothing else."""
+    prompt, late = (linear_loop(Point(late=late, wheel=False)).gain(FREQUENCIES) for late in (0.0, 3.0 * T_S))
+    np.testing.assert_allclose(late, prompt * np.exp(-2j * pi * FREQUENCIES * 3.0 * T_S), rtol=1e-6, atol=1e-9)
+
+
+def test_a_delay_between_samples_is_between_its_neighbours() -> None:
+    margin = [margins(linear_loop(Point(late=late, wheel=False))).delay_margin for late in (0.0, 0.5 * T_S, T_S)]
+    assert margin[1] == pytest.approx(0.5 * (margin[0] + margin[2]), rel=1e-3)
+
+
+def test_a_controller_at_its_limit_is_not_linear() -> None:
+    damping = settled(Point(), in_contact_and_gap(Point())[0])[0].added.damping
+    point = Point().with_parameters(controller={"T_add_max": abs(damping)})
+    with pytest.raises(NotLinear, match=r"DampingController is not linear in contact at 4\.16667 m/s and 40 N\.m: "):
+        linear_loop(point)
+
+
+def test_a_controller_in_fallback_does_not_damp() -> None:
+    point = Point(plant=validation_vehicle.BLOCK).with_parameters(controller={"omega_max": 50.0})
+    with pytest.raises(NotLinear, match=r"does not damp at 4\.16667 m/s and 40 N\.m: it is in fallback"):
+        linear_loop(point)

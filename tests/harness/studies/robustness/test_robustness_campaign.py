@@ -1,0 +1,143 @@
+"""A campaign: all draws with every controller, resumed where it was stopped, the same runs on one process or more."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from driveline.harness.base.errors import DrivelineError, SimulationError, UnpackingError
+from driveline.harness.design.uncertainty_box import Deviation, changed, deviating
+from driveline.harness.loop.places import PLACES
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.simulation.simulate import simulate
+from driveline.harness.studies.robustness.campaign_archive import Archive
+from driveline.harness.studies.robustness.case_runs import CaseRunner
+from driveline.harness.studies.robustness.draws import draw
+from driveline.harness.studies.robustness.outcome import MANOEUVRES, Case
+from driveline.harness.studies.robustness.robustness_campaign import campaign, cases
+from tests.harness.studies.robustness.outcomes import outcome
+
+LOOPS = [("TwoMassDriveline", "DampingController"), ("TwoMassDriveline", "NoDamping")]
+
+
+class Pretended(CaseRunner):
+    """A runner that makes up its runs, and fails at one."""
+
+    def __init__(self, fails_at: int | None = None) -> None:
+        self.loops: Any = dict.fromkeys(LOOPS)
+        self.asked = []
+        self._fails_at = fails_at
+
+    def outcome(self, case):
+        if len(self.asked) == self._fails_at:
+            raise DrivelineError("stopped")
+        self.asked.append(case)
+        return outcome(case.number, case.controller, case.manoeuvre, settling_time=0.1 * case.number)
+
+
+@pytest.mark.parametrize("error", [SimulationError, UnpackingError])
+def test_what_an_fmu_refuses_is_an_outcome_and_what_the_machine_refuses_is_not(error, monkeypatch):
+    def refused(self, case):
+        raise error("no space left")
+
+    monkeypatch.setattr(CaseRunner, "results", refused)
+    case = cases(LOOPS, [1])[0]
+    if error is UnpackingError:
+        with pytest.raises(UnpackingError, match="no space left"):
+            CaseRunner.outcome(Pretended(), case)
+    else:
+        assert CaseRunner.outcome(Pretended(), case).reason == "no space left"
+
+
+def test_every_controller_gets_every_draw_in_every_manoeuvre():
+    found = campaign(Pretended(), [1, 2], workers=1)
+    expected = {(c, n, m) for _, c in LOOPS for n in (1, 2) for m in MANOEUVRES}
+    assert len(found) == len(expected)
+    assert {(each.case.controller, each.case.number, each.case.manoeuvre) for each in found} == expected
+
+
+@pytest.mark.parametrize("fails_at", [0, 1, 5])
+def test_a_campaign_goes_on_where_it_was_stopped(tmp_path, fails_at):
+    def archive():
+        made = Archive(tmp_path / "runs.csv")
+        made.begin()
+        return made
+
+    first, second = Pretended(fails_at), Pretended()
+    with pytest.raises(DrivelineError, match="stopped"):
+        campaign(first, [1, 2], archive(), workers=1)
+    found = campaign(second, [1, 2], archive(), workers=1)
+    assert len(first.asked) == fails_at
+    assert first.asked + second.asked == cases(LOOPS, [1, 2]) == [each.case for each in found]
+    third = Pretended()
+    campaign(third, [1, 2, 3], archive(), workers=1)
+    assert {case.number for case in third.asked} == {3}
+
+
+@pytest.fixture(scope="module")
+def controllers(native_builder, native, tmp_path_factory):
+    """Folder with the native FMUs of both plants and two controllers."""
+    from shutil import copytree
+
+    from driveline.fmus.catalogue import EVERY
+
+    folder = tmp_path_factory.mktemp("controllers")
+    copytree(native, folder / "native")
+    native_builder(EVERY["SpeedWashout"], folder)
+    return folder
+
+
+def runner(folder, plant="ValidationVehicle", controller="DampingController", parameters=()):
+    settings = {
+        "parameters": dict(parameters),
+        "folder": folder,
+        "build": "native",
+        "controller": controller,
+        "seed": 1,
+    }
+    return CaseRunner({(plant, controller): (plant, settings)}, seed=1)
+
+
+@pytest.mark.parametrize("plant", PLACES["plant"])
+@pytest.mark.parametrize("controller", ["DampingController", "SpeedWashout"])
+def test_a_case_is_the_drawn_car_with_the_drawn_noise(controllers, plant, controller):
+    case, drawn = Case(plant, controller, 3, "tipout"), draw(3, 1)
+    settings = {"folder": controllers, "build": "native", "controller": controller, "seed": drawn.noise}
+    parameters = deviating({}, plant, controller, drawn.deviation)
+    expected = simulate(CATALOGUE["tipout"], plant, parameters=parameters, **settings)
+    made = runner(controllers, plant, controller)
+    assert (made.results(case) == expected).all()
+    metrics, found = evaluate(expected, CATALOGUE["tipout"]), made.outcome(case).measured
+    assert found["settling_time"] == metrics.settling_time
+    assert found["gear_torque_peak"] == np.abs(expected["plant.T_gear"]).max() / 180.0
+
+
+def test_a_factor_is_on_what_was_set(controllers):
+    made = runner(controllers, parameters={"plant.m": 1000.0, "motor.tau": 0.004})
+    blocks = made.loops["ValidationVehicle", "DampingController"].blocks
+    found = changed(blocks, Deviation(m=1.2, tau=0.5, J_2=2.0))
+    assert (found["plant.m"], found["motor.tau"], found["plant.J_w"]) == (1200.0, 0.002, 2.0 * 1.8)
+
+
+def test_an_fmu_that_refuses_the_run_is_a_run_without_metrics(controllers):
+    case = Case("ValidationVehicle", "DampingController", 1, "tipout")
+    found = runner(controllers, parameters={"plant.r": 99.0}).outcome(case)
+    assert not found.bounded
+    assert "plant" in found.reason
+    assert "99" in found.reason
+
+
+def test_an_fmu_that_was_changed_since_is_refused(controllers, tmp_path):
+    from shutil import copytree
+
+    copytree(controllers, tmp_path / "fmus")
+    made = runner(tmp_path / "fmus")
+    one = tmp_path / "fmus" / "native" / "WheelSpeedCan.fmu"
+    made.results(Case("ValidationVehicle", "DampingController", 1, "tipout"))
+    one.write_bytes((tmp_path / "fmus" / "native" / "MotorTorqueLoop.fmu").read_bytes())
+    with pytest.raises(DrivelineError, match=r"WheelSpeedCan\.fmu is not the one that the campaign was begun with"):
+        made.results(Case("ValidationVehicle", "DampingController", 1, "tipout"))
+    one.unlink()
+    with pytest.raises(DrivelineError, match="there is no FMU"):
+        made.results(Case("ValidationVehicle", "DampingController", 2, "tipout"))

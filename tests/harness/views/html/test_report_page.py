@@ -1,0 +1,85 @@
+"""Reports as files: refused in time, complete or absent, safe whatever names they show."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from driveline.harness.commands.cli import main
+from driveline.harness.views.html.linked_figures import Curve, Panel, linked, source_of, window
+from driveline.harness.views.html.report_page import Section, require_report, write_report
+from driveline.harness.views.html.report_tables import Heading, Row, Table
+from driveline.harness.views.html.thinning import MOST_ROWS, VALUES, extremes, stride
+
+PROVENANCE = {"program": "p", "commit": None, "command_line": "c", "fmus": {}, "inputs": {}, "run": {"seed": 1}}
+
+ONE = np.ones(1)
+
+
+@pytest.mark.parametrize("command", ["compare", "replay drive.csv", "identify drive.csv", "robustness", "faults"])
+def test_a_report_that_is_no_page_is_refused_before_anything_is_run(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([*command.split(), "--report", "report.pdf"]) == 2
+    assert capsys.readouterr().err.endswith("--report report.pdf: a report is a .html file\n")
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_what_draws_one_line_names_the_extra(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "bokeh", None)
+    assert main(["compare", "--report", "report.html"]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "install the extra `report`" in error
+
+
+def test_without_a_report_nothing_of_what_draws_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "bokeh", None)
+    require_report(None)
+
+
+def test_the_report_of_another_run_is_not_replaced(
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "report.html"
+    page.write_text("mine", encoding="utf-8")
+    run = ["compare", "--manoeuvre", "tipin15", "--fmus", str(both_built), "--output", str(tmp_path / "out")]
+    assert main([*run, "--report", str(page), "--quiet"]) == 2
+    assert f"{page} is there" in capsys.readouterr().err
+    assert page.read_text(encoding="utf-8") == "mine"
+
+
+def test_names_of_files_are_text_and_nothing_else(tmp_path: Path) -> None:
+    evil = "<script>alert(1)</script>"
+    table = Table([Heading(evil, evil, True)], [Row([evil], evil)], [evil])
+    figures = linked(
+        [Panel(evil, [Curve(evil, evil, "black")])], source_of({"time": ONE, evil: ONE}), window(0, 1), evil
+    )
+    provenance = {**PROVENANCE, "inputs": {evil: evil}}
+    write_report(evil, evil, [Section(evil, evil, table, figures)], provenance, tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert evil not in text
+    assert text.count("&lt;script&gt;alert(1)") >= 9
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_no_page_holds_more_values_than_it_may() -> None:
+    assert stride(MOST_ROWS, 2, 10) == 1
+    assert stride(MOST_ROWS + 1, 2, 10) == 2
+    many = 40
+    assert many * 10 * 10_000 / stride(10_000, many, 10) <= VALUES
+
+
+def test_no_peak_is_lost_where_a_drive_is_shown_as_a_whole() -> None:
+    t = 0.002 * np.arange(100_000)
+    signal = np.sin(t)
+    signal[54_321] = 7.0
+    times, values = extremes(t, signal[:, np.newaxis], 1500)
+    assert len(times) == len(values) == 3000
+    assert values.max() == 7.0
+    assert times[values.argmax()] == pytest.approx(t[54_321], abs=0.14)
+    assert (np.diff(times) > 0.0).all()

@@ -1,0 +1,55 @@
+"""Rest: neither demand nor motion, and for how long."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from driveline.models.controller import standstill
+from driveline.models.controller.supervision import Parameters
+
+P = Parameters(T_still=2.0, omega_still=3.0, t_rest=1.0, t_fade=0.5)
+T_S = 0.25
+
+
+def above(limit: float) -> float:
+    return math.nextafter(limit, math.inf)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_car_is_still_up_to_a_demand_and_a_motor_speed(side: float) -> None:
+    assert standstill.is_still(side * 2.0, side * 3.0, P)
+    assert not standstill.is_still(side * above(2.0), 0.0, P)
+    assert not standstill.is_still(0.0, side * above(3.0), P)
+
+
+def test_the_time_of_stillness_is_counted_no_further_than_to_complete_rest() -> None:
+    times, quiet = [], 0.0
+    for _ in range(8):
+        quiet = standstill.quiet_time(quiet, True, T_S, P)
+        times.append(quiet)
+    assert times == [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.5, 1.5]
+
+
+def test_a_demand_or_motion_ends_rest_at_once() -> None:
+    assert standstill.quiet_time(1.5, False, T_S, P) == 0.0
+
+
+def test_the_damping_fades_out_after_the_time_at_rest() -> None:
+    assert [standstill.share(quiet, P) for quiet in (0.0, 1.0, 1.125, 1.25, 1.5)] == [0.0, 0.0, 0.25, 0.5, 1.0]
+
+
+@given(t_rest=st.floats(0.0, 10.0), t_fade=st.floats(0.002, 5.0))
+def test_rest_is_complete_whatever_the_rounding_of_its_times(t_rest: float, t_fade: float) -> None:
+    p = P._replace(t_rest=t_rest, t_fade=t_fade)
+    assert standstill.share(standstill.longest(p), p) == 1.0
+    assert standstill.share(0.0, p) == 0.0
+
+
+def test_the_time_since_rest_is_counted_no_further_than_a_launch() -> None:
+    times, since = [], standstill.LAUNCH
+    for resting in (False, True, True, False, False, False, False, False, False):
+        since = standstill.time_since(since, resting, T_S)
+        times.append(since)
+    assert times == [1.0, 0.0, 0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 1.0]

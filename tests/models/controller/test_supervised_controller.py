@@ -1,0 +1,142 @@
+"""A second estimator and a second law: a file each, and one line that joins them (OTHER, in controllers.py)."""
+
+import math
+from typing import Any, NamedTuple
+
+import pytest
+
+from driveline.models.block.declaration import variables
+from driveline.models.block.runner import runner
+from driveline.models.comparators import measured_speeds, speed_washout
+from driveline.models.comparators.speed_washout import Washout
+from driveline.models.controller import damping_law, standstill, supervision, torque_estimator, torque_loop
+from driveline.models.controller.interfaces import Addition, Estimator, Law, Motion
+from driveline.models.controller.signal_trust import TrustState
+from driveline.models.controller.supervised_controller import supervised
+from driveline.models.controller.supervision import T_S
+from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken
+
+
+def test_the_parameters_are_those_of_the_parts_and_of_the_supervision() -> None:
+    parts = measured_speeds.Parameters, Washout.Parameters, supervision.Parameters
+    assert variables(speed_washout.BLOCK.Parameters) == tuple(v for part in parts for v in variables(part))
+
+
+@pytest.mark.parametrize("law", [damping_law, Washout()], ids=["damping_law", "washout"])
+@pytest.mark.parametrize("estimator", [torque_estimator, measured_speeds], ids=lambda estimator: estimator.__name__)
+def test_every_law_damps_behind_every_estimator(estimator: Estimator, law: Law) -> None:
+    """A part declares all that it reads beside the parameters of the supervision."""
+    states = run(supervised("Joined", "of any two parts", __name__, estimator, law), shaken(0.5))
+    assert 5.0 < max(abs(x.T_damp) for x in states) <= supervision.Parameters().T_max
+
+
+def test_it_damps_by_its_own_law() -> None:
+    inputs = shaken(0.5)
+    states, slow, p = run(OTHER, inputs), inputs[0].omega_1_meas, OTHER.Parameters()
+    for x, u in zip(states[1:], inputs, strict=True):
+        assert x.T_damp == pytest.approx(-p.k_v * (u.omega_1_meas - slow), abs=1e-9)
+        slow += p.omega_v * T_S * (u.omega_1_meas - slow)
+    assert max(abs(x.T_damp) for x in states) > 10.0
+
+
+class Ahead(NamedTuple):
+    """State of a law that adds nothing."""
+
+    change: float
+
+
+class Nothing(NamedTuple):
+    """No parameters."""
+
+
+class LooksAhead:
+    """How much faster (rad/s) the motor will be after 10 ms."""
+
+    Parameters = Nothing
+
+    def start(self, motion: Motion, T_driver: Any, p: Any) -> Ahead:
+        return Ahead(0.0)
+
+    def update(self, x: Ahead, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[Ahead, Addition]:
+        return Ahead(later(0.01).omega_1 - motion.omega_1), Addition(0.0, 0.0)
+
+
+def test_what_is_ahead_is_the_motion_under_the_torque_that_the_motor_will_have() -> None:
+    """In the gap the motor has its inertia alone, and half of what it is still to gain acts over the time."""
+    block = supervised("Ahead", "looks ahead", __name__, torque_estimator, LooksAhead())
+    floating = ROLLING._replace(T_driver=0.0, T_mot_est=0.0)
+    before, now = run(block, [floating, floating._replace(T_driver=50.0)])[1:]
+    assert (before.law.change, before.T_ref, now.T_ref) == (0.0, 0.0, 50.0)
+    after = block.update(now, floating._replace(T_driver=50.0), block.Parameters())
+    p = block.Parameters()
+    gained = torque_loop.update(now.monitor.loop, 50.0, 0.01, p).T_mot
+    assert after.law.change == pytest.approx(0.01 * 0.5 * gained / p.J_1, rel=0.02)
+    assert gained > 40.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("T_driver", [20.0, 60.0, 120.0, 180.0])
+def test_a_free_motor_is_compared_with_the_torque_of_the_same_sample(T_driver: float, side: float) -> None:
+    """Out of rest, with a step of the demand: the motor's speed follows from the torque that it has."""
+    p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
+    x = OURS.start(standing, p)._replace(since_rest=0.0)
+    omega, T_mot = 0.0, 0.0
+    while x.launch_direction.way == 0.0 and omega < 20.0:
+        x = OURS.update(x, standing._replace(T_driver=T_driver, T_mot_est=T_mot, omega_1_meas=side * omega), p)
+        before, T_mot = T_mot, x.monitor.loop.T_mot
+        omega += 0.5 * T_S * (before + T_mot) / p.J_1
+    assert x.launch_direction.way == side
+
+
+def test_a_speed_of_the_wrong_sign_does_not_heal() -> None:
+    """In fallback, while the car pulls away; however steady the speed of the other direction is."""
+    p, backwards = OURS.Parameters(), ROLLING._replace(T_driver=20.0, T_mot_est=20.0, omega_1_meas=-10.0, valid=False)
+    x = OURS.start(backwards, p)
+    away = x.launch_direction._replace(pushed=True, free=4.5, way=1.0)
+    x = x._replace(
+        launch_direction=away, since_rest=0.2, trust=TrustState(heal_time=0.0, needed=p.t_proof, latched=False)
+    )
+    statuses = []
+    for k in range(round(1.2 / T_S)):
+        x = OURS.update(x, backwards._replace(omega_1_meas=-10.0 + 0.3 * (-1) ** k), p)
+        statuses.append(x.status)
+    proven = statuses.index(supervision.WITHOUT_WHEEL_SPEED) * T_S
+    assert proven == pytest.approx(standstill.LAUNCH - 0.2 + p.t_proof, abs=2.0 * T_S)
+
+
+def test_rest_clears_a_doubt_when_it_is_complete_and_no_sample_sooner() -> None:
+    """A latched failure needs no further heal time."""
+    p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
+    x = OURS.start(standing, p)._replace(
+        quiet=0.0, trust=TrustState(heal_time=0.0, needed=32.0 * p.t_proof, latched=True)
+    )
+    samples = round(standstill.longest(p) / T_S)
+    for k in range(1, samples + 2):
+        x = OURS.update(x, standing._replace(omega_1_meas=0.01 * (-1) ** k), p)
+        assert x.trust.latched == (standstill.share(x.quiet, p) < 1.0)
+    assert x.trust.needed == p.t_proof
+
+
+def test_a_runner_takes_it_as_it_takes_any_block() -> None:
+    inputs = shaken(0.2)
+    running = runner(OTHER, inputs[0], OTHER.Parameters())
+    for x, u in zip(run(OTHER, inputs)[1:], inputs, strict=True):
+        running.advance(u, T_S)
+        assert running.output(u) == OTHER.output(x, u, None)
+
+
+def test_it_is_traced_for_the_native_build() -> None:
+    """And computes with symbols what it computes with numbers, in fallback too."""
+    pytest.importorskip("casadi", reason="the extra `native` is not installed")
+    from driveline.fmus.native.trace import leaves, trace
+
+    functions = {each.name: each.function for each in trace(OTHER)}
+    p, inputs = OTHER.Parameters(), shaken(0.2)
+    inputs = [u._replace(T_mot_est=math.nan) if 40 <= k < 60 else u for k, u in enumerate(inputs)]
+    states = run(OTHER, inputs)
+    assert supervision.FALLBACK in {x.status for x in states}
+    for x, u, after in zip(states, inputs, states[1:], strict=False):
+        computed = functions["update"](leaves(x), leaves(u), leaves(p)).full().ravel()
+        assert computed.tolist() == pytest.approx([float(value) for value in leaves(after)], rel=1e-12)
+    shown = functions["output"](leaves(states[-1]), leaves(ROLLING), leaves(p)).full().ravel()
+    assert shown.tolist() == list(OTHER.output(states[-1], ROLLING, p))
