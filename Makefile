@@ -43,7 +43,7 @@ test: $(READY) ## all tests
 
 test-target: $(READY) ## the controller's C on an emulated processor; says what to apt-get install
 	$(BIN)/python -m driveline.fmus.target
-	$(BIN)/python -m pytest tests/fmus/target tests/harness/target
+	$(BIN)/python -m pytest tests/fmus/target tests/harness/exchange/target
 
 mutation: $(READY) ## small faults put into the controller and the C core, one by one: do the tests find them?
 	$(BIN)/python tests/mutation
