@@ -107,9 +107,11 @@ docs: cross ## the pages of the documentation that are computed
 	cp results/bound/bound.md docs/
 	cp results/bound/figures/bound.png docs/figures/
 	$(BIN)/driveline compare --replace
-	{ printf '# Results\n\nMade by `make docs` from the table of `driveline compare`; do not edit.\n\n'; \
-		cat results/compare/table.md; } > docs/results.md
+	{ printf '# Results\n\n'; \
+		cat results/compare/table.md; \
+		printf '\nMade by `make docs` from the table of `driveline compare`; do not edit.\n'; } > docs/results.md
 	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
+	$(BIN)/python -m docs.studies.tutorial_figures
 
 $(SITE): $(READY)
 	$(INSTALL) '.[site]'

@@ -14,6 +14,7 @@ BY_HAND = ""
 
 MADE_BY = {
     "drive.png": "driveline compare",
+    "tutorial_*.png": "python -m docs.studies.tutorial_figures",
     "analysis_*.png": "driveline analyse",
     "calibration_*.png": "python -m docs.studies.calibration_page",
     "identification_simulation.png": "driveline identify results/record/ValidationVehicle_prbs_off.csv",

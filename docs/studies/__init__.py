@@ -1,1 +1,1 @@
-"""What makes the pages of the documentation."""
+"""Makes figures and pages of the documentation that no command of `driveline` makes."""

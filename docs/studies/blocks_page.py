@@ -8,16 +8,13 @@ from driveline.fmus.fmu import Fmu
 
 PATH = Path(__file__).parents[2] / "docs" / "blocks.md"
 
-HEAD = """\
-# The blocks
-
-Made by `python -m docs.studies.blocks_page` from the declarations in `models/`; do not edit.
-"""
+HEAD = "# The blocks\n"
+END = "Made by `python -m docs.studies.blocks_page` from the declarations in `models/`; do not edit.\n"
 
 
 def blocks_page() -> str:
     """The page as Markdown."""
-    return "\n".join([HEAD, *(_section(fmu) for fmu in FMUS.values())])
+    return "\n".join([HEAD, *(_section(fmu) for fmu in FMUS.values()), END])
 
 
 def _section(fmu: Fmu) -> str:

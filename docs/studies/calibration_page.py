@@ -34,8 +34,6 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE = """\
 # Calibration in a car
 
-Made by `python -m docs.studies.calibration_page`; do not edit.
-
 How to set the controller up in a car, and what to turn when something is not as it should be. All figures are those of
 the default car, means over the noise of three seeds, on both plants: `TwoMassDriveline` is the model that the
 controller knows, `ValidationVehicle` one that it does not. [derivation.md](derivation.md) says what each parameter
@@ -121,6 +119,8 @@ are in [control.md](control.md#signals-that-fail); how far healthy drives stay a
 
 The torque estimate is compared with what `T_ref` and `tau` let expect, up to 5 % of `T_max` and 35 %. With five times
 the lag the torque comes so late that the damping feeds the swing, and that is what is found.
+
+Made by `python -m docs.studies.calibration_page`; do not edit.
 """
 
 PLANT = """\

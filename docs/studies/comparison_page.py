@@ -42,8 +42,6 @@ DEARER = 1.1
 PAGE = """\
 # The controllers side by side
 
-Made by `python -m docs.studies.comparison_page`; do not edit.
-
 Every controller through the same manoeuvres, each with its default parameters ([tuning.md](tuning.md) says how
 they were found). Means over the noise of seeds {seeds}, which no search has seen. In bold what is best of the
 controllers that a car can have: `{mark}` sees the true motion and is a mark.
@@ -51,6 +49,8 @@ controllers that a car can have: `{mark}` sees the true motion and is a mark.
 cars that are drawn, [replay.md](replay.md) on recorded drives.
 
 {plants}
+
+Made by `python -m docs.studies.comparison_page`; do not edit.
 """
 
 PLANT = """\
@@ -88,8 +88,8 @@ def measured(run: tuple[Key, int]) -> Metrics:
 
 def page(found: Found) -> str:
     """The page as Markdown."""
-    plants = "\n".join(_plant(plant, found) for plant in PLANTS)
-    return PAGE.format(seeds=", ".join(map(str, HELD_OUT_SEEDS)), mark=MARK, plants=plants).rstrip() + "\n"
+    plants = "\n".join(_plant(plant, found) for plant in PLANTS).rstrip()
+    return PAGE.format(seeds=", ".join(map(str, HELD_OUT_SEEDS)), mark=MARK, plants=plants)
 
 
 def _plant(plant: str, found: Found) -> str:

@@ -27,14 +27,14 @@ SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.colum
 PAGE = """\
 # The design on other cars
 
-Made by `python -m docs.studies.design_page`; do not edit.
-
 The default car and those of `examples/cars/`, driven without damping / with the gains of the default car / with gains
 designed for the car itself ([control.md](control.md) says how). The estimator is told the true car in either case.
 Means over the noise of three seeds. The design knows the design model alone: on the validation vehicle its gains
 are not better in every row.
 
 {cars}
+
+Made by `python -m docs.studies.design_page`; do not edit.
 """
 
 CAR = """\
@@ -51,7 +51,7 @@ Found = Mapping[Trial, Metrics]
 
 def page(found: Found) -> str:
     """The page as Markdown."""
-    return PAGE.format(cars="\n".join(_car(vehicle, found) for vehicle in CARS)).rstrip() + "\n"
+    return PAGE.format(cars="\n".join(_car(vehicle, found) for vehicle in CARS).rstrip())
 
 
 def _car(vehicle: Path | None, found: Found) -> str:

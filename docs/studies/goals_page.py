@@ -17,8 +17,6 @@ NAMED = 3
 PAGE = """\
 # Goals
 
-Made by `python -m docs.studies.goals_page`; do not edit.
-
 What the controller is to reach on both plants, and what it reaches with its default parameters: means over the noise
 of seeds {seeds}, which no search has seen. In bold what is not reached: {missed} of {all}.
 [comparison.md](comparison.md) has the other controllers, [bound.md](bound.md) what none can beat, and
@@ -34,6 +32,8 @@ the one that comes closest. No change reaches more than {harmless} of the {misse
 Several at once are what the search of [tuning.md](tuning.md) looks for.
 
 {changes}
+
+Made by `python -m docs.studies.goals_page`; do not edit.
 """
 
 

@@ -67,6 +67,8 @@ def test_python_can_be_read_and_imports_what_is_there(page: Path) -> None:
             if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in OURS:
                 module = import_module(str(node.module))
                 assert not [alias.name for alias in node.names if not hasattr(module, alias.name)], node.module
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "driveline":
+                assert hasattr(import_module("driveline"), node.attr), node.attr
 
 
 @EVERY_PAGE

@@ -1,12 +1,14 @@
 """The pages that are made for the site say what the code says."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 from docs.site import commands, links, reference
 from driveline.harness.commands.cli import COMMANDS, complete_commands, parser
 from tests import ROOT
+from tests.docs.pages import PAGES, named, text_of
 from tests.docs.test_code_blocks import options
 from tests.test_rooms import modules
 
@@ -66,3 +68,9 @@ def test_on_the_site_pages_are_called_by_their_titles() -> None:
 def test_links_to_elsewhere_stay() -> None:
     text = "[a](https://example.org/x.md) [b](#below) [c](mailto:a@b.c)"
     assert links.fitted(text, "index.md") == text
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_a_page_that_is_made_says_so_at_its_end_alone(page: Path) -> None:
+    said = [number for number, line in enumerate(text_of(page).splitlines(), 1) if "do not edit" in line]
+    assert said in ([], [len(text_of(page).splitlines())])

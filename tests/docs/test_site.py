@@ -129,3 +129,20 @@ def test_a_browser_fetches_nothing_for_a_page(site: Path, chromium: Browser, pag
     assert any(address.endswith(f"{page}.html") for address in fetched)
     assert all(address.startswith("file:") for address in fetched)
     assert chromium.console() == []
+
+
+WIDER = """\
+[...document.querySelectorAll('article table')].filter((table) =>
+  Math.max(table.scrollWidth, table.getBoundingClientRect().width)
+    > (table.closest('.md-typeset__scrollwrap') ?? table.parentElement).clientWidth + 1
+).map((table) => table.rows[0].innerText)
+"""
+"""The headings of the tables of a page that are wider than the place that they have."""
+
+
+@pytest.mark.parametrize("page", [page.stem for page in DOCS if "| --" in text_of(page) or "|--" in text_of(page)])
+def test_tables_are_whole_on_a_screen_of_1280_pixels(site: Path, chromium: Browser, page: str) -> None:
+    chromium.chrome.set_window_size(1280, 900)
+    chromium.chrome.get((site / f"{page}.html").as_uri())
+    chromium.until("document.querySelectorAll('.md-typeset__scrollwrap').length > 0")
+    assert chromium.js(WIDER) == []

@@ -15,12 +15,15 @@ FAULT = "not as promised"
 HEAD = """\
 # Reliability
 
-Made by `make fuzz` (tests/fuzz), do not edit. Odd input by the thousand, drawn from a seed: every try has to be
-answered as promised. `python -m tests.fuzz calls --tries 1000 --seed 7` makes more of one kind; some of each are in
-`make test`.
+Odd input by the thousand, drawn from a seed: every try has to be answered as promised.
+`python -m tests.fuzz calls --tries 1000 --seed 7` makes more of one kind; some of each are in `make test`.
 
 | input | what is promised | tries | answers | not as promised |
 | --- | --- | ---: | --- | ---: |
+"""
+
+END = """
+Made by `make fuzz`; do not edit.
 """
 
 
@@ -29,7 +32,8 @@ def record(name: str, seed: int, answers: Mapping[str, int]) -> None:
     runs = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
     runs[name] = {"seed": seed, "answers": dict(sorted(answers.items()))}
     RECORD.write_text(json.dumps(runs, indent=2, sort_keys=True) + "\n", encoding="utf-8")
-    PATH.write_text(HEAD + "".join(_row(name, runs[name]["answers"]) for name in TARGETS if name in runs), "utf-8")
+    rows = "".join(_row(name, runs[name]["answers"]) for name in TARGETS if name in runs)
+    PATH.write_text(HEAD + rows + END, "utf-8")
 
 
 def _row(name: str, answers: Mapping[str, int]) -> str:

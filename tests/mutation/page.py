@@ -15,11 +15,10 @@ SCORE = ROOT / "tests" / "mutation" / "score.json"
 HEAD = """\
 # Mutation run
 
-Made by `make mutation` (tests/mutation), do not edit. Small faults were put into the code one at a time: numbers
-changed by a fifth, `<` made `<=` or `>=`, `+` made `-`, `min` made `max`, `and` made `or`, both sides of a choice
-swapped, limits and statements left out, a field of the next state left as it was. A fault is found when a test fails,
-the compiler refuses it, or the tests never end. `python tests/mutation fmus/native/c/run.c` runs one file anew,
-`--every 5` tries one of five faults.
+Small faults were put into the code one at a time: numbers changed by a fifth, `<` made `<=` or `>=`, `+` made `-`,
+`min` made `max`, `and` made `or`, both sides of a choice swapped, limits and statements left out, a field of the next
+state left as it was. A fault is found when a test fails, the compiler refuses it, or the tests never end.
+`python tests/mutation fmus/native/c/run.c` runs one file anew, `--every 5` tries one of five faults.
 """
 
 
@@ -75,4 +74,5 @@ def page(score: dict[str, dict[str, str | int]]) -> str:
         del explained[name]
     for (file, line, fault), why in explained.items():
         lines += ["", f"`{file}`: `{line}`", "", f"`{fault}`", "", f"- {why}"]
+    lines += ["", "Made by `make mutation`; do not edit."]
     return "\n".join(lines) + "\n"

@@ -21,8 +21,6 @@ CLOCK = 120e6
 PAGE = """\
 # The controller on a processor
 
-Made by `driveline target record`; do not edit.
-
 ```sh
 driveline target export                                              # its C in single precision, into build/target
 driveline target export --precision double --output build/double
@@ -172,6 +170,8 @@ that enables the floating-point unit (CPACR), copies `.data`, clears `.bss` and 
 
 On a real board the link is a serial port at the same bytes: a letter and the numbers as they lie in memory, little
 endian, see `link.c`. A project that only wants the controller needs none of this.
+
+Made by `driveline target record`; do not edit.
 """
 
 IDENTITY = """\

@@ -9,8 +9,6 @@ from .back_to_back import STEP_SIZE, Differences
 PAGE = """\
 # Back to back
 
-Made by `driveline back-to-back`; do not edit.
-
 The same inputs go through the Python functions of a block, through its FMU built with PythonFMU and
 through its native FMU. What is compared are all outputs at all communication points, {step:g} ms apart: a
 difference is the largest distance from the native FMU in a signal, over the largest value of that signal, and
@@ -29,6 +27,8 @@ and of the FMU built with PythonFMU, both fed with what the native FMU got in th
 whole loop when that FMU takes the native one's place.
 
 {loops}
+
+Made by `driveline back-to-back`; do not edit.
 """
 
 

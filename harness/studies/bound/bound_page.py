@@ -17,8 +17,6 @@ from .switching_search import BORDER
 PAGE = """\
 # What is possible, and {controller} beside it
 
-Made by `driveline bound --output FOLDER{arguments}`; do not edit.
-
 No controller can do better than an optimal torque that is computed with full knowledge: of the car, of its state, of
 what the driver will do. Here is that torque for the manoeuvres that are a step or a steep ramp, on the design model, at
 the same response to the driver as the controller has: 90 % of the way at the same sample, no more torque withheld (nor
@@ -82,6 +80,8 @@ demand. To keep the programme small it is held over several samples later on, wh
   grid finds.
 
 The validation vehicle has no such bound: its tyres, ripple and differential are not linear for given contacts.
+
+Made by `driveline bound --output FOLDER{arguments}`; do not edit.
 """
 
 COLUMNS = {metric.name: metric.column for metric in declared(Metrics) if metric.column} | {

@@ -11,8 +11,6 @@ from .step_dependence import STEPS, Case
 PAGE = """\
 # Coupling error and dead time of the master
 
-Made by `driveline coupling`; do not edit.
-
 The master steps FMUs that know of each other only at the communication points. What that does to the
 loop is measured here against its monolithic solution (`harness/studies/coupling/monolithic.py`): motor and plant
 integrated as one system, the sampled blocks ticking with the values of exactly that instant. Noise and
@@ -77,6 +75,8 @@ time or a delay that is a sample earlier or later counts as equal. The impact sp
 so it is as good as they are dense.
 
 {metrics}
+
+Made by `driveline coupling`; do not edit.
 """
 
 

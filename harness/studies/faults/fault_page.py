@@ -12,13 +12,13 @@ from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
 PAGE = """\
 # The controller under faults
 
-Made by `driveline faults --cases {cases}{arguments}`; do not edit. This runs one of the cases again and draws it:
-
-    driveline faults --case NUMBER{arguments}
-
 {cases} runs of {duration:g} s: {clean} are clean, {failed} are not. {singles} have one fault, {pairs} a pair.
 The faults come between the sensors and the controller, from an FMU of its own (`models/signal_faults.py`); the same
 seed makes the same cases. Each run stands beside two others with the same noise: without the fault and without control.
+
+This runs one of the cases again and draws it:
+
+    driveline faults --case NUMBER{arguments}
 
 ## What goes wrong
 
@@ -68,6 +68,8 @@ Single faults:
 Pairs of faults:
 
 {pair_classes}
+
+Made by `driveline faults --cases {cases}{arguments}`; do not edit.
 """
 
 

@@ -19,8 +19,6 @@ from .sensitivity_figure import most_important
 PAGE = """\
 # The loop with {controller}
 
-Made by `driveline analyse --output FOLDER{arguments}`; do not edit.
-
 The loop is linear while the teeth stay on one flank. Its model comes from the functions of the blocks themselves: they
 are differentiated where car and controller have settled under {torque:.0%} of the largest torque, so any controller of
 the catalogue can be analysed, and nothing is written a second time. The delays are the true ones: the sample in which
@@ -89,6 +87,8 @@ in `sensitivity.csv`.
 ![sensitivity](figures/analysis_sensitivity.png)
 
 {sensitivities}
+
+Made by `driveline analyse --output FOLDER{arguments}`; do not edit.
 """
 
 

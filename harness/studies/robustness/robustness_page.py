@@ -12,16 +12,16 @@ from .summary import Summary, cells, goal
 PAGE = """\
 # Robustness
 
-Made by `driveline robustness --cases {cases}{arguments}`; do not edit. This runs one of the draws again and draws it:
-
-    driveline robustness --case NUMBER{arguments}
-
 {cases} cars with their sensors are drawn. Each is driven with every controller, through
 
 {manoeuvres}
 
 which makes {runs} runs. No controller is told anything of the draw. Draw and noise follow from the seed and the number
 of a draw alone, so they are the same for every controller, both plants and any number of cores.
+
+This runs one of the draws again and draws it:
+
+    driveline robustness --case NUMBER{arguments}
 
 ## What is drawn
 
@@ -64,6 +64,8 @@ been made, `robustness.json` says what made them. With more `--cases` it keeps t
 and nothing else changed. Every worker needs this package and the FMUs at the same path, as on a shared disk; an FMU
 with another content is refused. What a worker has answered is fetched at once. When one is lost, what it had not
 answered is run again by another one.
+
+Made by `driveline robustness --cases {cases}{arguments}`; do not edit.
 """
 
 

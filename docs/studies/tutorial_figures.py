@@ -1,0 +1,44 @@
+"""Makes the figures of docs/tutorial.md by its own commands: `python -m docs.studies.tutorial_figures`."""
+
+import re
+import shlex
+import shutil
+from collections.abc import Iterator
+from contextlib import chdir
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from driveline.harness.commands.cli import main as driveline
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "tutorial.md"
+
+FIGURES = {
+    "tutorial_oscillation.png": "results/simulate/TwoMassDriveline_tipin15_off.png",
+    "tutorial_damped.png": "results/first/TwoMassDriveline_tipin15.png",
+    "tutorial_van.png": "results/van/TwoMassDriveline_tipin15.png",
+}
+"""The files in docs/figures, with where the commands of the page write them."""
+
+
+def commands() -> Iterator[list[str]]:
+    """The arguments of each `driveline` on the page, in their order, but for those that build the FMUs."""
+    for script in re.findall(r"^```sh\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.M | re.S):
+        for line in script.splitlines():
+            program, *arguments = shlex.split(line, comments=True)
+            if program == "driveline" and arguments != ["build"]:
+                yield arguments
+
+
+def main() -> None:
+    with TemporaryDirectory() as folder, chdir(folder):
+        Path("examples").symlink_to(ROOT / "examples")
+        for arguments in commands():
+            if driveline(arguments) != 0:
+                raise SystemExit(f"docs/tutorial.md: driveline {shlex.join(arguments)}")
+        for figure, written in FIGURES.items():
+            shutil.copyfile(written, ROOT / "docs" / "figures" / figure)
+
+
+if __name__ == "__main__":
+    main()
