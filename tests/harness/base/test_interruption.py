@@ -66,13 +66,13 @@ def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
         time.sleep(0.02)
     process.terminate()
     out, err = process.communicate(timeout=60)
-    assert (process.returncode, out, err) == (143, "", "untold: stopped\n")
+    assert (process.returncode, out, err) == (143, "", "undetectable_faults: stopped\n")
     assert list(tmp_path.iterdir()) == []
 
 
 MAINS = [
     path
-    for path in [*(ROOT / "harness").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
+    for path in [*(ROOT / "docs/studies").glob("*.py"), *(ROOT / "harness").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
     if "\ndef main(" in (text := path.read_text(encoding="utf-8")) and '__name__ == "__main__"' in text
 ]
 
