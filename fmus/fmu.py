@@ -25,7 +25,7 @@ class Fmu:
     block: Block
     stop_time: float
     step_size: float = 0.001
-    start_values: Mapping[str, Any] = field(default_factory=dict)
+    start_values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     image: bytes = b""
 
     @property

@@ -12,7 +12,7 @@ def _operator(name: str) -> Operator:
 
 def _operators(name: str) -> tuple[Operator, Operator]:
     """The operator with the symbol on the left, and with it on the right alone."""
-    return _operator(name), lambda right, left: right.after(name, left, right)
+    return _operator(name), lambda *operands: operands[0].after(name, *reversed(operands))
 
 
 class Symbol:

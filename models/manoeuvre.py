@@ -9,7 +9,7 @@ instant are a jump, from which on the later one counts. Instants are taken as wh
 from dataclasses import replace
 from typing import Annotated, Any, NamedTuple
 
-from .block.declaration import Real, quantities, variables
+from .block.declaration import Real, Record, quantities, variables
 from .block.operators import floor, logical_and, where
 from .block.types import ContinuousBlock
 from .physics.plant import Input as PlantInput
@@ -38,7 +38,7 @@ class Output(NamedTuple):
     slope: Annotated[float, Real("rad", "slope of the road, positive uphill", nominal=0.1)]
 
 
-_PLANT: dict[str, Any] = {q.name: q.declaration for q in variables(PlantInput)}
+_PLANT = {q.name: q.declaration for q in variables(PlantInput)}
 _SIGNALS = {"T_driver": _PLANT["T_mot"], "T_brake": _PLANT["T_brake"], "slope": _PLANT["slope"]}
 """Unit and bounds, as the plants have them."""
 
@@ -53,20 +53,20 @@ def _point(k: int) -> dict[str, tuple[Any, float]]:
 Parameters = quantities("Parameters", {name: q for k in range(1, POINTS + 1) for name, q in _point(k).items()})
 
 
-def start(u: Input, p: Any) -> State:
+def start(u: Input, p: Record) -> State:
     return State(t=0.0)
 
 
-def derivative(x: State, u: Input, p: Any) -> State:
+def derivative(x: State, u: Input, p: Record) -> State:
     return State(t=1.0)
 
 
-def output(x: State, u: Input, p: Any) -> Output:
+def output(x: State, u: Input, p: Record) -> Output:
     t = floor(x.t * NANOSECONDS + 0.5) / NANOSECONDS
     return Output(*(_line(t, name, p) for name in Output._fields))
 
 
-def _line(t: Any, name: str, p: Any) -> Any:
+def _line(t: float, name: str, p: Record) -> float:
     """Of the quantity of that name at the instant t in s."""
     times, values = ([getattr(p, f"{what}_{k}") for k in range(1, POINTS + 1)] for what in ("time", name))
     y = values[0]

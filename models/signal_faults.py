@@ -18,7 +18,7 @@ as they are, within the same instant.
 """
 
 from collections.abc import Sequence
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from .block.declaration import Boolean, Integer, Real
 from .block.noise import normals, uniform
@@ -76,18 +76,18 @@ class Signals(NamedTuple):
     T_mot_est: Annotated[float, Real("N.m", "air-gap torque as motor control estimates it")]
     omega_2_can: Annotated[float, Real("rad/s", "received speed of the driven wheels, motor side")]
     valid: Annotated[bool, Boolean("the received wheel speed is above its minimum")]
-    counter: Annotated[int, Integer("one more with every message that arrives")]
+    counter: Annotated[float, Integer("one more with every message that arrives")]
 
 
 class Fault(NamedTuple):
     """One fault; its random numbers have the numbers from `stream` on."""
 
-    kind: Any
-    signal: Any
-    begin: Any
-    end: Any
-    size: Any
-    share: Any
+    kind: float
+    signal: float
+    begin: float
+    end: float
+    size: float
+    share: float
     stream: float
 
 
@@ -146,26 +146,26 @@ def _late_one(p: Parameters) -> Fault:
     return Fault(*(where(first.kind == LATE, a, b) for a, b in zip(first, second, strict=True)))
 
 
-def _sent(u: Any, fault: Fault) -> Sent:
+def _sent(u: Input, fault: Fault) -> Sent:
     speed, torque, wheel, valid, counter = u
     return Sent(
         where(fault.signal == MOTOR_SPEED, speed, where(fault.signal == MOTOR_TORQUE, torque, wheel)), valid, counter
     )
 
 
-def acts(fault: Fault, sample: Any) -> Any:
+def acts(fault: Fault, sample: float) -> bool:
     """Whether a fault acts in a sample."""
     t = (sample + 0.5) * T_S
     return logical_and(t >= fault.begin, t < fault.end)
 
 
-def stays(fault: Fault, u: Input, sample: Any, p: Parameters) -> Any:
+def stays(fault: Fault, u: Input, sample: float, p: Parameters) -> bool:
     """Whether what was sent last stays in the place of what is sent."""
     lost = logical_and(fault.kind == LOST, _strikes(fault, u.counter_sent, sample, p))
     return logical_and(acts(fault, sample), logical_or(fault.kind == FROZEN, lost))
 
 
-def delivered(y: Signals, u: Input, late: Sent, last: Sent, fault: Fault, sample: Any, p: Parameters) -> Signals:
+def delivered(y: Signals, u: Input, late: Sent, last: Sent, fault: Fault, sample: float, p: Parameters) -> Signals:
     """The signals y after what the fault does in time: in their place is what comes late, or what was sent last."""
     is_late = logical_and(acts(fault, sample), logical_and(fault.kind == LATE, fault.signal == _late_one(p).signal))
     fails = logical_or(is_late, stays(fault, u, sample, p))
@@ -181,7 +181,7 @@ def delivered(y: Signals, u: Input, late: Sent, last: Sent, fault: Fault, sample
     )
 
 
-def altered(y: Signals, fault: Fault, sample: Any, p: Parameters) -> Signals:
+def altered(y: Signals, fault: Fault, sample: float, p: Parameters) -> Signals:
     """The signals y after what the fault does to their values."""
     now, strikes = acts(fault, sample), _strikes(fault, y.counter, sample, p)
     index = _index(fault, y.counter, sample)
@@ -189,7 +189,7 @@ def altered(y: Signals, fault: Fault, sample: Any, p: Parameters) -> Signals:
     turned = logical_and(fault.kind == FLAPPING, times % 2.0 == 0.0)
     jumps = logical_and(logical_and(now, fault.kind == JUMPING), strikes)
 
-    def value(right: Any, signal: int) -> Any:
+    def value(right: float, signal: int) -> float:
         wrong = _wrong(right, fault, strikes, index, p)
         return where(logical_and(now, fault.signal == signal), wrong, right)
 
@@ -202,7 +202,7 @@ def altered(y: Signals, fault: Fault, sample: Any, p: Parameters) -> Signals:
     )
 
 
-def _wrong(right: Any, fault: Fault, strikes: Any, index: Any, p: Parameters) -> Any:
+def _wrong(right: float, fault: Fault, strikes: bool, index: float, p: Parameters) -> float:
     """The value of a signal while the fault acts on it."""
     noise, _ = normals(p.seed, fault.stream + 1.0, index)
     sign = where(uniform(p.seed, fault.stream + 3.0, index) < 0.5, -1.0, 1.0)
@@ -220,22 +220,22 @@ def _wrong(right: Any, fault: Fault, strikes: Any, index: Any, p: Parameters) ->
     return value
 
 
-def _index(fault: Fault, counter: Any, sample: Any) -> Any:
+def _index(fault: Fault, counter: float, sample: float) -> float:
     """Random numbers are drawn for each sample of a motor signal, and for each message."""
     return where(fault.signal == WHEEL_SPEED, 1.0 * counter, sample)
 
 
-def _strikes(fault: Fault, counter: Any, sample: Any, p: Parameters) -> Any:
+def _strikes(fault: Fault, counter: float, sample: float, p: Parameters) -> bool:
     """Whether this sample or message belongs to the share that fails."""
     index = where(fault.kind == JUMPING, sample, _index(fault, counter, sample))
     return uniform(p.seed, fault.stream, index) < fault.share
 
 
-def _chosen(condition: Any, value: Sent, otherwise: Sent) -> Sent:
+def _chosen(condition: bool, value: Sent, otherwise: Sent) -> Sent:
     return branch(condition, lambda: value, lambda: otherwise)
 
 
-def _at(recent: Sequence[Sent], position: Any) -> Sent:
+def _at(recent: Sequence[Sent], position: float) -> Sent:
     """The element at a whole position; the last one beyond it."""
     left = position
     while len(recent) > 1:

@@ -19,7 +19,7 @@ With `recorded_load` vehicle and tyre are left out and T_load_rec takes the plac
 they would show then follows omega_2 without slip.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from .block.declaration import Boolean, Real
 from .block.operators import maximum, sign, where
@@ -84,17 +84,17 @@ def start(u: Input, p: Parameters) -> State:
     )
 
 
-def gear_torque(x: State, p: Parameters) -> Any:
+def gear_torque(x: State, p: Parameters) -> float:
     return p.C * dead_zone(x.phi, p.phi_B)
 
 
-def tyre_force(x: State, p: Parameters) -> Any:
+def tyre_force(x: State, p: Parameters) -> float:
     """Force in N of the tyre on the vehicle."""
     v_s = p.r * x.omega_2 / p.i - x.v
     return p.c_slip / p.sigma_s * x.u + vehicle.standstill_damping(x.v, p) * v_s
 
 
-def load_torque(x: State, u: Input, F: Any, dz: Any, p: Parameters) -> Any:
+def load_torque(x: State, u: Input, F: float, dz: float, p: Parameters) -> float:
     """Torque in N.m (motor side) of tyre force F (N) and brake, or the recorded one."""
     T_br = u.T_brake * brake.grip(x.z, dz, p)
     return where(p.recorded_load, u.T_load_rec, -(p.r * F + T_br) / p.i)
@@ -135,7 +135,7 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
-def event_indicators(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
+def event_indicators(x: State, u: Input, p: Parameters) -> tuple[float, ...]:
     """Both flanks of the gap; wheels at rest (the bristles turn round); the kinks of the tyre's rate."""
     return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2, p.r * x.omega_2 / p.i - x.v, x.v)
 

@@ -23,7 +23,7 @@ with their penetration, so that the torque does not jump at the contact (K. H. H
 "Coefficient of restitution interpreted as damping in vibroimpact", J. Applied Mechanics 42(2), 1975).
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from .block.declaration import Real
 from .block.operators import atan, maximum, minimum, sign, sin, tanh, where
@@ -118,14 +118,14 @@ class State(NamedTuple):
 class Wheels(NamedTuple):
     """What acts at the two driven wheels: tyre forces (N), rolling and brake torques (N.m)."""
 
-    F_L: Any
-    F_R: Any
-    T_rL: Any
-    T_rR: Any
-    T_brL: Any
-    T_brR: Any
-    dz_L: Any
-    dz_R: Any
+    F_L: float
+    F_R: float
+    T_rL: float
+    T_rR: float
+    T_brL: float
+    T_brR: float
+    dz_L: float
+    dz_R: float
 
 
 def start(u: Input, p: Parameters) -> State:
@@ -168,7 +168,7 @@ def start(u: Input, p: Parameters) -> State:
     return State(*(where(v > 0.0, value, 0.0) for value in rolling))
 
 
-def gear_torque(x: State, p: Parameters) -> Any:
+def gear_torque(x: State, p: Parameters) -> float:
     """Torque of the gear stage at the carrier: spring and impact damper that never pull."""
     dgamma = x.omega_1 / p.i + x.omega_p - x.omega_g
     y = dead_zone(x.gamma, p.phi_B / p.i)
@@ -176,7 +176,7 @@ def gear_torque(x: State, p: Parameters) -> Any:
     return where(T_g * y > 0.0, T_g, 0.0)
 
 
-def air_gap_torque(x: State, u: Input, p: Parameters) -> Any:
+def air_gap_torque(x: State, u: Input, p: Parameters) -> float:
     """Motor torque with ripple, less the friction of the rotor."""
     ratio = x.omega_1 / p.omega_rip
     angle = p.pp * x.theta_1
@@ -205,12 +205,12 @@ def wheels(x: State, u: Input, p: Parameters) -> Wheels:
     )
 
 
-def body_acceleration(x: State, u: Input, F_h: Any, p: Parameters) -> Any:
+def body_acceleration(x: State, u: Input, F_h: float, p: Parameters) -> float:
     """Acceleration in m/s2 of the body under the bushing force F_h (N)."""
     return (F_h - vehicle.resistance(x.v, u.slope, p.m * p.g - p.F_z0, p)) / (p.m - p.m_h)
 
 
-def bushing_force(x: State, p: Parameters) -> Any:
+def bushing_force(x: State, p: Parameters) -> float:
     return p.k_x * x.s_h + p.d_x * (x.v_h - x.v)
 
 
@@ -272,7 +272,7 @@ def output(x: State, u: Input, p: Parameters) -> Output:
     )
 
 
-def event_indicators(x: State, u: Input, p: Parameters) -> tuple[Any, ...]:
+def event_indicators(x: State, u: Input, p: Parameters) -> tuple[float, ...]:
     """Where the equations have kinks.
 
     The flanks of the gap, the penetrations at which the impact damping is full, wheels at rest (the

@@ -5,7 +5,7 @@ rounds each to q_v and sends a message; its flag `valid` is set above v_on and c
 The message arrives after a random transport delay, never overtaking another, unless it is lost.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from .block.declaration import Boolean, Integer, Real
 from .block.frame import Content, Frame
@@ -84,13 +84,13 @@ class Output(NamedTuple):
     counter: Annotated[int, Integer("one more with every message that arrives", 0)]
 
 
-def bus_speed(omega_L: Any, omega_R: Any, p: Parameters) -> Any:
+def bus_speed(omega_L: float, omega_R: float, p: Parameters) -> float:
     """Mean speed in m/s of both wheels, each rounded to the resolution of the bus."""
     q = maximum(p.q_v, 1e-9)
     return 0.5 * q * (floor(p.r * omega_L / q + 0.5) + floor(p.r * omega_R / q + 0.5))
 
 
-def cycle(p: Parameters) -> Any:
+def cycle(p: Parameters) -> float:
     return floor(p.T_cyc / T_S + 0.5)
 
 
@@ -125,7 +125,7 @@ def update(x: State, u: Input, p: Parameters) -> State:
     return branch(sent.next_arrival <= now + 1e-9, lambda: deliver(sent, now + 1e-9), lambda: sent)
 
 
-def call(x: State, now: Any, p: Parameters) -> State:
+def call(x: State, now: float, p: Parameters) -> State:
     """After a call of the ABS unit, with its message on the bus."""
     wheel_L = tooth_wheel.call(x.wheel_L, now)
     wheel_R = tooth_wheel.call(x.wheel_R, now)
@@ -147,10 +147,10 @@ def call(x: State, now: Any, p: Parameters) -> State:
     )
 
 
-def deliver(x: State, now: Any) -> State:
+def deliver(x: State, now: float) -> State:
     """What has arrived by now is taken off the bus, and the newest of it is kept."""
     omega, valid, counter, following = x.omega_2_can, x.valid, x.counter, NEVER
-    left = []
+    left: list[Message] = []
     for message in reversed(x.under_way):
         arrived = message.arrival <= now
         omega = where(arrived, message.speed, omega)

@@ -94,7 +94,7 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
         BuildError: start values that one was built with are refused by what it is now.
     """
     where = folder / NATIVE_FOLDER if build == "native" else folder
-    made = []
+    made: list[Path] = []
     for name in names:
         if is_stale(path := where / f"{name}.fmu"):
             from ..catalogue import EVERY  # what is up to date is found to be so without

@@ -141,7 +141,8 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
         entries = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, brackets in brackets
         raise ParameterFileError(f"{path} is not TOML: {error}") from error
-    values, problems = {}, []
+    values: dict[str, Any] = {}
+    problems: list[str] = []
     for name, entry in entries.items():
         try:
             if isinstance(entry, dict):

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 from typing import Any
 
-from ...models.block.declaration import Boolean, variables
+from ...models.block.declaration import Boolean, is_tuple, variables
 from ...models.block.types import Block
 from ..symbol import Symbol
 
@@ -16,7 +16,7 @@ class Dependent(Symbol):
         self.sources = sources
 
     def after(self, operation: str, *operands: Any) -> "Dependent":
-        return Dependent(frozenset().union(*map(sources, operands)))
+        return Dependent(_union(map(sources, operands)))
 
 
 def sources(value: Any) -> frozenset[str]:
@@ -24,15 +24,18 @@ def sources(value: Any) -> frozenset[str]:
     return value.sources if isinstance(value, Dependent) else frozenset()
 
 
-def _symbols(record: type, named: bool) -> Any:
+def _union(found: Iterable[frozenset[str]]) -> frozenset[str]:
+    return frozenset[str]().union(*found)
+
+
+def _symbols(record: type[Any], named: bool) -> Any:
     """A record of symbols, which are their own sources or have none."""
-    fields = record._fields  # pyright: ignore[reportAttributeAccessIssue]
-    return record(*(Dependent(frozenset({name}) if named else frozenset()) for name in fields))
+    return record(*(Dependent(frozenset({name}) if named else frozenset()) for name in record._fields))
 
 
 def _without_sources(value: Any) -> Any:
     """The same state with a symbol without sources in the place of every number."""
-    if not isinstance(value, tuple):
+    if not is_tuple(value):
         return Dependent()
     items = [_without_sources(item) for item in value]
     make = getattr(type(value), "_make", tuple)
@@ -53,10 +56,7 @@ def _cases(block: Block) -> Iterator[dict[str, bool]]:
 def _sources_in_all(block: Block, cases: Iterable[Any]) -> dict[str, frozenset[str]]:
     """For every output what it was computed from in one or another of several outputs of the block."""
     columns = zip(*cases, strict=True)
-    return {
-        name: frozenset().union(*map(sources, values))
-        for name, values in zip(block.Output._fields, columns, strict=True)
-    }
+    return {name: _union(map(sources, values)) for name, values in zip(block.Output._fields, columns, strict=True)}
 
 
 def output_dependencies(block: Block) -> dict[str, frozenset[str]]:

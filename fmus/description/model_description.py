@@ -5,7 +5,7 @@ from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from ...models.block.declaration import Boolean, Enumeration, Integer, Real
+from ...models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real
 from ...models.block.types import SampledBlock
 from ..fmu import Fmu
 from ..release import ABOUT, date
@@ -125,7 +125,7 @@ def _add_variable(listed: Element, variable: Variable, sampled: bool) -> None:
     SubElement(scalar, tag, attributes | start)
 
 
-def _type(declaration: Any) -> tuple[str, dict[str, str]]:
+def _type(declaration: Declaration) -> tuple[str, dict[str, str]]:
     """XML element of a type and its attributes."""
     match declaration:
         case Boolean():
@@ -134,13 +134,13 @@ def _type(declaration: Any) -> tuple[str, dict[str, str]]:
             return "Enumeration", {"declaredType": declaration.name}
         case Integer():
             return "Integer", _limits(declaration, Integer(""))
-    limits = _limits(declaration, Real("1", ""))
-    return "Real", {"unit": declaration.unit, **limits}
+        case Real():
+            return "Real", {"unit": declaration.unit, **_limits(declaration, Real("1", ""))}
 
 
-def _limits(declaration: Any, unlimited: Any) -> dict[str, str]:
+def _limits(declaration: Integer | Real, unlimited: Integer | Real) -> dict[str, str]:
     """The bounds that say more than those of an unlimited declaration."""
-    limits = {}
+    limits: dict[str, str] = {}
     if declaration.minimum != unlimited.minimum:
         limits["min"] = _text(declaration.minimum)
     if declaration.maximum != unlimited.maximum:

@@ -42,6 +42,18 @@ class Node(NamedTuple):
     operands: tuple[int, ...] = ()
     value: tuple[int, int] | float = 0.0
 
+    @property
+    def place(self) -> tuple[int, int]:
+        """Number of the input and of its element."""
+        assert isinstance(self.value, tuple)
+        return self.value
+
+    @property
+    def number(self) -> float:
+        """The constant."""
+        assert not isinstance(self.value, tuple)
+        return self.value
+
 
 Guard = tuple[int, bool]
 """A condition (number of its node) and the value that it must have."""
@@ -58,7 +70,7 @@ class Ladder(NamedTuple):
 
     position: int
     first: Node
-    count: int
+    count: int  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 class Graph:
@@ -140,7 +152,7 @@ class Graph:
             return Node("CONSTANT", (), float(count))
         if first.operation != "INPUT":
             return None
-        vector, element = first.value  # pyright: ignore[reportGeneralTypeIssues]
+        vector, element = first.place
         names = self.inputs[vector][element : element + count + 1]
         is_array = names[0].endswith("]") and len({name.rpartition("[")[0] for name in names}) == 1
         return Node("INPUT", (), (vector, element + count)) if is_array and len(names) > count else None
@@ -164,12 +176,13 @@ class Graph:
         return self._guards(worth)
 
     def _guards(self, conditions: Iterable[int] | None) -> dict[int, frozenset[Guard]]:
-        users, guards = self.users(), {}
-        results = set(self.outputs.values())
+        users = self.users()
+        guards: dict[int, frozenset[Guard]] = {}
+        results, none = set(self.outputs.values()), frozenset[Guard]()
         for k in sorted(users, reverse=True):
             needed = [
-                guards[user] | ({side} if side and (conditions is None or side[0] in conditions) else frozenset())
+                guards[user] | ({side} if side and (conditions is None or side[0] in conditions) else none)
                 for user, side in users[k]
             ]
-            guards[k] = frozenset() if k in results or not needed else frozenset.intersection(*needed)
+            guards[k] = none if k in results or not needed else frozenset.intersection(*needed)
         return guards

@@ -119,7 +119,7 @@ def _compiled_for_windows(zig: Sequence[str], binary: str, sources: Mapping[str,
     """Linked without Zig's runtime, which would be larger than the FMU."""
     with _folder_of({**sources, WINDOWS_SOURCE.name: WINDOWS_SOURCE.read_bytes()}) as folder:
         compiler = [*zig, "-target", WINDOWS]
-        objects = []
+        objects: list[str] = []
         for file in (WHOLE, WINDOWS_SOURCE.name):
             objects.append(file.replace(".c", ".o"))
             _run([*compiler, *FLAGS, "-c", file, "-o", objects[-1]], folder)

@@ -32,7 +32,15 @@ FOR_ALL = (
     "operators.h",
     "variable.h",
 )
-FOR_CONTINUOUS = ("continuous.c", "implicit.c", "integrator.c", "integrator.h")
+FOR_CONTINUOUS = (
+    "continuous.c",
+    "explicit.c",
+    "implicit.c",
+    "integrator.c",
+    "explicit.h",
+    "implicit.h",
+    "integrator.h",
+)
 FOR_SAMPLED = ("sampled.c",)
 
 NEEDS = """The model is compiled code in this file and needs nothing else; its C source is in the

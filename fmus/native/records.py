@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from ...models.block.declaration import Quantity, Real, variables
+from ...models.block.declaration import Quantity, Real, is_tuple, variables
 from ...models.block.types import Block
 from ..description.numbers import numbers
 
@@ -31,15 +31,14 @@ def records_of(block: Block) -> dict[str, Any]:
 
 def c_type(value: Any, names: Names) -> str:
     """Type of an element of a state: a struct of its own for a named tuple, else a number."""
-    if not isinstance(value, tuple):
+    if not is_tuple(value):
         return names.real
     return names.struct + type(value).__name__ if hasattr(value, "_fields") else c_type(value[0], names)
 
 
 def extent(value: Any) -> str:
     """What follows the name of an element: [n] for a plain tuple, whose elements are all of one type."""
-    is_array = isinstance(value, tuple) and not hasattr(value, "_fields")
-    return f"[{len(value)}]{extent(value[0])}" if is_array else ""
+    return f"[{len(value)}]{extent(value[0])}" if is_tuple(value) and not hasattr(value, "_fields") else ""
 
 
 def paths(name: str, value: Any) -> Iterator[str]:
@@ -66,7 +65,7 @@ def structs(records: Mapping[str, Any], names: Names = IN_FMU) -> Iterator[str]:
 def _inner(value: Any) -> Iterator[Any]:
     """The records with numbers in them that a record or a tuple holds, each after those that it holds."""
     for item in value:
-        if isinstance(item, tuple):
+        if is_tuple(item):
             yield from _inner(item)
             if hasattr(item, "_fields") and any(paths("", item)):
                 yield item

@@ -55,7 +55,7 @@ def _taken(module: ModuleType) -> set[str]:
 
 def _meanings(module: ModuleType) -> dict[str, str]:
     """What a module says below the assignment of a name."""
-    meanings = {}
+    meanings: dict[str, str] = {}
     for statements in pairwise(ast.parse(inspect.getsource(module)).body):
         match statements:
             case ast.Assign([ast.Name(name)]), ast.Expr(ast.Constant(str() as text)):
@@ -80,7 +80,8 @@ def definition(name: str, value: Any) -> str:
 
 def _sentence(name: str, template: str) -> str:
     """A macro whose parameters are the fields of the template."""
-    text, arguments = "", []
+    text = ""
+    arguments: list[str] = []
     for literal, field, conversion, _ in Formatter().parse(template):
         text += literal.replace("%", "%%")
         if field is not None:

@@ -169,7 +169,9 @@ class Statements:
 
     def _around(self, choice: int, context: frozenset[Guard]) -> list[int]:
         """Nodes outside both sides of a choice that are needed inside."""
-        node, found, seen = self._graph.nodes[choice], [], set()
+        node = self._graph.nodes[choice]
+        found: list[int] = []
+        seen: set[int] = set()
         for place in (1, 2):
             inside = context | {(node.operands[0], place == 1)}
             waiting = [node.operands[place]]
@@ -186,7 +188,7 @@ class Statements:
 
     def _depends(self, nodes: Iterable[int], on: list[int]) -> bool:
         """Whether one of the nodes, as far as they are not available, needs a node of `on`."""
-        waiting, seen = list(nodes), set()
+        waiting, seen = list(nodes), set[int]()
         while waiting and on:
             k = waiting.pop()
             if k in on:
@@ -222,19 +224,19 @@ class Statements:
         operation, operands = node.operation, node.operands
         match operation:
             case "INPUT":
-                vector, element = node.value  # pyright: ignore[reportGeneralTypeIssues]
+                vector, element = node.place
                 return Text(self._graph.inputs[vector][element])
             case "CONSTANT":
-                return Text(self._constant(node.value), SIGN if node.value < 0.0 else ATOM)  # pyright: ignore
+                return Text(self._constant(node.number), SIGN if node.number < 0.0 else ATOM)
             case "CHOICE":
                 condition, value, otherwise = self._truth(operands[0]), *map(self._number, operands[1:])
                 return Text(f"{condition.within(SIGN)} ? {value.within(SIGN)} : {otherwise.within(SIGN)}", CHOICE)
             case "INDEX":
-                return self._index(self._number(operands[0]), int(node.value))  # pyright: ignore[reportArgumentType]
+                return self._index(self._number(operands[0]), int(node.number))
             case "WHOLE":
                 return Text(f"({self._precision.real}){self._number(operands[0]).within(ATOM)}", SIGN)
             case "ELEMENT":
-                vector, element = node.value  # pyright: ignore[reportGeneralTypeIssues]
+                vector, element = node.place
                 array, _, place = self._graph.inputs[vector][element].rpartition("[")
                 further = "" if place == "0]" else f" + {place.removesuffix(']')}"
                 return Text(f"{array}[{self._texts[operands[0]].text}{further}]")

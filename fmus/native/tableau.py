@@ -43,7 +43,7 @@ enum {{ STAGES = {stages} }};
 
 def step_header() -> str:
     """dop853.h: the step, operation by operation as explicit.py writes it."""
-    lines = []
+    lines: list[str] = []
     for stage, weights in enumerate(A[1:], start=1):
         lines += _for_each_state(f"at[n] = x[n] + h * ({_sum(weights)})")
         lines.append(f"    rate(problem, t + {math.fsum(weights.values())!r} * h, at, k{stage});")

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import casadi
 
-from ...models.block.types import Block, ContinuousBlock, SampledBlock
+from ...models.block.declaration import is_tuple
+from ...models.block.types import Block, ContinuousBlock
 from .symbol import CasadiSymbol, expression
 
 
@@ -48,7 +49,7 @@ def trace(block: Block) -> tuple[Traced, ...]:
             results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
             if indicators := block.event_indicators(x, u, p):
                 results["event_indicators"] = ("xup", "z", indicators)
-        elif isinstance(block, SampledBlock):
+        else:
             results["update"] = ("xup", "next", block.update(x, u, p))
         started = block.output(block.start(u, p), u, p)
     vectors = {name: _vector(record) for name, record in symbols.items()}
@@ -76,12 +77,12 @@ def exact() -> Iterator[None]:
 
 def leaves(value: Any) -> list[Any]:
     """The numbers in nested tuples, in their order."""
-    return [leaf for item in value for leaf in leaves(item)] if isinstance(value, tuple) else [value]
+    return [leaf for item in value for leaf in leaves(item)] if is_tuple(value) else [value]
 
 
 def _symbols(name: str, template: Any) -> Any:
     """A symbol in the place of every number."""
-    if not isinstance(template, tuple):
+    if not is_tuple(template):
         return CasadiSymbol(casadi.SX.sym(name))
     make = getattr(type(template), "_make", tuple)
     return make([_symbols(name, item) for item in template])

@@ -59,7 +59,7 @@ def bundle(fmu: Fmu) -> dict[str, bytes]:
     A module's data, a file of its name beside it, comes along.
     """
     modules: set[str] = set()
-    waiting = {"fmus.python.slave", fmu.module} | ({"fmus.target.remote"} if fmu.image else set())
+    waiting = {"fmus.python.slave", fmu.module} | ({"fmus.target.remote"} if fmu.image else set[str]())
     while waiting:
         module = waiting.pop()
         modules.add(module)

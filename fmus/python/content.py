@@ -3,6 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
+from ...models.block.declaration import is_tuple
 from ...models.block.runner import runner
 from ...models.block.types import Block, SampledBlock
 from ..description.numbers import numbers
@@ -96,7 +97,7 @@ def shaped(read: Any, template: Any) -> Any:
         TypeError: a number is of another type than the template's, or no number.
         ValueError: there are more or fewer of them.
     """
-    if isinstance(template, tuple):
+    if is_tuple(template):
         items = [shaped(item, like) for item, like in zip(read, template, strict=True)]
         return getattr(type(template), "_make", tuple)(items)
     if type(read) is not type(template):

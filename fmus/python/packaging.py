@@ -78,7 +78,7 @@ def _resources_and_binaries(fmu: Fmu) -> dict[str, bytes]:
     files = bundle(fmu)
     package = package_name(fmu, files)
     packed = _packed_by_pythonfmu(fmu, package, files)
-    moved = {}
+    moved: dict[str, bytes] = {}
     for name, content in packed.items():
         path = PurePosixPath(name)
         if path.parent == PurePosixPath("resources/pythonfmu"):

@@ -56,8 +56,9 @@ def fmi_class_call(method: Callable[..., Any]) -> Callable[..., Any]:
 
 def _hold_all(instance: Any) -> None:
     """Takes back what the binary gives up when an exception leaves an instance."""
-    for lost in (instance, type(instance), instance.log_queue):
-        _hold(lost)
+    _hold(instance)
+    _hold(type(instance))
+    _hold(instance.log_queue)
 
 
 def own_class(slave: type) -> type:

@@ -54,7 +54,7 @@ class Answer(NamedTuple):
     outputs: tuple[float, ...]
     state: tuple[float, ...]
     bytes: bytes
-    count: int
+    count: int  # pyright: ignore[reportIncompatibleMethodOverride]
     stack: int
 
 

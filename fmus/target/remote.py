@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 from weakref import finalize
 
+from ...models.block.declaration import is_tuple
 from .link import Link, emulated
 
 KNOWN = 4
@@ -89,7 +90,7 @@ class OnTarget:
 
 def numbers(record: Any) -> list[float]:
     """The numbers in nested tuples, in their order."""
-    return [n for item in record for n in numbers(item)] if isinstance(record, tuple) else [float(record)]
+    return [n for item in record for n in numbers(item)] if is_tuple(record) else [float(record)]
 
 
 def like(record: Any, values: Sequence[float]) -> Any:
@@ -97,7 +98,7 @@ def like(record: Any, values: Sequence[float]) -> Any:
     left = iter(values)
 
     def made(item: Any) -> Any:
-        if not isinstance(item, tuple):
+        if not is_tuple(item):
             return type(item)(next(left))
         return getattr(type(item), "_make", tuple)([made(inner) for inner in item])
 

@@ -57,7 +57,7 @@ def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout
     Args:
         sources: `instance.variable` of an input -> column of the row that feeds it.
     """
-    calls = []
+    calls: list[Call] = []
     fed = [v for v in instance.interface.of_causality("input") if f"{instance.name}.{v.name}" in sources]
     for kind, variables in _by_type(fed):
         offsets = [layout.offset(sources[f"{instance.name}.{v.name}"]) for v in variables]
@@ -68,8 +68,11 @@ def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout
     return calls
 
 
-def _change(view: Any, offsets: Sequence[int], buffer: Any, factors: Sequence[float]) -> Callable[[], bool]:
+def _change(
+    view: "memoryview[Any]", offsets: Sequence[int], buffer: Any, factors: Sequence[float]
+) -> Callable[[], bool]:
     places = [offset // view.itemsize for offset in offsets]
+    pick: Callable[[memoryview[Any]], tuple[float, ...]]
     pick = itemgetter(*places) if len(places) > 1 else lambda view: (view[places[0]],)
 
     def changed() -> bool:
@@ -86,7 +89,7 @@ def _change(view: Any, offsets: Sequence[int], buffer: Any, factors: Sequence[fl
 
 def receives(instance: Instance, row: bytearray, layout: Layout, outputs: Collection[str]) -> list[Call]:
     """Calls that read outputs into the row, one for each piece of it."""
-    calls = []
+    calls: list[Call] = []
     for kind, variables in _by_type([v for v in instance.interface.of_causality("output") if v.name in outputs]):
         size = sizeof(KINDS[kind].ctype)
         offsets = [layout.offset(f"{instance.name}.{v.name}") for v in variables]

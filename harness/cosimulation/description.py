@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from fmpy import read_model_description
+import fmpy
 from fmpy.model_description import ModelDescription
 
 from ..base.errors import WiringError
@@ -43,7 +43,7 @@ def read(path: Path, limits: Limits = USUAL) -> ModelDescription:
         more = f" (and {len(found) - 1} more)" if found[1:] else ""
         raise WiringError(f"the model description of {path} cannot be used: {found[0]}{more}")
     try:
-        return read_model_description(str(path), validate=False)
+        return fmpy.read_model_description(str(path), validate=False)
     except Exception as error:  # fmpy raises bare exceptions
         reason = plain(error if type(error) is Exception else f"{type(error).__name__} {error}")
         raise WiringError(f"the model description of {path} cannot be read: {reason}") from error

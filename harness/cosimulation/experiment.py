@@ -30,8 +30,8 @@ class Experiment:
 
     duration: float
     step_size: float = 1e-3
-    inputs: Mapping[str, Source] = field(default_factory=dict)
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    inputs: Mapping[str, Source] = field(default_factory=dict[str, Source])
+    parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     scheme: Scheme = Scheme.PROPAGATED
     label: str = "simulating"
 

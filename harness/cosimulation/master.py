@@ -153,7 +153,7 @@ class Loop:
             if row == before:
                 data[: table.itemsize] = row[: table.itemsize]
                 return
-            before = bytes(row)
+            before = row[:]
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
 
 

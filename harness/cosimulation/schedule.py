@@ -10,7 +10,7 @@ stepped before, else along the derivative of the source. At the end, outputs go 
 dependencies, so that every output is that of its instant, with the inputs of that instant.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from typing import NamedTuple
 
@@ -97,7 +97,7 @@ def transfers(system: System, interfaces: Mapping[str, Interface]) -> dict[str, 
     """How the propagated scheme treats each input of a continuous FMU that a continuous output feeds."""
     order = list(interfaces)
     feedthrough = Feedthrough(system, interfaces)
-    found = {}
+    found: dict[str, Transfer] = {}
     for source, target, _ in system.connections:
         (giver, output), (taker, _) = source.split(".", 1), target.split(".", 1)
         is_ready = source in feedthrough.undeclared or not feedthrough.inputs[source]
@@ -172,7 +172,7 @@ def _propagation(feedthrough: Feedthrough, known: set[str]) -> Iterator[Action]:
         yield Get(instance, names)
 
 
-def _by_instance(names) -> dict[str, list[str]]:
+def _by_instance(names: Iterable[str]) -> dict[str, list[str]]:
     """Variables by instance, of names `instance.variable`, each once."""
     found: dict[str, list[str]] = {}
     for instance, _, variable in (name.partition(".") for name in dict.fromkeys(names)):

@@ -72,8 +72,8 @@ class System:
     inputs: tuple[Port, ...] = ()
     parameters: tuple[Port, ...] = ()
     outputs: tuple[Port, ...] = ()
-    mapping: Mapping[str, str] = field(default_factory=dict)
-    optional: Mapping[str, float | None] = field(default_factory=dict)
+    mapping: Mapping[str, str] = field(default_factory=dict[str, str])
+    optional: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     own: frozenset[str] = frozenset()
     limits: Limits = USUAL
     any_value: frozenset[str] = frozenset()

@@ -2,7 +2,7 @@
 
 import re
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
 SYMBOL = r"(?:[A-Za-zµΩ%°]+(?:\^?[+-]?[1-9]\d*)?|1)"
 PRODUCT = rf"{SYMBOL}(?:[.*]{SYMBOL})*"
@@ -56,7 +56,7 @@ def known(unit: str) -> bool:
 def _registry() -> Any:
     import pint  # takes half a second, which only those who convert should pay
 
-    registry = pint.UnitRegistry(on_redefinition="ignore")
+    registry = cast(Any, pint.UnitRegistry(on_redefinition="ignore"))
     registry.define("radian = [angle] = rad")
     return registry
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import fmpy
 
@@ -37,7 +37,7 @@ def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpac
             raise UnpackingError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
         rest()  # unpacking may take longer than a call may
         unpack(path, files)
-        platforms = fmpy.supported_platforms(files)
+        platforms = cast(list[str], fmpy.supported_platforms(files))
         if fmpy.platform not in platforms:
             has = ", ".join(platforms) or "none"
             raise UnpackingError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")

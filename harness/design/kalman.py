@@ -4,13 +4,11 @@ The motor speed is measured at every sample; a message with the wheel speed come
 cycle, as a delayed measurement of a periodic system.
 """
 
-from types import SimpleNamespace
-
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from ...models.controller.supervision import T_S
-from ...models.controller.torque_estimator import Estimate, integrated
+from ...models.controller.torque_estimator import Estimate, Parameters, integrated
 from ..base.errors import DrivelineError
 from .design_weights import Can, DriveTrain, Motor, Plant, Weights
 
@@ -45,7 +43,7 @@ def estimator_gains(
 
 def transition(plant: Plant, lambda_v: float, h: float = T_S) -> np.ndarray:
     """Matrix (4, 4) of the estimator's model over h seconds in contact, deviations from a state there."""
-    model = SimpleNamespace(J_1=plant.J_1, J_2=plant.J_2, C=plant.C, phi_B=plant.phi_B, lambda_v=lambda_v)
+    model = Parameters(J_1=plant.J_1, J_2=plant.J_2, C=plant.C, phi_B=plant.phi_B, lambda_v=lambda_v)
     contact = np.array(Estimate(0.0, 0.0, 2.0 * plant.phi_B + 1.0, 0.0))
     base = np.array(integrated(Estimate(*contact.tolist()), 0.0, h, model))
     columns = [np.array(integrated(Estimate(*(contact + row).tolist()), 0.0, h, model)) - base for row in np.eye(4)]

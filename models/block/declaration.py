@@ -11,7 +11,7 @@ import math
 from collections import namedtuple
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple, TypeGuard, TypeVar, get_type_hints
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,14 @@ class Enumeration:
 
 Declaration = Real | Integer | Boolean | Enumeration
 
+Record = tuple[Any, ...]
+"""A named tuple of quantities, of whichever block."""
+
+
+def is_tuple(value: object) -> TypeGuard[tuple[Any, ...]]:
+    """Whether a value is a tuple, named or not, rather than a number."""
+    return isinstance(value, tuple)
+
 
 class Quantity(NamedTuple):
     """One declared quantity: its name, its declaration, its start value (None if it has none)."""
@@ -67,7 +75,7 @@ class Quantity(NamedTuple):
     start: Any
 
 
-def variables(record: Any) -> tuple[Quantity, ...]:
+def variables(record: type[Any]) -> tuple[Quantity, ...]:
     """The declared quantities of a NamedTuple class, in the order of its fields.
 
     A field that is itself a record is left out; it declares its own quantities.
@@ -77,10 +85,10 @@ def variables(record: Any) -> tuple[Quantity, ...]:
     """
     hints = get_type_hints(record, include_extras=True)
     defaults = record._field_defaults
-    found = []
+    found: list[Quantity] = []
     for name, hint in hints.items():
         declared = [m for m in getattr(hint, "__metadata__", ()) if isinstance(m, Declaration)]
-        if not declared and (hint is Any or hasattr(hint, "_fields")):
+        if not declared and (isinstance(hint, TypeVar) or hasattr(hint, "_fields")):
             continue
         if not declared:
             raise TypeError(f"{record.__module__}.{record.__name__}.{name} has no declaration")
@@ -88,7 +96,7 @@ def variables(record: Any) -> tuple[Quantity, ...]:
     return tuple(found)
 
 
-def merged(name: str, *records: Any) -> Any:
+def merged(name: str, *records: type[Any]) -> type[Any]:
     """A NamedTuple class with the fields of several, each name once, with declarations and start values.
 
     Raises:
@@ -102,13 +110,13 @@ def merged(name: str, *records: Any) -> Any:
     return _record(name, fields)
 
 
-def with_defaults(record: Any, values: Mapping[str, Any]) -> Any:
+def with_defaults(record: type[Any], values: Mapping[str, Any]) -> type[Any]:
     """A NamedTuple class like this one with other start values, by the names of its fields."""
     fields = {field: (hint, values.get(field, start)) for field, (hint, start) in _fields(record).items()}
     return _record(record.__name__, fields)
 
 
-def without(record: Any, names: Collection[str]) -> Any:
+def without(record: type[Any], names: Collection[str]) -> type[Any]:
     """A NamedTuple class like this one, but for the fields of these names.
 
     Raises:
@@ -120,18 +128,19 @@ def without(record: Any, names: Collection[str]) -> Any:
     return _record(record.__name__, {name: fields[name] for name in fields if name not in names})
 
 
-def quantities(name: str, declared: Mapping[str, tuple[Any, Any]]) -> Any:
+def quantities(name: str, declared: Mapping[str, tuple[Any, Any]]) -> type[Any]:
     """A NamedTuple class with these fields: name -> declaration, as an Annotated type, and start value."""
     return _record(name, declared)
 
 
-def _fields(record: Any) -> dict[str, tuple[Any, Any]]:
+def _fields(record: type[Any]) -> dict[str, tuple[Any, Any]]:
     """Declaration and start value of each field."""
     hints = get_type_hints(record, include_extras=True)
     return {field: (hint, record._field_defaults[field]) for field, hint in hints.items()}
 
 
-def _record(name: str, fields: Mapping[str, tuple[Any, Any]]) -> Any:
-    made = namedtuple(name, fields, defaults=[start for _, start in fields.values()])
+def _record(name: str, fields: Mapping[str, tuple[Any, Any]]) -> type[Any]:
+    starts = [start for _, start in fields.values()]
+    made = namedtuple(name, fields, defaults=starts)  # pyright: ignore[reportUntypedNamedTuple]
     made.__annotations__ = {field: hint for field, (hint, _) in fields.items()}
     return made

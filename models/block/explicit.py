@@ -6,7 +6,7 @@ orders 5 and 3 (Hairer, Norsett, Wanner, "Solving Ordinary Differential Equation
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from .declaration import Real, variables
@@ -79,7 +79,8 @@ def _stepper(
     """Written out for the fields of the block's State (as NamedTuple writes its methods), which is ten times
     faster than looping over them."""
     size = len(block.State._fields)
-    lines = [f"def step(x, dx, u, p, h):\n    {_names('x', size)} = x", f"    {_names('k0_', size)} = dx"]
+    lines = ["new = tuple.__new__", "def step(x, dx, u, p, h):", f"    {_names('x', size)} = x"]
+    lines.append(f"    {_names('k0_', size)} = dx")
     for stage, weights in enumerate(stages[1:], start=1):
         at = _state(f"x{n} + h * ({_sum(weights, n)})" for n in range(size))
         lines.append(f"    {_names(f'k{stage}_', size)} = f({at}, u, p)")
@@ -87,7 +88,7 @@ def _stepper(
         lines += _judged(small_sizes(block), end, *errors)
     else:
         lines.append("    return " + _state(f"x{n} + h * ({_sum(end, n)})" for n in range(size)))
-    scope: dict[str, Any] = {"f": block.derivative, "new": tuple.__new__, "sqrt": math.sqrt, "State": block.State}
+    scope: dict[str, Any] = {"f": block.derivative, "sqrt": math.sqrt, "State": block.State}
     exec("\n".join(lines), scope)
     return scope["step"]
 
@@ -123,6 +124,6 @@ def _sum(weights: Weights, n: int) -> str:
     return " + ".join(f"{a!r} * k{stage}_{n}" for stage, a in weights.items())
 
 
-def _state(values: Any) -> str:
+def _state(values: Iterable[str]) -> str:
     """Source of a State."""
     return f"new(State, ({', '.join(values)},))"

@@ -8,8 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from .declaration import Record
 
-def one(p: Any) -> float:
+
+def one(p: Record) -> float:
     return 1.0
 
 

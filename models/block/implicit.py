@@ -5,8 +5,8 @@ Kinks are left to the error of the steps.
 """
 
 import math
-from typing import Any
 
+from .declaration import Record
 from .explicit import TOLERANCE, Work, change, small_sizes
 from .rodas import GAMMA, A, G
 from .types import ContinuousBlock
@@ -38,7 +38,7 @@ class Implicit:
         self._derivative, self._State = block.derivative, block.State
         self._size, self._small = range(len(block.State._fields)), small_sizes(block)
 
-    def advance(self, x: Any, u: Any, p: Any, duration: float, work: Work) -> Any:
+    def advance(self, x: Record, u: object, p: object, duration: float, work: Work) -> Record:
         """The state `duration` s after x; the work is added up.
 
         Raises:
@@ -46,25 +46,25 @@ class Implicit:
         """
         left = length = duration
         dx = self._derivative(x, u, p)
-        J = self._jacobian(x, dx, u, p)
+        jacobian = self._jacobian(x, dx, u, p)
         for _ in range(MOST_STEPS):
             work.steps += IMPLICIT_WORK
-            end, error = self._step(x, dx, J, u, p, length)
+            end, error = self._step(x, dx, jacobian, u, p, length)
             if error <= 1.0:
                 left -= length
                 x = end
                 if left <= 0.0:
                     return x
                 dx = self._derivative(x, u, p)
-                J = self._jacobian(x, dx, u, p)
+                jacobian = self._jacobian(x, dx, u, p)
             elif length < SHORTEST_STEP:
                 break
             length = min(left, length * change(error, 2))
         raise NotIntegrable(self.fastest(x, dx))
 
-    def _jacobian(self, x: Any, dx: Any, u: Any, p: Any) -> Matrix:
+    def _jacobian(self, x: Record, dx: Record, u: object, p: object) -> Matrix:
         """Row n holds what moves state n."""
-        moved, columns = list(x), []
+        moved, columns = list(x), Matrix()
         for j in self._size:
             moved[j] = x[j] + DIFFERENCE * (abs(x[j]) + self._small[j])
             by = moved[j] - x[j]
@@ -73,13 +73,13 @@ class Implicit:
             moved[j] = x[j]
         return [[column[n] for column in columns] for n in self._size]
 
-    def _step(self, x: Any, dx: Any, J: Matrix, u: Any, p: Any, h: float) -> tuple[Any, float]:
+    def _step(self, x: Record, dx: Record, J: Matrix, u: object, p: object, h: float) -> tuple[Record, float]:
         """The state after one step and its error, in units of what is tolerated."""
         rows = [[-value for value in row] for row in J]
         order = factorised(rows, 1.0 / (h * GAMMA))
         if not order:
             return x, math.inf
-        at, rate, found = x, dx, []
+        at, rate, found = x, dx, Matrix()
         for i, (weights, rates) in enumerate(zip(A, G, strict=True)):
             if i > 0:
                 at = self._State._make(x[n] + weighted(weights, found, n) for n in self._size)
@@ -93,7 +93,7 @@ class Implicit:
             total += e * e
         return end, math.sqrt(total / len(self._size))
 
-    def fastest(self, x: Any, dx: Any) -> str:
+    def fastest(self, x: Record, dx: Record) -> str:
         """The name of the state that changes fastest for its size."""
         changes = [abs(dx[n]) / (abs(x[n]) + self._small[n]) for n in self._size]
         return self._State._fields[max(self._size, key=lambda n: changes[n])]

@@ -10,6 +10,7 @@ would be needed, the stretch is left to an implicit method. Nothing is kept from
 import math
 from typing import Any, NamedTuple
 
+from .declaration import Record
 from .explicit import GREATEST, TOLERANCE, Work, change, small_sizes, step, tangent, trial
 from .implicit import Implicit
 from .types import ContinuousBlock
@@ -58,10 +59,10 @@ class TooMuchWork(ArithmeticError):
 class Start(NamedTuple):
     """Where a step starts: state, its derivative, what is held over the step, and the work up to it."""
 
-    x: Any
-    dx: Any
-    u: Any
-    p: Any
+    x: Record
+    dx: Record
+    u: object
+    p: object
     work: Work
 
 
@@ -71,11 +72,11 @@ class Integrator:
     def __init__(self, block: ContinuousBlock) -> None:
         self.derivative = block.derivative
         self.event_indicators = block.event_indicators
-        self.step_size = block.step_size
+        self.step_size, self.State = block.step_size, block.State
         self.step, self.trial, self.tangent = step(block), trial(block), tangent(block)
         self.implicit, self.small = Implicit(block), small_sizes(block)
 
-    def advance(self, x: Any, u: Any, p: Any, duration: float) -> Any:
+    def advance(self, x: Record, u: object, p: object, duration: float) -> Any:
         """The state `duration` s later, with the inputs u held.
 
         Args:
@@ -94,7 +95,7 @@ class Integrator:
             x = self._advance_through(start, duration / stretches, sides)
         return x
 
-    def _advance_through(self, start: Start, left: float, sides: list[bool]) -> Any:
+    def _advance_through(self, start: Start, left: float, sides: list[bool]) -> Record:
         """The state after a stretch of length `left`, split at every event on its way.
 
         `sides` says on which side of each zero the state is, and is kept up to date. It is
@@ -127,12 +128,12 @@ class Integrator:
         sides[:] = self._sides(x, u, p)
         return x
 
-    def _try(self, start: Start, length: float) -> tuple[Any, float]:
+    def _try(self, start: Start, length: float) -> tuple[Record, float]:
         """The state after a step of that length, and how far off it is."""
         start.work.steps += 1
         return self.trial(*start[:4], length)
 
-    def _is_stiff(self, start: Start, x_end: Any, left: float) -> bool:
+    def _is_stiff(self, start: Start, x_end: Record, left: float) -> bool:
         """Whether the state changes too fast for explicit steps.
 
         The fastest rate is found by power iteration from the way of a step that failed: what a small change of the
@@ -146,13 +147,13 @@ class Integrator:
                 return False
             if not size <= GREATEST:
                 return True
-            near = type(x)._make(value + part / size for value, part in zip(x, way, strict=True))
+            near = self.State._make(value + part / size for value, part in zip(x, way, strict=True))
             there = self.derivative(near, start.u, start.p)
             way = [fast - slow for fast, slow in zip(there, dx, strict=True)]
             size = self._size(way, x)
         return not left * size <= STIFF
 
-    def _size(self, way: list[float], x: Any) -> float:
+    def _size(self, way: list[float], x: Record) -> float:
         """Of a change of the state x, in units of what is tolerated."""
         total = 0.0
         for part, value, small in zip(way, x, self.small, strict=True):
@@ -160,16 +161,16 @@ class Integrator:
             total += e * e
         return math.sqrt(total)
 
-    def _sides(self, x: Any, u: Any, p: Any) -> list[bool]:
+    def _sides(self, x: Record, u: object, p: object) -> list[bool]:
         return [z > 0.0 for z in self.event_indicators(x, u, p)]
 
-    def _crossings(self, start: Start, h: float, x_end: Any, sides: list[bool]) -> list[tuple[float, int]]:
+    def _crossings(self, start: Start, h: float, x_end: Record, sides: list[bool]) -> list[tuple[float, int]]:
         """Each crossing within a step of length h: length of the step to it, number of the event indicator."""
         if not sides:
             return []
         end = self.event_indicators(x_end, start.u, start.p)
         straight = self.event_indicators(self.tangent(*start[:4], h), start.u, start.p)
-        found = []
+        found: list[tuple[float, int]] = []
         for n, side in enumerate(sides):
             beyond = h if is_beyond(end[n], side) else None
             if beyond is None and is_beyond(straight[n], side):
@@ -178,7 +179,7 @@ class Integrator:
                 found.append((self._locate(n, start, beyond, side), n))
         return found
 
-    def _indicator(self, n: int, x: Any, start: Start) -> float:
+    def _indicator(self, n: int, x: Record, start: Start) -> float:
         return self.event_indicators(x, start.u, start.p)[n]
 
     def _value(self, n: int, start: Start, length: float) -> float:
@@ -190,7 +191,7 @@ class Integrator:
         probe = self.tangent(*start[:4], PROBE)
         return (self._indicator(n, probe, start) - self._indicator(n, start.x, start)) / PROBE
 
-    def _excursion(self, n: int, start: Start, h: float, x_end: Any, side: bool) -> float | None:
+    def _excursion(self, n: int, start: Start, h: float, x_end: Record, side: bool) -> float | None:
         """Length of a step to beyond zero n, if the state goes there and is back before h."""
         dx_end = self.derivative(x_end, start.u, start.p)
         slope, slope_end = self._slope(n, start), self._slope(n, start._replace(x=x_end, dx=dx_end))

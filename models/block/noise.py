@@ -5,18 +5,16 @@ because 3 does not divide M - 1) scrambles the three arguments. All products sta
 result is exact in double precision and the same on every machine.
 """
 
-from typing import Any
-
 from .operators import cos, log, sin, sqrt
 
 M = 67108859.0
 
 
-def _scramble(x: Any, c: float) -> Any:
+def _scramble(x: float, c: float) -> float:
     return (x * x % M * x + c) % M
 
 
-def uniform(seed: Any, stream: float, index: Any) -> Any:
+def uniform(seed: float, stream: float, index: float) -> float:
     """A number in (0, 1), for whole seed and index from 0 to 2^26 and stream from 0 to 60."""
     x = _scramble((seed * 40692.0 + 7368787.0) % M, 19088743.0)
     x = _scramble(x, 1013904.0 * stream + 40014.0)
@@ -26,7 +24,7 @@ def uniform(seed: Any, stream: float, index: Any) -> Any:
     return (x + 0.5) / M
 
 
-def normals(seed: Any, stream: float, index: Any) -> tuple[Any, Any]:
+def normals(seed: float, stream: float, index: float) -> tuple[float, float]:
     """Two independent numbers from N(0, 1), at most 6.2, from the streams `stream` and `stream + 1`.
 
     G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates", 1958.

@@ -6,27 +6,56 @@ comparison operators, a method of the same name for each function below (`x.sin(
 `condition.where(value, otherwise)`, `condition.logical_and(other)` and so on for the result of a
 comparison; `x % y` is Python's, with the sign of y. Both values of `where` are always computed, so
 neither may raise.
+
+Annotations of model functions say float and bool: a symbol passes for either.
 """
 
 import math
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol, TypeVar, cast
+
+from .declaration import is_tuple
+
+Number = TypeVar("Number", bound=float)
+Values = TypeVar("Values")
+
+
+class Symbol(Protocol):
+    """What a symbol has beside the operators of Python."""
+
+    def where(self, value: Values, otherwise: Values, /) -> Values: ...
+    def logical_and(self, other: bool, /) -> bool: ...
+    def logical_or(self, other: bool, /) -> bool: ...
+    def logical_not(self) -> bool: ...
+    def sin(self) -> float: ...
+    def cos(self) -> float: ...
+    def atan(self) -> float: ...
+    def tanh(self) -> float: ...
+    def sqrt(self) -> float: ...
+    def log(self) -> float: ...
+    def floor(self) -> float: ...
+
+
+def symbol(number: float) -> Symbol:
+    """What passes for a number or a truth value, and is none."""
+    return cast(Symbol, number)
+
 
 LARGEST = sys.float_info.max
 """The largest finite number."""
 
 
-def where(condition: Any, value: Any, otherwise: Any) -> Any:
+def where(condition: bool, value: Number, otherwise: Number) -> Number:
     """`value` where the condition holds, else `otherwise`."""
     if condition is True:
         return value
     if condition is False:
         return otherwise
-    return condition.where(value, otherwise)
+    return symbol(condition).where(value, otherwise)
 
 
-def branch(condition: Any, value: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
+def branch(condition: bool, value: Callable[[], Values], otherwise: Callable[[], Values]) -> Values:
     """`value()` where the condition holds, else `otherwise()`: for what is costly and rarely needed.
 
     Both return tuples of the same shape, nested or named. With truth values only one of them is called;
@@ -39,110 +68,110 @@ def branch(condition: Any, value: Callable[[], Any], otherwise: Callable[[], Any
     return _joined(condition, value(), otherwise())
 
 
-def _joined(condition: Any, value: Any, otherwise: Any) -> Any:
-    if not isinstance(value, tuple):
-        return where(condition, value, otherwise)
-    make = getattr(type(value), "_make", tuple)
+def _joined(condition: bool, value: Values, otherwise: Values) -> Values:
+    if not (is_tuple(value) and is_tuple(otherwise)):
+        return symbol(condition).where(value, otherwise)
+    make = cast(Callable[[list[Any]], Any], getattr(type(value), "_make", tuple))
     return make([_joined(condition, a, b) for a, b in zip(value, otherwise, strict=True)])
 
 
 # maximum, minimum and clip are the hot spots of every model: they save themselves the call of `where`
 
 
-def maximum(a: Any, b: Any) -> Any:
+def maximum(a: float, b: float) -> float:
     above = a >= b
-    return a if above is True else b if above is False else above.where(a, b)
+    return a if above is True else b if above is False else symbol(above).where(a, b)
 
 
-def minimum(a: Any, b: Any) -> Any:
+def minimum(a: float, b: float) -> float:
     below = a <= b
-    return a if below is True else b if below is False else below.where(a, b)
+    return a if below is True else b if below is False else symbol(below).where(a, b)
 
 
-def clip(x: Any, lower: Any, upper: Any) -> Any:
+def clip(x: float, lower: float, upper: float) -> float:
     """x limited to [lower, upper]; NaN becomes a limit."""
     return minimum(maximum(x, lower), upper)
 
 
-def sign(x: Any) -> Any:
+def sign(x: float) -> float:
     return where(x > 0.0, 1.0, where(x < 0.0, -1.0, 0.0))
 
 
-def logical_and(a: Any, b: Any) -> Any:
+def logical_and(a: bool, b: bool) -> bool:
     if a.__class__ is bool and b.__class__ is bool:
         return a and b
-    return a.logical_and(b) if a.__class__ is not bool else b.logical_and(a)
+    return symbol(a).logical_and(b) if a.__class__ is not bool else symbol(b).logical_and(a)
 
 
-def logical_or(a: Any, b: Any) -> Any:
+def logical_or(a: bool, b: bool) -> bool:
     if a.__class__ is bool and b.__class__ is bool:
         return a or b
-    return a.logical_or(b) if a.__class__ is not bool else b.logical_or(a)
+    return symbol(a).logical_or(b) if a.__class__ is not bool else symbol(b).logical_or(a)
 
 
-def logical_not(a: Any) -> Any:
-    return not a if a.__class__ is bool else a.logical_not()
+def logical_not(a: bool) -> bool:
+    return not a if a.__class__ is bool else symbol(a).logical_not()
 
 
-def is_finite(x: Any) -> Any:
+def is_finite(x: float) -> bool:
     """False for NaN and both infinities; written with comparisons, so that it traces."""
     return abs(x) <= LARGEST
 
 
-def sin(x: Any) -> Any:
+def sin(x: float) -> float:
     try:
         return math.sin(x)
     except TypeError:
-        return x.sin()
+        return symbol(x).sin()
     except ValueError:
         return math.nan
 
 
-def cos(x: Any) -> Any:
+def cos(x: float) -> float:
     try:
         return math.cos(x)
     except TypeError:
-        return x.cos()
+        return symbol(x).cos()
     except ValueError:
         return math.nan
 
 
-def atan(x: Any) -> Any:
+def atan(x: float) -> float:
     try:
         return math.atan(x)
     except TypeError:
-        return x.atan()
+        return symbol(x).atan()
 
 
-def tanh(x: Any) -> Any:
+def tanh(x: float) -> float:
     try:
         return math.tanh(x)
     except TypeError:
-        return x.tanh()
+        return symbol(x).tanh()
 
 
-def sqrt(x: Any) -> Any:
+def sqrt(x: float) -> float:
     try:
         return math.sqrt(x)
     except TypeError:
-        return x.sqrt()
+        return symbol(x).sqrt()
 
 
-def log(x: Any) -> Any:
+def log(x: float) -> float:
     try:
         return math.log(x)
     except TypeError:
-        return x.log()
+        return symbol(x).log()
 
 
-def floor(x: Any) -> Any:
+def floor(x: float) -> float:
     try:
         return float(math.floor(x))
     except TypeError:
-        return x.floor()
+        return symbol(x).floor()
 
 
-def interpolate(values: Sequence[Any], position: Any) -> Any:
+def interpolate(values: Sequence[float], position: float) -> float:
     """Linear interpolation between values[0], values[1], ...; held beyond either end."""
     position = clip(position, 0.0, len(values) - 1.0)
     if position.__class__ is float:

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from functools import cache
 from typing import Any
 
+from .declaration import Record
 from .integrator import Integrator
 from .types import Block, ContinuousBlock, SampledBlock
 
@@ -28,28 +29,28 @@ class Runner(ABC):
         elapsed: time since the start in s; a host with a clock of its own may put it right before a step.
     """
 
-    def __init__(self, block: Block, u: Any, p: Any) -> None:
+    def __init__(self, block: Block, u: object, p: object) -> None:
         """At the start, with the inputs u of that instant and the parameters p of the whole run."""
         self.p = p
         self.x = block.start(u, p)
         self.elapsed = 0.0
         self._output = block.output
 
-    def output(self, u: Any) -> Any:
+    def output(self, u: object) -> Any:
         """The outputs now."""
         return self._output(self.x, u, self.p)
 
     @abstractmethod
-    def advance(self, u: Any, duration: float) -> None:
+    def advance(self, u: object, duration: float) -> None:
         """Lets `duration` seconds pass with the inputs u; any time above 0."""
 
     @property
     @abstractmethod
-    def memory(self) -> tuple[Any, ...]:
+    def memory(self) -> Record:
         """All that the rest of the run depends on, beside the parameters."""
 
     @abstractmethod
-    def restore(self, memory: tuple[Any, ...]) -> None:
+    def restore(self, memory: Record) -> None:
         """Goes back to where `memory` was taken."""
 
 
@@ -59,32 +60,32 @@ _integrator = cache(Integrator)
 class ContinuousRunner(Runner):
     """A continuous block, integrated."""
 
-    def __init__(self, block: ContinuousBlock, u: Any, p: Any) -> None:
+    def __init__(self, block: ContinuousBlock, u: object, p: object) -> None:
         super().__init__(block, u, p)
         self._integrator = _integrator(block)
 
-    def advance(self, u: Any, duration: float) -> None:
+    def advance(self, u: object, duration: float) -> None:
         self.x = self._integrator.advance(self.x, u, self.p, duration)
         self.elapsed += duration
 
     @property
-    def memory(self) -> tuple[Any, ...]:
+    def memory(self) -> Record:
         return self.elapsed, self.x
 
-    def restore(self, memory: tuple[Any, ...]) -> None:
+    def restore(self, memory: Record) -> None:
         self.elapsed, self.x = memory
 
 
 class SampledRunner(Runner):
     """A sampled block, ticking; what its last tick computed is on its way to become the state."""
 
-    def __init__(self, block: SampledBlock, u: Any, p: Any) -> None:
+    def __init__(self, block: SampledBlock, u: object, p: object) -> None:
         super().__init__(block, u, p)
         self._update, self._sample_time = block.update, block.sample_time
         self._coming = self.x
         self._ticks = 0
 
-    def advance(self, u: Any, duration: float) -> None:
+    def advance(self, u: object, duration: float) -> None:
         self.elapsed += duration
         samples = self.elapsed / self._sample_time
         due = math.ceil(samples - TICK_TOLERANCE)
@@ -95,14 +96,14 @@ class SampledRunner(Runner):
             self.x = self._coming
 
     @property
-    def memory(self) -> tuple[Any, ...]:
+    def memory(self) -> Record:
         return self.elapsed, self.x, self._coming, self._ticks
 
-    def restore(self, memory: tuple[Any, ...]) -> None:
+    def restore(self, memory: Record) -> None:
         self.elapsed, self.x, self._coming, self._ticks = memory
 
 
-def runner(block: Block, u: Any, p: Any) -> Runner:
+def runner(block: Block, u: object, p: object) -> Runner:
     """A block at its start, with the inputs u of that instant and the parameters p of the whole run."""
     if isinstance(block, ContinuousBlock):
         return ContinuousRunner(block, u, p)

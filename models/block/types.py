@@ -20,7 +20,7 @@ from .declaration import with_defaults
 from .frame import Frame
 
 
-def no_event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
+def no_event_indicators(x: object, u: object, p: object) -> tuple[float, ...]:
     """Of a block whose equations are smooth everywhere."""
     return ()
 

@@ -2,26 +2,29 @@
 
 from collections.abc import Callable, Mapping
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from ..block.declaration import with_defaults, without
-from ..controller.interfaces import Estimator, Law
+from ..controller.interfaces import Estimator, Law, Part
+
+SomePart = TypeVar("SomePart", bound=Part)
 
 
-def fixed(part: Any, defaults: Mapping[str, float] | None = None, /, **values: float) -> Any:
+def fixed(part: SomePart, defaults: Mapping[str, float] | None = None, /, **values: float) -> SomePart:
     """The estimator or law with these values in the place of the parameters.
 
     Args:
         defaults: other start values of the parameters that remain.
     """
     functions = {name: getattr(part, name) for name in (*dir(Estimator), *dir(Law)) if _is_function(part, name)}
-    return SimpleNamespace(
+    made = SimpleNamespace(
         Parameters=with_defaults(without(part.Parameters, values), defaults or {}),
         **{name: _with(values, function) for name, function in functions.items()},
     )
+    return cast(SomePart, made)
 
 
-def _is_function(part: Any, name: str) -> bool:
+def _is_function(part: object, name: str) -> bool:
     return not name.startswith("_") and name != "Parameters" and hasattr(part, name)
 
 

@@ -6,7 +6,7 @@ The wheel speed is that of the last message, as old as it is; while no wheel spe
 motor stands for it. It fades from one to the other.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import where
@@ -18,6 +18,12 @@ class Parameters(NamedTuple):
     J: Annotated[float, Real("kg.m2", "inertia of motor, wheels and vehicle, motor side", 0.001, 100.0)] = 1.87
 
 
+class AllParameters(Parameters):
+    """With those of the supervision that it takes beside its own: a type of p, never made."""
+
+    t_fade: float
+
+
 class SpeedState(NamedTuple):
     """State of the estimator of the speeds."""
 
@@ -27,34 +33,34 @@ class SpeedState(NamedTuple):
     share: Annotated[float, Real("1", "share of the wheel speed, 0 while none comes")]
 
 
-def start(omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> SpeedState:
+def start(omega_1: float, T_mot: float, wheel: bool, p: Parameters) -> SpeedState:
     return SpeedState(omega_1, omega_1, T_mot, where(wheel, 1.0, 0.0))
 
 
-def restart(x: SpeedState, omega_1: Any, T_mot: Any, p: Any) -> SpeedState:
+def restart(x: SpeedState, omega_1: float, T_mot: float, p: Parameters) -> SpeedState:
     return SpeedState(omega_1, omega_1, T_mot, x.share)
 
 
-def predict(x: SpeedState, T_mot: Any, T_s: Any, p: Any) -> SpeedState:
+def predict(x: SpeedState, T_mot: float, T_s: float, p: Parameters) -> SpeedState:
     return x._replace(omega_1=x.omega_1 + T_s * T_mot / p.J, T_mot=T_mot)
 
 
-def take_motor_speed(x: SpeedState, omega_1: Any, p: Any) -> SpeedState:
+def take_motor_speed(x: SpeedState, omega_1: float, p: Parameters) -> SpeedState:
     return x._replace(omega_1=omega_1)
 
 
-def take_wheel_speed(x: SpeedState, omega_2: Any, T_s: Any, p: Any) -> SpeedState:
+def take_wheel_speed(x: SpeedState, omega_2: float, T_s: float, p: Parameters) -> SpeedState:
     return x._replace(omega_2=omega_2)
 
 
-def finish(x: SpeedState, wheel: Any, T_s: Any, p: Any) -> SpeedState:
-    return x._replace(share=toward(x.share, where(wheel, 1.0, 0.0), T_s, p))
+def finish(x: SpeedState, wheel: bool, T_s: float, p: AllParameters) -> SpeedState:
+    return x._replace(share=toward(x.share, where(wheel, 1.0, 0.0), T_s, p.t_fade))
 
 
-def motion(x: SpeedState, p: Any) -> Motion:
+def motion(x: SpeedState, p: Parameters) -> Motion:
     omega_2 = x.omega_1 - x.share * (x.omega_1 - x.omega_2)
     return Motion(x.omega_1, omega_2, phi=0.0, T_gear=x.T_mot)
 
 
-def motion_after(x: SpeedState, T_mot: Any, h: Any, p: Any) -> Motion:
+def motion_after(x: SpeedState, T_mot: float, h: float, p: Parameters) -> Motion:
     return motion(predict(x, T_mot, h, p), p)

@@ -3,7 +3,8 @@
 T_damp = 0
 """
 
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from ..controller.interfaces import Addition, Motion
 from ..controller.supervised_controller import supervised
@@ -17,13 +18,13 @@ class Nothing(NamedTuple):
 class NoLaw:
     """The law."""
 
-    Parameters: type[Any] = Nothing
+    Parameters = Nothing
 
-    def start(self, motion: Motion, T_driver: Any, p: Any) -> Nothing:
+    def start(self, motion: Motion, T_driver: float, p: Nothing) -> Nothing:
         return Nothing()
 
     def update(
-        self, x: Nothing, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+        self, x: Nothing, motion: Motion, later: Callable[[float], Motion], T_driver: float, T_s: float, p: Nothing
     ) -> tuple[Nothing, Addition]:
         return x, Addition(damping=0.0, landing=0.0)
 

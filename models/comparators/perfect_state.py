@@ -5,15 +5,17 @@ supervision has the measured signals, as ever.
 """
 
 from dataclasses import replace
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple, cast
 
 from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, is_finite
-from ..controller import damping_law, supervision, torque_estimator
+from ..controller import damping_law, supervision, supervision_interface, torque_estimator
+from ..controller.damping_law import LawState
 from ..controller.launch_direction import LaunchState
 from ..controller.signal_monitor import MonitorState
 from ..controller.supervised_controller import Supervised, supervised
-from ..controller.torque_estimator import Estimate, EstimatorState, bounded
+from ..controller.supervision import State
+from ..controller.torque_estimator import AllParameters, Estimate, EstimatorState, bounded
 from ..controller.wheel_monitor import WheelState
 from .fixed import fixed
 
@@ -32,15 +34,17 @@ class Truth(NamedTuple):
     T_gear: Annotated[float, Real("N.m", "true gear torque, motor side")] = 0.0
 
 
-class WithTrueMotion(Supervised):
+class WithTrueMotion(Supervised[EstimatorState, LawState]):
     """A controller that gets the true motion of the plant."""
 
-    def measured(self, x: Any, u: Any, p: Any) -> tuple[Any, MonitorState, WheelState, LaunchState]:
+    def measured(
+        self, x: State[EstimatorState, LawState], u: supervision_interface.Input, p: supervision_interface.Parameters
+    ) -> tuple[EstimatorState, MonitorState, WheelState, LaunchState]:
         expected, signals, wheel_state, launch = super().measured(x, u, p)
-        return with_true_motion(expected, u, p), signals, wheel_state, launch
+        return with_true_motion(expected, cast(Truth, u), cast(AllParameters, p)), signals, wheel_state, launch
 
 
-def with_true_motion(expected: EstimatorState, u: Any, p: Any) -> EstimatorState:
+def with_true_motion(expected: EstimatorState, u: Truth, p: AllParameters) -> EstimatorState:
     """The state of the model with the plant's motion; as expected where that is not finite.
 
     Its twist is that which makes the true gear torque and, in the gap, the true one.
@@ -61,7 +65,7 @@ BLOCK = replace(
         estimator=MODEL,
         law=damping_law,
     ),
-    Input=merged("Input", supervision.Input, Truth),
+    Input=merged("Input", supervision_interface.Input, Truth),
     start=_CONTROLLER.start,
     update=_CONTROLLER.update,
 )

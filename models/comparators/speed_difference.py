@@ -6,7 +6,8 @@ Nothing while no wheel speed comes, as below 5 km/h. The washout takes away what
 speeds up, and an error of the wheel radius; omega_delta = 0 leaves it out.
 """
 
-from typing import Annotated, Any, NamedTuple
+from collections.abc import Callable
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..controller.damping_law import washed_out
@@ -33,13 +34,19 @@ class DifferenceState(NamedTuple):
 class Difference:
     """The law."""
 
-    Parameters: type[Any] = DifferenceParameters
+    Parameters = DifferenceParameters
 
-    def start(self, motion: Motion, T_driver: Any, p: Any) -> DifferenceState:
+    def start(self, motion: Motion, T_driver: float, p: DifferenceParameters) -> DifferenceState:
         return DifferenceState(slow=0.0)
 
     def update(
-        self, x: DifferenceState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+        self,
+        x: DifferenceState,
+        motion: Motion,
+        later: Callable[[float], Motion],
+        T_driver: float,
+        T_s: float,
+        p: DifferenceParameters,
     ) -> tuple[DifferenceState, Addition]:
         difference = motion.omega_1 - motion.omega_2
         slow = washed_out(x.slow, difference, p.omega_delta, T_s)

@@ -3,7 +3,8 @@
 T_damp = -k_v s/(s + omega_v) omega_1
 """
 
-from typing import Annotated, Any, NamedTuple
+from collections.abc import Callable
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..controller.damping_law import washed_out
@@ -26,13 +27,19 @@ class WashoutState(NamedTuple):
 class Washout:
     """The law."""
 
-    Parameters: type[Any] = WashoutParameters
+    Parameters = WashoutParameters
 
-    def start(self, motion: Motion, T_driver: Any, p: Any) -> WashoutState:
+    def start(self, motion: Motion, T_driver: float, p: WashoutParameters) -> WashoutState:
         return WashoutState(motion.omega_1)
 
     def update(
-        self, x: WashoutState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any
+        self,
+        x: WashoutState,
+        motion: Motion,
+        later: Callable[[float], Motion],
+        T_driver: float,
+        T_s: float,
+        p: WashoutParameters,
     ) -> tuple[WashoutState, Addition]:
         slow = washed_out(x.slow, motion.omega_1, p.omega_v, T_s)
         return WashoutState(slow), Addition(damping=-p.k_v * (motion.omega_1 - x.slow), landing=0.0)

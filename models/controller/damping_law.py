@@ -16,7 +16,8 @@ the torque bounce T. What the landing has withheld comes back with the time cons
 most, and a demand that is next to nothing has none. All that with the motion T_pred ahead, when the torque will act.
 """
 
-from typing import Annotated, Any, NamedTuple
+from collections.abc import Callable
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import clip, logical_and, maximum, minimum, sqrt, where
@@ -63,6 +64,13 @@ class Parameters(NamedTuple):
     t_land: Annotated[float, Real("s", "longest duration of a landing", 0.0, 1.0)] = GAINS["t_land"]
 
 
+class AllParameters(Parameters):
+    """With those of the supervision that it takes beside its own: a type of p, never made."""
+
+    T_add_max: float
+    T_still: float
+
+
 class LawState(NamedTuple):
     """State of the damping law."""
 
@@ -72,11 +80,13 @@ class LawState(NamedTuple):
     withheld: Annotated[float, Real("N.m", "torque that the landing withholds")]
 
 
-def start(motion: Motion, T_driver: Any, p: Any) -> LawState:
+def start(motion: Motion, T_driver: float, p: Parameters) -> LawState:
     return LawState(washout=fed_back(motion, p), slow=T_driver, afloat=0.0, withheld=0.0)
 
 
-def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[LawState, Addition]:
+def update(
+    x: LawState, motion: Motion, later: Callable[[float], Motion], T_driver: float, T_s: float, p: AllParameters
+) -> tuple[LawState, Addition]:
     ahead = later(p.T_pred)
     changing = fed_back(ahead, p)
     damping = clip(x.washout - changing, -p.T_add_max, p.T_add_max)
@@ -96,22 +106,22 @@ def update(x: LawState, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: 
     return x, Addition(damping=damping, landing=-withheld)
 
 
-def in_gap(motion: Motion, p: Any) -> Any:
+def in_gap(motion: Motion, p: Parameters) -> bool:
     return abs(motion.phi) < p.phi_B
 
 
-def fed_back(motion: Motion, p: Any) -> Any:
+def fed_back(motion: Motion, p: Parameters) -> float:
     """The torque in N.m that the washout leaves the changing part of."""
     k_d = p.k_d * where(in_gap(motion, p), p.k_gap, 1.0)
     return k_d * (motion.omega_1 - motion.omega_2) + p.k_T * motion.T_gear
 
 
-def washed_out(stationary: Any, value: Any, corner: Any, T_s: Any) -> Any:
+def washed_out(stationary: float, value: float, corner: float, T_s: float) -> float:
     """The stationary part of `value` at the next sample, behind a washout with that corner frequency (rad/s)."""
     return stationary + minimum(corner * T_s, 1.0) * (value - stationary)
 
 
-def landing_torque(motion: Motion, T_next: Any, p: Any) -> Any:
+def landing_torque(motion: Motion, T_next: float, p: Parameters) -> float:
     """T_ref in N.m that leads the teeth to the flank which the demand T_next (N.m) pushes against."""
     side = where(T_next > 0.0, 1.0, -1.0)
     omega, d = side * (motion.omega_1 - motion.omega_2), maximum(p.phi_B - side * motion.phi, 0.0)

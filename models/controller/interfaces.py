@@ -5,9 +5,14 @@ functions. p holds the parameters of all parts and of the supervision by name, T
 in s. All quantities are referred to the motor side.
 """
 
-from typing import Annotated, Any, NamedTuple, Protocol
+from collections.abc import Callable
+from typing import Annotated, Any, NamedTuple, Protocol, TypeVar
 
 from ..block.declaration import Real
+
+S = TypeVar("S")
+P = TypeVar("P", contravariant=True)
+"""State and parameters of a part."""
 
 
 class Motion(NamedTuple):
@@ -26,54 +31,58 @@ class Addition(NamedTuple):
     landing: Annotated[float, Real("N.m", "change of the demand that lets the teeth land softly")]
 
 
-class Estimator(Protocol):
-    """Tells the motion of the drive train from motor torque, motor speed and wheel speed."""
+class Part(Protocol):
+    """A part with its declared parameters."""
 
     Parameters: type[Any]
 
-    def start(self, omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> Any:
+
+class Estimator(Part, Protocol[S, P]):
+    """Tells the motion of the drive train from motor torque, motor speed and wheel speed."""
+
+    def start(self, omega_1: float, T_mot: float, wheel: bool, p: P) -> S:
         """State for a motor speed (rad/s) and torque (N.m), nothing else being known; `wheel`: a wheel speed comes."""
         ...
 
-    def restart(self, x: Any, omega_1: Any, T_mot: Any, p: Any) -> Any:
+    def restart(self, x: S, omega_1: float, T_mot: float, p: P) -> S:
         """State that has forgotten what it estimated, as at the start."""
         ...
 
-    def predict(self, x: Any, T_mot: Any, T_s: Any, p: Any) -> Any:
+    def predict(self, x: S, T_mot: float, T_s: float, p: P) -> S:
         """State one sample later under the mean motor torque of that sample."""
         ...
 
-    def take_motor_speed(self, x: Any, omega_1: Any, p: Any) -> Any:
+    def take_motor_speed(self, x: S, omega_1: float, p: P) -> S:
         """State corrected by the measured motor speed."""
         ...
 
-    def take_wheel_speed(self, x: Any, omega_2: Any, T_s: Any, p: Any) -> Any:
+    def take_wheel_speed(self, x: S, omega_2: float, T_s: float, p: P) -> S:
         """State corrected by a message that has just arrived."""
         ...
 
-    def finish(self, x: Any, wheel: Any, T_s: Any, p: Any) -> Any:
+    def finish(self, x: S, wheel: bool, T_s: float, p: P) -> S:
         """State at the end of the sample; `wheel`: the wheel speed is in use."""
         ...
 
-    def motion(self, x: Any, p: Any) -> Motion:
+    def motion(self, x: S, p: P) -> Motion:
         """The estimate."""
         ...
 
-    def motion_after(self, x: Any, T_mot: Any, h: Any, p: Any) -> Motion:
+    def motion_after(self, x: S, T_mot: float, h: float, p: P) -> Motion:
         """The estimate h seconds later under a motor torque (N.m), its mean over that time."""
         ...
 
 
-class Law(Protocol):
+class Law(Part, Protocol[S, P]):
     """Says what is to be added to the driver's demand."""
 
-    Parameters: type[Any]
-
-    def start(self, motion: Motion, T_driver: Any, p: Any) -> Any:
+    def start(self, motion: Motion, T_driver: float, p: P) -> S:
         """State in which motion and demand (N.m) of the start are taken for stationary."""
         ...
 
-    def update(self, x: Any, motion: Motion, later: Any, T_driver: Any, T_s: Any, p: Any) -> tuple[Any, Addition]:
+    def update(
+        self, x: S, motion: Motion, later: Callable[[float], Motion], T_driver: float, T_s: float, p: P
+    ) -> tuple[S, Addition]:
         """Next state, and what is to be added; the supervision limits it.
 
         Args:

@@ -7,10 +7,11 @@ integral of s itself. Whatever else the motor does tells nothing: on the flank o
 Nor does a car that rolls before it is pushed, or the damping torque, which always pushes against the motion.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import clip, logical_and, logical_not, maximum, minimum, sign, where
+from .supervision_interface import Parameters
 
 FREE = 4.5
 """Speed in rad/s that the torque must give a free motor before it is looked at: sensor noise is far below."""
@@ -42,15 +43,15 @@ def start() -> LaunchState:
 
 def update(
     x: LaunchState,
-    T_driver: Any,
-    T_mot: Any,
-    omega_1: Any,
-    change: Any,
-    resting: Any,
-    launching: Any,
-    trusted: Any,
-    T_s: Any,
-    p: Any,
+    T_driver: float,
+    T_mot: float,
+    omega_1: float,
+    change: float,
+    resting: bool,
+    launching: bool,
+    trusted: bool,
+    T_s: float,
+    p: Parameters,
 ) -> LaunchState:
     """The state after one sample.
 
@@ -87,16 +88,16 @@ def update(
     )
 
 
-def is_against(x: LaunchState) -> Any:
+def is_against(x: LaunchState) -> bool:
     """Whether it has set off against its torque: its speed has the wrong sign."""
     return x.way < 0.0
 
 
-def is_with(x: LaunchState) -> Any:
+def is_with(x: LaunchState) -> bool:
     """Whether it has set off with its torque: its speed has the right sign."""
     return x.way > 0.0
 
 
-def heading(x: LaunchState) -> Any:
+def heading(x: LaunchState) -> float:
     """Direction in which the torque has pushed the car out of rest: 1 forwards, -1 backwards, 0 not known."""
     return sign(x.free)

@@ -8,10 +8,11 @@ What counts is the torque that acts: at full demand T_max leaves the damping one
 oscillation that is braked by half the swings dies away slowly.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import clip, logical_and, logical_not, maximum, where
+from .supervision_interface import Parameters
 
 SWING = 0.12
 """Least damping torque of a half swing, over T_max."""
@@ -41,20 +42,20 @@ class SwingState(NamedTuple):
     side: Annotated[float, Real("1", "sign of the present half swing, 0 at first")]
     peak: Annotated[float, Real("N.m", "largest torque of that half swing, in magnitude")]
     enough: Annotated[float, Real("N.m", "torque with which it counts, 0 if it does not or has")]
-    count: Annotated[float, Real("1", "half swings that nothing explains")]
+    count: Annotated[float, Real("1", "half swings that nothing explains")]  # pyright: ignore[reportIncompatibleMethodOverride]
     T_driver: Annotated[float, Real("N.m", "demand of the last sample")]
 
 
-def start(T_driver: Any) -> SwingState:
+def start(T_driver: float) -> SwingState:
     return SwingState(side=0.0, peak=0.0, enough=0.0, count=0.0, T_driver=T_driver)
 
 
-def is_calm(damping: Any, p: Any) -> Any:
+def is_calm(damping: float, p: Parameters) -> bool:
     """Whether the damping torque (N.m) is small."""
     return abs(damping) <= CALM * p.T_max
 
 
-def update(x: SwingState, damping: Any, T_driver: Any, acting: Any, T_s: Any, p: Any) -> SwingState:
+def update(x: SwingState, damping: float, T_driver: float, acting: bool, T_s: float, p: Parameters) -> SwingState:
     """The state after a sample with this damping torque and demand (N.m); `acting`: the damping is not faded out."""
     size = abs(damping)
     side = where(size > SWING * p.T_max, where(damping > 0.0, 1.0, -1.0), x.side)
@@ -74,5 +75,5 @@ def update(x: SwingState, damping: Any, T_driver: Any, acting: Any, T_s: Any, p:
     )
 
 
-def feeds(x: SwingState) -> Any:
+def feeds(x: SwingState) -> bool:
     return x.count >= MOST

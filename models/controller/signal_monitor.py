@@ -8,11 +8,12 @@ of range, or far from what the motor should have (torque_loop). A speed that is 
 followed wherever it is plausible, so that it can heal (trust).
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
 from . import torque_loop
+from .supervision_interface import Input, Parameters
 from .torque_loop import LoopState
 
 STILL = 1.0
@@ -54,7 +55,7 @@ class MonitorState(NamedTuple):
     bad: Annotated[float, Real("s", "time since the motor signals were good")]
 
 
-def start(u: Any, p: Any) -> MonitorState:
+def start(u: Input, p: Parameters) -> MonitorState:
     omega_1 = speed(u.omega_1_meas, 0.0, p)
     T_mot = where(plausible(u.T_mot_est, 2.0 * p.T_max), u.T_mot_est, 0.0)
     return MonitorState(
@@ -73,40 +74,40 @@ def start(u: Any, p: Any) -> MonitorState:
     )
 
 
-def plausible(signal: Any, limit: Any) -> Any:
+def plausible(signal: float, limit: float) -> bool:
     """Finite and at most the limit in magnitude."""
     return logical_and(is_finite(signal), abs(signal) <= limit)
 
 
-def is_torque(T_mot_est: Any, loop: LoopState, p: Any) -> Any:
+def is_torque(T_mot_est: float, loop: LoopState, p: Parameters) -> bool:
     """Whether a torque estimate (N.m) is in range, and can be that of what the motor should have."""
     return logical_and(plausible(T_mot_est, 2.0 * p.T_max), torque_loop.agrees(loop, T_mot_est, p))
 
 
-def torque(T_mot_est: Any, loop: LoopState, p: Any) -> Any:
+def torque(T_mot_est: float, loop: LoopState, p: Parameters) -> float:
     """The torque estimate, or what the motor should have where it cannot be that."""
     return where(is_torque(T_mot_est, loop, p), T_mot_est, loop.T_mot)
 
 
-def speed(omega_1_meas: Any, expected: Any, p: Any) -> Any:
+def speed(omega_1_meas: float, expected: float, p: Parameters) -> float:
     """The measured speed, or the expected one where it is out of range."""
     return where(plausible(omega_1_meas, p.omega_max), omega_1_meas, expected)
 
 
-def is_near(x: MonitorState, omega_1: Any, expected: Any, p: Any) -> Any:
+def is_near(x: MonitorState, omega_1: float, expected: float, p: Parameters) -> bool:
     """Whether a speed is near that of the last sample, where that was going, or what is expected (rad/s)."""
     going, last = abs(omega_1 - x.omega_1 - x.omega_1_change), abs(omega_1 - x.omega_1)
     return minimum(minimum(going, last), abs(omega_1 - expected)) <= p.e_jump
 
 
-def noise_share(x: MonitorState, change: Any, T_s: Any) -> Any:
+def noise_share(x: MonitorState, change: float, T_s: float) -> float:
     """Share of the samples in which noise moves the motor speed, after one with this change (rad/s)."""
     turned, least = change * x.change < 0.0, minimum(abs(change), abs(x.change))
     noisy = where(logical_and(turned, least > NOISY * x.resolution), 1.0, 0.0)
     return x.noise + minimum(T_s / T_NOISE, 1.0) * (noisy - x.noise)
 
 
-def update(x: MonitorState, u: Any, increment: Any, T_ref: Any, T_s: Any, p: Any) -> MonitorState:
+def update(x: MonitorState, u: Input, increment: float, T_ref: float, T_s: float, p: Parameters) -> MonitorState:
     """The state after the signals of one sample.
 
     Args:

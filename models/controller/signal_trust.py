@@ -8,10 +8,11 @@ latched, for a wrong speed may agree with itself: then the wheel speed must be a
 damping torque be small, and all that for a heal time that doubles each time; or the car has come to rest.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import logical_and, logical_not, logical_or, minimum, where
+from .supervision_interface import Parameters
 
 LONGEST = 32.0
 """Longest heal time, over t_proof."""
@@ -25,16 +26,23 @@ class TrustState(NamedTuple):
     latched: Annotated[bool, Boolean("a failure is latched: they were implausible")]
 
 
-def start(p: Any) -> TrustState:
+def start(p: Parameters) -> TrustState:
     return TrustState(heal_time=p.t_proof, needed=p.t_proof, latched=False)
 
 
-def is_trusted(x: TrustState) -> Any:
+def is_trusted(x: TrustState) -> bool:
     return x.heal_time >= x.needed
 
 
 def update(
-    x: TrustState, bad: Any, mismatch_time: Any, implausible: Any, confirmed: Any, resting: Any, T_s: Any, p: Any
+    x: TrustState,
+    bad: float,
+    mismatch_time: float,
+    implausible: bool,
+    confirmed: bool,
+    resting: bool,
+    T_s: float,
+    p: Parameters,
 ) -> TrustState:
     """The state after one sample.
 

@@ -3,35 +3,34 @@
 Sensor noise would otherwise rattle the motor of a standing car in its gap.
 """
 
-from typing import Any
-
 from ..block.operators import logical_and, maximum, minimum, where
+from .supervision_interface import Parameters
 
 LAUNCH = 1.0
 """Time in s after rest for which a car is pulling away: nothing was tense in it that could push it back."""
 
 
-def is_still(T_driver: Any, omega_1: Any, p: Any) -> Any:
+def is_still(T_driver: float, omega_1: float, p: Parameters) -> bool:
     """Neither demand nor motion."""
     return logical_and(abs(T_driver) <= p.T_still, abs(omega_1) <= p.omega_still)
 
 
-def longest(p: Any) -> Any:
+def longest(p: Parameters) -> float:
     """Time of stillness in s after which it is complete rest."""
     return p.t_rest + p.t_fade
 
 
-def quiet_time(quiet: Any, still: Any, T_s: Any, p: Any) -> Any:
+def quiet_time(quiet: float, still: bool, T_s: float, p: Parameters) -> float:
     """Time in s without demand and motion, one sample later; counted no further than needed."""
     return where(still, minimum(quiet + T_s, longest(p)), 0.0)
 
 
-def time_since(since: Any, resting: Any, T_s: Any) -> Any:
+def time_since(since: float, resting: bool, T_s: float) -> float:
     """Time in s since the car was at rest, one sample later; counted no further than LAUNCH."""
     return where(resting, 0.0, minimum(since + T_s, LAUNCH))
 
 
-def share(quiet: Any, p: Any) -> Any:
+def share(quiet: float, p: Parameters) -> float:
     """From 0 to 1 as the damping fades out, `quiet` s after the last demand or motion.
 
     Written so that it is exactly 1 at complete rest, whatever the rounding.

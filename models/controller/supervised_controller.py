@@ -1,7 +1,7 @@
 """A controller: an estimator and a law under the supervision, as a block."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic
 
 from ..block.declaration import merged
 from ..block.operators import branch, clip, logical_and, logical_not, logical_or, where
@@ -15,9 +15,9 @@ from .launch_direction import LaunchState
 from .signal_monitor import MonitorState
 from .supervision import (
     T_S,
-    Input,
+    E,
+    L,
     Output,
-    Parameters,
     State,
     damping_limited,
     demand,
@@ -28,17 +28,18 @@ from .supervision import (
     status,
     trust_after,
 )
+from .supervision_interface import Input, Parameters
 from .wheel_monitor import WheelState
 
 
 @dataclass(frozen=True)
-class Supervised:
-    """An estimator and a law under supervision."""
+class Supervised(Generic[E, L]):
+    """An estimator and a law under supervision; both find more parameters in p than those of the supervision."""
 
-    estimator: Estimator
-    law: Law
+    estimator: Estimator[E, Any]
+    law: Law[L, Any]
 
-    def start(self, u: Input, p: Any) -> State:
+    def start(self, u: Input, p: Parameters) -> State[E, L]:
         """Estimate from the motor signals of t = 0, the driver's demand passed through."""
         T_driver = demand(u, p)
         signals, wheel = monitor.start(u, p), wheels.has_wheel_speed(u, p)
@@ -64,7 +65,7 @@ class Supervised:
             status=status(u.enable, True, wheel),
         )
 
-    def update(self, x: State, u: Input, p: Any) -> State:
+    def update(self, x: State[E, L], u: Input, p: Parameters) -> State[E, L]:
         """What was measured, whether it is trusted, and what is added to the demand."""
         e, signals, wheel_state, launch = self.measured(x, u, p)
         T_driver = demand(u, p)
@@ -80,7 +81,7 @@ class Supervised:
         acting, adding = self.acting(x, e, signals.T_mot, T_driver, restart, p)
 
         added = branch(trusted, lambda: damping_limited(adding, p), lambda: x.added)
-        level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p)
+        level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p.t_fade)
         share = level * (1.0 - resting)
         T_ref = clip(T_driver + limited(share * (added.damping + added.landing), T_driver, p), -p.T_max, p.T_max)
         T_landing = limited(share * added.landing, T_driver, p)
@@ -105,7 +106,7 @@ class Supervised:
             status=status(u.enable, trusted, wheel),
         )
 
-    def measured(self, x: State, u: Input, p: Any) -> tuple[Any, MonitorState, WheelState, LaunchState]:
+    def measured(self, x: State[E, L], u: Input, p: Parameters) -> tuple[E, MonitorState, WheelState, LaunchState]:
         """The states of the estimator and of the monitors with the signals of this sample."""
         T_mot = monitor.torque(u.T_mot_est, x.monitor.loop, p)
         e = self.estimator.predict(x.estimator, 0.5 * (x.monitor.T_mot + T_mot), T_S, p)
@@ -133,19 +134,21 @@ class Supervised:
         )
         return corrected, signals, wheel_state, launch
 
-    def restarted(self, e: Any, signals: MonitorState, restart: Any, resting: Any, p: Any) -> Any:
+    def restarted(self, e: E, signals: MonitorState, restart: bool, resting: bool, p: Parameters) -> E:
         """The estimator, restarted where the signals are doubtful, and held at rest."""
         followed = branch(restart, lambda: self.estimator.restart(e, signals.omega_1, signals.T_mot, p), lambda: e)
         return branch(resting, lambda: self.estimator.restart(followed, 0.0, 0.0, p), lambda: followed)
 
-    def acting(self, x: State, e: Any, T_mot: Any, T_driver: Any, restart: Any, p: Any) -> tuple[Any, Addition]:
+    def acting(
+        self, x: State[E, L], e: E, T_mot: float, T_driver: float, restart: bool, p: Parameters
+    ) -> tuple[L, Addition]:
         """The state of the law, restarted with the estimator, and what it would add to the demand.
 
         Args:
             x: of the whole controller, of the last sample.
         """
 
-        def later(h: Any) -> Motion:
+        def later(h: float) -> Motion:
             return self.estimator.motion_after(e, T_mot + torque_loop.change(x.monitor.loop, x.T_ref, h, p), h, p)
 
         motion = self.estimator.motion(e, p)
@@ -153,7 +156,9 @@ class Supervised:
         return self.law.update(before, motion, later, T_driver, T_S, p)
 
 
-def supervised(name: str, description: str, module: str, estimator: Estimator, law: Law) -> SampledBlock:
+def supervised(
+    name: str, description: str, module: str, estimator: Estimator[E, Any], law: Law[L, Any]
+) -> SampledBlock:
     """A controller as a block: its parameters are those of the estimator, of the law and of the supervision.
 
     Args:

@@ -9,11 +9,10 @@ and takes no more than T_take_max from the demand and adds no more than T_add_ma
 what the damping alone may take.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Generic, NamedTuple, TypeVar
 
-from ..block.declaration import Boolean, Enumeration, Integer, Real
+from ..block.declaration import Enumeration, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, maximum, where
-from ..physics.vehicle import CAR, MotorInertia, MotorLag
 from . import launch_direction as departure
 from . import oscillation_monitor as swings
 from . import signal_trust as trust
@@ -23,56 +22,24 @@ from .launch_direction import LaunchState
 from .oscillation_monitor import SwingState
 from .signal_monitor import MonitorState
 from .signal_trust import TrustState
+from .supervision_interface import Input, Parameters
 from .wheel_monitor import WheelState
 
 T_S = 0.002
 """Sample time in s."""
 
-OFF, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, FALLBACK = 1.0, 2.0, 3.0, 4.0
+E = TypeVar("E")
+L = TypeVar("L")
+"""States of the estimator and of the law."""
+
+OFF, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, FALLBACK = 1, 2, 3, 4
 
 
-class Parameters(NamedTuple):
-    """Of the supervision, for every controller."""
-
-    T_max: Annotated[float, Real("N.m", "limit of the torque reference", 1.0, 2000.0)] = CAR.T_max
-    tau: MotorLag = CAR.tau
-    J_1: MotorInertia = CAR.J_1
-    T_take_max: Annotated[
-        float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0)
-    ] = 100.0
-    T_add_max: Annotated[float, Real("N.m", "largest torque added to the demand, or taken by damping", 0.0, 2000.0)] = (
-        60.0
-    )
-    t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
-    t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
-    t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1
-    t_proof: Annotated[float, Real("s", "good motor signals for so long end the fallback", 0.01, 1.0)] = 0.15
-    t_frozen: Annotated[float, Real("s", "a motor speed unchanged for so long is frozen", 0.01, 10.0)] = 0.1
-    t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
-    T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
-    omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
-    t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
-    omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 3000.0
-    e_max: Annotated[float, Real("rad/s", "largest distance of a usable wheel speed", 1.0, 1000.0)] = 40.0
-    e_jump: Annotated[float, Real("rad/s", "largest jump of the motor speed in a sample", 1.0, 1000.0)] = 8.0
-    e_wheel: Annotated[float, Real("rad/s", "largest distance of the motor from the wheel speed", 1.0, 1000.0)] = 30.0
-
-
-class Input(NamedTuple):
-    T_driver: Annotated[float, Real("N.m", "torque demanded by the driver")] = 0.0
-    omega_1_meas: Annotated[float, Real("rad/s", "measured speed of the motor")] = 0.0
-    T_mot_est: Annotated[float, Real("N.m", "air-gap torque as motor control estimates it")] = 0.0
-    omega_2_can: Annotated[float, Real("rad/s", "received speed of the driven wheels, motor side")] = 0.0
-    valid: Annotated[bool, Boolean("the received wheel speed is above its minimum")] = False
-    counter: Annotated[int, Integer("one more with every message that arrives")] = 0
-    enable: Annotated[bool, Boolean("damping on")] = True
-
-
-class State(NamedTuple):
+class State(NamedTuple, Generic[E, L]):
     """State of a controller; those of its parts are records."""
 
-    estimator: Any
-    law: Any
+    estimator: E
+    law: L
     monitor: MonitorState
     wheels: WheelState
     launch_direction: LaunchState
@@ -87,7 +54,10 @@ class State(NamedTuple):
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
     T_landing: Annotated[float, Real("N.m", "part of it that lets the teeth land softly")]
     ahead: Motion
-    status: Annotated[Any, Real("1", "number of the status")]
+    status: Annotated[int, Real("1", "number of the status")]
+
+
+AnyState = State[Any, Any]
 
 
 class Output(NamedTuple):
@@ -112,17 +82,17 @@ class Output(NamedTuple):
     T_landing: Annotated[float, Real("N.m", "part of T_damp that lets the teeth land softly")]
 
 
-def demand(u: Input, p: Any) -> Any:
+def demand(u: Input, p: Parameters) -> float:
     """The driver's demand in N.m within the limits; zero where it is not finite."""
     return clip(where(is_finite(u.T_driver), u.T_driver, 0.0), -p.T_max, p.T_max)
 
 
-def status(enable: Any, trusted: Any, wheel: Any) -> Any:
+def status(enable: bool, trusted: bool, wheel: bool) -> int:
     damping = where(wheel, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED)
     return where(enable, where(trusted, damping, FALLBACK), OFF)
 
 
-def output(x: State, u: Input, p: Any) -> Output:
+def output(x: AnyState, u: Input, p: Parameters) -> Output:
     return Output(
         T_ref=x.T_ref,
         T_damp=x.T_damp,
@@ -134,18 +104,18 @@ def output(x: State, u: Input, p: Any) -> Output:
     )
 
 
-def is_suspect(signals: MonitorState, wheel_state: WheelState) -> Any:
+def is_suspect(signals: MonitorState, wheel_state: WheelState) -> bool:
     """Whether the motor signals are bad in this sample, or do not match the wheel speed."""
     return logical_or(signals.bad > 0.0, wheel_state.mismatch_time > 0.0)
 
 
-def is_launching(x: State) -> Any:
+def is_launching(x: AnyState) -> bool:
     """Whether the car was at rest a moment ago."""
     return x.since_rest < standstill.LAUNCH
 
 
 def trust_after(
-    x: State, signals: MonitorState, wheel_state: WheelState, launch: LaunchState, resting: Any, p: Any
+    x: AnyState, signals: MonitorState, wheel_state: WheelState, launch: LaunchState, resting: bool, p: Parameters
 ) -> TrustState:
     """The trust in the motor signals with those of this sample; `resting`: the car is at rest."""
     wrong_direction = logical_and(departure.is_against(launch), logical_not(departure.is_against(x.launch_direction)))
@@ -155,11 +125,11 @@ def trust_after(
     return trust.update(x.trust, signals.bad, mismatch_time, implausible, confirmed, resting, T_S, p)
 
 
-def damping_limited(added: Addition, p: Any) -> Addition:
+def damping_limited(added: Addition, p: Parameters) -> Addition:
     return added._replace(damping=clip(added.damping, -p.T_add_max, p.T_add_max))
 
 
-def limited(torque: Any, T_driver: Any, p: Any) -> Any:
+def limited(torque: float, T_driver: float, p: Parameters) -> float:
     """What may be added to the demand: in its direction up to T_add_max, against it up to T_take_max."""
     lower = where(T_driver > 0.0, p.T_take_max, p.T_add_max)
     upper = where(T_driver < 0.0, p.T_take_max, p.T_add_max)

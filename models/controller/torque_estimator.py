@@ -16,7 +16,7 @@ estimate are counted from the motor speed that was measured last. They are small
 rounds them as little as the twist, which is the integral of their difference.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import clip, interpolate, where
@@ -53,6 +53,14 @@ class Parameters(NamedTuple):
     T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.064)] = GAINS["T_age"]
 
 
+class AllParameters(Parameters):
+    """With those of the supervision that it takes beside its own: a type of p, never made."""
+
+    T_max: float
+    t_fade: float
+    omega_max: float
+
+
 class Estimate(NamedTuple):
     """State of the estimator's model, motor side; its speeds are counted from a base."""
 
@@ -71,57 +79,57 @@ class EstimatorState(NamedTuple):
     share: Annotated[float, Real("1", "share of the gains with wheel speed")]
 
 
-def start(omega_1: Any, T_mot: Any, wheel: Any, p: Any) -> EstimatorState:
+def start(omega_1: float, T_mot: float, wheel: bool, p: Parameters) -> EstimatorState:
     e = at_rest_with(T_mot, p)
     return EstimatorState(omega_1, e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0))
 
 
-def restart(x: EstimatorState, omega_1: Any, T_mot: Any, p: Any) -> EstimatorState:
+def restart(x: EstimatorState, omega_1: float, T_mot: float, p: Parameters) -> EstimatorState:
     return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p))
 
 
-def predict(x: EstimatorState, T_mot: Any, T_s: Any, p: Any) -> EstimatorState:
+def predict(x: EstimatorState, T_mot: float, T_s: float, p: Parameters) -> EstimatorState:
     return x._replace(estimate=integrated(x.estimate, T_mot, T_s, p))
 
 
-def take_motor_speed(x: EstimatorState, omega_1: Any, p: Any) -> EstimatorState:
+def take_motor_speed(x: EstimatorState, omega_1: float, p: AllParameters) -> EstimatorState:
     e = counted_from(omega_1 - x.base, x.estimate)
     return x._replace(base=omega_1, estimate=bounded(corrected_by_motor_speed(e, 0.0, x.share, p), omega_1, p))
 
 
-def take_wheel_speed(x: EstimatorState, omega_2: Any, T_s: Any, p: Any) -> EstimatorState:
+def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: Parameters) -> EstimatorState:
     return x._replace(estimate=corrected_by_message(x, omega_2, p.T_age / T_s, p))
 
 
-def finish(x: EstimatorState, wheel: Any, T_s: Any, p: Any) -> EstimatorState:
-    share = toward(x.share, where(wheel, 1.0, 0.0), T_s, p)
+def finish(x: EstimatorState, wheel: bool, T_s: float, p: AllParameters) -> EstimatorState:
+    share = toward(x.share, where(wheel, 1.0, 0.0), T_s, p.t_fade)
     return x._replace(past=(x.base + x.estimate.omega_2, *x.past[:-1]), share=share)
 
 
-def motion(x: EstimatorState, p: Any) -> Motion:
+def motion(x: EstimatorState, p: Parameters) -> Motion:
     return seen(x.estimate, x.base, p)
 
 
-def motion_after(x: EstimatorState, T_mot: Any, h: Any, p: Any) -> Motion:
+def motion_after(x: EstimatorState, T_mot: float, h: float, p: Parameters) -> Motion:
     return seen(integrated(x.estimate, T_mot, h, p), x.base, p)
 
 
-def seen(e: Estimate, base: Any, p: Any) -> Motion:
+def seen(e: Estimate, base: float, p: Parameters) -> Motion:
     return Motion(base + e.omega_1, base + e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
 
 
-def counted_from(omega: Any, e: Estimate) -> Estimate:
+def counted_from(omega: float, e: Estimate) -> Estimate:
     """The estimate with its speeds counted from one that is omega (rad/s) above its base."""
     return e._replace(omega_1=e.omega_1 - omega, omega_2=e.omega_2 - omega)
 
 
-def at_rest_with(T_mot: Any, p: Any) -> Estimate:
+def at_rest_with(T_mot: float, p: Parameters) -> Estimate:
     """Estimate before anything was measured but the base: no twisting motion, the whole motor torque in the gear."""
     flank = where(T_mot > 0.0, p.phi_B, where(T_mot < 0.0, -p.phi_B, 0.0))
     return Estimate(0.0, 0.0, T_mot / p.C + flank, 0.0)
 
 
-def integrated(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
+def integrated(e: Estimate, T_mot: float, h: float, p: Parameters) -> Estimate:
     """The estimate h seconds later under the motor torque T_mot (N.m)."""
     phi = e.phi + 0.5 * h * (e.omega_1 - e.omega_2)
     T_gear = p.C * dead_zone(phi, p.phi_B)
@@ -130,7 +138,7 @@ def integrated(e: Estimate, T_mot: Any, h: Any, p: Any) -> Estimate:
     return Estimate(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), e.T_l)
 
 
-def corrected_by_motor_speed(e: Estimate, omega_1_meas: Any, share: Any, p: Any) -> Estimate:
+def corrected_by_motor_speed(e: Estimate, omega_1_meas: float, share: float, p: Parameters) -> Estimate:
     error = omega_1_meas - e.omega_1
     return Estimate(
         e.omega_1 + error * (p.L_omega_1 + share * (p.Lw_omega_1 - p.L_omega_1)),
@@ -140,7 +148,7 @@ def corrected_by_motor_speed(e: Estimate, omega_1_meas: Any, share: Any, p: Any)
     )
 
 
-def corrected_by_message(x: EstimatorState, omega_2_can: Any, samples: Any, p: Any) -> Estimate:
+def corrected_by_message(x: EstimatorState, omega_2_can: float, samples: float, p: Parameters) -> Estimate:
     """Correction by a message that is `samples` samples old; past[k] is the estimate k + 1 samples ago."""
     e = x.estimate
     error = x.share * (omega_2_can - interpolate(x.past, samples - 1.0))
@@ -152,7 +160,7 @@ def corrected_by_message(x: EstimatorState, omega_2_can: Any, samples: Any, p: A
     )
 
 
-def bounded(e: Estimate, base: Any, p: Any) -> Estimate:
+def bounded(e: Estimate, base: float, p: AllParameters) -> Estimate:
     """The estimate within what the drive train can bear, whatever was measured at the motor."""
     phi_max = p.phi_B + 4.0 * p.T_max / p.C
     return Estimate(

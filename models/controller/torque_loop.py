@@ -6,9 +6,10 @@ integrated by the trapezoidal rule, sample by sample. An estimate of the torque 
 the motor does not do what is demanded.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
+from .supervision_interface import Parameters
 
 SQRT_2 = 2.0**0.5
 
@@ -26,22 +27,22 @@ class LoopState(NamedTuple):
     r: Annotated[float, Real("N.m", "its rate times tau")]
 
 
-def start(T_mot: Any) -> LoopState:
+def start(T_mot: float) -> LoopState:
     return LoopState(T_mot, 0.0)
 
 
-def update(x: LoopState, T_ref: Any, T_s: Any, p: Any) -> LoopState:
+def update(x: LoopState, T_ref: float, T_s: float, p: Parameters) -> LoopState:
     """The state after a sample with the demand T_ref (N.m)."""
     h = 0.5 * T_s / p.tau
     r = (x.r + h * (T_ref - x.T_mot)) / (1.0 + SQRT_2 * h + h * h)
     return LoopState(x.T_mot + 2.0 * h * r, 2.0 * r - x.r)
 
 
-def change(x: LoopState, T_ref: Any, h: Any, p: Any) -> Any:
+def change(x: LoopState, T_ref: float, h: float, p: Parameters) -> float:
     """Mean change of the torque (N.m) over the next h seconds with the demand T_ref (N.m)."""
     return 0.5 * (update(x, T_ref, h, p).T_mot - x.T_mot)
 
 
-def agrees(x: LoopState, T_mot_est: Any, p: Any) -> Any:
+def agrees(x: LoopState, T_mot_est: float, p: Parameters) -> bool:
     """Whether an estimate (N.m) can be that of this torque; one that is no number cannot."""
     return abs(T_mot_est - x.T_mot) <= FAR * p.T_max + SHARE * abs(x.T_mot)

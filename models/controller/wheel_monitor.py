@@ -12,13 +12,14 @@ turns backwards while it pushes hard has the wrong sign, unless the car was seen
 motor to set off with its torque (launch direction). One that has set off against it goes where that torque pushes.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Boolean, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
 from . import launch_direction
 from .launch_direction import LaunchState
 from .signal_monitor import plausible
+from .supervision_interface import Input, Parameters
 
 PUSH = 0.25
 """Torque over T_max with which no car begins to roll backwards."""
@@ -53,7 +54,7 @@ class WheelState(NamedTuple):
     mismatch_time: Annotated[float, Real("s", "time for which motor speed and messages do not match")]
 
 
-def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
+def start(u: Input, omega_1: float, T_mot: float, p: Parameters) -> WheelState:
     known = has_wheel_speed(u, p)
     direction = direction_of(omega_1, T_mot, 0.0, launch_direction.start(), p)
     return WheelState(
@@ -72,27 +73,27 @@ def start(u: Any, omega_1: Any, T_mot: Any, p: Any) -> WheelState:
     )
 
 
-def has_wheel_speed(u: Any, p: Any) -> Any:
+def has_wheel_speed(u: Input, p: Parameters) -> bool:
     """Whether a message says a speed; that of standing wheels is none, for they tell no direction."""
     turning = abs(u.omega_2_can) > p.omega_still
     return logical_and(logical_and(u.valid, turning), plausible(u.omega_2_can, p.omega_max))
 
 
-def message(u: Any) -> Any:
+def message(u: Input) -> float:
     """Magnitude of the received wheel speed in rad/s; zero where it is not finite."""
     return where(is_finite(u.omega_2_can), abs(u.omega_2_can), 0.0)
 
 
-def is_backwards(omega_1: Any, p: Any) -> Any:
+def is_backwards(omega_1: float, p: Parameters) -> bool:
     return omega_1 < -p.omega_still
 
 
-def is_pushing(T_mot: Any, p: Any) -> Any:
+def is_pushing(T_mot: float, p: Parameters) -> bool:
     """Whether the motor pushes so hard that no car begins to roll back on usual slopes."""
     return T_mot >= PUSH * p.T_max
 
 
-def direction_of(omega_1: Any, T_mot: Any, rolling: Any, launch: LaunchState, p: Any) -> Any:
+def direction_of(omega_1: float, T_mot: float, rolling: float, launch: LaunchState, p: Parameters) -> float:
     """Of a car whose motor turns with omega_1 (rad/s) under T_mot (N.m), and that was rolling back for so long (s)."""
     believed = logical_or(rolling >= ROLLING, launch_direction.is_with(launch))
     possible = logical_or(logical_not(is_pushing(T_mot, p)), believed)
@@ -101,7 +102,7 @@ def direction_of(omega_1: Any, T_mot: Any, rolling: Any, launch: LaunchState, p:
     return where(wrong, launch_direction.heading(launch), turning)
 
 
-def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, wrong: Any, T_s: Any, p: Any) -> Any:
+def rolling_time(rolling: float, omega_1: float, T_mot: float, wrong: bool, T_s: float, p: Parameters) -> float:
     """Time in s for which the car was seen to roll back, one sample later.
 
     It counts while the motor does not push, stays while it does, and is taken back while the motor does not turn
@@ -113,14 +114,14 @@ def rolling_time(rolling: Any, omega_1: Any, T_mot: Any, wrong: Any, T_s: Any, p
 
 def update(
     x: WheelState,
-    u: Any,
-    omega_1: Any,
-    T_mot: Any,
-    bad: Any,
+    u: Input,
+    omega_1: float,
+    T_mot: float,
+    bad: float,
     launch: LaunchState,
-    omega_2_hat: Any,
-    T_s: Any,
-    p: Any,
+    omega_2_hat: float,
+    T_s: float,
+    p: Parameters,
 ) -> WheelState:
     """The state after one sample.
 
@@ -162,13 +163,13 @@ def update(
     )
 
 
-def has_leapt(x: WheelState, omega_2: Any, late: Any, p: Any) -> Any:
+def has_leapt(x: WheelState, omega_2: float, late: float, p: Parameters) -> bool:
     """Whether the messages have, to omega_2 (rad/s), and the motor speed has not."""
     change, moved = omega_2 - x.omega_2, late - x.late_then
     leapt = logical_and(abs(change) > LEAP, abs(change - moved) > LEAP)
     return logical_and(leapt, x.silence < p.t_stale)
 
 
-def wheel_speed_in_use(x: WheelState, u: Any, p: Any) -> Any:
+def wheel_speed_in_use(x: WheelState, u: Input, p: Parameters) -> bool:
     """Whether the wheel speed is in use: valid, and messages that can be used keep coming."""
     return logical_and(u.valid, x.unused < p.t_stale)

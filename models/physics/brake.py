@@ -12,7 +12,7 @@ LuGre friction without Stribeck effect: C. Canudas de Wit, H. Olsson, K. J. Astr
 model for control of systems with friction", IEEE Trans. Automatic Control 40(3), 1995.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 from ..block.declaration import Real
 from ..block.operators import clip
@@ -33,12 +33,23 @@ class Bristles(NamedTuple):
 BRAKE = Bristles()
 
 
-def bristle_rate(omega: Any, z: Any, p: Any) -> Any:
+class BristleParameters(Protocol):
+    """Those of the brake, whatever else is in the record."""
+
+    @property
+    def z_br(self) -> float: ...
+    @property
+    def t_br(self) -> float: ...
+    @property
+    def omega_sat(self) -> float: ...
+
+
+def bristle_rate(omega: float, z: float, p: BristleParameters) -> float:
     """dz/dt in rad/s for a wheel speed omega (rad/s) and a bristle twist z (rad)."""
     w_s = clip(omega, -p.omega_sat, p.omega_sat)
     return w_s - abs(w_s) * z / p.z_br
 
 
-def grip(z: Any, dz: Any, p: Any) -> Any:
+def grip(z: float, dz: float, p: BristleParameters) -> float:
     """Share of the brake torque capacity that acts: q in [-1, 1]."""
     return clip((z + p.t_br * dz) / p.z_br, -1.0, 1.0)

@@ -6,7 +6,7 @@ call that had one, over the difference of their times; without a new edge it is 
 over the time since the last edge. The sensor cannot tell the direction.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 from ..block.declaration import Real
 from ..block.noise import normals, uniform
@@ -14,6 +14,15 @@ from ..block.operators import branch, floor, logical_or, minimum, where
 
 TEETH = 48.0
 PITCH = 6.283185307179586 / TEETH
+
+
+class ToothParameters(Protocol):
+    """Those of the teeth, whatever else is in the record."""
+
+    @property
+    def sigma_tooth(self) -> float: ...
+    @property
+    def seed(self) -> int: ...
 
 
 class ToothWheel(NamedTuple):
@@ -31,18 +40,18 @@ class ToothWheel(NamedTuple):
     speed: Annotated[float, Real("rad/s", "speed as of the last call")]
 
 
-def edge_position(n: Any, stream: float, p: Any) -> Any:
+def edge_position(n: float, stream: float, p: ToothParameters) -> float:
     """Position of edge n with the error of its tooth (sigma_tooth in teeth)."""
     return n + p.sigma_tooth * normals(p.seed, stream, n % TEETH)[0]
 
 
-def tooth_below(position: Any, stream: float, p: Any) -> Any:
+def tooth_below(position: float, stream: float, p: ToothParameters) -> float:
     """Number of the last edge at or below the position; no edge is off by half a tooth."""
     nearest = floor(position + 0.5)
     return where(edge_position(nearest, stream, p) <= position, nearest, nearest - 1.0)
 
 
-def start(omega: Any, stream: float, p: Any) -> ToothWheel:
+def start(omega: float, stream: float, p: ToothParameters) -> ToothWheel:
     """At a random angle within one tooth, the speed known."""
     position = uniform(p.seed, stream + 2.0, 0.0)
     tooth = tooth_below(position, stream, p)
@@ -60,7 +69,7 @@ def start(omega: Any, stream: float, p: Any) -> ToothWheel:
     )
 
 
-def turn(w: ToothWheel, omega: Any, time: Any, T_s: float, stream: float, p: Any) -> ToothWheel:
+def turn(w: ToothWheel, omega: float, time: float, T_s: float, stream: float, p: ToothParameters) -> ToothWheel:
     """The wheel at `time`, T_s later, at the speed omega then; an edge in between is noticed."""
     position = w.position + 0.5 * (w.omega + omega) * T_s / PITCH
     turned = w._replace(position=position, omega=omega)
@@ -68,7 +77,7 @@ def turn(w: ToothWheel, omega: Any, time: Any, T_s: float, stream: float, p: Any
     return branch(passed, lambda: notice(turned, position - w.position, time, T_s, stream, p), lambda: turned)
 
 
-def notice(w: ToothWheel, way: Any, time: Any, T_s: float, stream: float, p: Any) -> ToothWheel:
+def notice(w: ToothWheel, way: float, time: float, T_s: float, stream: float, p: ToothParameters) -> ToothWheel:
     """The wheel after it passed edges on its last way; the last of them is timed by interpolation."""
     tooth = tooth_below(w.position, stream, p)
     below, above = edge_position(tooth, stream, p), edge_position(tooth + 1.0, stream, p)
@@ -83,7 +92,7 @@ def notice(w: ToothWheel, way: Any, time: Any, T_s: float, stream: float, p: Any
     )
 
 
-def call(w: ToothWheel, time: Any) -> ToothWheel:
+def call(w: ToothWheel, time: float) -> ToothWheel:
     """The wheel after a call of the ABS unit; the first call with an edge takes the true speed."""
     fresh = w.edge_time > w.reference_time
     lapse = w.edge_time - w.reference_time

@@ -1,6 +1,6 @@
 """What several blocks know of the vehicle: drive train, tyre, resistance to motion, start of the run."""
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 from ..block.declaration import Real
 from ..block.operators import sin, tanh
@@ -49,12 +49,36 @@ class Vehicle(NamedTuple):
 CAR = Vehicle()
 
 
-def resistance(v: Any, slope: Any, rolling_load: Any, p: Any) -> Any:
+class ResistanceParameters(Protocol):
+    """Those of the resistance to motion, whatever else is in the record."""
+
+    @property
+    def m(self) -> float: ...
+    @property
+    def g(self) -> float: ...
+    @property
+    def c_rr(self) -> float: ...
+    @property
+    def v_rr(self) -> float: ...
+    @property
+    def c_wa(self) -> float: ...
+
+
+class LowSpeedParameters(Protocol):
+    """Those of the tyre at standstill, whatever else is in the record."""
+
+    @property
+    def d_low(self) -> float: ...
+    @property
+    def v_low(self) -> float: ...
+
+
+def resistance(v: float, slope: float, rolling_load: float, p: ResistanceParameters) -> float:
     """Force in N against the motion: rolling (rolling_load in N), grade and air."""
     return rolling_load * p.c_rr * tanh(v / p.v_rr) + p.m * p.g * sin(slope) + p.c_wa * v * abs(v)
 
 
-def standstill_damping(v: Any, p: Any) -> Any:
+def standstill_damping(v: float, p: LowSpeedParameters) -> float:
     """Tyre damping in N.s/m that keeps a standing car from swinging."""
     ratio = v / p.v_low
     return p.d_low / (1.0 + ratio * ratio)

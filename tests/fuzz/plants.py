@@ -50,8 +50,9 @@ FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-w")
 
 RUN = """
 #include "block.c"
-#include "integrator.c"
+#include "explicit.c"
 #include "implicit.c"
+#include "integrator.c"
 void start_at(const Input *u, const Parameters *p, State *x) { start(u, p, x); }
 void outputs(const State *x, const Input *u, const Parameters *p, Output *y) { output(x, u, p, y); }
 int run(const Input *u, const Parameters *p, double duration, State *x)

@@ -165,7 +165,7 @@ def test_a_landing_lasts_a_tenth_of_a_second_at_most() -> None:
 Fault = Callable[[Input, int], Input]
 ONSET = 55
 
-LASTING: dict[str, tuple[float, Fault, float]] = {
+LASTING: dict[str, tuple[int, Fault, float]] = {
     "bad motor signals are bridged for 20 ms": (FALLBACK, lambda u, k: u._replace(T_mot_est=math.nan), 0.02),
     "a speed is frozen after 0.1 s": (FALLBACK, lambda u, k: u._replace(omega_1_meas=150.0), 0.12),
     "a torque that is not demanded as well": (FALLBACK, lambda u, k: u._replace(T_mot_est=20.0), 0.02),
@@ -175,7 +175,7 @@ LASTING: dict[str, tuple[float, Fault, float]] = {
 
 
 @pytest.mark.parametrize(("status", "fault", "time"), LASTING.values(), ids=LASTING)
-def test_a_fault_has_its_time(status: float, fault: Fault, time: float) -> None:
+def test_a_fault_has_its_time(status: int, fault: Fault, time: float) -> None:
     """To a sample: times are sums of sample times, which have rounding."""
     inputs = [fault(u, k) if k >= ONSET else u for k, u in enumerate(drive_inputs(0.5))]
     found = [x.status for x in run(BLOCK, inputs)[ONSET + 1 :]].index(status)

@@ -50,11 +50,13 @@ TESTS = {
         f"models/controller/{name}.py": (f"tests/models/controller/test_{name}.py", *WHOLE_CONTROLLER)
         for name in CONTROLLER
     },
+    "models/controller/supervision_interface.py": ("tests/models/controller/test_supervision.py", *WHOLE_CONTROLLER),
     "models/block/runner.py": ("tests/models/block/test_runner.py",),
     "models/block/integrator.py": ("tests/models/block/test_integrator.py", "tests/fmus/native/test_integrator.py"),
     "fmus/protocol.py": ("tests/fmus/test_time.py", "tests/fmus/native/test_same_words.py"),
     "fmus/native/c/sampled.c": ("tests/fmus/native/test_runner.py", *CALLS),
     "fmus/native/c/integrator.c": (*INTEGRATOR, "tests/fmus/native/test_rates.py"),
+    "fmus/native/c/explicit.c": (*INTEGRATOR, "tests/fmus/native/test_rates.py"),
     "fmus/native/c/implicit.c": INTEGRATOR,
     "fmus/native/c/operators.h": ("tests/fmus/native/test_functions.py", "tests/fmus/native/test_rates.py"),
     "fmus/native/c/continuous.c": ("tests/fmus/native/test_rates.py", *CALLS),

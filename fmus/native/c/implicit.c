@@ -1,6 +1,6 @@
 /* Steps of a linearly implicit method, for where a block is stiff: they damp what they do not resolve. The same as
 implicit.py, operation by operation; only here inputs may move, and the derivative with the time. */
-#include "integrator.h"
+#include "implicit.h"
 #include "rodas.h"
 #include "shared.h"
 

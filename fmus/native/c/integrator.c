@@ -6,56 +6,11 @@ leaves and comes back within one step is found from the slopes at both ends. Whe
 is tolerated, the step is divided; where a block is so stiff that very many would be needed, the stretch is left to
 an implicit method. Nothing is kept from one stretch to the next. The same as integrator.py, operation by operation. */
 #include "integrator.h"
+#include "implicit.h"
 #include "shared.h"
 
 #include <math.h>
 #include <string.h>
-
-const Input *inputs_at(const Problem *problem, double t, Input *room)
-{
-    if (!problem->du)
-        return problem->u;
-    real u[INPUTS], du[INPUTS];
-    memcpy(u, problem->u, sizeof u);
-    memcpy(du, problem->du, sizeof du);
-    for (int n = 0; n < INPUTS; n++)
-        u[n] = u[n] + t * du[n];
-    memcpy(room, u, sizeof u);
-    return room;
-}
-
-void rate(const Problem *problem, double t, const Vector x, Vector dx)
-{
-    Input room;
-    State state, change;
-    memcpy(&state, x, sizeof state);
-    derivative(&state, inputs_at(problem, t, &room), problem->p, &change);
-    memcpy(dx, &change, sizeof change);
-}
-
-#include "dop853.h"
-
-void begin_at(const Problem *problem, double t, const Vector x, Start *from)
-{
-    from->t = t;
-    memcpy(from->x, x, sizeof(Vector));
-    rate(problem, t, x, from->dx);
-}
-
-/* A step of that length, and how far off it is unless that is NULL. */
-static void make_step_to(const Problem *problem, const Start *from, double length, Vector end, double *error)
-{
-    ++*problem->work;
-    step(problem, from->t, from->x, from->dx, length, end, error);
-}
-
-double change(double error, int halvings)
-{
-    double root = error;
-    for (int k = 0; k < halvings; k++)
-        root = sqrt(root);
-    return fmin(fmax(SAFETY / root, LEAST_CHANGE), MOST_CHANGE); /* fmax takes the number if the other is none */
-}
 
 enum { NO_CROSSING = -1 };
 

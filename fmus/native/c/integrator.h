@@ -2,53 +2,11 @@
 #ifndef INTEGRATOR_H
 #define INTEGRATOR_H
 
-#include "block.h"
-
-enum { INPUTS = sizeof(Input) / sizeof(real), STATES = sizeof(State) / sizeof(real) };
-
-typedef real Vector[STATES]; /* a State, but compilers take them for different things: one is copied to the other */
-
-static const double small[STATES] = SMALL_SIZES; /* what is added to the size of a state */
-
-/* What is integrated: the block with its parameters, and inputs that move at the rates du (NULL if held). */
-typedef struct {
-    const Input *u;
-    const Input *du;
-    const Parameters *p;
-    long *work; /* explicit steps that it has come to; kept by integrate */
-} Problem;
-
-/* Where a step starts: time since the start of the communication step in s, state, its derivative. */
-typedef struct {
-    double t;
-    Vector x;
-    Vector dx;
-} Start;
-
-/* integrator.c */
+#include "explicit.h"
 
 /* Takes the state x to `duration` s later; stretches of at most LONGEST_STEP are integrated one by one. If it changes
 too fast to be followed: 1 + the number of the state that changes fastest; minus that, if shorter communication steps
 can be made; else 0. */
 static int integrate(const Problem *whole, double duration, State *x);
-
-/* The inputs t s after the start of the communication step; `room` is for them if they move. */
-static const Input *inputs_at(const Problem *problem, double t, Input *room);
-
-/* The derivative there. */
-static void rate(const Problem *problem, double t, const Vector x, Vector dx);
-static void begin_at(const Problem *problem, double t, const Vector x, Start *from);
-
-/* Length of a step over that of the one before, whose error over what is allowed was that: SAFETY error^(-1/q), but
-LEAST_CHANGE to MOST_CHANGE; q, the order of the estimate plus 1, is 2^halvings. */
-static double change(double error, int halvings);
-
-/* implicit.c */
-
-/* Takes the state at the start to `duration` s later, with what `integrate` returns. */
-static int integrate_stiff(const Problem *problem, Start *from, double duration);
-
-/* The number of the state that changes fastest for its size. */
-static int fastest(const Start *from);
 
 #endif

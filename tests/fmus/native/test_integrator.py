@@ -43,8 +43,9 @@ extern void (*event_indicators)(const State *x, const Input *u, const Parameters
 """
 
 RUN = """
-#include "integrator.c"
+#include "explicit.c"
 #include "implicit.c"
+#include "integrator.c"
 double LONGEST_STEP;
 void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
 void (*event_indicators)(const State *x, const Input *u, const Parameters *p, real z[]);

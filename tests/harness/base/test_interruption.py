@@ -72,7 +72,8 @@ def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
 
 MAINS = [
     path
-    for path in [*(ROOT / "docs/studies").glob("*.py"), *(ROOT / "harness").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
+    for folder in ("harness", "benchmarks", "docs/studies")
+    for path in (ROOT / folder).rglob("*.py")
     if "\ndef main(" in (text := path.read_text(encoding="utf-8")) and '__name__ == "__main__"' in text
 ]
 

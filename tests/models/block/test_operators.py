@@ -3,7 +3,7 @@
 import math
 import operator
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -153,7 +153,7 @@ def test_what_is_not_finite_is_told_and_limited(x: float) -> None:
 def test_interpolation_is_linear_and_held_beyond_the_ends(values: list[float], position: float) -> None:
     expected = float(np.interp(position, range(len(values)), values))
     assert operators.interpolate(values, position) == pytest.approx(expected, rel=1e-9, abs=1e-6)
-    traced = operators.interpolate(values, Symbol(position))
+    traced = operators.interpolate(values, cast(float, Symbol(position)))
     assert unpacked(traced) == pytest.approx(expected, rel=1e-9, abs=1e-6)
 
 
@@ -163,4 +163,7 @@ def test_a_costly_branch_is_only_taken_when_needed() -> None:
 
     assert operators.branch(True, lambda: (1.0,), never) == (1.0,)
     assert operators.branch(False, never, lambda: (2.0,)) == (2.0,)
-    assert numbers(operators.branch(Symbol(True), lambda: (1.0, (3.0,)), lambda: (2.0, (4.0,)))) == [1.0, 3.0]
+    assert numbers(operators.branch(cast(bool, Symbol(True)), lambda: (1.0, (3.0,)), lambda: (2.0, (4.0,)))) == [
+        1.0,
+        3.0,
+    ]
