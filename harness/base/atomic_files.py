@@ -32,13 +32,13 @@ def complete(path: Path) -> Iterator[Path]:
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; a file is needed")
     if path.exists() and not replaceable(path):
-        with _naming(path), _read(path):
+        with naming(path), _read(path):
             yield path
         return
     path = destination(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.part")
-    with _naming(path, unfinished), _noted(unfinished):
+    with naming(path, unfinished), _noted(unfinished):
         try:
             yield unfinished
             os.replace(unfinished, path)
@@ -47,7 +47,7 @@ def complete(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def _naming(file: str | Path, unfinished: Path | None = None) -> Iterator[None]:
+def naming(file: str | Path, unfinished: Path | None = None) -> Iterator[None]:
     """An error of the system that names no file, as that of a full disk, or names the unfinished one names this."""
     try:
         yield

@@ -21,3 +21,12 @@ def reason(error: BaseException) -> str:
 def quoted(text: object) -> str:
     """A value that somebody gave, as a message repeats it."""
     return repr(plain(text, 60))
+
+
+def words(error: BaseException) -> str:
+    """An error in words, even one that cannot be printed."""
+    try:
+        text = str(error)
+    except Exception:
+        text = ""
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -179,5 +179,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{name}: not enough memory: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt as stop:
-        print(f"{name}: stopped", file=sys.stderr)
+        print("; ".join([f"{name}: stopped", *getattr(stop, "__notes__", [])]), file=sys.stderr)
         return getattr(stop, "exit_code", 130)

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
 from ..loop.places import PLACES, PLANTS
 from ..views.html.report_page import require_report
 from .options import add_loop, add_output, add_plant, add_printing, add_report, count
@@ -74,37 +73,24 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _all(args: argparse.Namespace, runner: "CaseRunner", given: "Given") -> int:
-    from ..base.atomic_files import alone, remove
-    from ..cosimulation.wiring import fit
-    from ..simulation.provenance import content, require_same_run, write_record
-    from ..studies.robustness.campaign_archive import Archive
-    from ..studies.robustness.robustness_campaign import campaign, cases
+    from ..simulation.case_archive import resumable
+    from ..studies.robustness.campaign_archive import RUNS
+    from ..studies.robustness.robustness_campaign import campaign, order
     from ..studies.robustness.robustness_report import announce, write
     from ..studies.robustness.summary import summaries
 
     out, same, systems = Printer(args), _distinguishing(runner, given), _systems(given)
     record, runs, read = args.output / "robustness.json", args.output / "runs.csv", [args.vehicle, args.parameters]
-    with alone(args.output):
-        try:
-            require_same_run(record, same, [runs, *_report(args)])
-        except DrivelineError:
-            if not args.replace:
-                raise
-            remove(runs)
-        archive, fits = Archive(runs), {name: fit(system) for name, system in systems.items()}
-        write_record(record, same, fits, [runs], read)
-        archive.begin()
-        outcomes = campaign(runner, range(1, args.cases + 1), archive, scheduler=args.scheduler)
-        known = cases(runner.loops, range(1, max(case.number for case in archive) + 1))
-        archive.write([archive[case] for case in known if case in archive])
-        files = [runs, *write(outcomes, runner, _as_given(args), caption(args), args.output)]
-        files += _reported(args, outcomes, runner, content(same, fits, [], read))
-        write_record(record, same, fits, files, read)
+    with resumable(runs, RUNS, record, same, systems, read, _report(args), args.replace) as made:
+        outcomes = campaign(runner, range(1, args.cases + 1), made.archive, scheduler=args.scheduler)
+        made.archive.sort(order(runner))
+        made.files += write(outcomes, runner, _as_given(args), caption(args), args.output)
+        made.files += _reported(args, outcomes, runner, made.provenance)
     if not out.silent:
         announce(outcomes)
-    for file in (*files, record):
+    for file in (*made.files, record):
         out.say(f"written: {file}")
-    out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": files})
+    out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": made.files})
     return 0
 
 

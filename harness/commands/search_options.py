@@ -47,6 +47,7 @@ def add_search(parser: argparse.ArgumentParser) -> None:
     }
     for name, (meaning, how) in options.items():
         group.add_argument(f"--{name}", metavar=METAVARS[name], help=f"{meaning} (default: {DEFAULTS[name]})", **how)
+    group.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the candidates")
     group.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     add_fmus(group)
 
@@ -69,7 +70,7 @@ def require_search(args: argparse.Namespace) -> None:
     Raises:
         DrivelineError: names the first.
     """
-    for name in (*DEFAULTS, "build"):
+    for name in (*DEFAULTS, "scheduler", "build"):
         if getattr(args, name) is not None:
             raise DrivelineError(f"--{name} is for a search: give the folder of one, --search FOLDER")
 
@@ -91,7 +92,9 @@ def run_search(args: argparse.Namespace) -> int:
     where = space(controller, car)
     evaluation = CostEvaluation(controller, car, args.fmus, _build(args, controller))
     gains = args.search / "gains.toml" if args.output is None else args.output
-    visited = tune(evaluation, where, evaluations, number, args.search, args.replace, [args.vehicle])
+    visited = tune(
+        evaluation, where, evaluations, number, args.search, args.replace, [args.vehicle], scheduler=args.scheduler
+    )
     name = args.vehicle.name if args.vehicle else "the default car"
     text = chosen(controller, where, visited, character, name, number)
     write_gains(text, gains, args.replace or args.output is None)

@@ -23,6 +23,7 @@ from distributed.comm.core import connect
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
 from ..cosimulation.runs import KeptLoops, kept_by
+from .workers import answered_by, collect_warnings
 
 Lost = KilledWorker
 """Is raised where worker after worker ended while it ran a case."""
@@ -101,16 +102,14 @@ class Runner(WorkerPlugin):
     """
 
     def __init__(self, function: Callable[[Any], Any], expected: str) -> None:
-        self._function = dumps(function)
+        self._sent = dumps(function)
         self._expected = expected
 
     def setup(self, worker: Worker) -> None:
-        from .many_runs import collect_warnings
-
         if (here := version("driveline-damping")) != self._expected:
             raise DrivelineError(f"it has driveline-damping {here}, and {self._expected} is needed")
         collect_warnings()
-        self._answer = loads(self._function)
+        self._function = loads(self._sent)
         self._folder = Path(worker.local_directory)
         self._threads: list[Thread] = []
         self._here = local()
@@ -124,7 +123,7 @@ class Runner(WorkerPlugin):
         thread: Thread = self._here.thread
         with thread.busy:
             with kept_by(thread.loops):
-                answer = self._answer(case)
+                answer = answered_by(self._function, case)
             if self._ended:
                 thread.loops.close()
             return answer

@@ -10,26 +10,18 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 ```
 """
 
-import atexit
-import gc
-import logging
-import os
-import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, MutableMapping
 from concurrent.futures import Future
-from contextlib import ExitStack, contextmanager
-from functools import partial
+from contextlib import contextmanager
 from pathlib import Path
-from pickle import loads
 from tempfile import TemporaryDirectory
 from textwrap import shorten
-from typing import Any, NoReturn, TypeVar
+from typing import NoReturn, TypeVar
 
-from ..base.atomic_files import note_unfinished, remove_unfinished
-from ..base.collected_warnings import LOG, CollectedWarnings, warn_once
+from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
-from ..base.interruption import uninterrupted_children
 from ..base.optional_packages import required
+from ..base.plain_text import words
 from ..base.progress import progress
 from ..cosimulation.runs import kept_loaded
 
@@ -38,28 +30,40 @@ Answer = TypeVar("Answer")
 
 
 def run_many(
-    function: Callable[[Case], Answer], cases: Iterable[Case], workers: int | None = None, label: str = "simulating"
+    function: Callable[[Case], Answer],
+    cases: Iterable[Case],
+    workers: int | None = None,
+    label: str = "simulating",
+    scheduler: str | None = None,
+    known: MutableMapping[Case, Answer] | None = None,
 ) -> list[Answer]:
     """What a function gives for each of the cases, in their order.
 
-    A system of FMUs that the function runs stays loaded for the next case.
+    A system of FMUs that the function runs stays loaded for the next case. A case whose process was lost is run once
+    more.
 
     Args:
         workers: processes that share the cases; with 1 it is this process. None: one a core.
         label: of the progress display.
+        scheduler: address of that of a Dask cluster, whose workers share the cases then.
+        known: answers by cases, which are hashable then. They are not asked for again; those that are missing are
+            added, in the order of the cases, each as soon as it is there.
 
     Raises:
         Exception: what the function raised first in the order of the cases; its message or a note names the case.
-        SimulationError: a worker crashed.
+        SimulationError: a case ended its process twice.
     """
     require_workers(workers)
-    todo = list(cases)
-    answers = []
-    with many(function, min(workers or _cores(), max(len(todo), 1))) as answered, progress(len(todo), label) as done:
-        for answer in answered(todo):
+    every, answers = list(cases), []
+    todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
+    count = min(workers or _cores(), max(len(todo), 1))
+    with many(function, count, scheduler if todo else None) as answered, progress(len(every), label) as done:
+        for case, answer in zip(todo, answered(todo), strict=True):
+            if known is not None:
+                known[case] = answer
             answers.append(answer)
-            done(len(answers))
-    return answers
+            done(len(every) - len(todo) + len(answers))
+    return answers if known is None else [known[case] for case in every]
 
 
 @contextmanager
@@ -113,32 +117,21 @@ def _here(function: Callable[[Case], Answer]) -> Iterator[Callable[[Iterable[Cas
 def _in_workers(
     function: Callable[[Case], Answer], count: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
-    """New interpreters (FMUs that run Python do not survive a fork); nothing of them is left at the end."""
-    from multiprocessing import resource_tracker
-
-    from loky import ProcessPoolExecutor
-    from loky.backend import resource_tracker as lokys_tracker
-    from loky.process_executor import BrokenProcessPool
+    from .workers import Lost, Workers
 
     with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
-        for tracker in (resource_tracker, lokys_tracker):  # beginning the first lets interruptions through again
-            with uninterrupted_children():
-                tracker.ensure_running()
-        pool = ProcessPoolExecutor(count, initializer=_begin, initargs=(Path(folder), function))
+        workers = Workers(function, count, Path(folder))
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-            todo = list(cases)
-            with uninterrupted_children():
-                futures = [pool.submit(_answer, case) for case in todo]
-            yield from _gathered(todo, futures, BrokenProcessPool)
+            for case, future in workers.answered(list(cases)):
+                yield _gathered(case, future, Lost)
 
         unfinished = True
         try:
             yield answered
             unfinished = False
         finally:
-            pool.shutdown(kill_workers=unfinished)
-            remove_unfinished(Path(folder))
+            workers.end(unfinished)
 
 
 @contextmanager
@@ -148,79 +141,32 @@ def _on_cluster(
     required("distributed", "a Dask cluster", "cluster")
     from .cluster import Lost, on_cluster
 
-    with on_cluster(partial(answered_by, function), scheduler) as submit:
+    with on_cluster(function, scheduler) as submit:
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
             todo = list(cases)
-            yield from _gathered(todo, [submit(case) for case in todo], Lost)
+            for case, future in zip(todo, [submit(case) for case in todo], strict=True):
+                yield _gathered(case, future, Lost)
 
         yield answered
 
 
-def _gathered(
-    cases: Iterable[Case], futures: Iterable["Future[tuple[Answer, list[str]]]"], crash: type[Exception]
-) -> Iterator[Answer]:
-    """The answers of workers, whose warnings are logged here.
+def _gathered(case: object, future: "Future[tuple[Answer, list[str]]]", loss: type[Exception]) -> Answer:
+    """The answer of a worker, whose warnings are logged here.
 
     Args:
-        futures: of what `answered_by` gives for the cases.
-        crash: is raised where a worker crashed.
+        future: of what `answered_by` gives for the case.
+        loss: is raised where the case ended its process each time.
     """
-    for case, future in zip(cases, futures, strict=True):
-        try:
-            answer, warnings = future.result()
-        except crash as error:
-            raise SimulationError(f"a process crashed in {_text(case)} or one of the next cases") from error
-        except (Exception, SystemExit) as error:
-            _raise(error, case)
-        for text in warnings:
-            warn_once(text)
-        yield answer
-
-
-_function: Callable[[Any], Any]
-_collected = CollectedWarnings()
-
-
-def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
-    """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
-    global _function
-    _function = function
-    note_unfinished(folder)
-    collect_warnings().propagate = False
-    sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
-    kept = ExitStack()
-    kept.enter_context(kept_loaded(folder))
-    atexit.register(kept.close)
-    gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
-
-
-def collect_warnings() -> logging.Logger:
-    """In a worker: from now on warnings go with the answers."""
-    LOG.addHandler(_collected)
-    return LOG
-
-
-def _answer(case: Any) -> tuple[Any, list[str]]:
-    return answered_by(_function, case)
-
-
-def answered_by(function: Callable[[Any], Any], case: Any) -> tuple[Any, list[str]]:
-    """In a worker: the answer and its warnings; what cannot be sent to the process that waits is answered
-    in words."""
-    from cloudpickle import dumps
-
-    _collected.texts.clear()
     try:
-        return function(case), list(_collected.texts)
-    except SystemExit:
-        raise
-    except BaseException as error:
-        try:
-            loads(dumps(error))
-        except Exception:
-            raise SimulationError(_words(error)) from None
-        raise
+        answer, warnings = future.result()
+    except loss as error:
+        raise SimulationError(f"a process crashed in {_text(case)}, and again when that was run once more") from error
+    except (Exception, SystemExit) as error:
+        _raise(error, case)
+    for text in warnings:
+        warn_once(text)
+    return answer
 
 
 def _raise(error: BaseException, case: object) -> NoReturn:
@@ -228,18 +174,9 @@ def _raise(error: BaseException, case: object) -> NoReturn:
     if isinstance(error, DrivelineError):
         raise type(error)(f"{_text(case)}: {error}") from error
     if isinstance(error, (StopIteration, SystemExit)):
-        raise SimulationError(f"{_text(case)}: {_words(error)}") from error
+        raise SimulationError(f"{_text(case)}: {words(error)}") from error
     error.add_note(f"in {_text(case)}")
     raise error
-
-
-def _words(error: BaseException) -> str:
-    """An error in words, even one that cannot be printed."""
-    try:
-        text = str(error)
-    except Exception:
-        text = ""
-    return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
 def _text(case: object) -> str:

@@ -90,8 +90,7 @@ def recorded(
     """
 
     def require() -> None:
-        if folder := next((path for path in (*results, record) if path.is_dir()), None):
-            raise DrivelineError(f"{folder} is a folder; a file is needed")
+        require_files([*results, record])
         if not replace:
             require_same_run(record, run, results)
 
@@ -100,6 +99,16 @@ def recorded(
         made = Made(record, systems, require, kept)
         yield made
         write_record(record, run, made.fits, made.files, inputs)
+
+
+def require_files(paths: Sequence[Path]) -> None:
+    """Refuses a folder in the place of a file that will be written.
+
+    Raises:
+        DrivelineError: there is one.
+    """
+    if folder := next((path for path in paths if path.is_dir()), None):
+        raise DrivelineError(f"{folder} is a folder; a file is needed")
 
 
 def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Path]) -> None:

@@ -9,16 +9,17 @@ with evaluation.opened() as costs_of:
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...cosimulation.system import System
-from ...loop.places import BUILD, PLACES, loop
+from ...loop.places import BUILD, PLACES, PLANTS, loop
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import many
+from ...simulation.same_fmus import digests, require_same_fmus
 from ...simulation.simulate import simulate
 from ..design import design
 from ..design_weights import records
@@ -80,18 +81,28 @@ class CostEvaluation:
         """The gains that are computed for the car."""
         return design(*records(self.car))
 
+    def digests(self) -> dict[Path, str]:
+        """Of the FMUs that run."""
+        return digests(self.system(plant, name) for plant in PLANTS for name in (REFERENCE, self.controller))
+
     @contextmanager
     def opened(
-        self, workers: int | None = None
+        self, workers: int | None = None, scheduler: str | None = None
     ) -> Iterator[Callable[[Sequence[Mapping[str, float]]], Iterator[Costs]]]:
         """What gives the costs of candidates (parameters of the controller by name), in their order, on all cores.
 
         The same candidates cost the same, whoever stands beside them and however many processes share the runs.
 
         Args:
-            workers: see `harness.simulation.many_runs.run_many`.
+            workers, scheduler: see `harness.simulation.many_runs.run_many`.
         """
-        with many(self.measured, workers) as answers:
+        wanted, evaluation = self.digests(), replace(self, folder=self.folder.absolute())
+
+        def measured(trial: Trial) -> Metrics:
+            require_same_fmus(wanted)
+            return evaluation.measured(trial)
+
+        with many(measured, workers, scheduler) as answers:
 
             def metrics(controller: str, candidates: Sequence[Mapping[str, float]]) -> Iterator[list[Metrics]]:
                 found = answers(Trial(controller, candidate, run) for candidate in candidates for run in self.runs)

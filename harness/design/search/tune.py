@@ -5,16 +5,14 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from ...base.atomic_files import remove
-from ...base.errors import DrivelineError
+from ...base.optional_packages import required
 from ...base.progress import progress
-from ...cosimulation.wiring import fit
 from ...loop.places import PLANTS
-from ...simulation.provenance import digest, require_same_run, write_record
+from ...simulation.case_archive import resumable
 from .controller_cost import LOST, POWER, TERMS
-from .cost_evaluation import REFERENCE, CostEvaluation
+from .cost_evaluation import CostEvaluation
 from .parameter_search import Evaluated, Search
-from .search_archive import Archive
+from .search_archive import table
 from .search_space import Space, rounded
 
 RECORD, EVALUATIONS = "search.json", "evaluations.csv"
@@ -29,6 +27,7 @@ def tune(
     replace: bool = False,
     inputs: Sequence[Path | None] = (),
     workers: int | None = None,
+    scheduler: str | None = None,
 ) -> list[Evaluated]:
     """All candidates of a search, of which those that the folder has already are not run again.
 
@@ -39,32 +38,25 @@ def tune(
         folder: of the search.
         replace: whether another search in the folder may be replaced.
         inputs: files that were read, for the record.
-        workers: see `harness.simulation.many_runs.run_many`.
+        workers, scheduler: see `harness.simulation.many_runs.run_many`.
 
     Raises:
         DrivelineError: there is another search in the folder; or one that cannot be read.
+        MissingExtra: the package cma is not installed.
     """
-    record, file = folder / RECORD, folder / EVALUATIONS
-    run = distinguishing(evaluation, space, seed)
-    try:
-        require_same_run(record, run, [file])
-    except DrivelineError:
-        if not replace:
-            raise
-        remove(file)
-    archive = Archive(file, [each.name for each in space.searched])
-    fits = {plant: fit(evaluation.system(plant, evaluation.controller)) for plant in PLANTS}
-    write_record(record, run, fits, [file], inputs)
-    with evaluation.opened(workers) as costs_of, progress(evaluations, "searching") as done:
-        return Search(space, costs_of, seed, archive, done).run(evaluations)
+    known = table([each.name for each in space.searched])
+    systems = {plant: evaluation.system(plant, evaluation.controller) for plant in PLANTS}
+    run, file, record = distinguishing(evaluation, space, seed), folder / EVALUATIONS, folder / RECORD
+    with (
+        resumable(file, known, record, run, systems, inputs, replace=replace) as made,
+        evaluation.opened(workers, scheduler) as costs_of,
+        progress(evaluations, "searching") as done,
+    ):
+        return Search(space, costs_of, seed, made.archive, done).run(evaluations)
 
 
 def distinguishing(evaluation: CostEvaluation, space: Space, seed: int) -> dict[str, Any]:
     """All that a candidate's costs, and which candidates are visited, depend on."""
-    systems = [
-        evaluation.system(plant, controller) for plant in PLANTS for controller in (REFERENCE, evaluation.controller)
-    ]
-    files = sorted({path for system in systems for path in system.instances.values()})
     cost = repr((TERMS, POWER, LOST, evaluation.runs))
     return {
         "controller": evaluation.controller,
@@ -73,6 +65,7 @@ def distinguishing(evaluation: CostEvaluation, space: Space, seed: int) -> dict[
         "computed": dict(space.computed),
         "reference": {name: rounded(value) for name, value in evaluation.reference().items()},
         "cost": f"sha256:{sha256(cost.encode()).hexdigest()}",
-        "fmus": {path.stem: digest(path) for path in files},
+        "fmus": {path.stem: digest for path, digest in sorted(evaluation.digests().items())},
+        "cma": required("cma", "searching", "design").__version__,
         "seed": seed,
     }

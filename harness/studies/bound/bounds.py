@@ -20,6 +20,7 @@ from ..margins.linear_plant import NOISELESS
 from .bound_task import Task, task
 from .contacts import Contacts
 from .linear_car import linear_car
+from .linear_prediction import value
 from .open_loop_run import open_loop_run
 from .programme import Solution
 from .switching_search import FINE, Search
@@ -112,6 +113,6 @@ def all_bounded(names: Sequence[str], settings: Mapping[str, Any]) -> list[Bound
 def _verified(search: Search, contacts: Contacts, solution: Solution, settings: Mapping[str, Any]) -> Optimum:
     given = search.task
     results = open_loop_run(given.manoeuvre, given.reference(solution.u), settings)
-    expected = search.predictor.predict(contacts).T_gear(np.arange(len(given.times))).value(solution.u)
+    expected = value(search.predictor.predict(contacts).T_gear(np.arange(len(given.times))), solution.u)
     deviation = np.abs(expected - at_samples(results)["plant.T_gear"][given.first :]).max()
     return Optimum(contacts, solution, results, evaluate(results, given.manoeuvre), float(deviation))

@@ -12,7 +12,7 @@ from ...metrics.step_response import REACHED, fitted
 from .active_constraints import SWING_RESERVE, ActiveConstraints, settled_swing
 from .bound_task import Task
 from .contacts import GAP, Contacts
-from .linear_prediction import Affine, Prediction
+from .linear_prediction import Prediction
 from .programme import Cone, Programme, Rows, joined
 
 RESERVE = 2e-3
@@ -39,8 +39,8 @@ def programme(
     final = _final(task, p)
     rows = [*_contact(p, contacts, phi_B), _response(task, p, final), _withheld(task)]
     if active.swings:
-        low, high = (p.T_gear(np.arange(len(task.times))).rows(np.array(k)) for k in zip(*active.swings, strict=True))
-        rows.append(_kept(high.less(low), settled_swing(task) - SWING_RESERVE, UNIT["torque"]))
+        low, high = (p.T_gear(np.arange(len(task.times)))[[*k]] for k in zip(*active.swings, strict=True))
+        rows.append(_kept(high - low, settled_swing(task) - SWING_RESERVE, UNIT["torque"]))
     most = {"overshoot": task.reached.overshoot * abs(task.way), "impact_speed": task.reached.impact_speed}
     values = {
         "overshoot": lambda: _overshoot(task, p, final, np.array(active.peaks)),
@@ -50,54 +50,54 @@ def programme(
     cones = []
     for name in task.metrics:
         if name in norms:
-            cones.append(Cone(norms[name]().times(1.0 / getattr(task.reached, name)), name in metrics))
+            cones.append(Cone(norms[name]() / getattr(task.reached, name), name in metrics))
         else:
             rows.append(_at_most(values[name](), most[name], name in metrics))
     return Programme(joined(rows), cones, task.lower, task.upper)
 
 
-def _at_most(value: Affine, most: float, counts: bool) -> Rows:
+def _at_most(value: np.ndarray, most: float, counts: bool) -> Rows:
     """value <= most times the ratio, or <= most where the metric does not count."""
-    m = len(value.at)
+    m = len(value)
     if counts:
         return Rows(value, np.full(m, most), np.full(m, UNIT["torque"]))
     return _kept(value, most, UNIT["torque"])
 
 
-def _kept(value: Affine, limit: float | np.ndarray, unit: float) -> Rows:
+def _kept(value: np.ndarray, limit: float, unit: float) -> Rows:
     """value <= limit, whatever the ratio."""
-    m = len(value.at)
-    return Rows(Affine(value.of, value.at - limit), np.zeros(m), np.full(m, unit))
+    m, constant = len(value), np.eye(1, value.shape[1])
+    return Rows(value - limit * constant, np.zeros(m), np.full(m, unit))
 
 
 def _contact(p: Prediction, contacts: Contacts, phi_B: float) -> Iterator[Rows]:
     """The twist stays on its side of the flanks; where the side changes it is on the flank."""
-    ends = [0, *contacts.ends, len(p.phi.at) - 1]
+    ends = [0, *contacts.ends, len(p.phi) - 1]
     for side, begin, end in zip(contacts.sides, ends[:-1], ends[1:], strict=True):
-        phi = p.phi.rows(slice(begin, end + 1))
+        phi = p.phi[begin : end + 1]
         if side == GAP:
             yield _kept(phi, phi_B, UNIT["twist"] * phi_B)
-            yield _kept(phi.times(-1.0), phi_B, UNIT["twist"] * phi_B)
+            yield _kept(-phi, phi_B, UNIT["twist"] * phi_B)
         else:
-            yield _kept(phi.times(-side), -phi_B, UNIT["twist"] * phi_B)
+            yield _kept(-side * phi, -phi_B, UNIT["twist"] * phi_B)
 
 
-def _final(task: Task, p: Prediction) -> Affine:
+def _final(task: Task, p: Prediction) -> np.ndarray:
     """The line of the final value: its value at time 0 and its slope."""
     last = np.flatnonzero(fitted(task.times))
     line = np.column_stack([np.ones(len(last)), task.times[last]])
-    return p.T_gear(last).mapped(np.linalg.pinv(line))
+    return np.linalg.pinv(line) @ p.T_gear(last)
 
 
-def _line(final: Affine, times: np.ndarray) -> Affine:
-    return final.mapped(np.column_stack([np.ones(len(times)), times]))
+def _line(final: np.ndarray, times: np.ndarray) -> np.ndarray:
+    return np.column_stack([np.ones(len(times)), times]) @ final
 
 
-def _response(task: Task, p: Prediction, final: Affine) -> Rows:
+def _response(task: Task, p: Prediction, final: np.ndarray) -> Rows:
     """90 % of the way are made when the controller has made them."""
     at = np.array([task.sample(task.reached.response_delay)])
-    way = _line(final, np.array([task.manoeuvre.t_0])).times(REACHED)
-    missing = way.less(p.T_gear(at)).times(task.sign)
+    way = REACHED * _line(final, np.array([task.manoeuvre.t_0]))
+    missing = task.sign * (way - p.T_gear(at))
     return _kept(missing, -(1.0 - REACHED) * task.initial * task.sign - RESERVE, UNIT["torque"])
 
 
@@ -105,16 +105,15 @@ def _withheld(task: Task) -> Rows:
     """Neither more nor less torque than demanded, by more than the controller withholds."""
     share = T_S / task.dT
     free = task.horizon.free
-    withheld = Affine(np.full((1, free), -share), np.array([share * task.horizon.demand[:free].sum()]))
-    both = Affine(np.vstack([withheld.of, -withheld.of]), np.concatenate([withheld.at, -withheld.at]))
-    return _kept(both, abs(task.reached.withheld_time), UNIT["time"])
+    withheld = share * np.array([[task.horizon.demand[:free].sum(), *np.full(free, -1.0)]])
+    return _kept(np.vstack([withheld, -withheld]), abs(task.reached.withheld_time), UNIT["time"])
 
 
-def _closing(p: Prediction, contacts: Contacts) -> Affine:
+def _closing(p: Prediction, contacts: Contacts) -> np.ndarray:
     """Speed with which the teeth meet."""
-    return p.slip.rows(np.array(contacts.ends[-1:])).times(contacts.sides[-1])
+    return contacts.sides[-1] * p.slip[[contacts.ends[-1]]]
 
 
-def _overshoot(task: Task, p: Prediction, final: Affine, samples: np.ndarray) -> Affine:
+def _overshoot(task: Task, p: Prediction, final: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """Over the line of the final value, in N.m."""
-    return p.T_gear(samples).less(_line(final, task.times[samples])).times(task.sign)
+    return task.sign * (p.T_gear(samples) - _line(final, task.times[samples]))

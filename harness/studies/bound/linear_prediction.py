@@ -1,4 +1,7 @@
-"""What motor and design model do, as a linear function of the torque reference, for given contacts of the teeth."""
+"""What motor and design model do, as a linear function of the torque reference, for given contacts of the teeth.
+
+A quantity is a matrix (m, 1 + n) over 1 and the torque reference u (n,) in N.m: its first column is constant.
+"""
 
 from functools import cache
 from typing import NamedTuple
@@ -13,26 +16,9 @@ from .linear_car import OMEGA_1, OMEGA_2, PHI, STATES, LinearCar
 N = len(STATES)
 
 
-class Affine(NamedTuple):
-    """of @ u + at: quantities (m,) over the torque reference u (n,) in N.m."""
-
-    of: np.ndarray
-    at: np.ndarray
-
-    def rows(self, which: slice | np.ndarray) -> "Affine":
-        return Affine(self.of[which], self.at[which])
-
-    def times(self, factor: float) -> "Affine":
-        return Affine(factor * self.of, factor * self.at)
-
-    def less(self, other: "Affine") -> "Affine":
-        return Affine(self.of - other.of, self.at - other.at)
-
-    def mapped(self, matrix: np.ndarray) -> "Affine":
-        return Affine(matrix @ self.of, matrix @ self.at)
-
-    def value(self, u: np.ndarray) -> np.ndarray:
-        return self.of @ u + self.at
+def value(rows: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """(m,) what a quantity (m, 1 + n) is for a torque reference u (n,)."""
+    return rows[:, 1:] @ u + rows[:, 0]
 
 
 class Horizon(NamedTuple):
@@ -55,20 +41,16 @@ class Horizon(NamedTuple):
     window: int
 
 
-class Tail(NamedTuple):
-    """An output after the head: matrices over the state there, over 1, and over the free torques."""
-
-    x: np.ndarray
-    one: np.ndarray
-    u: np.ndarray
-
-
 class Spectrum(NamedTuple):
-    """What an rms is the norm of: its rows over the samples of the head, what is known before, and the tail."""
+    """What an rms is the norm of.
+
+    Attributes:
+        head: (rows, samples of the head), over the output there.
+        rest: (rows, N + 1 + free), over the state at the end of the head, 1 and the torques.
+    """
 
     head: np.ndarray
-    before: np.ndarray
-    tail: Tail
+    rest: np.ndarray
 
 
 class Prediction(NamedTuple):
@@ -78,43 +60,43 @@ class Prediction(NamedTuple):
         phi, slip: twist, and omega_1 - omega_2, at the beginnings of all parts of the head and at its end.
         T_gear_head, a_body_head: at the samples of the head.
         x: state at its end.
+        T_gear_tail: at the samples after it, over the state at its end, 1 and the torques.
     """
 
-    phi: Affine
-    slip: Affine
-    T_gear_head: Affine
-    a_body_head: Affine
-    x: Affine
-    T_gear_tail: Tail
+    phi: np.ndarray
+    slip: np.ndarray
+    T_gear_head: np.ndarray
+    a_body_head: np.ndarray
+    x: np.ndarray
+    T_gear_tail: np.ndarray
     T_gear_spectrum: Spectrum
     jerk_spectrum: Spectrum
 
-    def T_gear(self, samples: np.ndarray) -> Affine:
+    def T_gear(self, samples: np.ndarray) -> np.ndarray:
         """At these samples, which rise."""
-        head = len(self.T_gear_head.at)
+        head = len(self.T_gear_head)
         early, late = samples[samples < head], samples[samples >= head] - head
-        here, there = self.T_gear_head.rows(early), self._after(self.T_gear_tail, late)
-        return Affine(np.vstack([here.of, there.of]), np.concatenate([here.at, there.at]))
+        return np.vstack([self.T_gear_head[early], self._after(self.T_gear_tail[late])])
 
-    def T_gear_parts(self) -> Affine:
+    def T_gear_parts(self) -> np.ndarray:
         """Their norm is the metric `gear_torque_rms`."""
         return self._parts(self.T_gear_spectrum, self.T_gear_head)
 
-    def jerk_parts(self) -> Affine:
+    def jerk_parts(self) -> np.ndarray:
         """Their norm is the metric `jerk_rms_to_50_Hz`."""
         return self._parts(self.jerk_spectrum, self.a_body_head)
 
-    def _parts(self, spectrum: Spectrum, head: Affine) -> Affine:
-        tail = self._after(spectrum.tail, slice(None))
-        early = len(head.at)
-        tail.of[:, :early] += spectrum.head @ head.of[:, :early]
-        return Affine(tail.of, spectrum.before + spectrum.head @ head.at + tail.at)
+    def _parts(self, spectrum: Spectrum, head: np.ndarray) -> np.ndarray:
+        parts = self._after(spectrum.rest)
+        early = 1 + len(head)  # later torques change nothing in the head
+        parts[:, :early] += spectrum.head @ head[:, :early]
+        return parts
 
-    def _after(self, tail: Tail, rows: slice | np.ndarray) -> Affine:
-        x, of = tail.x[rows], tail.u[rows].copy()
-        early = len(self.T_gear_head.at)
-        of[:, :early] += x @ self.x.of[:, :early]
-        return Affine(of, x @ self.x.at + tail.one[rows])
+    def _after(self, rows: np.ndarray) -> np.ndarray:
+        """Over 1 and the torques, of what is over the state at the end of the head too."""
+        early, found = 1 + len(self.T_gear_head), rows[:, N:].copy()
+        found[:, :early] += rows[:, :N] @ self.x[:, :early]
+        return found
 
 
 class Predictor:
@@ -152,28 +134,26 @@ class Predictor:
         a_body = np.einsum("kn,knm->km", a_of, samples)
         a_body[:, 0] += a_at
         return Prediction(
-            phi=self._affine(every[:, PHI]),
-            slip=self._affine(every[:, OMEGA_1] - every[:, OMEGA_2]),
-            T_gear_head=self._affine(T_gear),
-            a_body_head=self._affine(a_body),
-            x=self._affine(X),
+            phi=self._over_all(every[:, PHI]),
+            slip=self._over_all(every[:, OMEGA_1] - every[:, OMEGA_2]),
+            T_gear_head=self._over_all(T_gear),
+            a_body_head=self._over_all(a_body),
+            x=self._over_all(X),
             T_gear_tail=self.T_gear_tail,
             T_gear_spectrum=self.T_gear_spectrum,
             jerk_spectrum=self.jerk_spectrum,
         )
 
-    def _affine(self, X: np.ndarray) -> Affine:
-        """Of rows over 1 and the torques of the head."""
-        of = np.zeros((len(X), self.horizon.free))
-        of[:, : self.horizon.head] = X[:, 1:]
-        return Affine(of, X[:, 0])
+    def _over_all(self, X: np.ndarray) -> np.ndarray:
+        """Of what is over 1 and the torques of the head."""
+        return np.pad(X, ((0, 0), (0, self.horizon.free - self.horizon.head)))
 
-    def _tails(self, last: int) -> tuple[Tail, Tail]:
-        """T_gear and the body's acceleration after the head."""
+    def _tails(self, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """T_gear and the body's acceleration after the head, over the state at its end, 1 and the torques."""
         car, h = self.car, self.horizon
         tail = slice(h.head, len(h.demand))
         steps, (a_of, a_at) = car.steps(tail, last), car.acceleration(tail)
-        X = np.eye(N, N + 1 + h.free)  # the state over that at the end of the head, 1 and the torques
+        X = np.eye(N, N + 1 + h.free)
         T_gear, a_body = (np.empty((len(a_at), N + 1 + h.free)) for _ in range(2))
         for m, k in enumerate(range(h.head, len(h.demand))):
             T_gear[m], a_body[m] = car.C * X[PHI], a_of[m] @ X
@@ -185,19 +165,14 @@ class Predictor:
                 X[:, N] += steps.g[m] * h.demand[k]
         T_gear[:, N] -= car.C * last * car.phi_B
         a_body[:, N] += a_at
-        return _tail(T_gear), _tail(a_body)
+        return T_gear, a_body
 
-    def _spectrum(self, before: np.ndarray, tail: Tail, band: tuple[float, float], derivative: bool) -> Spectrum:
+    def _spectrum(self, before: np.ndarray, tail: np.ndarray, band: tuple[float, float], derivative: bool) -> Spectrum:
         D = _parts_over_samples(self.horizon.window, band, derivative)
         known, early = len(before), len(before) + self.horizon.head
-        rest = D[:, early:]
-        return Spectrum(
-            D[:, known:early], D[:, :known] @ before, Tail(*(rest @ part[: rest.shape[1]] for part in tail))
-        )
-
-
-def _tail(rows: np.ndarray) -> Tail:
-    return Tail(rows[:, :N], rows[:, N], rows[:, N + 1 :])
+        rest = D[:, early:] @ tail[: D.shape[1] - early]
+        rest[:, N] += D[:, :known] @ before
+        return Spectrum(D[:, known:early], rest)
 
 
 @cache

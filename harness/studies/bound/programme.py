@@ -1,7 +1,7 @@
 """A convex programme over the torque reference, its solution, and the proof by duality that nothing is better.
 
     minimise rho   over rho and u, lower <= u <= upper
-    subject to     G u + g <= a rho,   ||S_i u + s_i|| <= rho or <= 1
+    subject to     G (1, u) <= a rho,   ||S_i (1, u)|| <= rho or <= 1
 
 rho is a ratio of what is possible to what is reached. Where a = 0 a row is a constraint that has to be kept, and so is
 a norm that is to be <= 1.
@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.errors import SimulationError
 from ...base.optional_packages import required
-from .linear_prediction import Affine
+from .linear_prediction import value
 
 cp = required("cvxpy", "computing bounds", "bound")
 
@@ -36,17 +36,17 @@ SOLVER = {"tol_gap_abs": 1e-5, "tol_gap_rel": 1e-5, "tol_feas": 1e-7, "max_threa
 
 
 class Rows(NamedTuple):
-    """value <= share * rho; share (m,) in the unit of the value, unit (m,) what counts as much as another."""
+    """of (m, 1 + n) <= share * rho; share (m,) in the unit of the former, unit (m,) what counts as much as another."""
 
-    value: Affine
+    of: np.ndarray
     share: np.ndarray
     unit: np.ndarray
 
 
 class Cone(NamedTuple):
-    """||value|| <= rho where it counts, else <= 1."""
+    """||of|| <= rho where it counts, else <= 1; of (m, 1 + n)."""
 
-    value: Affine
+    of: np.ndarray
     counts: bool
 
 
@@ -77,9 +77,7 @@ class Solution(NamedTuple):
 
 def joined(parts: Sequence[Rows]) -> Rows:
     """All of them as one."""
-    of, at = zip(*(part.value for part in parts), strict=True)
-    share, unit = (np.concatenate([getattr(part, name) for part in parts]) for name in ("share", "unit"))
-    return Rows(Affine(np.vstack(of), np.concatenate(at)), share, unit)
+    return Rows(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def solve(programme: Programme, holds: np.ndarray) -> Solution:
@@ -93,15 +91,15 @@ def solve(programme: Programme, holds: np.ndarray) -> Solution:
     rows, lower, upper = programme.rows, programme.lower, programme.upper
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
 
-    def held(value: Affine) -> Affine:
-        return Affine(np.add.reduceat(value.of * half, holds, axis=1), value.value(middle))
+    def held(of: np.ndarray) -> np.ndarray:
+        return np.column_stack([value(of, middle), np.add.reduceat(of[:, 1:] * half, holds, axis=1)])
 
-    G, units = held(rows.value), 1.0 / rows.unit
-    norms = [_shortened(held(cone.value)) for cone in programme.cones]
+    G, units = held(rows.of), 1.0 / rows.unit
+    norms = [_shortened(held(cone.of)) for cone in programme.cones]
     w, rho, sigma = cp.Variable(len(holds)), cp.Variable(nonneg=True), cp.Variable(nonneg=True)
-    below = cp.multiply(units, G.of @ w + G.at - rows.share * rho) <= sigma
+    below = cp.multiply(units, G[:, 1:] @ w + G[:, 0] - rows.share * rho) <= sigma
     within = [
-        cp.SOC(rho if cone.counts else 1.0 + sigma, norm.of @ w + norm.at)
+        cp.SOC(rho if cone.counts else 1.0 + sigma, norm[:, 1:] @ w + norm[:, 0])
         for cone, (norm, _) in zip(programme.cones, norms, strict=True)
     ]
     problem = cp.Problem(cp.Minimize(rho + PENALTY * sigma), [below, cp.abs(w) <= 1.0, *within])
@@ -123,10 +121,10 @@ def solve(programme: Programme, holds: np.ndarray) -> Solution:
 def reached(programme: Programme, u: np.ndarray) -> tuple[float, float]:
     """The ratio that a torque reference reaches, and by how much in its unit it violates a constraint most."""
     rows = programme.rows
-    value, counts = rows.value.value(u), rows.share > 0.0
-    norms = [(cone.counts, float(np.linalg.norm(cone.value.value(u)))) for cone in programme.cones]
-    ratios = [*(value[counts] / rows.share[counts]), *(norm for its, norm in norms if its)]
-    violations = [*(value[~counts] / rows.unit[~counts]), *(norm - 1.0 for its, norm in norms if not its)]
+    found, counts = value(rows.of, u), rows.share > 0.0
+    norms = [(cone.counts, float(np.linalg.norm(value(cone.of, u)))) for cone in programme.cones]
+    ratios = [*(found[counts] / rows.share[counts]), *(norm for its, norm in norms if its)]
+    violations = [*(found[~counts] / rows.unit[~counts]), *(norm - 1.0 for its, norm in norms if not its)]
     return float(max([0.0, *ratios])), float(max(violations))
 
 
@@ -140,12 +138,13 @@ def bound(programme: Programme, y: np.ndarray, v: Sequence[np.ndarray]) -> float
         y, v: (rows,), and for each cone (its rows,).
     """
     rows = programme.rows
-    gradient, constant, of_rho = rows.value.of.T @ y, float(y @ rows.value.at), 1.0 - float(y @ rows.share)
+    lagrangian, of_rho = y @ rows.of, 1.0 - float(y @ rows.share)
     for cone, multiplier in zip(programme.cones, v, strict=True):
         length = float(np.linalg.norm(multiplier))
-        gradient = gradient + cone.value.of.T @ multiplier
-        constant += float(multiplier @ cone.value.at) - (0.0 if cone.counts else length)
+        lagrangian = lagrangian + multiplier @ cone.of
+        lagrangian[0] -= 0.0 if cone.counts else length
         of_rho -= length if cone.counts else 0.0
+    constant, gradient = lagrangian[0], lagrangian[1:]
     least = np.minimum(gradient * programme.lower, gradient * programme.upper).sum()
     return float(constant + least + min(of_rho * MOST, 0.0))
 
@@ -161,9 +160,8 @@ def _found(value: Any) -> Any:
     return value
 
 
-def _shortened(value: Affine) -> tuple[Affine, np.ndarray]:
+def _shortened(of: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The same norm of fewer rows, and what turns their multipliers into those of all rows."""
-    U, S, V = np.linalg.svd(np.column_stack(value), full_matrices=False)
+    U, S, V = np.linalg.svd(of, full_matrices=False)
     kept = NEGLIGIBLE * S[0] < S
-    R = S[kept, None] * V[kept]
-    return Affine(R[:, :-1], R[:, -1]), U[:, kept]
+    return S[kept, None] * V[kept], U[:, kept]

@@ -11,7 +11,7 @@ from .bound_task import Task
 from .constraints import programme
 from .contacts import PARTS, Contacts
 from .linear_car import LinearCar
-from .linear_prediction import Predictor
+from .linear_prediction import Predictor, value
 from .programme import Solution, solve
 
 STRIDES = (4, 2, 1)
@@ -66,7 +66,7 @@ class Search:
         if holding is FINE:
             T_gear = p.T_gear(np.arange(len(self.task.times)))
             for _ in range(ROUNDS):
-                if found.ratio == np.inf or not self.active.violated(self.task, T_gear.value(found.u)):
+                if found.ratio == np.inf or not self.active.violated(self.task, value(T_gear, found.u)):
                     break
                 found = solved()
         return found

@@ -1,15 +1,17 @@
 """A campaign: many cases on all cores, each with its verdict."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from ...simulation.many_runs import run_many
 from .evidence import Evidence
-from .fault_cases import Case, case
-from .fault_injection import FaultRunner, Limits, Runs, Settings
+from .fault_cases import SITUATIONS, Case, case
+from .fault_catalogue import KINDS
+from .fault_injection import FaultRunner, Limits, Runs
 from .judges import JUDGES
 
 
@@ -59,18 +61,36 @@ def count(outcomes: Iterable[Outcome], kind: str, judge: str | None = None) -> t
 
 
 def campaign(
-    numbers: Sequence[int], seed: int, injector: Path, settings: Mapping[str, Settings], workers: int | None = None
+    runner: FaultRunner,
+    numbers: Sequence[int],
+    seed: int,
+    known: MutableMapping[Case, Outcome] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
 ) -> list[Outcome]:
-    """Runs the cases of these numbers.
+    """What came of the cases of these numbers, in their order.
 
     Args:
-        injector: FMU of SignalFaults.
-        settings: of the loop with each plant, in the order of the plants.
-        workers: see `harness.simulation.many_runs.run_many`.
+        seed: of the campaign.
+        known, workers, scheduler: see `harness.simulation.many_runs.run_many`.
     """
-    runner = FaultRunner(injector, settings)
-    cases = [case(number, seed, tuple(settings)) for number in numbers]
-    return run_many(lambda each: judged(each, runner.runs(each), runner.limits(each.plant)), cases, workers, "faults")
+    cases = [case(number, seed, runner.plants) for number in numbers]
+    return run_many(lambda each: outcome(runner, each), cases, workers, "faults", scheduler, known)
+
+
+def outcome(runner: FaultRunner, each: Case) -> Outcome:
+    """What comes of a case."""
+    return judged(each, runner.runs(each), runner.limits(each.plant))
+
+
+def distinguishing(runner: FaultRunner, seed: int) -> dict[str, Any]:
+    """All that the outcomes depend on, beside what was set."""
+    first = [case(number, seed, runner.plants) for number in range(1, 2 * len(KINDS) * len(SITUATIONS) + 1)]
+    limits = [(judge.name, judge.limit) for judge in JUDGES]
+    return {
+        "cases": f"sha256:{sha256(repr((first, limits)).encode()).hexdigest()}",
+        "fmus": {path.stem: digest for path, digest in runner.digests.items()},
+    }
 
 
 def judged(each: Case, runs: Runs, limits: Limits) -> Outcome:

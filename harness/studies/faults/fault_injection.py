@@ -17,6 +17,7 @@ from ...loop.stale_fmus import warn_of_stale
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import Signal, lines
 from ...metrics.evaluate import at_samples
+from ...simulation.same_fmus import absolute, anywhere, digests, require_same_fmus
 from ...simulation.simulate import looped, signals, start
 from .fault_cases import DURATION, SITUATIONS, Case, Fault
 from .fault_catalogue import ICE, LOCK, SPIN
@@ -72,7 +73,12 @@ class Limits:
 
 
 class FaultRunner:
-    """Runs cases; runs without faults that several cases have in common are made once."""
+    """Runs cases; runs without faults that several cases have in common are made once.
+
+    Attributes:
+        plants: in their order.
+        digests: of the FMUs.
+    """
 
     def __init__(self, injector: Path, settings: Mapping[str, Settings]) -> None:
         """
@@ -84,13 +90,21 @@ class FaultRunner:
             DrivelineError: two plants have the same name, by which the cases are distinguished.
         """
         require_different(settings)
-        self._injector = injector
-        self._settings = settings
+        self.plants = tuple(settings)
+        self._injector = injector.absolute()
+        self._settings = {plant: anywhere(of_plant) for plant, of_plant in settings.items()}
+        self.digests = digests(map(self._system, settings))
         self._made: dict[Any, np.ndarray] = {}
         self._fitted: dict[str, Fit] = {}
 
     def runs(self, case: Case) -> Runs:
-        """The three runs of a case."""
+        """The three runs of a case.
+
+        Raises:
+            DrivelineError: an FMU is not the one that it is where the campaign was begun.
+            SimulationError: an FMU cannot be loaded, or refused a call.
+        """
+        require_same_fmus(self.digests)
         on_ice = tuple(fault for fault in case.faults if not fault.kind.number)
         common = case.plant, case.situation, case.noise, on_ice
         return Runs(
@@ -141,7 +155,7 @@ class FaultRunner:
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
-        return with_faults(looped(plant, self._settings[plant]), self._injector)
+        return with_faults(looped(absolute(plant), self._settings[plant]), self._injector)
 
 
 def with_faults(system: System, injector: Path) -> System:

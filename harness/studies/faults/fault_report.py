@@ -1,6 +1,6 @@
 """What a campaign leaves: a table on the terminal, files, figures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
@@ -8,12 +8,11 @@ from rich.table import Table
 
 from ...base.atomic_files import write_text
 from ...base.csv_file import write_csv
-from ...views.metrics_table import write_metrics
 from ...views.terminal import print_table
 from .fault_campaign import Outcome, judged
 from .fault_cases import case
 from .fault_figures import plot_case, plot_matrix, plot_pairs
-from .fault_injection import FaultRunner, Settings
+from .fault_injection import FaultRunner
 from .fault_page import HEADINGS, NOT_CLEAN, matrix_rows, page
 from .judges import JUDGES
 
@@ -48,28 +47,27 @@ def _verdicts(outcome: Outcome) -> Table:
 
 
 def write(outcomes: Sequence[Outcome], arguments: str, folder: Path) -> list[Path]:
-    """Writes the cases as CSV, the page, and the matrices as figures; returns the files.
+    """Writes the page, and the matrices as figures; returns the files.
 
     Args:
         arguments: of the command beside how many cases, for the page.
     """
-    cases, text, figures = folder / "faults.csv", folder / "faults.md", folder / "figures"
-    write_metrics([outcome.record for outcome in outcomes], cases)
+    text, figures = folder / "faults.md", folder / "figures"
     write_text(page(outcomes, arguments), text)
-    files = [cases, text, *plot_matrix(outcomes, "single faults: runs that are not clean", figures / "faults")]
+    files = [text, *plot_matrix(outcomes, "single faults: runs that are not clean", figures / "faults")]
     return [*files, *plot_pairs(outcomes, "pairs of faults: runs that are not clean", figures / "fault_pairs")]
 
 
 def write_case(
-    number: int, seed: int, injector: Path, settings: Mapping[str, Settings], folder: Path, caption: str = ""
+    number: int, seed: int, runner: FaultRunner, folder: Path, caption: str = ""
 ) -> tuple[Outcome, list[Path]]:
     """Runs one case again, writes its signals and draws them.
 
     Args:
-        seed, injector, settings: as of `harness.studies.faults.fault_campaign.campaign`.
+        seed: of the campaign.
         caption: what was set, in small below the figure.
     """
-    runner, each = FaultRunner(injector, settings), case(number, seed, tuple(settings))
+    each = case(number, seed, runner.plants)
     runs = runner.runs(each)
     outcome = judged(each, runs, runner.limits(each.plant))
     stem = folder / f"case_{number}"

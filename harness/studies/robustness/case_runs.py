@@ -1,21 +1,19 @@
 """The loop of a case: a plant and a controller, with car and sensors as they were drawn."""
 
 from collections.abc import Mapping
-from functools import cache
 from math import nan
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...base.errors import DrivelineError, SimulationError, UnpackingError
+from ...base.errors import SimulationError, UnpackingError
 from ...base.plain_text import plain
 from ...cosimulation.wiring import fit
 from ...design.uncertainty_box import changed
-from ...loop.places import PLACES
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.evaluate import evaluate
-from ...simulation.provenance import digest
+from ...simulation.same_fmus import absolute, anywhere, digests, require_same_fmus
 from ...simulation.simulate import looped, simulate
 from .draws import draw
 from .outcome import METRICS, PEAK, Case, Outcome
@@ -66,8 +64,7 @@ class CaseRunner:
             SimulationError: see `driveline.simulate`.
         """
         loop, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
-        for path, expected in loop.digests.items():
-            _require(path, expected)
+        require_same_fmus(loop.digests)
         settings = {**loop.settings, "parameters": loop.settings["parameters"] | changed(loop.blocks, drawn.deviation)}
         return simulate(MANOEUVRES[case.manoeuvre], loop.plant, control, **{**settings, "seed": drawn.noise})
 
@@ -94,26 +91,5 @@ class CaseRunner:
 
 def _loop(plant: str, settings: Settings) -> Loop:
     system = looped(plant, settings)
-    places = {place: _absolute(str(settings[place])) for place in PLACES if settings.get(place)}
-    given = {**settings, **places, "folder": Path(settings["folder"]).absolute()}
-    digests = {path.absolute(): digest(path) for path in system.instances.values()}
-    return Loop(_absolute(plant), given, fit(system).parameters(settings["parameters"]), digests)
-
-
-def _absolute(block: str) -> str:
-    """A block by its name, or the whole path of an FMU."""
-    return str(Path(block).absolute()) if Path(block).suffix == ".fmu" else block
-
-
-def _require(path: Path, expected: str) -> None:
-    if not path.is_file():
-        raise DrivelineError(f"there is no FMU {path}; all that run cases need it at this path")
-    status = path.stat()
-    if _digest(path, status.st_mtime_ns, status.st_size) != expected:
-        raise DrivelineError(f"{path} is not the one that the campaign was begun with")
-
-
-@cache
-def _digest(path: Path, modified: int, size: int) -> str:
-    """Of a file, read again when it has been written."""
-    return digest(path)
+    blocks = fit(system).parameters(settings["parameters"])
+    return Loop(absolute(plant), anywhere(settings), blocks, digests([system]))

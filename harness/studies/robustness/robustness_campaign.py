@@ -1,13 +1,11 @@
 """A campaign: the same draws with every controller, on all cores or on a cluster, resumed where it was stopped."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, MutableMapping, Sequence
 from hashlib import sha256
 from typing import Any
 
-from ...base.progress import progress
 from ...design.uncertainty_box import BOX, DOUBLINGS, LOSS
-from ...simulation.many_runs import many
-from .campaign_archive import Archive
+from ...simulation.many_runs import run_many
 from .case_runs import CaseRunner
 from .outcome import MANOEUVRES, Case, Outcome
 
@@ -25,29 +23,23 @@ def cases(loops: Iterable[tuple[str, str]], numbers: Sequence[int]) -> list[Case
 def campaign(
     runner: CaseRunner,
     numbers: Sequence[int],
-    archive: Archive | None = None,
+    known: MutableMapping[Case, Outcome] | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> list[Outcome]:
-    """What came of all cases, in their order; those that the archive has already are not run again.
+    """What came of all cases, in their order.
 
     Args:
         numbers: of the draws.
-        archive: gets every run as soon as it has been made.
-        workers, scheduler: see `harness.simulation.many_runs.many`.
+        known, workers, scheduler: see `harness.simulation.many_runs.run_many`.
     """
-    every = cases(runner.loops, numbers)
-    known: Mapping[Case, Outcome] = {} if archive is None else archive
-    found = {case: known[case] for case in every if case in known}
-    todo = [case for case in every if case not in found]
-    if todo:
-        with many(runner.outcome, workers, scheduler) as outcomes, progress(len(every), "robustness") as done:
-            for outcome in outcomes(todo):
-                found[outcome.case] = outcome
-                if archive is not None:
-                    archive.add(outcome)
-                done(len(found))
-    return [found[case] for case in every]
+    return run_many(runner.outcome, cases(runner.loops, numbers), workers, "robustness", scheduler, known)
+
+
+def order(runner: CaseRunner) -> Callable[[Case], tuple[int, int, int]]:
+    """Where a case stands among all those of its loops."""
+    loops = list(runner.loops)
+    return lambda case: (loops.index((case.plant, case.controller)), case.number, MANOEUVRES.index(case.manoeuvre))
 
 
 def distinguishing(runner: CaseRunner) -> dict[str, Any]:

@@ -10,11 +10,19 @@ from pathlib import Path
 
 import pytest
 
+from driveline.fmus.signal_faults import FMU
 from driveline.harness.base.errors import DrivelineError, MissingExtra, SimulationError
 from driveline.harness.cosimulation.runs import KeptLoops
+from driveline.harness.design.search.cost_evaluation import Bench as Search
+from driveline.harness.design.search.search_space import space
+from driveline.harness.design.search.tune import tune
+from driveline.harness.design.search.tuning_runs import Run
+from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import many
 from driveline.harness.simulation.simulate import simulate
+from driveline.harness.studies.faults.fault_campaign import campaign
+from driveline.harness.studies.faults.fault_injection import Bench as Faults
 
 dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
@@ -66,6 +74,19 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
 
     cases = [0.0, 1.0, 2.0, 3.0]
     assert answers(end, cases, cluster) == [end(case) for case in cases]
+
+
+def test_faults_and_search_on_a_cluster_are_those_here(cluster, native, native_builder, tmp_path):
+    folder, address = native.parent, cluster.scheduler_address
+    loop = {"parameters": {}, "folder": folder, "build": "native", "mapping": {}}
+    faults = Faults(native_builder(FMU, tmp_path), {"TwoMassDriveline": loop})
+    assert campaign(faults, [1, 2], 1, scheduler=address) == campaign(faults, [1, 2], 1, workers=1)
+    search = Search(folder=folder, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
+    there, here = (
+        tune(search, space("DampingController", {}), 3, 1, tmp_path / name, **given)
+        for name, given in (("there", {"scheduler": address}), ("here", {"workers": 1}))
+    )
+    assert there == here
 
 
 def test_a_notebook_has_an_event_loop_of_its_own(cluster):

@@ -1,6 +1,7 @@
 """Many runs in several processes: the same answers, in order; what fails names its case; nothing stays behind."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -13,7 +14,7 @@ from driveline.harness.base.atomic_files import complete
 from driveline.harness.base.errors import DrivelineError, SimulationError
 from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 
@@ -144,9 +145,50 @@ def test_a_crash_is_told(native, unpacked):
         in_folder(native.parent)(CASES[0])
         return os._exit(3) if case == 1 else case
 
-    with pytest.raises(SimulationError, match="a process crashed in case"):
+    with pytest.raises(SimulationError, match=r"^a process crashed in case 1, and again when that was run once more$"):
         run_many(crash, range(4), workers=2)
     assert list(unpacked.iterdir()) == []
+
+
+@pytest.mark.parametrize("at", [0, 7, 19])
+def test_a_case_whose_process_was_lost_is_run_once_more_and_all_are_answered(tmp_path, at):
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write("x")
+        if case == at and (tmp_path / f"{case}").stat().st_size == 1:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return -case
+
+    with many(run, workers=2) as answered:
+        assert list(answered(range(20))) == [-case for case in range(20)]
+        assert list(answered([20, 21])) == [-20, -21]  # those that came instead are as good
+    times = [(tmp_path / f"{case}").stat().st_size for case in range(22)]
+    assert times[at] == max(times) == 2
+
+
+def test_what_comes_before_a_case_that_ends_its_process_twice_is_answered(tmp_path):
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write("x")
+        return os._exit(3) if case == 5 else case
+
+    known = {}
+    with pytest.raises(SimulationError, match="a process crashed in case 5, and again"):
+        run_many(run, range(10), workers=2, known=known)
+    assert known == {case: case for case in range(5)}
+    assert (tmp_path / "5").stat().st_size == 2
+
+
+def test_what_is_known_is_not_asked_again_and_what_is_answered_is_known():
+    asked, known = [], {3: "known", 9: "of no use here"}
+
+    def ask(case):
+        asked.append(case)
+        return str(case)
+
+    assert run_many(ask, [2, 3, 4, 2], workers=1, known=known) == ["2", "known", "4", "2"]
+    assert asked == [2, 4]
+    assert known == {3: "known", 9: "of no use here", 2: "2", 4: "4"}
 
 
 SCRIPT = """

@@ -9,11 +9,12 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.parameter_search import Evaluated, Search
-from driveline.harness.design.search.search_archive import Archive
+from driveline.harness.design.search.search_archive import table
 from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import EVALUATIONS, RECORD, tune
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
+from driveline.harness.simulation.case_archive import CaseArchive
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0), Run("TwoMassDriveline", "launch", NOMINAL, 2, 1.0))
 OURS = space("DampingController", {})
@@ -97,11 +98,11 @@ def test_the_record_tells_what_the_costs_depend_on(evaluation: CostEvaluation, t
 def test_costs_come_back_from_the_file_to_the_last_bit(tmp_path: Path) -> None:
     path = tmp_path / "new" / "evaluations.csv"
     first, second = ((0.1, 1 / 3), Costs(1.0, 2 / 3, 0.1)), ((0.2, 2e-7), Costs(1e9, 1.0, 0.0))
-    archive = Archive(path, ["k", "T"])
+    archive = CaseArchive(path, table(["k", "T"]))
     archive[first[0]] = first[1]
-    assert dict(Archive(path, ["k", "T"])) == dict([first])
+    assert dict(CaseArchive(path, table(["k", "T"]))) == dict([first])
     archive[second[0]] = second[1]
-    assert dict(Archive(path, ["k", "T"])) == dict([first, second])
+    assert dict(CaseArchive(path, table(["k", "T"]))) == dict([first, second])
     assert [p.name for p in path.parent.iterdir()] == ["evaluations.csv"]
 
 
@@ -119,4 +120,4 @@ def test_a_file_that_is_none_of_a_search_is_refused(tmp_path: Path, text: str, m
     path = tmp_path / "evaluations.csv"
     path.write_text(text)
     with pytest.raises(DrivelineError, match=message):
-        Archive(path, ["k", "T"])
+        CaseArchive(path, table(["k", "T"]))

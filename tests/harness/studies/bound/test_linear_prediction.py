@@ -11,7 +11,7 @@ from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
 from driveline.harness.simulation.simulate import simulate, start
 from driveline.harness.studies.bound.bound_task import Task, task
 from driveline.harness.studies.bound.linear_car import linear_car
-from driveline.harness.studies.bound.linear_prediction import Predictor
+from driveline.harness.studies.bound.linear_prediction import Predictor, value
 from driveline.harness.studies.bound.open_loop_run import open_loop_run
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 
@@ -44,11 +44,11 @@ def test_the_linear_car_moves_as_the_design_model_and_its_norms_are_the_metrics(
     results = open_loop_run(tipin.manoeuvre, tipin.reference(u), settings)
     car = linear_car(results, start(tipin.manoeuvre), tipin.first)
     prediction = Predictor(car, tipin.horizon, 1).predict(tipin.contacts)
-    T_gear = prediction.T_gear(np.arange(len(tipin.times))).value(u)
+    T_gear = value(prediction.T_gear(np.arange(len(tipin.times))), u)
     assert T_gear == pytest.approx(at_samples(results)["plant.T_gear"][tipin.first :], abs=2e-3)
     metrics = evaluate(results, tipin.manoeuvre)
-    assert np.linalg.norm(prediction.T_gear_parts().value(u)) == pytest.approx(metrics.gear_torque_rms, rel=1e-4)
-    assert np.linalg.norm(prediction.jerk_parts().value(u)) == pytest.approx(metrics.jerk_rms_to_50_Hz, rel=1e-4)
+    assert np.linalg.norm(value(prediction.T_gear_parts(), u)) == pytest.approx(metrics.gear_torque_rms, rel=1e-4)
+    assert np.linalg.norm(value(prediction.jerk_parts(), u)) == pytest.approx(metrics.jerk_rms_to_50_Hz, rel=1e-4)
 
 
 @pytest.mark.parametrize("name", ["tipin15", "tipout", "launch"])

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from driveline.harness.base.errors import MissingExtra
-from driveline.harness.studies.bound.linear_prediction import Affine
 from driveline.harness.studies.bound.programme import Cone, Programme, Rows, bound, joined, reached, solve
 
 EACH = np.arange(3)
@@ -20,11 +19,11 @@ def programme(least: float = 1.0, counts: bool = True) -> Programme:
     """|u_k| <= 2, u_0 + u_1 + u_2 >= 3 least, u_2 <= rho, ||u||/sqrt(3) <= rho (or, where it does not count, 1)."""
     rows = joined(
         [
-            Rows(Affine(-np.ones((1, 3)), np.array([3.0 * least])), np.zeros(1), np.ones(1)),
-            Rows(Affine(np.array([[0.0, 0.0, 1.0]]), np.zeros(1)), np.ones(1), np.ones(1)),
+            Rows(np.array([[3.0 * least, -1.0, -1.0, -1.0]]), np.zeros(1), np.ones(1)),
+            Rows(np.array([[0.0, 0.0, 0.0, 1.0]]), np.ones(1), np.ones(1)),
         ]
     )
-    cone = Cone(Affine(np.eye(3) / np.sqrt(3.0), np.zeros(3)), counts)
+    cone = Cone(np.eye(3, 4, 1) / np.sqrt(3.0), counts)
     return Programme(rows, [cone], np.full(3, -2.0), np.full(3, 2.0))
 
 
@@ -49,7 +48,7 @@ def test_what_cannot_be_kept_has_no_ratio_but_a_bound() -> None:
 
 
 def test_the_bound_of_a_torque_that_is_held_holds_for_a_free_one() -> None:
-    one = Rows(Affine(np.array([[-1.0, 0.0, 0.0]]), np.array([1.0])), np.zeros(1), np.ones(1))
+    one = Rows(np.array([[1.0, -1.0, 0.0, 0.0]]), np.zeros(1), np.ones(1))
     favouring = programme()._replace(rows=joined([one]))
     held, free = solve(favouring, np.array([0])), solve(favouring, EACH)
     assert held.ratio == pytest.approx(1.0, abs=1e-4)

@@ -11,6 +11,7 @@ from driveline.harness.simulation.simulate import simulate, start
 from driveline.harness.studies.bound.bound_task import task
 from driveline.harness.studies.bound.contacts import Contacts
 from driveline.harness.studies.bound.linear_car import linear_car
+from driveline.harness.studies.bound.linear_prediction import value
 from driveline.harness.studies.bound.open_loop_run import open_loop_run
 from driveline.harness.studies.bound.switching_search import FINE, Search, holds
 from driveline.harness.studies.margins.linear_plant import NOISELESS
@@ -30,7 +31,7 @@ def test_the_design_model_does_what_the_programme_promises(search: Search, nativ
     of, contacts = search.task, search.task.contacts._replace(ends=(48,))
     found = search.solve(contacts)
     run = open_loop_run(of.manoeuvre, of.reference(found.u), NATIVE | {"folder": native.parent})
-    promised = search.predictor.predict(contacts).T_gear(np.arange(len(of.times))).value(found.u)
+    promised = value(search.predictor.predict(contacts).T_gear(np.arange(len(of.times))), found.u)
     assert promised == pytest.approx(at_samples(run)["plant.T_gear"][of.first :], abs=0.05)
     metrics = evaluate(run, of.manoeuvre)
     worst = max(getattr(metrics, name) / getattr(of.reached, name) for name in of.metrics)

@@ -1,5 +1,8 @@
 """A campaign gives the same whatever the number of processes, and says what is not clean."""
 
+import os
+import shutil
+import signal
 from collections import Counter
 
 import numpy as np
@@ -48,13 +51,13 @@ def test_faults_and_states_are_numbered_as_in_the_models():
 
 
 def test_a_contradiction_and_a_leap_are_what_the_controller_takes_for_them():
-    assert supervision.Parameters().e_wheel == evidence.APART
+    assert supervision.Parameters().e_wheel == evidence.MISMATCH
     assert (wheel_monitor.SHARE, wheel_monitor.LEAP) == (evidence.SHARE, evidence.LEAP)
 
 
 def test_plants_of_the_same_name_are_refused(tmp_path):
     with pytest.raises(DrivelineError, match="two plants are called car"):
-        campaign(range(1, 3), 1, tmp_path / "SignalFaults.fmu", {"mine/car.fmu": {}, "theirs/car.fmu": {}})
+        FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": {}, "theirs/car.fmu": {}})
 
 
 def test_half_of_the_cases_are_pairs_of_different_kinds():
@@ -94,7 +97,7 @@ def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):
 
 
 def test_a_campaign_does_not_depend_on_the_number_of_processes(injector, settings):
-    one, two = (campaign(range(1, 9), 3, injector, settings, workers) for workers in (1, 2))
+    one, two = (campaign(FaultRunner(injector, settings), range(1, 9), 3, workers=workers) for workers in (1, 2))
     assert [outcome.record for outcome in one] == [outcome.record for outcome in two]
     assert page(one, "") == page(two, "")
 
@@ -113,3 +116,33 @@ def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most)
 
     assert speed_of_the_wheels(LOCK, 4000.0).min() < least
     assert speed_of_the_wheels(SPIN, 80.0).max() > most
+
+
+class Dying(FaultRunner):
+    """A bench whose process is killed at the first attempt at a case."""
+
+    def __init__(self, injector, settings, folder):
+        super().__init__(injector, settings)
+        self._folder = folder
+
+    def runs(self, case):
+        attempt = self._folder / str(case.number)
+        if case.number == 3 and not attempt.exists():
+            attempt.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return super().runs(case)
+
+
+def test_a_campaign_survives_a_process_that_is_killed(injector, settings, tmp_path):
+    known = {}
+    found = campaign(Dying(injector, settings, tmp_path), range(1, 5), 3, known, workers=2)
+    assert (tmp_path / "3").exists()
+    assert found == campaign(FaultRunner(injector, settings), range(1, 5), 3, workers=1) == list(known.values())
+
+
+def test_an_fmu_that_was_changed_since_is_refused(injector, settings, tmp_path):
+    mine = shutil.copy(injector, tmp_path / "SignalFaults.fmu")
+    runner = FaultRunner(mine, settings)
+    mine.write_bytes((settings["TwoMassDriveline"]["folder"] / "native" / "WheelSpeedCan.fmu").read_bytes())
+    with pytest.raises(DrivelineError, match=r"SignalFaults\.fmu is not the one that the campaign was begun with"):
+        campaign(runner, [1], 3, workers=1)

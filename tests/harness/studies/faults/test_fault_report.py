@@ -5,37 +5,46 @@ import json
 import shlex
 from argparse import ArgumentParser
 from dataclasses import replace
+from math import inf, isnan, nan
 
 import pytest
 
+from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands import faults
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import as_given
 from driveline.harness.cosimulation.runs import run
+from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
+from driveline.harness.studies.faults.fault_archive import table
 from driveline.harness.studies.faults.fault_campaign import campaign
 from driveline.harness.studies.faults.fault_catalogue import KINDS
 from driveline.harness.studies.faults.fault_page import page
 from driveline.harness.studies.faults.fault_report import announce, write, write_case
 
+PLANTS = ("TwoMassDriveline", "ValidationVehicle")
+
 
 @pytest.fixture(scope="module")
 def outcomes(injector, settings):
-    return campaign(range(1, 7), 1, injector, settings, workers=1)
+    return campaign(fault_injection.Bench(injector, settings), range(1, 7), 1, workers=1)
 
 
 def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path):
-    files = write(outcomes, "", tmp_path)
+    archive = CaseArchive(tmp_path / "faults.csv", table(1, PLANTS))
+    for outcome in outcomes:
+        archive[outcome.case] = outcome
     with (tmp_path / "faults.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["number"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
     assert [row["clean"] for row in rows] == [str(int(not outcome.failed)) for outcome in outcomes]
     assert [bool(row["fault_2"]) for row in rows] == [False, False, True, True, False, False]
-    assert all(file.is_file() for file in files)
+    assert list(CaseArchive(tmp_path / "faults.csv", table(1, PLANTS)).values()) == outcomes
 
 
 def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_path):
-    write(outcomes, " --cases 6", tmp_path)
+    files = write(outcomes, " --cases 6", tmp_path)
+    assert all(file.is_file() for file in files)
     page = (tmp_path / "faults.md").read_text(encoding="utf-8")
     assert all(f"| {kind} |" in page for kind in KINDS)
     for name in ("faults", "fault_pairs"):
@@ -78,7 +87,7 @@ def test_the_page_tells_how_a_case_is_run_again(outcomes):
 def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path, monkeypatch):
     runs = []
     monkeypatch.setattr(fault_injection, "run", lambda *given: runs.append(1) or run(*given))
-    again, files = write_case(2, 1, injector, settings, tmp_path)
+    again, files = write_case(2, 1, fault_injection.Bench(injector, settings), tmp_path)
     assert len(runs) == 3
     assert again == outcomes[1]
     assert [file.name for file in files] == ["case_2.csv", "case_2.png", "case_2.pdf"]
@@ -104,3 +113,19 @@ def test_a_number_of_cases_that_is_none_is_refused(number, capsys):
         main(["faults", "--cases", number])
     assert refused.value.code == 2
     assert "is not a whole number from 1 to 1000000" in capsys.readouterr().err
+
+
+def test_what_is_not_finite_comes_back_from_the_file(outcomes, tmp_path):
+    archive = CaseArchive(tmp_path / "faults.csv", table(1, PLANTS))
+    odd = replace(outcomes[0], measured=outcomes[0].measured | {"limited": inf, "rms": nan})
+    archive[odd.case] = odd
+    (back,) = CaseArchive(tmp_path / "faults.csv", table(1, PLANTS)).values()
+    assert back.measured["limited"] == inf
+    assert isnan(back.measured["rms"])
+
+
+def test_a_line_with_another_case_than_that_of_its_number_is_refused(outcomes, tmp_path):
+    archive = CaseArchive(tmp_path / "faults.csv", table(1, PLANTS))
+    archive[outcomes[0].case] = outcomes[0]
+    with pytest.raises(DrivelineError, match="line 2: it must have the case of its number and what was measured"):
+        CaseArchive(tmp_path / "faults.csv", table(2, PLANTS))

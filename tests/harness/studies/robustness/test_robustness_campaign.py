@@ -10,8 +10,9 @@ from driveline.harness.design.uncertainty_box import Deviation, changed, deviati
 from driveline.harness.loop.places import PLACES
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.studies.robustness.campaign_archive import Archive
+from driveline.harness.studies.robustness.campaign_archive import RUNS
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.draws import draw
 from driveline.harness.studies.robustness.outcome import MANOEUVRES, Case
@@ -60,9 +61,7 @@ def test_every_controller_gets_every_draw_in_every_manoeuvre():
 @pytest.mark.parametrize("fails_at", [0, 1, 5])
 def test_a_campaign_goes_on_where_it_was_stopped(tmp_path, fails_at):
     def archive():
-        made = Archive(tmp_path / "runs.csv")
-        made.begin()
-        return made
+        return CaseArchive(tmp_path / "runs.csv", RUNS)
 
     first, second = Pretended(fails_at), Pretended()
     with pytest.raises(DrivelineError, match="stopped"):

@@ -1,0 +1,48 @@
+"""The FMUs of a campaign: whoever runs its cases, on whatever machine, has the same ones at the same paths."""
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ..base.errors import DrivelineError
+from ..cosimulation.system import System
+from ..loop.places import PLACES
+from .provenance import digest
+
+
+def absolute(block: str) -> str:
+    """A block by its name, or the whole path of an FMU."""
+    return str(Path(block).absolute()) if Path(block).suffix == ".fmu" else block
+
+
+def anywhere(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of `driveline.simulate` with whole paths, so that any process can make the runs."""
+    places = {place: absolute(str(settings[place])) for place in PLACES if settings.get(place)}
+    return {**settings, **places, "folder": Path(settings["folder"]).absolute()}
+
+
+def digests(systems: Iterable[System]) -> dict[Path, str]:
+    """Of the FMUs of the systems, in their order."""
+    paths = dict.fromkeys(path.absolute() for system in systems for path in system.instances.values())
+    return {path: digest(path) for path in paths}
+
+
+def require_same_fmus(wanted: Mapping[Path, str]) -> None:
+    """Refuses other FMUs than those with these digests.
+
+    Raises:
+        DrivelineError: one is absent here or has another content.
+    """
+    for path, its in wanted.items():
+        if not path.is_file():
+            raise DrivelineError(f"there is no FMU {path}; all that run cases need it at this path")
+        status = path.stat()
+        if _digest(path, status.st_mtime_ns, status.st_size) != its:
+            raise DrivelineError(f"{path} is not the one that the campaign was begun with")
+
+
+@cache
+def _digest(path: Path, written: int, size: int) -> str:
+    """Of a file, read again when it has been written."""
+    return digest(path)
