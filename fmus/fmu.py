@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from ..models.block.types import Block, with_start_values
 
-PACKAGE = __package__.removesuffix("fmus")
+PACKAGE = __name__.removesuffix("fmus.fmu")
 """What the names of the project's own modules begin with."""
 
 

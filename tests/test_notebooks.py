@@ -47,7 +47,7 @@ SHOWN = {
 IMPORTS = """
     import pandas as pd
     from pathlib import Path
-    from fmus.parameter_files import read_parameters, read_vehicle
+    from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
     """
 
 FIGURES = {"first_run": 1, "your_vehicle": 1, "your_controller": 2, "sweep": 2, "from_recording": 2}

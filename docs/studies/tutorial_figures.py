@@ -8,6 +8,7 @@ from contextlib import chdir
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from driveline.harness.base.interruption import script
 from driveline.harness.commands.cli import main as driveline
 
 ROOT = Path(__file__).parents[2]
@@ -41,4 +42,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    script(main)

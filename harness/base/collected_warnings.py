@@ -3,7 +3,7 @@
 import logging
 from functools import cache
 
-LOG = logging.getLogger(__package__.partition(".")[0])
+LOG = logging.getLogger(__name__.partition(".")[0])
 """All loggers of the package are below it."""
 
 

@@ -150,9 +150,9 @@ OWN = '''"""A first-order lag.
 
 from typing import Annotated, NamedTuple
 
-from fmus.fmu import Fmu
-from models.block.declaration import Real
-from models.block.types import ContinuousBlock
+from driveline.fmus.fmu import Fmu
+from driveline.models.block.declaration import Real
+from driveline.models.block.types import ContinuousBlock
 
 
 class Parameters(NamedTuple):

@@ -155,8 +155,8 @@ def test_a_full_device_is_named_in_one_line() -> None:
 @pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
 def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
     program = """
-from harness.cli import main
-from harness.many import run_many
+from driveline.harness.commands.cli import main
+from driveline.harness.simulation.many_runs import run_many
 main(["design", "--quiet", "--output", "gains.toml"])
 with open("answers", "w") as file:
     assert file.fileno() > 2

@@ -85,7 +85,7 @@ def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
 def test_help_and_mistakes_are_answered_without_the_packages_that_a_run_needs(arguments):
     listed = f"""
 import sys
-from harness.cli import main
+from driveline.harness.commands.cli import main
 try:
     main({arguments})
 except SystemExit:

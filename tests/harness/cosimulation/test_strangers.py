@@ -219,9 +219,9 @@ def test_what_a_stranger_leaves_behind_is_not_waited_for(tmp_path, own_session):
 RUN = """
 import sys
 from pathlib import Path
-from harness.cosimulation.experiment import Experiment
-from harness.cosimulation.runs import run
-from harness.cosimulation.system import System
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import System
 
 run(System({"car": Path(sys.argv[1])}), Experiment(0.1))
 """

@@ -13,7 +13,7 @@ import pytest
 from driveline.fmus.signal_faults import FMU
 from driveline.harness.base.errors import DrivelineError, MissingExtra, SimulationError
 from driveline.harness.cosimulation.runs import KeptLoops
-from driveline.harness.design.search.cost_evaluation import Bench as Search
+from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import tune
 from driveline.harness.design.search.tuning_runs import Run
@@ -22,7 +22,7 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.faults.fault_campaign import campaign
-from driveline.harness.studies.faults.fault_injection import Bench as Faults
+from driveline.harness.studies.faults.fault_injection import FaultRunner
 
 dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
@@ -79,9 +79,9 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
 def test_faults_and_search_on_a_cluster_are_those_here(cluster, native, native_builder, tmp_path):
     folder, address = native.parent, cluster.scheduler_address
     loop = {"parameters": {}, "folder": folder, "build": "native", "mapping": {}}
-    faults = Faults(native_builder(FMU, tmp_path), {"TwoMassDriveline": loop})
+    faults = FaultRunner(native_builder(FMU, tmp_path), {"TwoMassDriveline": loop})
     assert campaign(faults, [1, 2], 1, scheduler=address) == campaign(faults, [1, 2], 1, workers=1)
-    search = Search(folder=folder, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
+    search = CostEvaluation(folder=folder, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
     there, here = (
         tune(search, space("DampingController", {}), 3, 1, tmp_path / name, **given)
         for name, given in (("there", {"scheduler": address}), ("here", {"workers": 1}))

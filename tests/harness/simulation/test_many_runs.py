@@ -32,9 +32,9 @@ THREADS = """
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.many import run_many
-from harness.simulate import simulate
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
 
 
 def end(k_d):
@@ -194,9 +194,9 @@ def test_what_is_known_is_not_asked_again_and_what_is_answered_is_known():
 SCRIPT = """
 import sys, tempfile
 from pathlib import Path
-from harness.many import run_many
-from harness.manoeuvres.catalogue import MANOEUVRES
-from harness.simulate import simulate
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.simulate import simulate
 
 def end(seed):
     return simulate(MANOEUVRES["tipin15"], seed=seed, folder=Path({folder!r}), step_size=0.002)["plant.v"][-1]
