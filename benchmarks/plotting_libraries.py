@@ -37,9 +37,10 @@ def write(library: str, path: Path) -> None:
         from bokeh.plotting import figure
         from bokeh.resources import INLINE
 
-        from driveline.harness.views.html.linked_figures import stacked, window
+        from driveline.harness.views.html.linked_figures import shown, stacked
+        from driveline.harness.views.panels import Axis
 
-        x_range, figures = window(0.0, 6.0), []
+        x_range, figures = shown(Axis("", (0.0, 6.0))), []
         for panel in curves:
             figures.append(figure(height=210, sizing_mode="stretch_width", x_range=x_range))
             for curve in panel:

@@ -3,15 +3,12 @@
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 from docs.studies.calibration import FACTOR, LAW, Case, changed_law
 from docs.studies.calibration_tables import COLUMNS, Found, change, value
 from driveline.harness.views.colours import BLUE, VERMILION
-from driveline.harness.views.figure_style import STYLE, save, titled
+from driveline.harness.views.figure_style import sheet
 from driveline.harness.views.metrics_table import number
 
 PANELS = (
@@ -28,8 +25,8 @@ PANELS = (
 def plot_calibration(found: Found, plant: str, stem: Path) -> list[Path]:
     """Parameters as rows, a metric of a manoeuvre in each panel; returns the files."""
     rows = np.arange(len(LAW))
-    with style.context(STYLE):
-        figure = Figure(figsize=(9.6, 6.2), layout=ConstrainedLayoutEngine(h_pad=0.1))
+    title = f"{plant}: parameters of the damping law, one at a time"
+    with sheet((9.6, 6.2), title, stem, pads=(0.1, 0.04)) as (figure, files):
         grid = figure.subplots(2, 3, sharey=True)
         for axes, (metric, manoeuvre) in zip(grid.flat, PANELS, strict=True):
             column = COLUMNS[metric]
@@ -46,8 +43,7 @@ def plot_calibration(found: Found, plant: str, stem: Path) -> list[Path]:
             axes.set_title(f"{manoeuvre}, from {nominal} {column.unit}")
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2)
-        titled(figure, f"{plant}: parameters of the damping law, one at a time")
-        return save(figure, stem)
+    return files
 
 
 def bars(found: Found, plant: str, manoeuvre: str, metric: str) -> tuple[list[float], list[float]]:

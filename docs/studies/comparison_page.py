@@ -39,29 +39,9 @@ PRICES = (*COMPARED, "response_delay", "withheld_time", "stationary_torque_chang
 DEARER = 1.1
 """Over ours, from when on a metric is a price."""
 
-PAGE = """\
-# The controllers side by side
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
-Every controller through the same manoeuvres, each with its default parameters ([tuning.md](tuning.md) says how
-they were found). Means over the noise of seeds {seeds}, which no search has seen. In bold what is best of the
-controllers that a car can have: `{mark}` sees the true motion and is a mark.
-[control.md](control.md#what-it-is-compared-with) says what they are, [robustness.md](robustness.md) compares them on
-cars that are drawn, [replay.md](replay.md) on recorded drives.
-
-{plants}
-
-Made by `python -m docs.studies.comparison_page`; do not edit.
-"""
-
-PLANT = """\
-## {plant}
-
-{tables}
-
-Where another one is better than ours, and at what price:
-
-{better}
-"""
+PLANT = Path(__file__).with_name("comparison_page_plant.md").read_text(encoding="utf-8")
 
 
 class Key(NamedTuple):

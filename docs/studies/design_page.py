@@ -24,27 +24,9 @@ MANOEUVRES = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "drive", "cree
 COLUMNS = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "response_delay", "withheld_time")
 SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column and metric.name in COLUMNS]
 
-PAGE = """\
-# The design on other cars
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
-The default car and those of `examples/cars/`, driven without damping / with the gains of the default car / with gains
-designed for the car itself ([control.md](control.md) says how). The estimator is told the true car in either case.
-Means over the noise of three seeds. The design knows the design model alone: on the validation vehicle its gains
-are not better in every row.
-
-{cars}
-
-Made by `python -m docs.studies.design_page`; do not edit.
-"""
-
-CAR = """\
-## {name}
-
-The drive train swings at {frequency:.1f} Hz. In contact, linear and without tyre, its damping ratio is {default:.2f}
-with the default gains{own}.
-
-{table}
-"""
+CAR = Path(__file__).with_name("design_page_car.md").read_text(encoding="utf-8")
 
 Found = Mapping[Trial, Metrics]
 

@@ -14,27 +14,7 @@ from driveline.harness.views.markdown import markdown_table
 NAMED = 3
 """Goals that are missed instead and are named; more are counted."""
 
-PAGE = """\
-# Goals
-
-What the controller is to reach on both plants, and what it reaches with its default parameters: means over the noise
-of seeds {seeds}, which no search has seen. In bold what is not reached: {missed} of {all}.
-[comparison.md](comparison.md) has the other controllers, [bound.md](bound.md) what none can beat, and
-[robustness.md](robustness.md) the cars that are drawn.
-
-{table}
-
-## What is not reached, and why not
-
-Every parameter of the damping law was changed alone, to {factors} times its value. The table has, for
-each goal that is missed, the change that reaches it and for which the fewest others are missed; where no change does,
-the one that comes closest. No change reaches more than {harmless} of the {missed} without missing another goal.
-Several at once are what the search of [tuning.md](tuning.md) looks for.
-
-{changes}
-
-Made by `python -m docs.studies.goals_page`; do not edit.
-"""
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
 
 def page(values: Reached, changed: Mapping[Change, Reached]) -> str:

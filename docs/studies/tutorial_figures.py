@@ -24,8 +24,8 @@ FIGURES = {
 
 def commands() -> Iterator[list[str]]:
     """The arguments of each `driveline` on the page, in their order, but for those that build the FMUs."""
-    for script in re.findall(r"^```sh\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.M | re.S):
-        for line in script.splitlines():
+    for block in re.findall(r"^```sh\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.M | re.S):
+        for line in block.splitlines():
             program, *arguments = shlex.split(line, comments=True)
             if program == "driveline" and arguments != ["build"]:
                 yield arguments

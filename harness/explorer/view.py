@@ -1,8 +1,10 @@
 """The page of a tab: knobs and switches on the left, curves and metrics on the right."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from html import escape
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,13 @@ from bokeh.models import Button, CheckboxGroup, Div, Select, Slider, Switch, Tex
 
 from ..base.errors import DrivelineError
 from ..manoeuvres.catalogue import MANOEUVRES
+from ..metrics.evaluate import T_S, at_samples
 from ..metrics.run_metrics import Metrics
 from ..views.colours import GREEN, ORANGE, PURPLE, SKY, VERMILION
-from ..views.html.linked_figures import Curve, as_drawn, linked, source_of, stacked, window
-from ..views.html.paired_runs import TIME, pair_signals, shown_at_first
+from ..views.html.linked_figures import as_drawn, linked, shown, source_of, stacked, tables
+from ..views.html.paired_runs import NEEDED, TIME, pair_panels, shown_at_first
 from ..views.metrics_table import SHOWN, number
+from ..views.panels import Curve, Panel
 from .knobs import Knob
 from .request import Request
 from .request_runs import Answer, RequestRunner
@@ -57,16 +61,31 @@ class View:
         self._shown = self._request.manoeuvre
         self._gone = False
         self._status, self._table = Div(name="status", text=""), Div(name="metrics", text="")
-        self._source = source_of(dict.fromkeys(self._columns(), np.zeros(2)))
-        self._x_range = window(*shown_at_first(MANOEUVRES[self._request.manoeuvre]))
+        nothing = np.zeros(2, dtype=[(name, float) for name in NEEDED])
+        nothing["time"] = 0.0, T_S
+        self._panels = self._drawn(nothing, {})
+        self._source = source_of(tables(self._panels)[0])
+        self._x_range = shown(TIME._replace(window=shown_at_first(MANOEUVRES[self._request.manoeuvre])))
         document.title = "driveline explore"
         document.add_root(row(self._controls(saves), self._figures(), name="view", sizing_mode="stretch_width"))
         document.on_session_destroyed(self._leave)
         self._ask()
 
-    def _columns(self) -> list[str]:
-        beside = (f"T_gear {name}" for name in self._runner.controllers[1:])
-        return ["time", *dict.fromkeys(curve.column for panel in TIME for curve in panel.curves), *beside]
+    def _drawn(self, empty: np.ndarray, runs: Mapping[str, np.ndarray]) -> list[Panel]:
+        """The panels of results by the names of the controllers, beside those without control; NaN where there are
+        none."""
+        ours, *others = self._runner.controllers
+        empty = empty[NEEDED]
+        absent = np.full(len(empty), np.nan, empty.dtype)
+        for known in ("time", "controller.T_driver"):
+            absent[known] = empty[known]
+        torque, *rest = pair_panels(empty, runs.get(ours, absent))
+        t = at_samples(empty)["time"]
+        beside = [
+            Curve(t, at_samples(runs.get(name, absent))["plant.T_gear"], f"with {name}", color)
+            for name, color in zip(others, cycle(BESIDE), strict=False)
+        ]
+        return [replace(torque, parts=[*torque.parts, *beside]), *rest]
 
     def _controls(self, saves: dict[str, Save]) -> Any:
         runner = self._runner
@@ -128,14 +147,8 @@ class View:
         return button
 
     def _figures(self) -> Any:
-        others = [
-            Curve(f"T_gear {name}", f"with {name}", BESIDE[k % len(BESIDE)])
-            for k, name in enumerate(self._runner.controllers[1:])
-        ]
-        torque, *rest = TIME
-        panels = [torque._replace(curves=(*torque.curves, *others)), *rest]
-        figures = linked(panels, self._source, self._x_range, "time, s")
-        entries: Any = figures[0].legend[0].items[len(torque.curves) :]
+        figures = linked(self._panels, TIME, self._x_range, [self._source])
+        entries: Any = figures[0].legend[0].items[1 - len(self._runner.controllers) :]
         self._beside: dict[str, Any] = dict(zip(self._runner.controllers[1:], entries, strict=True))
         for entry in entries:
             entry.visible = entry.renderers[0].visible = False
@@ -208,15 +221,8 @@ class View:
 
     def _take(self, answer: Answer) -> None:
         """Shows an answer."""
-        ours, empty = answer.runs.get(self._runner.controllers[0]), answer.without.results
-        signals = dict(pair_signals(empty, ours.results if ours else empty))
-        if ours is None:
-            absent = np.full(len(signals["time"]), np.nan)
-            signals |= {name: absent for name in signals if name.endswith("_on") or name == "added"}
-        for name in self._runner.controllers[1:]:
-            run = answer.runs.get(name)
-            beside = pair_signals(empty, run.results)["T_gear_on"] if run else np.full(len(signals["time"]), np.nan)
-            signals[f"T_gear {name}"] = beside
+        runs = {name: run.results for name, run in answer.runs.items()}
+        (signals,) = tables(self._drawn(answer.without.results, runs))
         self._source.data = as_drawn({name: signal[::STRIDE] for name, signal in signals.items()})
         for name, entry in self._beside.items():
             if entry.visible != (name in answer.runs):  # else a click in the legend stays

@@ -1,52 +1,29 @@
 """The report of `driveline identify`: what was found, how certain it is, and how the model fits the recording."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm
 
-from ..metrics.spectrum import decibels
 from ..recordings.measurement import Measurement
-from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.html.figure_selector import chosen
-from ..views.html.linked_figures import Columns, Curve, Panel, linked, source_of, stacked, window
+from ..views.html.linked_figures import linked, shown, stacked
 from ..views.html.report_page import Section, write_report
 from ..views.html.report_tables import Heading, Row, Table
+from ..views.panels import Axis, within
 from .car_file import MEANS, UNITS, found
-from .drive_train_response import FREQUENCIES, Tyre, response
+from .fit_figures import autocorrelations, distribution, innovations, simulated
 from .free_runs import FreeRuns, end_of, free_runs
 from .identify import Identified
-from .prediction import filtered
 from .quality import SIMULATED
-from .response_band import PERCENTILES, drawn_responses, recorded_response
+from .uncertainty_figures import FREQUENCY, responses
 
 STRETCH = 20.0
 """Of the recording, its end, in s."""
 
 WORST = 5
 """Pieces that the table has."""
-
-RESPONSE = np.linspace(FREQUENCIES[0], FREQUENCIES[-1], 381)
-"""Frequencies in Hz."""
-
-INNOVATIONS = np.linspace(-5.0, 5.0, 52)
-"""Edges of the histogram, in standard deviations."""
-
-SPEEDS = (
-    Panel(
-        "motor speed, rad/s", (Curve("omega_1_meas", "measured", GREY, width=2.4), Curve("omega_1", "simulated", BLUE))
-    ),
-    Panel("difference, rad/s", (Curve("error", "simulated less measured", BLUE),)),
-    Panel(
-        "wheel speed, rad/s", (Curve("omega_2_meas", "measured", GREY, width=2.0), Curve("omega_2", "simulated", BLUE))
-    ),
-    Panel(
-        "torque, N·m",
-        (Curve("T_mot", "motor, measured", GREY, width=2.0), Curve("T_gear", "gear, simulated", VERMILION)),
-    ),
-)
 
 
 def report(identified: Identified, recording: Measurement, provenance: Mapping[str, Any], path: Path) -> None:
@@ -68,7 +45,7 @@ def report(identified: Identified, recording: Measurement, provenance: Mapping[s
         Section("Where it fits worst", f"Free runs of {SIMULATED:g} s; a click shows one.", _worst(pieces)),
         _over_time(recording, runs, pieces),
         _over_frequency(identified),
-        *_innovations(identified),
+        _innovations(identified),
     ]
     write_report(f"The drive train of {recording.name}", verdict(identified), sections, provenance, path)
 
@@ -140,59 +117,24 @@ def _worst(pieces: Sequence[tuple[float, float, float]]) -> Table:
 
 
 def _over_time(recording: Measurement, runs: FreeRuns, pieces: Sequence[tuple[float, float, float]]) -> Section:
-    columns = {name: np.asarray(getattr(runs, name)) for name in ("time", "omega_1", "omega_2", "T_gear", "error")}
-    valid = np.ones(len(recording.time), bool) if recording.valid is None else recording.valid
-    measured = {"omega_1_meas": recording.omega_1, "T_mot": recording.T_mot}
-    if recording.omega_2 is not None:
-        measured["omega_2_meas"] = np.where(valid, recording.omega_2, np.nan)
-    columns |= {name: np.interp(runs.time, recording.time, signal) for name, signal in measured.items()}
     whole = float(np.nanmin(runs.time)), float(np.nanmax(runs.time))
     windows = {"all of it": whole} | {_name(a, b): (a, b) for a, b, _ in pieces}
-    x_range = window(*whole)
+    x = Axis("time in s", whole)
+    x_range = shown(x)
     control, _ = chosen("Piece", dict.fromkeys(windows, ()), windows, x_range)
-    figures = linked(SPEEDS, source_of(columns), x_range, "time, s")
+    figures = linked(within(simulated(recording, runs), *whole), x, x_range)
     text = f"The last {whole[1] - whole[0]:.0f} s of the recording; each run starts where it fits best."
     return Section("Measured and simulated", text, figures=[control, stacked(figures)])
 
 
 def _over_frequency(identified: Identified) -> Section:
-    alone = _response(identified, identified.tyre)
-    held = {f"{name}_held": column for name, column in _response(identified, None).items()} if identified.tyre else {}
-    curves = {"": ("car on its own", VERMILION)} | ({"_held": ("load torque held", BLUE)} if identified.tyre else {})
-    panels = [
-        Panel(label, [Curve(f"{of}{end}", name, color) for end, (name, color) in curves.items()], "f")
-        for of, label in (("dB", "motor speed over torque, dB"), ("degrees", "phase, degrees"))
-    ]
-    source = source_of({"f": RESPONSE, **alone, **held})
-    figures = linked(panels, source, window(*FREQUENCIES[[0, -1]]), "frequency, Hz")
-    f, recorded = recorded_response(identified)
-    at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
-    dots = source_of({"f": f[at], "dB": decibels(recorded[at]), "degrees": np.degrees(np.angle(recorded[at]))})
-    for figure, of in zip(figures, ("dB", "degrees"), strict=True):
-        for end, (_, color) in curves.items():
-            band = {"source": source, "fill_color": color, "fill_alpha": 0.25}
-            figure.varea("f", f"{of}_low{end}", f"{of}_high{end}", **band)
-        figure.scatter("f", of, source=dots, color=BLACK, size=3, legend_label="recording")
     text = "0 dB is 1 rad/s per N·m, teeth in contact; bands: 95 % by the covariance. The recording crosses the gap."
+    figures = linked(responses(identified), FREQUENCY)
     return Section("Frequency response", text, figures=[stacked(figures)])
 
 
-def _response(identified: Identified, behind: Tyre | None) -> Columns:
-    answer, drawn = response(identified.p, RESPONSE, behind), drawn_responses(identified, RESPONSE, behind, 1)
-    found: dict[str, np.ndarray] = {}
-    for name, of in (("dB", decibels), ("degrees", lambda z: np.degrees(np.angle(z)))):
-        found[name] = of(answer)
-        found[f"{name}_low"], found[f"{name}_high"] = np.percentile(of(drawn), PERCENTILES, axis=0)
-    return found
-
-
-def _innovations(identified: Identified) -> Iterator[Section]:
-    through = filtered(identified.drive, identified.p, identified.noise)
-    size = through.size[through.settled :]
-    density, _ = np.histogram(size, INNOVATIONS, density=True)
-    middle = 0.5 * (INNOVATIONS[1:] + INNOVATIONS[:-1])
-    source = source_of({"size": middle, "innovations": density, "normal": norm.pdf(middle)})
-    curves = (Curve("innovations", "innovations", BLUE), Curve("normal", "normal", BLACK, "dashed", 1.0))
-    x_range = window(*INNOVATIONS[[0, -1]])
-    figures = linked([Panel("density", curves, "size")], source, x_range, "innovation over its standard deviation")
-    yield Section("Distribution of the innovations", "What the filter did not foresee.", figures=[stacked(figures)])
+def _innovations(identified: Identified) -> Section:
+    size = innovations(identified)
+    panels = [distribution(size), autocorrelations(size, identified.drive.T_s)]
+    figures = linked(panels, Axis("", (0.0, 1.0)))
+    return Section("Distribution of the innovations", "What the filter did not foresee.", figures=[stacked(figures)])

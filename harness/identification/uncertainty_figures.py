@@ -1,22 +1,20 @@
 """Figures of how certain an identified model is: cost over pairs of parameters, frequency response with its band."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from scipy.stats import chi2
 
 from ..metrics.spectrum import decibels
 from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.figure_options import PLAIN, FigureOptions
-from ..views.figure_style import STYLE, legend, save, titled
+from ..views.figure_style import plot, sheet
+from ..views.panels import DASHED, DOTTED, SOLID, Axis, Band, Curve, Level, Panel, Part, Points
 from .cost_surface import POINTS, cost_over, curvature, ellipse, exact
-from .drive_train_response import FREQUENCIES, Tyre, response
+from .drive_train_response import FREQUENCIES, response
 from .fit_figures import headline
 from .identify import Identified
 from .response_band import PERCENTILES, drawn_responses, recorded_response
@@ -36,10 +34,15 @@ CONTOURS = 6
 RESPONSE = np.linspace(FREQUENCIES[0], FREQUENCIES[-1], 951)
 """Frequencies in Hz, nearer to each other than those of the tables: peaks are narrow."""
 
-ABOVE = 6.0
-"""In dB above the highest of what is finite, the end of the axis; a model without damping has no highest."""
+FREQUENCY = Axis("frequency in Hz", (float(RESPONSE[0]), float(RESPONSE[-1])))
 
-BAND = "bands: 95 % by the covariance, the tyre as it is; the recording crosses the gap, the models do not"
+BEYOND = (-3.0, 6.0)
+"""In dB below and above all that is finite, the ends of the axis; a model without damping has no highest."""
+
+READING = (
+    "0 dB: 1 rad/s per N·m; bands: 95 % by the covariance, the tyre as it is; the recording crosses the gap, the "
+    "models do not"
+)
 
 
 def plot_cost(identified: Identified, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
@@ -53,21 +56,16 @@ def plot_cost(identified: Identified, stem: Path, options: FigureOptions = PLAIN
     """
     J_2, C, phi_B = LABELS
     H = curvature(identified)
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 6.6), layout=ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06))
+    title = f"Cost above that of the answer\n{headline(identified)}"
+    options = options._replace(caption=f"{options.caption}\n{_of(identified)}".strip())
+    with sheet((7.2, 6.6), title, stem, options, pads=(0.06, 0.06)) as (figure, files):
         ((C_J_2, key), (phi_J_2, phi_C)) = figure.subplots(2, 2, sharex="col")
         for axes, x, y in ((C_J_2, J_2, C), (phi_J_2, J_2, phi_B), (phi_C, C, phi_B)):
             _cost(axes, identified, x, y, H)
             axes.set(ylabel=LABELS[y], xlabel=LABELS[x] if y == phi_B else "")
         key.axis("off")
         key.legend(*C_J_2.get_legend_handles_labels(), loc="lower left")
-        figure.align_ylabels()
-        titled(
-            figure,
-            f"Cost above that of the answer\n{headline(identified)}",
-            f"{options.caption}\n{_of(identified)}".strip(),
-        )
-        return save(figure, stem, options.kinds)
+    return files
 
 
 def _cost(axes: Axes, identified: Identified, x: str, y: str, H: np.ndarray) -> None:
@@ -111,42 +109,36 @@ def plot_response(identified: Identified, stem: Path, options: FigureOptions = P
     Returns:
         The files written.
     """
-    peak = identified.resonance
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 5.6), layout=ConstrainedLayoutEngine(h_pad=0.1))
-        amplitude, phase = rows = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        for axes, of in ((amplitude, decibels), (phase, _degrees)):
-            f, recorded = recorded_response(identified)
-            at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
-            axes.plot(f[at], of(recorded[at]), ".", color="0.4", ms=4, label="recording")
-            axes.axvline(peak, color=VERMILION, ls=":", lw=0.8)
-        _model(rows, identified, identified.tyre, f"car on its own, peak at {peak:.2f} Hz", VERMILION, "-", seed)
-        amplitude.set_ylim(top=amplitude.dataLim.y1 + ABOVE)
-        if identified.tyre:
-            _model(rows, identified, None, "load torque held", BLUE, "--", seed)
-        amplitude.set_ylabel(r"amplitude of $\omega_1/T_{mot}$ in dB" "\n" "(0 dB: 1 rad/s per N·m)")
-        phase.set(ylabel="phase in degrees", xlabel="frequency in Hz", xlim=(RESPONSE[0], RESPONSE[-1]))
-        phase.set_xticks(range(2, 21, 2))
-        phase.set_yticks(range(-90, 91, 45))
-        legend(amplitude)
-        titled(
-            figure,
-            f"Frequency response, teeth in contact\n{headline(identified)}",
-            f"{options.caption}\n{BAND}".strip(),
-        )
-        return save(figure, stem, options.kinds)
+    title, caption = (
+        f"Frequency response, teeth in contact\n{headline(identified)}",
+        f"{options.caption}\n{READING}".strip(),
+    )
+    rows = [[panel] for panel in responses(identified, seed)]
+    return plot(rows, FREQUENCY, title, stem, options._replace(caption=caption), size=(7.2, 2.8))
 
 
-def _model(
-    rows: Sequence[Axes], identified: Identified, behind: Tyre | None, name: str, colour: str, dashes: str, seed: int
-) -> None:
-    """The response and its band."""
-    answer = response(identified.p, RESPONSE, behind)
-    drawn = drawn_responses(identified, RESPONSE, behind, seed)
-    for axes, of in zip(rows, (decibels, _degrees), strict=True):
-        axes.plot(RESPONSE, of(answer), color=colour, ls=dashes, label=name)
-        axes.fill_between(RESPONSE, *np.percentile(of(drawn), PERCENTILES, axis=0), color=colour, alpha=0.3, lw=0)
+def responses(identified: Identified, seed: int = 1) -> list[Panel]:
+    """Amplitude and phase of the recording and of the model, on its own and, with a tyre, with the load torque held."""
+    f, recorded = recorded_response(identified)
+    at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
+    f, recorded = f[at], recorded[at]
+    models = [(identified.tyre, f"car on its own, peak at {identified.resonance:.2f} Hz", VERMILION, SOLID)]
+    models += [(None, "load torque held", BLUE, DASHED)] * (identified.tyre is not None)
+    answers = [response(identified.p, RESPONSE, tyre) for tyre, *_ in models]
+    drawn = [drawn_responses(identified, RESPONSE, tyre, seed) for tyre, *_ in models]
 
+    def parts(of: Callable[[np.ndarray], np.ndarray]) -> Iterator[Part]:
+        yield Level(identified.resonance, VERMILION, DOTTED, upright=True)
+        yield Points(f, of(recorded), "recording", "#666666", 3.0)
+        for answer, others, (_, name, color, dashes) in zip(answers, drawn, models, strict=True):
+            low, high = np.percentile(of(others), PERCENTILES, axis=0)
+            yield Band(RESPONSE, low, high, color=color)
+            yield Curve(RESPONSE, of(answer), name, color, dashes)
 
-def _degrees(answer: np.ndarray) -> np.ndarray:
-    return np.degrees(np.angle(answer))
+    amplitude, phase = (list(parts(of)) for of in (decibels, lambda answer: np.degrees(np.angle(answer))))
+    own = np.concatenate([decibels(recorded), decibels(answers[0])])
+    own = own[np.isfinite(own)]
+    return [
+        Panel("motor speed over\ntorque in dB", amplitude, bounds=(own.min() + BEYOND[0], own.max() + BEYOND[1])),
+        Panel("phase in degrees", phase, ticks={k: str(k) for k in range(-90, 91, 45)}, height=0.67),
+    ]

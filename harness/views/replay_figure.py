@@ -1,28 +1,22 @@
 """Figure of a recorded drive: the speed against the recorded one, how far the gear torque swings, a close-up for each
 controller; in the units of the recording."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import cycle
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..metrics.declaration import Absent
 from ..metrics.oscillation import amplitude
 from ..metrics.spectrum import band_rms
 from ..recordings.file_units import FileUnit
-from .annotations import shade_gap
+from .annotations import GAP, gap
 from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from .figure_options import PLAIN, FigureOptions
-from .figure_style import STYLE, legend, save, titled
-from .signal_lines import DASH_DOT, DASHED, DOTTED, SOLID, Dashes, Line, Panel, column, draw, envelope_of, interval
-
-HEIGHT = 2.3
-"""Of a row of axes, in inches."""
+from .figure_style import plot
+from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Axis, Curve, Dashes, Panel
+from .signal_lines import Line, column, envelope_of, interval
 
 SI = {"v": FileUnit("m/s"), "T_mot": FileUnit("N.m")}
 
@@ -35,10 +29,14 @@ OTHERS: tuple[How, ...] = (
     (VERMILION, DASHED, 0.9),
     (BLACK, DASH_DOT, 0.9),
     (GREEN, DOTTED, 1.2),
-    (PURPLE, (0.0, (8.0, 2.0)), 0.9),
-    (GREY, (0.0, (2.0, 2.0)), 1.2),
+    (PURPLE, (8.0, 2.0), 0.9),
+    (GREY, (2.0, 2.0), 1.2),
 )
 """The controllers, in turn."""
+
+
+PIECE, PIECES = 6.0, 5
+"""Length in s of the roughest pieces, and how many there are."""
 
 
 def plot_replay(
@@ -63,56 +61,48 @@ def plot_replay(
         The files written.
     """
     undamped, *others = runs
-    t = runs[undamped]["time"]
+    t, looks = runs[undamped]["time"], looks_of(runs)
     v, torque = (file_units or SI)["v"], (file_units or SI)["T_mot"]
     window = options.clipped(float(t[0]), float(t[-1]))
-    closer = window if options.window else _roughest(runs[undamped])
-    looks = {undamped: UNDAMPED} | dict(zip(others, cycle(OTHERS), strict=False))
-    factor = 1.0 / torque.factor
-    T_gear, T_driver = column("plant.T_gear", factor), column("controller.T_driver", factor)
-    swings = envelope_of("plant.T_gear", factor)
-    with style.context(STYLE):
-        size = (7.2, HEIGHT * (2 + len(others)) + 0.5)
-        figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(h_pad=0.11))
-        speed, swing, *close = rows = figure.subplots(2 + len(others), 1)
-        titled(figure, title, options.caption)
-        _speeds(speed, runs[others[0]], recorded, f"simulated, {others[0]}", v, window)
-        for name, run in runs.items():
-            _line(swing, Line(swings, _with_rms(name, run, torque), *looks[name]), run, window)
-        swing.set(ylabel=f"gear torque, 5-50 Hz\nenvelope {torque}", xlim=window)
-        swing.set_ylim(bottom=0.0)
-        for axes, name in zip(close, others, strict=True):
-            for each in (undamped, name):
-                _line(axes, Line(T_gear, each, *looks[each]), runs[each], closer)
-            _line(axes, Line(T_driver, "demand", BLACK, DOTTED, 1.1), runs[name], closer)
-            shade_gap([axes], runs[name], closer, axes)
-            axes.set(ylabel=f"gear torque\n{torque}", xlim=closer)
-        for axes in rows:
-            legend(axes, 2 if axes is swing else 5)
-            for line in axes.lines:
-                line.set_rasterized(True)  # of half an hour
-        close[-1].set_xlabel("time in s")
-        figure.align_ylabels()
-        return save(figure, stem, options.kinds)
+    ((start, _), *_) = roughest(runs[undamped])
+    closer = window if options.window else (start, min(start + PIECE, float(t[-1])))
+    panels = [
+        speeds(runs[others[0]], recorded, f"simulated, {others[0]}", v),
+        swings(runs, looks, torque),
+        *(torques({each: runs[each] for each in (undamped, name)}, looks, torque, closer) for name in others),
+    ]
+    return plot([[panel] for panel in panels], Axis("time in s", window), title, stem, options, size=(7.2, 2.3))
 
 
-def _speeds(
-    axes: Axes,
-    run: np.ndarray,
-    recorded: tuple[np.ndarray, np.ndarray],
-    label: str,
-    v: FileUnit,
-    window: tuple[float, float],
-) -> None:
-    times, speeds = recorded
-    at = (times >= window[0]) & (times <= window[1])
-    axes.plot(times[at], speeds[at] / v.factor, color=GREY, lw=2.5, label="recorded")
-    _line(axes, Line(column("plant.v", 1.0 / v.factor), label, BLUE), run, window)
-    axes.set(ylabel=f"speed {v}", xlim=window)
+def looks_of(rides: Iterable[str]) -> dict[str, How]:
+    """How the curves of the rides are drawn, the undamped one first."""
+    undamped, *others = rides
+    return {undamped: UNDAMPED} | dict(zip(others, cycle(OTHERS), strict=False))
 
 
-def _line(axes: Axes, line: Line, run: np.ndarray, window: tuple[float, float]) -> None:
-    draw(axes, Panel("", (line,)), run, window)
+def speeds(run: np.ndarray, recorded: tuple[np.ndarray, np.ndarray], label: str, v: FileUnit) -> Panel:
+    """The speed of a ride against the recorded one."""
+    curve = Curve(recorded[0], recorded[1] / v.factor, "recorded", GREY, width=2.5)
+    return Panel(f"speed {v}", [curve, *Line(column("plant.v", 1.0 / v.factor), label, BLUE).of(run)])
+
+
+def swings(runs: Mapping[str, np.ndarray], looks: Mapping[str, How], unit: FileUnit) -> Panel:
+    """The envelope of the gear torque of all rides."""
+    signal = envelope_of("plant.T_gear", 1.0 / unit.factor)
+    curves = [c for name, run in runs.items() for c in Line(signal, _with_rms(name, run, unit), *looks[name]).of(run)]
+    return Panel(f"gear torque, 5-50 Hz\nenvelope {unit}", curves, bounds=(0.0, None), columns=2)
+
+
+def torques(
+    runs: Mapping[str, np.ndarray], looks: Mapping[str, How], unit: FileUnit, closer: tuple[float, float] | None = None
+) -> Panel:
+    """The gear torque of rides, with the demand of the last one and, in a close-up, when its teeth are apart."""
+    T_gear, T_driver = (column(name, 1.0 / unit.factor) for name in ("plant.T_gear", "controller.T_driver"))
+    last = list(runs.values())[-1]
+    curves = [curve for name, run in runs.items() for curve in Line(T_gear, name, *looks[name]).of(run)]
+    curves += Line(T_driver, "demand", BLACK, DOTTED, 1.1).of(last)
+    parts = [gap(last, GAP), *curves] if closer else curves
+    return Panel(f"gear torque\n{unit}", parts, x=Axis("time in s", closer) if closer else None)
 
 
 def _with_rms(name: str, run: np.ndarray, unit: FileUnit) -> str:
@@ -124,12 +114,12 @@ def _with_rms(name: str, run: np.ndarray, unit: FileUnit) -> str:
     return f"{name}, rms {rms / unit.factor:.3g} {unit.printed}"
 
 
-def _roughest(run: np.ndarray, span: float = 6.0) -> tuple[float, float]:
-    """The window of `span` seconds with the largest mean swing of the gear torque about the demand."""
-    t = run["time"]
-    T_s = float(t[1] - t[0])
+def roughest(run: np.ndarray) -> list[tuple[float, float]]:
+    """Beginnings in s of the pieces with the largest mean swing of the gear torque about the demand, and that swing in
+    N.m; the pieces do not overlap."""
+    T_s = interval(run)
     swing = amplitude(run["plant.T_gear"] - run["controller.T_driver"], T_s)
-    length = min(round(span / T_s), len(swing))
-    total = np.concatenate(([0.0], np.cumsum(swing)))
-    first = int(np.argmax(total[length:] - total[:-length]))
-    return float(t[first]), float(t[min(first + length, len(t) - 1)])
+    length = min(round(PIECE / T_s), len(swing))
+    means = swing[: len(swing) // length * length].reshape(-1, length).mean(axis=1)
+    order = np.argsort(-means, kind="stable")[:PIECES]
+    return [(float(run["time"][k * length]), float(means[k])) for k in order]

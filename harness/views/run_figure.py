@@ -3,52 +3,38 @@
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .annotations import in_words, make_room, mark_step, metrics_of, note, shade_gap
-from .colours import BLACK, GREEN, GREY
+from .annotations import GAP, gap, in_words, marks_of_step, metrics_of
+from .colours import GREEN, GREY
 from .figure_options import PLAIN, FigureOptions
-from .figure_style import STYLE, legend, save, titled
+from .figure_style import plot
+from .panels import DASH_DOT, Axis
 from .signal_lines import (
     ACCELERATION,
-    DASH_DOT,
     GEAR_TORQUE,
-    JERK_PANEL,
+    JERK_UP_TO_50_HZ,
     KMH,
     MOTOR_TORQUE,
     SPEED_LABEL,
     SPEEDS,
     Line,
-    Panel,
+    Row,
     column,
-    draw,
     envelope_of,
 )
 
-PANELS = (
-    GEAR_TORQUE,
-    MOTOR_TORQUE,
-    Panel(
-        SPEED_LABEL,
-        (Line(column("can.omega_2_can"), r"$i\,\omega_{wheel}$ over CAN", GREEN, DASH_DOT, 0.8), *SPEEDS),
-    ),
-    Panel(
-        "its envelope,\n5-50 Hz, in rad/s",
-        (
-            Line(envelope_of("plant.omega_2"), r"$i\,\omega_{wheel}$, wheels", GREY, width=1.8),
-            Line(envelope_of("plant.omega_1"), r"$\omega_1$, motor", BLACK, width=0.9),
-        ),
-    ),
-    ACCELERATION,
-    JERK_PANEL,
-    Panel("speed of the\nvehicle in km/h", (Line(column("plant.v", KMH), "$v$, vehicle", BLACK),)),
+ALL_SPEEDS = Row(
+    SPEED_LABEL, (Line(column("can.omega_2_can"), r"$i\,\omega_{wheel}$ over CAN", GREEN, DASH_DOT, 0.8), *SPEEDS)
 )
-
-HEIGHT = 1.35
-"""Of a row, in inches."""
+ENVELOPES = Row(
+    "its envelope,\n5-50 Hz, in rad/s",
+    (
+        Line(envelope_of("plant.omega_2"), r"$i\,\omega_{wheel}$, wheels", GREY, width=1.8),
+        Line(envelope_of("plant.omega_1"), r"$\omega_1$, motor", width=0.9),
+    ),
+)
+VEHICLE = Row("speed of the\nvehicle in km/h", (Line(column("plant.v", KMH)),))
 
 
 def plot_run(
@@ -65,24 +51,16 @@ def plot_run(
         The files written.
     """
     window = options.clipped(float(results["time"][0]), float(results["time"][-1]))
-    metrics = metrics_of(results, manoeuvre)
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, HEIGHT * len(PANELS) + 0.8), layout=ConstrainedLayoutEngine(h_pad=0.12))
-        rows = figure.subplots(len(PANELS), 1, sharex=True)
-        titled(figure, title, options.caption)
-        for axes, panel in zip(rows, PANELS, strict=True):
-            draw(axes, panel, results, window)
-            axes.set_ylabel(panel.label)
-        torque, _, speeds, envelopes, _, jerk, _ = rows
-        mark_step(torque, results, manoeuvre, metrics, window)
-        shade_gap(rows, results, window, speeds)
-        for axes, names in ((torque, ("overshoot", "settling_time", "gear_torque_rms")), (jerk, ("jerk_rms",))):
-            note(axes, in_words(metrics, *names))
-            make_room(axes, 1)
-        envelopes.set_ylim(bottom=0.0)
-        for axes, panel in zip(rows, PANELS, strict=True):
-            if len(panel.lines) > 1:
-                legend(axes)
-        rows[-1].set(xlabel="time in s", xlim=window)
-        figure.align_ylabels()
-        return save(figure, stem, options.kinds)
+    metrics, apart = metrics_of(results, manoeuvre), gap(results)
+    marks = marks_of_step(results, manoeuvre, metrics, window)
+    note = in_words(metrics, "overshoot", "settling_time", "gear_torque_rms")
+    panels = [
+        GEAR_TORQUE.of(results, apart, *marks, note=note),
+        MOTOR_TORQUE.of(results, apart),
+        ALL_SPEEDS.of(results, apart._replace(label=GAP)),
+        ENVELOPES.of(results, apart, bounds=(0.0, None)),
+        ACCELERATION.of(results, apart),
+        JERK_UP_TO_50_HZ.of(results, apart, note=in_words(metrics, "jerk_rms")),
+        VEHICLE.of(results, apart),
+    ]
+    return plot([[panel] for panel in panels], Axis("time in s", window), title, stem, options, size=(7.2, 1.35))

@@ -4,24 +4,13 @@ Lines of one panel differ in their dashes or in how light they are, so that they
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from ..metrics.band_filter import derivative, envelope
 from .colours import BLACK, BLUE, GREEN, GREY, VERMILION
-
-Dashes = str | tuple[float, tuple[float, ...]]
-"""As matplotlib has them."""
-
-SOLID: Dashes = "-"
-DASHED: Dashes = (0.0, (4.0, 1.5))
-DOTTED: Dashes = (0.0, (1.0, 1.2))
-DASH_DOT: Dashes = (0.0, (6.0, 1.5, 1.0, 1.5))
-
-DASHES = (SOLID, DASHED, DASH_DOT, DOTTED)
-"""Of many curves, in turn."""
+from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Curve, Dashes, Panel, Part
 
 KMH = 3.6
 
@@ -78,23 +67,32 @@ class Line(NamedTuple):
     """How a signal is drawn."""
 
     signal: Signal
-    label: str
-    color: str
+    label: str = ""
+    color: str = BLACK
     dashes: Dashes = SOLID
     width: float = 1.0
 
+    def of(self, run: np.ndarray) -> list[Curve]:
+        """The curve; none where FMUs of others do not have what it needs."""
+        there = set(self.signal.columns) <= set(run.dtype.names or ())
+        return [Curve(run["time"], self.signal.of(run), *self[1:])] if there else []
 
-class Panel(NamedTuple):
-    """One row of axes: its label and its lines, the later ones on top."""
+
+class Row(NamedTuple):
+    """A panel of any run: its label and its lines, the later ones on top."""
 
     label: str
     lines: tuple[Line, ...]
+
+    def of(self, run: np.ndarray, *behind: Part, **more: Any) -> Panel:
+        """The panel of a run, with what is behind its lines and whatever else `Panel` takes."""
+        return Panel(self.label, [*behind, *(curve for line in self.lines for curve in line.of(run))], **more)
 
 
 DEMAND = Line(column("controller.T_driver"), r"$T_{driver}$, demand", BLACK, DOTTED, 1.1)
 T_GEAR = Line(column("plant.T_gear"), r"$T_{gear}$", VERMILION, SOLID, 1.6)
 
-GEAR_TORQUE = Panel(
+GEAR_TORQUE = Row(
     "gear torque\nin N·m",
     (T_GEAR, Line(column("controller.T_gear_hat"), r"$\hat T_{gear}$, estimate", BLUE, DASHED, 0.9), DEMAND),
 )
@@ -103,9 +101,9 @@ SPEEDS = (
     Line(column("plant.omega_1"), r"$\omega_1$, motor", BLACK, SOLID, 0.9),
 )
 SPEED_LABEL = "speed in rad/s,\nmotor side"
-ACCELERATION = Panel("acceleration of\nthe body in m/s²", (Line(column("plant.a_body"), "$a$, body", BLACK),))
-JERK_PANEL = Panel("its jerk up to\n50 Hz in m/s³", (Line(JERK, r"$\dot a$, body", BLACK, SOLID, 0.8),))
-MOTOR_TORQUE = Panel(
+ACCELERATION = Row("acceleration of\nthe body in m/s²", (Line(column("plant.a_body")),))
+JERK_UP_TO_50_HZ = Row("its jerk up to\n50 Hz in m/s³", (Line(JERK, width=0.8),))
+MOTOR_TORQUE = Row(
     "motor torque\nin N·m",
     (
         Line(column("motor.T_mot"), r"$T_{mot}$, motor", GREY, SOLID, 1.8),
@@ -114,23 +112,3 @@ MOTOR_TORQUE = Panel(
         DEMAND,
     ),
 )
-
-
-def draw(axes: Axes, panel: Panel, run: np.ndarray, window: tuple[float, float]) -> None:
-    """The lines of a panel within a window, less those that FMUs of others do not have."""
-    shown = within(run, window)
-    for line in panel.lines:
-        if set(line.signal.columns) <= set(run.dtype.names or ()):
-            axes.plot(
-                run["time"][shown],
-                line.signal.of(run)[shown],
-                color=line.color,
-                ls=line.dashes,
-                lw=line.width,
-                label=line.label,
-            )
-
-
-def within(run: np.ndarray, window: tuple[float, float]) -> np.ndarray:
-    """Which rows are within a window in s."""
-    return (run["time"] >= window[0] - 1e-9) & (run["time"] <= window[1] + 1e-9)

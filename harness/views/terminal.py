@@ -1,6 +1,6 @@
 """Tables and verdicts on the terminal."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -19,6 +19,16 @@ def print_table(table: Table) -> None:
     """Prints a table, wide enough where stdout is not a terminal, which has a width of its own."""
     console = Console()
     (console if console.is_terminal else Console(width=max(console.width, 120))).print(table)
+
+
+def plain_table(title: str, headings: Iterable[str], rows: Iterable[Sequence[str]]) -> Table:
+    """A table whose first column is words, the others numbers, which stand to the right."""
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
+    for k, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if k else "left", no_wrap=not k)
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 SEVERITY_STYLES = {"error": "red", "warning": "yellow", "note": "cyan"}
@@ -54,13 +64,8 @@ def runs_table(rows: Sequence[Row]) -> Table:
 
 def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:
     """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
-    table.add_column("", no_wrap=True)
-    for _, column in RIDES_SHOWN:
-        table.add_column(f"{column.heading}\n{column.unit}", justify="right", no_wrap=True)
-    for row in ride_rows(rides):
-        table.add_row(*row)
-    return table
+    headings = (f"{column.heading}\n{column.unit}" for _, column in RIDES_SHOWN)
+    return plain_table(title, ["", *headings], ride_rows(rides))
 
 
 def rides_reasons(rides: Mapping[str, RideMetrics]) -> list[str]:

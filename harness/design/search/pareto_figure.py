@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
-from ...views.figure_style import STYLE, save, titled
+from ...views.figure_options import FigureOptions
+from ...views.figure_style import sheet
 from .parameter_search import Evaluated, best, front
 from .search_space import Space
 
@@ -37,13 +35,11 @@ def plot_front(
     Returns:
         The files written.
     """
-    with style.context(STYLE):
-        figure = Figure(figsize=(8.0, 3.2), layout=ConstrainedLayoutEngine(w_pad=0.08))
+    with sheet((8.0, 3.2), title, stem, FigureOptions(caption), pads=(0.04, 0.08)) as (figure, files):
         left, right = figure.subplots(1, 2, width_ratios=(1.1, 1.0))
-        titled(figure, title, caption)
         _costs(left, visited, character)
         _parameters(right, visited, space, character)
-        return save(figure, stem)
+    return files
 
 
 def _costs(axes: Axes, visited: Sequence[Evaluated], character: float) -> None:

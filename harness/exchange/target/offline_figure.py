@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ...metrics.evaluate import T_S
-from ...views.colours import BLACK, BLUE, VERMILION
-from ...views.figure_style import STYLE, legend, save, titled
+from ...views.colours import BLUE, VERMILION
+from ...views.figure_style import plot
+from ...views.panels import DASHED, Axis, Curve, Panel
 from .comparison import Comparison
 
 SHOWN = ("tipin15r", "drive", "launch_brake")
@@ -20,19 +18,20 @@ SHOWN = ("tipin15r", "drive", "launch_brake")
 def plot_comparison(comparisons: Sequence[Comparison], title: str, stem: Path) -> list[Path]:
     """Draws T_ref and the difference below it for each manoeuvre of SHOWN; returns the files."""
     shown = [each for name in SHOWN for each in comparisons if each.case.name == name]
-    with style.context(STYLE):
-        figure = Figure(figsize=(9.6, 4.4), layout=ConstrainedLayoutEngine(h_pad=0.1))
-        titled(figure, title)
-        above, below = figure.subplots(2, len(shown), sharex="col", sharey="row", squeeze=False, height_ratios=(3, 2))
-        for torque, difference, each in zip(above, below, shown, strict=True):
-            target, model = each.traces
-            t = T_S * np.arange(len(target))
-            torque.plot(t, model, color=BLUE, lw=1.6, label="model, double precision")
-            torque.plot(t, target, color=VERMILION, lw=0.7, ls="--", label="target, single precision")
-            difference.plot(t, 1e3 * (target - model), color=BLACK, lw=0.6)
-            torque.set_title(each.case.name, pad=20)
-            difference.set(xlabel="time in s", xlim=(0.0, t[-1]))
-        above[0].set_ylabel(r"$T_{ref}$ in N·m")
-        below[0].set_ylabel("target - model\nin mN·m")
-        legend(above[0])
-        return save(figure, stem)
+    rows = list(zip(*map(_panels, shown), strict=True))
+    return plot(rows, Axis("", (0.0, 1.0)), title, stem, size=(9.6, 2.2))
+
+
+def _panels(found: Comparison) -> list[Panel]:
+    target, model = found.traces
+    t = T_S * np.arange(len(target))
+    x = Axis("time in s", (0.0, float(t[-1])))
+    torques = [
+        Curve(t, model, "model, double precision", BLUE, width=1.6),
+        Curve(t, target, "target, single precision", VERMILION, DASHED, 0.7),
+    ]
+    difference = Curve(t, 1e3 * (target - model), width=0.6)
+    return [
+        Panel(r"$T_{ref}$ in N·m", torques, found.case.name, x=x),
+        Panel("target - model\nin mN·m", [difference], height=0.67, x=x),
+    ]

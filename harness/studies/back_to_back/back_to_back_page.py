@@ -1,35 +1,13 @@
 """The documentation page that `driveline back-to-back` writes."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from ...views.markdown import markdown_table
 from .back_to_back import STEP_SIZE, Differences
 
-PAGE = """\
-# Back to back
-
-The same inputs go through the Python functions of a block, through its FMU built with PythonFMU and
-through its native FMU. What is compared are all outputs at all communication points, {step:g} ms apart: a
-difference is the largest distance from the native FMU in a signal, over the largest value of that signal, and
-of all signals the largest. 0 means equal to the last bit.
-
-## Random inputs
-
-New independent values of all inputs at every one of {random_steps} communication points.
-
-{random}
-
-## Manoeuvres
-
-The loop with damping, with native FMUs and under Jacobi. Of each block three differences: of the functions
-and of the FMU built with PythonFMU, both fed with what the native FMU got in the loop, and of the
-whole loop when that FMU takes the native one's place.
-
-{loops}
-
-Made by `driveline back-to-back`; do not edit.
-"""
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
 
 class LoopRow(NamedTuple):

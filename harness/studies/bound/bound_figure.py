@@ -4,52 +4,37 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ...metrics.evaluate import T_S, at_samples
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
-from ...views.figure_style import STYLE, save, titled
+from ...views.figure_style import plot
+from ...views.panels import DASHED, Axis, Curve, Panel
 from .bounds import Bounded
 
-SHOWN = (-0.01, 0.25)
-"""From and to when in s after the step."""
-
-PANELS = (("controller.T_ref", "torque reference\nin N·m"), ("plant.T_gear", "gear torque\nin N·m"))
+AFTER = Axis("time after the step in ms", (-10.0, 250.0))
 
 
 def plot_bounds(found: Sequence[Bounded], controller: str, title: str, stem: Path) -> list[Path]:
     """A column for each manoeuvre; returns the files."""
-    with style.context(STYLE):
-        figure = Figure(figsize=(2.2 * len(found) + 1.2, 4.6), layout=ConstrainedLayoutEngine(h_pad=0.08))
-        grid = figure.subplots(len(PANELS), len(found), sharex=True, squeeze=False)
-        for axes, each in zip(grid.T, found, strict=True):
-            task, t_0 = each.task, each.task.manoeuvre.t_0
-            limits = 1e3 * (task.times[: len(task.lower)] - t_0)
-            for limit in (task.lower, task.upper):
-                axes[0].step(limits, limit, where="post", color=GREY, lw=0.8, label="limits")
-            runs = ((task.results, controller, BLUE), (each.jointly.results, "best possible", VERMILION))
-            for panel, (column, _) in zip(axes, PANELS, strict=True):
-                for results, name, colour in runs:
-                    sampled = at_samples(results, T_S)
-                    t = sampled["time"] - t_0
-                    shown = (t >= SHOWN[0]) & (t <= SHOWN[1])
-                    ms = 1e3 * t[shown]
-                    if column == "controller.T_ref":
-                        panel.step(ms, sampled[column][shown], where="post", color=colour, label=name)
-                    else:
-                        panel.plot(ms, sampled[column][shown], color=colour, label=name)
-                demand = np.asarray(task.manoeuvre.T_driver(t_0 + ms / 1e3), dtype=float)
-                panel.step(ms, demand, where="post", color=BLACK, ls="--", lw=0.8, label="demand")
-                panel.set_xlim(1e3 * SHOWN[0], 1e3 * SHOWN[1])
-            axes[0].set_title(f"{task.manoeuvre.name}\n{1.0 / each.ratio(each.jointly):.2f} times the optimum")
-            axes[-1].set_xlabel("time after the step in ms")
-        for panel, (_, label) in zip(grid[:, 0], PANELS, strict=True):
-            panel.set_ylabel(label)
-        handles = dict(zip(*reversed(grid[0, 0].get_legend_handles_labels()), strict=True))
-        figure.legend(
-            handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 2 * len(found))
-        )
-        titled(figure, title)
-        return save(figure, stem)
+    rows = list(zip(*(_panels(each, controller) for each in found), strict=True))
+    size = 2.2 * len(found) + 1.2, 1.9
+    return plot(rows, AFTER, title, stem, size=size, key=min(5, 2 * len(found)), same_y=False)
+
+
+def _panels(found: Bounded, controller: str) -> list[Panel]:
+    task, t_0 = found.task, found.task.manoeuvre.t_0
+    runs = ((task.results, controller, BLUE), (found.jointly.results, "best possible", VERMILION))
+    t = at_samples(task.results, T_S)["time"]
+    demand = Curve(1e3 * (t - t_0), np.asarray(task.manoeuvre.T_driver(t), float), "demand", BLACK, DASHED, 0.8, True)
+    limited = 1e3 * (task.times[: len(task.lower)] - t_0)
+    limits = [Curve(limited, limit, "limits", GREY, width=0.8, held=True) for limit in (task.lower, task.upper)]
+
+    def curves(column: str, held: bool) -> list[Curve]:
+        sampled = ((at_samples(results, T_S), name, color) for results, name, color in runs)
+        return [Curve(1e3 * (of["time"] - t_0), of[column], name, color, held=held) for of, name, color in sampled]
+
+    heading = f"{task.manoeuvre.name}\n{1.0 / found.ratio(found.jointly):.2f} times the optimum"
+    return [
+        Panel("torque reference\nin N·m", [*limits, *curves("controller.T_ref", True), demand], heading),
+        Panel("gear torque\nin N·m", [*curves("plant.T_gear", False), demand]),
+    ]

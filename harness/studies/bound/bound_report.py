@@ -4,13 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from ...base.atomic_files import write_text
 from ...metrics.evaluate import T_S
 from ...views.metrics_table import values
-from ...views.terminal import print_table
+from ...views.terminal import plain_table, print_table
 from .bound_figure import plot_bounds
 from .bound_page import SUMMARY, page, summary_rows
 from .bounds import Bounded, Optimum
@@ -19,12 +16,7 @@ from .contacts import PARTS, Contacts
 
 def announce(found: Sequence[Bounded], controller: str) -> None:
     """Prints what is possible in each manoeuvre."""
-    table = Table(title=f"{controller} and what is possible", title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
-    for heading in SUMMARY:
-        table.add_column(heading, justify="left" if heading == SUMMARY[0] else "right")
-    for row in summary_rows(found):
-        table.add_row(*row)
-    print_table(table)
+    print_table(plain_table(f"{controller} and what is possible", SUMMARY, summary_rows(found)))
 
 
 def write(found: Sequence[Bounded], controller: str, arguments: str, folder: Path) -> list[Path]:

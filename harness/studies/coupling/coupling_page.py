@@ -1,6 +1,7 @@
 """The documentation page that `driveline coupling` writes."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
 from ...cosimulation.schedule import Transfer
 from ...cosimulation.system import Scheme
@@ -8,76 +9,7 @@ from ...views.markdown import markdown_table
 from .coupling import SIGNALS, Comparison
 from .step_dependence import STEPS, Case
 
-PAGE = """\
-# Coupling error and dead time of the master
-
-The master steps FMUs that know of each other only at the communication points. What that does to the
-loop is measured here against its monolithic solution (`harness/studies/coupling/monolithic.py`): motor and plant
-integrated as one system, the sampled blocks ticking with the values of exactly that instant. Noise and
-rounding are off; delays and losses on the bus are the same in all runs.
-
-Over a step from t to t + h,
-
-- **propagated** (the default) gives every FMU the values of t. A continuous signal then goes on, if the FMUs can. If
-  the FMU that puts it out has been stepped before, it interpolates ({interpolated}), along the straight line nearest
-  to the cubic through its values and derivatives at t and t + h, or along the chord where derivatives are not told.
-  Else it extrapolates along its derivative ({extrapolated}). If the FMUs cannot (Python builds, FMUs from
-  elsewhere), it is held.
-  At t + h outputs go on to inputs along the declared dependencies until every output is that of t + h with the inputs
-  of t + h: `motor.omega_1_meas` follows from `plant.omega_1`, so the motor is asked again after the plant. Declared
-  dependencies that form an algebraic loop are refused before the run;
-- **Gauss-Seidel** steps one after the other and hands each the newest outputs: an FMU gets from those before it the
-  values of t + h, from those after it the values of t. The order is {order};
-- **Jacobi** gives all of them the values of t, and reads all outputs afterwards. Of hosts, libcosim, ecos and MasterSim
-  do the same; OMSimulator propagates.
-
-What that does:
-
-- A continuous FMU that holds what it gets over the step gets the value of t late by h/2 on average and that
-  of t + h early by h/2. On a straight line nothing is late or early: with derivatives the error falls with the
-  fourth power of the step, without with the square.
-- A sampled FMU ticks at t, with what it gets for the step: the value of t is exact there, that of t + h
-  early by h. What it computed before changes at its tick: the value of t is exact, that of t + h early
-  by h.
-- `motor.omega_1_meas` follows from `plant.omega_1`, which under Gauss-Seidel and Jacobi the motor has held since the
-  beginning of its last step: late by h, unless the plant comes before the motor.
-
-## Dead time
-
-In ms, measured with a sine in the open loop as a shift in time against the monolithic solution
-(`harness/studies/coupling/dead_time.py`); negative where a signal comes too early. The delay of the controller (one
-sample) and of the bus are part of the loop and not counted.
-
-{dead_times}
-
-## Error at a communication step of {step:g} ms
-
-The largest and the rms distance from the monolithic solution, in % of the range of the signal, over
-{duration:g} s of a tip-in with damping. Through the backlash, some decisions of the controller (teeth in the
-gap or not) fall one sample earlier or later under Gauss-Seidel and Jacobi, and single samples of `T_ref` differ
-by as much as these change it.
-
-{errors}
-
-## Order
-
-The rms error of `T_gear` in % of its range by the communication step in ms, and the power of the step
-with which it falls. Through the backlash that of Gauss-Seidel and Jacobi is blurred: a decision that falls one
-sample off makes the same difference at any step, until at a small enough one it falls in time.
-
-{orders}
-
-## What it does to the metrics
-
-Every manoeuvre with noise, as `driveline compare` runs it, under the propagated scheme at {coarse:g} ms and at
-{fine:g} ms: of all metrics that a run has, the one that deviates most, in % of its value at {fine:g} ms. A settling
-time or a delay that is a sample earlier or later counts as equal. The impact speed is read between the rows of a run,
-so it is as good as they are dense.
-
-{metrics}
-
-Made by `driveline coupling`; do not edit.
-"""
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
 
 def page(

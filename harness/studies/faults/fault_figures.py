@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
-from ...views.figure_style import STYLE, legend, matrix_axes, save, titled
+from ...views.figure_options import FigureOptions
+from ...views.figure_style import matrix_axes, plot, sheet
+from ...views.panels import Axis, Curve, Panel, Spans
 from .fault_campaign import Outcome, count
 from .fault_cases import SITUATIONS, Case
 from .fault_catalogue import KINDS
@@ -21,6 +20,9 @@ from .judges import JUDGES
 SHARES = LinearSegmentedColormap.from_list("shares", ("#DDEEF8", "#E69F00", "#D55E00"))
 """From all clean to none; a cell without cases stays white."""
 
+STATUS = {1.0: "off", 2.0: "wheel", 3.0: "no wheel", 4.0: "fallback"}
+"""Of the controller."""
+
 
 def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Path]:
     """Single faults: each kind against the judges, and against where it begins on each plant; returns the files."""
@@ -29,14 +31,12 @@ def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Pat
     kinds = list(KINDS)
     panels = [("all judges", [judge.name for judge in JUDGES], _by_judge(singles))]
     panels += [(plant, list(SITUATIONS), _by_situation([o for o in singles if o.plant == plant])) for plant in plants]
-    with style.context(STYLE):
-        figure = Figure(figsize=(9.6, 0.235 * len(kinds) + 1.7), layout=ConstrainedLayoutEngine())
+    with sheet((9.6, 0.235 * len(kinds) + 1.7), title, stem, pads=(0.04, 0.04)) as (figure, files):
         widths = [len(columns) for _, columns, _ in panels]
         row = figure.subplots(1, len(panels), sharey=True, squeeze=False, width_ratios=widths)[0]
         for axes, (heading, columns, cells) in zip(row, panels, strict=True):
             _draw_cells(axes, heading, columns, kinds, cells)
-        figure.suptitle(title, fontsize=10)
-        return save(figure, stem)
+    return files
 
 
 def _by_judge(outcomes: Sequence[Outcome]) -> np.ndarray:
@@ -62,11 +62,9 @@ def plot_pairs(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Path
         if len(outcome.kinds) == 2:
             first, second = sorted(kinds.index(kind) for kind in outcome.kinds)
             cells[second, first] += (bool(outcome.failed), 1)
-    with style.context(STYLE):
-        figure = Figure(figsize=(9.6, 9.2), layout=ConstrainedLayoutEngine())
+    with sheet((9.6, 9.2), title, stem, pads=(0.04, 0.04)) as (figure, files):
         _draw_cells(figure.subplots(), "", kinds, kinds, cells)
-        figure.suptitle(title, fontsize=10)
-        return save(figure, stem)
+    return files
 
 
 def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence[str], cells: np.ndarray) -> None:
@@ -78,32 +76,38 @@ def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence
     matrix_axes(axes, columns, rows, heading)
 
 
-def plot_case(case: Case, runs: Runs, verdict: str, stem: Path, caption: str = "") -> list[Path]:
-    """The runs of a case: what the controller got, what it did, what came of it; returns the files."""
+def case_panels(case: Case, runs: Runs) -> list[Panel]:
+    """The runs of a case: what the controller got, what it did, what came of it; shaded while a fault lasts."""
     faulty, healthy, undamped = runs
     t = faulty["time"]
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 8.6), layout=ConstrainedLayoutEngine(h_pad=0.11))
-        speed, torque, added, status = figure.subplots(4, 1, sharex=True, height_ratios=(3, 3, 3, 1.2))
-        speed.plot(t, faulty["faults.omega_2_can"], color=GREY, label="wheels, received")
-        speed.plot(t, faulty["faults.omega_1_meas"], color=VERMILION, lw=0.8, label="motor, received")
-        speed.plot(t, faulty["plant.omega_1"], color=BLACK, lw=0.8, label="motor, true")
-        torque.plot(t, undamped["plant.T_gear"], color=GREY, label="without control")
-        torque.plot(t, faulty["plant.T_gear"], color=VERMILION, label="with the fault")
-        torque.plot(t, healthy["plant.T_gear"], color=BLUE, lw=0.8, label="without it")
-        added.plot(t, faulty["controller.T_damp"], color=VERMILION, label="with the fault")
-        added.plot(t, healthy["controller.T_damp"], color=BLUE, lw=0.8, label="without it")
-        status.plot(t, faulty["controller.status"], color=VERMILION, drawstyle="steps-post")
-        status.plot(t, healthy["controller.status"], color=BLUE, lw=0.8, drawstyle="steps-post")
-        speed.set_ylabel("speed in rad/s")
-        torque.set_ylabel("gear torque in N·m")
-        added.set_ylabel("added torque in N·m")
-        status.set(ylabel="status", ylim=(0.7, 4.3), xlabel="time in s", xlim=(0.8, t[-1]))
-        status.set_yticks((1, 2, 3, 4), ("off", "wheel", "no wheel", "fallback"))
-        for axes in (speed, torque, added):
-            legend(axes)
-        for fault in case.faults:
-            for axes in (speed, torque, added, status):
-                axes.axvspan(fault.begin, min(fault.end, t[-1]), color="0.5", alpha=0.15, lw=0.0)
-        titled(figure, f"{case}\n{verdict}", caption, 8.5)
-        return save(figure, stem)
+    lasting = Spans.of([(fault.begin, min(fault.end, t[-1])) for fault in case.faults], color="#808080", alpha=0.15)
+
+    def drawn(run: np.ndarray, name: str, label: str, color: str, width: float = 0.8, held: bool = False) -> Curve:
+        return Curve(t, run[name], label, color, width=width, held=held)
+
+    speeds = (
+        drawn(faulty, "faults.omega_2_can", "wheels, received", GREY, 1.4),
+        drawn(faulty, "faults.omega_1_meas", "motor, received", VERMILION),
+        drawn(faulty, "plant.omega_1", "motor, true", BLACK),
+    )
+    without = drawn(undamped, "plant.T_gear", "without control", GREY, 1.4)
+    torques, added, status = (
+        (
+            drawn(faulty, name, "with the fault", VERMILION, 1.0, name == "controller.status"),
+            drawn(healthy, name, "without it", BLUE, 0.8, name == "controller.status"),
+        )
+        for name in ("plant.T_gear", "controller.T_damp", "controller.status")
+    )
+    return [
+        Panel("speed in rad/s", [lasting, *speeds]),
+        Panel("gear torque in N·m", [lasting, without, *torques]),
+        Panel("added torque in N·m", [lasting, *added]),
+        Panel("status", [lasting, *status], bounds=(0.7, 4.3), ticks=STATUS, height=0.55),
+    ]
+
+
+def plot_case(case: Case, runs: Runs, verdict: str, stem: Path, caption: str = "") -> list[Path]:
+    """The panels of a case; returns the files."""
+    x = Axis("time in s", (0.8, float(runs.faulty["time"][-1])))
+    rows = [[panel] for panel in case_panels(case, runs)]
+    return plot(rows, x, f"{case}\n{verdict}", stem, FigureOptions(caption), size=(7.2, 2.2), title_size=8.5)

@@ -1,6 +1,7 @@
 """The documentation page that `driveline faults` writes."""
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from ...views.markdown import markdown_table
 from .evidence import REFERENCE_AFTER, SHARE, WRONG_SPEED
@@ -9,68 +10,7 @@ from .fault_cases import DURATION, SITUATIONS
 from .fault_catalogue import KINDS
 from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
 
-PAGE = """\
-# The controller under faults
-
-{cases} runs of {duration:g} s: {clean} are clean, {failed} are not. {singles} have one fault, {pairs} a pair.
-The faults come between the sensors and the controller, from an FMU of its own (`models/signal_faults.py`); the same
-seed makes the same cases. Each run stands beside two others with the same noise: without the fault and without control.
-
-This runs one of the cases again and draws it:
-
-    driveline faults --case NUMBER{arguments}
-
-## What goes wrong
-
-{kinds}
-
-It begins
-
-{situations}
-
-and lasts 10 ms to 1 s, uniform in the logarithm, if nothing else is said (0.2 to 0.8 s on ice).
-
-## When a run is clean
-
-{judges}
-
-*Wrong* is a motor signal that is no number, a torque beyond twice T_max, or a motor speed that is more than
-{off:g} rad/s and {share:g} % off while a wheel speed that has been valid for {reference_after:g} s says so.
-*Fallback* is called for by a fault of a motor signal, in the {back:g} s after it too; by a wheel speed that is wrong
-and has drifted away from the motor speed, or was wrong from its first message on, since then nothing tells which of the
-two is; and by a motor that turns faster than `omega_max`, as it does when wheels spin on ice to the end of a run.
-*Back* counts a wheel speed as missing from the second sample on in which it is valid: controllers answer with the next.
-A *kick* is what is beyond both nothing and the torque added without the fault. What the swing calls for is how much
-the gear torque differed from the run without the fault in the 0.2 s before. Beside an undamped gear torque below
-{least_rms:g} N.m rms ({least_swing:g} N.m of swing), as in standing, these stand in its place.
-
-## Single faults
-
-Cells count the runs that are not clean. In the figures the colour is their share of the runs of a cell, from light blue
-(none) over orange to red (all); a white cell had no run.
-
-![single faults](figures/faults.png)
-
-{matrix}
-
-## Pairs
-
-![pairs of faults](figures/fault_pairs.png)
-
-{pair_matrix}
-
-## What is not clean
-
-Single faults:
-
-{classes}
-
-Pairs of faults:
-
-{pair_classes}
-
-Made by `driveline faults --cases {cases}{arguments}`; do not edit.
-"""
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
 
 def page(outcomes: Sequence[Outcome], arguments: str) -> str:

@@ -6,15 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from ...views.colours import BLACK, BLUE, COLOURS, GREY, VERMILION
+from ...views.colours import COLOURS
 from ...views.html.figure_selector import chosen
-from ...views.html.linked_figures import Columns, Curve, Panel, axes, linked, source_of, stacked, window
+from ...views.html.linked_figures import axes, linked, shown, stacked, tables
 from ...views.html.report_page import Section, write_report
 from ...views.html.report_tables import Heading, Row, Table
-from ...views.html.thinning import stride
+from ...views.html.thinning import thinned
+from ...views.panels import Axis, Curve, Panel
 from .fault_campaign import Outcome, count
+from .fault_cases import DURATION
 from .fault_catalogue import KINDS
-from .fault_injection import FaultRunner, Runs
+from .fault_figures import case_panels
+from .fault_injection import FaultRunner
 from .fault_page import HEADINGS, NOT_CLEAN, matrix_rows
 from .judges import JUDGES
 
@@ -26,30 +29,6 @@ SHARES = np.linspace(0.0, 100.0, 401)
 
 PALETTE = ("#DDEEF8", "#F0DFB9", "#E8C070", "#E69F00", "#DE7D00", "#D55E00")
 """From all clean to none."""
-
-TIME = (
-    Panel(
-        "speed, rad/s",
-        (
-            Curve("wheels", "wheels, received", GREY, width=2.0),
-            Curve("received", "motor, received", VERMILION),
-            Curve("true", "motor, true", BLACK, width=1.0),
-        ),
-    ),
-    Panel(
-        "gear torque, N·m",
-        (
-            Curve("undamped", "without control", GREY, width=2.0),
-            Curve("faulty", "with the fault", VERMILION),
-            Curve("healthy", "without it", BLUE),
-        ),
-    ),
-    Panel(
-        "added torque, N·m",
-        (Curve("added", "with the fault", VERMILION), Curve("usual", "without it", BLUE)),
-    ),
-    Panel("status (4: fallback)", (Curve("status", "with the fault", VERMILION), Curve("normal", "without it", BLUE))),
-)
 
 
 def report(outcomes: Sequence[Outcome], runner: FaultRunner, provenance: Mapping[str, Any], path: Path) -> None:
@@ -146,14 +125,13 @@ def _matrix(outcomes: Sequence[Outcome]) -> Any:
 
 
 def _distributions(outcomes: Sequence[Outcome]) -> list[Any]:
-    graded = [judge.name for judge in JUDGES if judge.limit >= 1e-6]
-    columns: dict[str, np.ndarray] = {"share": SHARES}
-    for name in graded:
+    curves = []
+    for k, name in enumerate(judge.name for judge in JUDGES if judge.limit >= 1e-6):
         ratios = np.array([_ratio(outcome, name) for outcome in outcomes])
-        columns[name] = np.quantile(ratios, SHARES / 100.0, method="inverted_cdf")
-    curves = [Curve(name, name, COLOURS[k % len(COLOURS)]) for k, name in enumerate(graded)]
-    panel = Panel("measured over limit", curves, "share")
-    return linked([panel], source_of(columns), window(0.0, 100.0), "share of the cases that do not exceed it, %")
+        levels = np.quantile(ratios, SHARES / 100.0, method="inverted_cdf")
+        curves.append(Curve(SHARES, levels, name, COLOURS[k % len(COLOURS)]))
+    x = Axis("share of the cases that do not exceed it in %", (0.0, 100.0))
+    return linked([Panel("measured over limit", curves)], x)
 
 
 def _worst(worst: Sequence[Outcome]) -> Table:
@@ -169,34 +147,17 @@ def _name(outcome: Outcome) -> str:
 
 
 def _runs(worst: Sequence[Outcome], runner: FaultRunner) -> Section:
-    signals = {_name(each): _signals(runner.runs(each.case)) for each in worst}
-    every = stride(len(next(iter(signals.values()))["time"]), len(signals), 12)
-    choices = {name: [{key: column[::every] for key, column in each.items()}] for name, each in signals.items()}
-    windows = {_name(each): _window(each, signals[_name(each)]) for each in worst}
-    x_range = window(*next(iter(windows.values())))
-    control, (source,) = chosen("Case", choices, windows, x_range)
-    return Section("Over time", "", figures=[control, stacked(linked(TIME, source, x_range, "time, s"))])
+    panels = {_name(each): case_panels(each.case, runner.runs(each.case)) for each in worst}
+    choices = {name: thinned(tables(each), len(worst)) for name, each in panels.items()}
+    windows = {_name(each): _window(each) for each in worst}
+    first = next(iter(panels))
+    x = Axis("time in s", windows[first])
+    x_range = shown(x)
+    control, sources = chosen("Case", choices, windows, x_range)
+    return Section("Over time", "", figures=[control, stacked(linked(panels[first], x, x_range, sources))])
 
 
-def _window(outcome: Outcome, signals: Columns) -> tuple[float, float]:
+def _window(outcome: Outcome) -> tuple[float, float]:
     """From shortly before the first fault to a second after the last."""
-    end = float(signals["time"][-1])
     faults = outcome.case.faults
-    return max(min(f.begin for f in faults) - 0.2, 0.0), min(max(min(f.end, end) for f in faults) + 1.0, end)
-
-
-def _signals(runs: Runs) -> Columns:
-    faulty, healthy, undamped = runs
-    return {
-        "time": faulty["time"],
-        "wheels": faulty["faults.omega_2_can"],
-        "received": faulty["faults.omega_1_meas"],
-        "true": faulty["plant.omega_1"],
-        "undamped": undamped["plant.T_gear"],
-        "faulty": faulty["plant.T_gear"],
-        "healthy": healthy["plant.T_gear"],
-        "added": faulty["controller.T_damp"],
-        "usual": healthy["controller.T_damp"],
-        "status": faulty["controller.status"],
-        "normal": healthy["controller.status"],
-    }
+    return max(min(f.begin for f in faults) - 0.2, 0.0), min(max(f.end for f in faults) + 1.0, DURATION)

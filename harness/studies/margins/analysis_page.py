@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from math import isfinite, isnan
+from pathlib import Path
 
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.declaration import declared
@@ -16,80 +17,7 @@ from .parameter_sweeps import SWEEPS
 from .sensitivity import SHOWN
 from .sensitivity_figure import most_important
 
-PAGE = """\
-# The loop with {controller}
-
-The loop is linear while the teeth stay on one flank. Its model comes from the functions of the blocks themselves: they
-are differentiated where car and controller have settled under {torque:.0%} of the largest torque, so any controller of
-the catalogue can be analysed, and nothing is written a second time. The delays are the true ones: the sample in which
-the controller computes, the hold of its torque, the torque loop, and for the wheel speed the mean over a cycle of the
-bus, its transport and the sample that takes it. Tests confirm the margins by the true loop: with a dead time or gain
-just below them a swing dies away, just above it grows.
-
-## Margins
-
-The loop is opened between controller and motor. `L` is what comes back there, `1 + L = 0` is a swing that lasts.
-
-{margins}
-
-- **Gain margin**: by how much more the controller may act, or how much lighter the motor may be, before the loop swings
-  for ever. Below 2 is little.
-- **Delay margin**: dead time that may be added to the torque: a slower inverter, another sample, a bus in between.
-- **Phase margin**: the same as an angle, in either direction.
-- **M_s**: how much a disturbance at the worst frequency is amplified; from 2 on the loop is nervous.
-- **Damping ratio**: of the least damped mode of the drive train, from 2 to 16 Hz, with the mean of quiet samples and
-  those with a message.
-
-![Bode](figures/analysis_bode.png)
-
-Dots mark where the delay margin is read, squares the gain margin; both at 15 km/h, as below.
-
-![Nyquist](figures/analysis_nyquist.png)
-
-## Poles
-
-What changes is the car, not what the controller knows of it. Dashed lines have the same damping ratio.
-
-![poles](figures/analysis_poles.png)
-
-{swept}
-
-## Backlash
-
-Swinging with an amplitude A about the middle of the gap, the teeth act like a spring that is softer than the stiffness
-by the describing function N(A). With the mean of contact and gap that belongs to N, in car and controller, the loop has
-poles and margins of its own. Where a pole is on the stability limit there is a limit cycle:
-
-{excluded}
-
-A swing that hardly leaves the gap (just above 1 φ_B) is the teeth floating from flank to flank without load; in the gap
-no signal tells the twist. It takes a mean torque of zero.
-
-![margins over the amplitude](figures/analysis_backlash.png)
-
-No line is drawn where such a swing grows. A margin that is smaller somewhere than in contact says from which gain or
-further dead time on a car that is stable in contact keeps swinging once it has been thrown through the gap. The method
-takes the swing for a sine, and the twist that the controller knows for the true one.
-
-## The estimate
-
-From runs of the loop with all noise. Bias: mean error in contact over the gear torque; wrong mode: share of the time in
-which the estimate has the teeth elsewhere than they are (one flank, the gap, the other flank).
-
-{estimates}
-
-## Sensitivity
-
-By how many % a metric changes for 1 % of a parameter (from runs with 10 % more and less, same noise). Parameters of
-plant, motor and bus change the car alone, those of the controller what it knows and does. The {most} largest; all are
-in `sensitivity.csv`.
-
-![sensitivity](figures/analysis_sensitivity.png)
-
-{sensitivities}
-
-Made by `driveline analyse --output FOLDER{arguments}`; do not edit.
-"""
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
 
 def page(found: Analysis, arguments: str) -> str:

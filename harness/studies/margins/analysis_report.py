@@ -2,12 +2,9 @@
 
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from ...base.atomic_files import write_text
 from ...base.csv_file import write_rows
-from ...views.terminal import print_table
+from ...views.terminal import plain_table, print_table
 from .analysis_page import margin_headings, margin_rows, page
 from .linear_figures import plot_backlash, plot_bode, plot_nyquist, plot_poles
 from .loop_analysis import SPEEDS, Analysis
@@ -17,12 +14,7 @@ from .sensitivity_figure import plot_sensitivity
 
 def announce(found: Analysis) -> None:
     """Prints the margins."""
-    table = Table(title=f"the loop with {found.controller}", title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
-    for heading in margin_headings():
-        table.add_column(heading, justify="left" if heading == "plant" else "right")
-    for row in margin_rows(found):
-        table.add_row(*row)
-    print_table(table)
+    print_table(plain_table(f"the loop with {found.controller}", margin_headings(), margin_rows(found)))
 
 
 def write(found: Analysis, arguments: str, folder: Path) -> list[Path]:

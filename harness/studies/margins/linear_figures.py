@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ...metrics.spectrum import decibels
 from ...views.colours import BLACK, BLUE, GREEN, GREY, VERMILION
-from ...views.figure_style import STYLE, legend, save, titled
+from ...views.figure_options import FigureOptions
+from ...views.figure_style import plot, sheet
+from ...views.panels import Axis, Curve, Level, Panel, Part, Points
 from .describing_function import Swing
 from .linear_loop import LinearLoop
 from .margins import FREQUENCIES, Margins
@@ -32,28 +32,26 @@ DAMPING_RATIOS = (0.1, 0.3, 0.5)
 def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path, caption: str = "") -> list[Path]:
     """Magnitude and phase of the loop gain, with the crossings at which the margins are; returns the files."""
     f = FREQUENCIES[(FREQUENCIES >= SHOWN[0]) & (FREQUENCIES <= SHOWN[1])]
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 5.4), layout=ConstrainedLayoutEngine(h_pad=0.11))
-        magnitude, phase = figure.subplots(2, 1, sharex=True)
-        for (name, (loop, margin)), colour in zip(loops.items(), COLOURS, strict=False):
-            L = loop.gain(f)
-            degrees = np.degrees(np.unwrap(np.angle(L)))
-            degrees -= 360.0 * round(float(np.interp(np.log(8.0), np.log(f), degrees)) / 360.0)
-            with np.errstate(divide="ignore"):
-                magnitude.semilogx(f, 20.0 * np.log10(np.abs(L)), color=colour, label=name)
-            phase.semilogx(f, degrees, color=colour, label=name)
-            for at, marker in ((margin.gain_frequency, "s"), (margin.delay_frequency, "o")):
-                if np.isfinite(at):
-                    magnitude.plot(at, 20.0 * np.log10(abs(loop.gain(np.array([at]))[0])), marker, color=colour, ms=4)
-                    phase.plot(at, np.interp(np.log(at), np.log(f), degrees), marker, color=colour, ms=4)
-        magnitude.axhline(0.0, color=BLACK, lw=0.8)
-        phase.axhline(-180.0, color=BLACK, lw=0.8)
-        magnitude.set(ylabel="loop gain |L| in dB", ylim=(-60.0, 30.0))
-        phase.set(ylabel="phase of L in degrees", xlabel="frequency in Hz", xlim=SHOWN, ylim=(-450.0, 135.0))
-        phase.set_yticks(range(-450, 136, 90))
-        legend(magnitude)
-        titled(figure, title, caption)
-        return save(figure, stem)
+    magnitude: list[Part] = [Level(0.0)]
+    phase: list[Part] = [Level(-180.0)]
+    for (name, (loop, margin)), color in zip(loops.items(), COLOURS, strict=False):
+        L = loop.gain(f)
+        degrees = np.degrees(np.unwrap(np.angle(L)))
+        degrees -= 360.0 * round(float(np.interp(np.log(8.0), np.log(f), degrees)) / 360.0)
+        with np.errstate(divide="ignore"):
+            magnitude.append(Curve(f, decibels(L), name, color))
+        phase.append(Curve(f, degrees, name, color))
+        for at, marker in ((margin.gain_frequency, "square"), (margin.delay_frequency, "circle")):
+            if np.isfinite(at):
+                x = np.array([at])
+                magnitude.append(Points(x, decibels(loop.gain(x)), color=color, marker=marker))
+                phase.append(Points(x, np.interp(np.log(x), np.log(f), degrees), color=color, marker=marker))
+    panels = [
+        Panel("loop gain |L| in dB", magnitude, bounds=(-60.0, 30.0)),
+        Panel("phase of L in degrees", phase, bounds=(-450.0, 135.0), ticks={k: str(k) for k in range(-450, 136, 90)}),
+    ]
+    x = Axis("frequency in Hz", SHOWN, "log")
+    return plot([[panel] for panel in panels], x, title, stem, FigureOptions(caption), size=(7.2, 2.3))
 
 
 def plot_nyquist(
@@ -62,8 +60,7 @@ def plot_nyquist(
     """The loop gain in the complex plane, all of it and near -1, with the circle that M_s keeps free."""
     f = np.geomspace(SHOWN[0], SHOWN[1], 6000)
     turn = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 361))
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 4.2), layout=ConstrainedLayoutEngine(w_pad=0.1))
+    with sheet((7.2, 4.2), title, stem, FigureOptions(caption), pads=(0.04, 0.1)) as (figure, files):
         whole, near = figure.subplots(1, 2)
         for (name, (loop, margin)), colour in zip(loops.items(), COLOURS, strict=False):
             L, free = loop.gain(f), -1.0 + turn / margin.M_s
@@ -77,16 +74,15 @@ def plot_nyquist(
         whole.set(ylabel="imaginary part of L", adjustable="datalim")
         near.set(xlim=(-2.2, 1.4), ylim=(-1.8, 1.8))
         figure.legend(*near.get_legend_handles_labels(), loc="outside lower center", ncols=3)
-        titled(figure, title, caption)
-        return save(figure, stem)
+    return files
 
 
 def plot_poles(
     found: Mapping[str, Mapping[str, Sequence[Swept]]], title: str, stem: Path, caption: str = ""
 ) -> list[Path]:
     """The poles of the closed loop by plant and sweep, coloured by the value; returns the files."""
-    with style.context(STYLE):
-        figure = Figure(figsize=(10.2, 3.3 * len(found) + 0.4), layout=ConstrainedLayoutEngine())
+    size = 10.2, 3.3 * len(found) + 0.4
+    with sheet(size, title, stem, FigureOptions(caption), pads=(0.04, 0.04)) as (figure, files):
         grid = figure.subplots(len(found), len(SWEEPS), sharex=True, sharey=True, squeeze=False)
         for k, (plant, by_sweep) in enumerate(found.items()):
             for axes, sweep in zip(grid[k], SWEEPS, strict=True):
@@ -111,8 +107,7 @@ def plot_poles(
             grid[k][0].set_ylabel(f"{plant}\nimaginary part in Hz")
         for axes in grid[-1]:
             axes.set_xlabel("real part in 1/s")
-        titled(figure, title, caption)
-        return save(figure, stem)
+    return files
 
 
 def _rays(axes: Axes) -> None:
@@ -127,22 +122,13 @@ def _rays(axes: Axes) -> None:
 
 def plot_backlash(found: Mapping[str, Sequence[Swing]], title: str, stem: Path, caption: str = "") -> list[Path]:
     """Gain and delay margin while the teeth swing, over the amplitude of the swing; returns the files."""
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 4.8), layout=ConstrainedLayoutEngine(h_pad=0.11))
-        gain, delay = panels = figure.subplots(2, 1, sharex=True)
-        for (name, swings), colour in zip(found.items(), COLOURS, strict=False):
-            x = [min(swing.amplitude - 1.0, IN_CONTACT) for swing in swings]
-            for axes, margin, factor in ((gain, "gain_margin", 1.0), (delay, "delay_margin", 1e3)):
-                y = [factor * getattr(swing.margins, margin) if swing.margins else np.nan for swing in swings]
-                axes.semilogx(x[:-1], y[:-1], color=colour, label=name)
-                axes.plot(x[-1], y[-1], ">", color=colour, ms=5, clip_on=False)
-        gain.set_ylabel("gain margin")
-        delay.set(ylabel="delay margin in ms", xlim=(0.01, IN_CONTACT))
-        delay.set_xlabel(
-            r"amplitude of the twist beyond the flanks over $\varphi_B$ (half the gap); arrows: in contact"
-        )
-        for axes in panels:
-            axes.set_ylim(bottom=0.0)
-        legend(gain)
-        titled(figure, title, caption)
-        return save(figure, stem)
+    margins: tuple[list[Part], list[Part]] = [], []
+    for (name, swings), color in zip(found.items(), COLOURS, strict=False):
+        x = np.array([min(swing.amplitude - 1.0, IN_CONTACT) for swing in swings])
+        for parts, margin, factor in zip(margins, ("gain_margin", "delay_margin"), (1.0, 1e3), strict=True):
+            y = np.array([factor * getattr(swing.margins, margin) if swing.margins else np.nan for swing in swings])
+            parts += Curve(x[:-1], y[:-1], name, color), Points(x[-1:], y[-1:], "", color, 6.0, "right")
+    label = r"amplitude of the twist beyond the flanks over $\varphi_B$ (half the gap); arrows: in contact"
+    labels = ("gain margin", "delay margin in ms")
+    rows = [[Panel(label, parts, bounds=(0.0, None))] for label, parts in zip(labels, margins, strict=True)]
+    return plot(rows, Axis(label, (0.01, IN_CONTACT), "log"), title, stem, FigureOptions(caption), size=(7.2, 2.0))

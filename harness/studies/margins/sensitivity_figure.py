@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ...metrics.declaration import declared
 from ...metrics.run_metrics import Metrics
-from ...views.figure_style import STYLE, matrix_axes, save, titled
+from ...views.figure_options import FigureOptions
+from ...views.figure_style import matrix_axes, sheet
 from .sensitivity import SHOWN, Sensitivity
 
 MOST = 24
@@ -33,8 +31,8 @@ def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path, capti
     rows = most_important(found)
     panels = list(dict.fromkeys((each.plant, each.manoeuvre) for each in found))
     columns = [metric.column.plain_heading for metric in declared(Metrics) if metric.name in SHOWN and metric.column]
-    with style.context(STYLE):
-        figure = Figure(figsize=(10.2, 0.21 * len(rows) + 2.6), layout=ConstrainedLayoutEngine())
+    size = 10.2, 0.21 * len(rows) + 2.6
+    with sheet(size, title, stem, FigureOptions(caption), pads=(0.04, 0.04)) as (figure, files):
         grid = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
         for axes, (plant, manoeuvre) in zip(grid, panels, strict=True):
             here = {each.parameter: each for each in found if (each.plant, each.manoeuvre) == (plant, manoeuvre)}
@@ -49,5 +47,4 @@ def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path, capti
                     )
             matrix_axes(axes, columns, rows, f"{plant}\n{manoeuvre}")
         figure.colorbar(shown, ax=list(grid), label="change of the metric in % for 1 % of the parameter", shrink=0.7)
-        titled(figure, title, caption)
-        return save(figure, stem)
+    return files

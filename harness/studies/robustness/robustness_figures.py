@@ -4,16 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib import style
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
-from ...views.colours import COLOURS
+from ...views.colours import COLOURS, GREY
 from ...views.figure_options import FigureOptions
-from ...views.figure_style import STYLE, save, titled
+from ...views.figure_style import plot
+from ...views.panels import DASHED, SOLID, Axis, Curve, Level, Panel
 from ...views.step_figure import plot_step
 from .case_runs import CaseRunner
 from .draws import draw
@@ -29,45 +25,46 @@ DRAWN = {
 """The metrics of the figure, and from where to where in SI units."""
 
 
+def distributions(summaries: Sequence[Summary], heading: str = "") -> list[Panel]:
+    """Which share of the runs stays below each value of a metric, for each metric with all controllers.
+
+    Args:
+        summaries: of a manoeuvre on a plant.
+        heading: of the first panel.
+    """
+    panels = []
+    for metric, bounds in DRAWN.items():
+        column = SHOWN[metric]
+        window = bounds[0] * column.factor, bounds[1] * column.factor
+        x = Axis(f"{column.plain_heading} in {column.unit}", window, "log")
+        curves = [
+            _distribution(summary, metric, window[0], COLOURS[k % len(COLOURS)], 0.9 if k else 1.6)
+            for k, summary in enumerate(summaries)
+        ]
+        parts = [*curves, Level(95.0, GREY, DASHED)]
+        panels.append(Panel("share of the draws in %", parts, heading, bounds=(0.0, 101.0), x=x))
+        heading = ""
+    return panels
+
+
+def _distribution(summary: Summary, metric: str, low: float, color: str, width: float) -> Curve:
+    values = np.sort([outcome.magnitude(metric) for outcome in summary.outcomes]) * SHOWN[metric].factor
+    shares = 100.0 * np.arange(1, len(values) + 1) / len(values)
+    values = np.where(np.isfinite(values), np.maximum(values, low), np.nan)
+    return Curve(np.append(low, values), np.append(0.0, shares), summary.controller, color, SOLID, width, held=True)
+
+
 def plot_distributions(summaries: Sequence[Summary], plant: str, caption: str, stem: Path) -> list[Path]:
-    """Draws for a plant which share of the runs stays below each value of a metric; returns the files."""
-    its = [summary for summary in summaries if summary.plant == plant]
-    manoeuvres = list(dict.fromkeys(summary.manoeuvre for summary in its))
-    with style.context(STYLE):
-        figure = Figure(figsize=(7.2, 1.9 * len(DRAWN) + 1.0), layout=ConstrainedLayoutEngine(h_pad=0.06))
-        grid = figure.subplots(len(DRAWN), len(manoeuvres), sharey=True, squeeze=False)
-        runs = len(its[0].outcomes)
-        titled(figure, f"{plant}: share of {runs} draws that stay below a value", caption)
-        for (metric, bounds), row in zip(DRAWN.items(), grid, strict=True):
-            for manoeuvre, axes in zip(manoeuvres, row, strict=True):
-                _distribution(axes, [each for each in its if each.manoeuvre == manoeuvre], metric, bounds)
-            row[0].set_ylabel("share of the draws in %")
-        for manoeuvre, axes in zip(manoeuvres, grid[0], strict=True):
-            axes.set_title(manoeuvre)
-        lines, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(lines[::-1], labels[::-1], loc="outside lower center", ncols=4)
-        return save(figure, stem)
-
-
-def _distribution(axes: Axes, summaries: Sequence[Summary], metric: str, bounds: tuple[float, float]) -> None:
-    column = SHOWN[metric]
-    low, high = (bound * column.factor for bound in bounds)
-    for k, summary in reversed(list(enumerate(summaries))):  # the first on top
-        values = np.sort([outcome.magnitude(metric) for outcome in summary.outcomes]) * column.factor
-        shares = 100.0 * np.arange(1, len(values) + 1) / len(values)
-        axes.step(
-            np.concatenate(([low], np.clip(values, low, None), values[-1:])),
-            np.concatenate(([0.0], shares, shares[-1:])),
-            where="post",
-            color=COLOURS[k % len(COLOURS)],
-            lw=1.6 if k == 0 else 0.9,
-            label=summary.controller,
-        )
-    axes.axhline(95.0, color="0.5", lw=0.6, ls="--")
-    axes.set(xscale="log", xlim=(low, high), ylim=(0.0, 101.0), xlabel=f"{column.plain_heading} in {column.unit}")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    """Draws the distributions of a plant, with a column for each manoeuvre; returns the files."""
+    groups: dict[str, list[Summary]] = {}
+    for summary in summaries:
+        if summary.plant == plant:
+            groups.setdefault(summary.manoeuvre, []).append(summary)
+    columns = [distributions(group, manoeuvre) for manoeuvre, group in groups.items()]
+    rows = list(zip(*columns, strict=True))
+    runs = len(next(iter(groups.values()))[0].outcomes)
+    title = f"{plant}: share of {runs} draws that stay below a value"
+    return plot(rows, Axis("", (0.0, 1.0)), title, stem, FigureOptions(caption), size=(7.2, 1.95), key=4)
 
 
 def plot_draw(runner: CaseRunner, case: Case, caption: str, stem: Path) -> list[Path]:

@@ -1,6 +1,7 @@
 """The documentation page that `driveline robustness` writes."""
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from ...design.uncertainty_box import BOX, DOUBLINGS, LOSS, SCALED, SHORTEST, SPREAD
 from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
@@ -9,64 +10,8 @@ from .draws import draw
 from .outcome import MANOEUVRES, SHOWN, VERDICTS
 from .summary import Summary, cells, goal
 
-PAGE = """\
-# Robustness
-
-{cases} cars with their sensors are drawn. Each is driven with every controller, through
-
-{manoeuvres}
-
-which makes {runs} runs. No controller is told anything of the draw. Draw and noise follow from the seed and the number
-of a draw alone, so they are the same for every controller, both plants and any number of cores.
-
-This runs one of the draws again and draws it:
-
-    driveline robustness --case NUMBER{arguments}
-
-## What is drawn
-
-{box}
-
-A message of the wheel speed takes from {spread:g} ms less to {spread:g} ms more than the drawn delay (or less, where
-that is less), and never less than {shortest:g} ms; {loss:g} % of the messages are lost. In the blocks that have it, a
-factor multiplies
-
-{scaled}
-
-## When a run is bounded and quiet, and when it is good
-
-{verdicts}
-
-The specification leaves these words open; they are defined in `harness/studies/robustness/outcome.py`.
-
-Where no run of {cases} fails, the true share of failures is below {three:.2g} % with a confidence of 95 %.
-
-{results}
-
-## The worst draws of the {controller}
-
-Those that settle last.
-
-{worst}
-
-{figures}
-
-## More cores
-
-The cases run on all cores. The same command goes on where it was stopped: `runs.csv` has each run as soon as it has
-been made, `robustness.json` says what made them. With more `--cases` it keeps those that it has. On a Dask cluster
-(`pip install 'driveline-damping[cluster]'`) they run with
-
-    dask scheduler                                   # says its address
-    dask worker tcp://ADDRESS:8786                   # on every machine
-    driveline robustness --scheduler tcp://ADDRESS:8786
-
-and nothing else changed. Every worker needs this package and the FMUs at the same path, as on a shared disk; an FMU
-with another content is refused. What a worker has answered is fetched at once. When one is lost, what it had not
-answered is run again by another one.
-
-Made by `driveline robustness --cases {cases}{arguments}`; do not edit.
-"""
+PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+PLANT = Path(__file__).with_name("robustness_page_plant.md").read_text(encoding="utf-8")
 
 
 def page(summaries: Sequence[Summary], seed: int, arguments: str, drawn: Sequence[Summary]) -> str:
@@ -119,13 +64,9 @@ def _of_plant(plant: str, summaries: Sequence[Summary], controller: str) -> str:
         + markdown_table(headings, ([s.controller, *cells(s)] for s in its if s.manoeuvre == name), labels=1)
         for name in dict.fromkeys(summary.manoeuvre for summary in its)
     ]
-    return (
-        f"## {plant}\n\nOf each metric: what half / 95 % of the runs do not exceed in magnitude; a dash where "
-        f"more runs have no value, as a torque that never settles.\n\n"
-        + "\n\n".join(tables)
-        + f"\n\nBounded and quiet; 95 % of the settling time of tip-in / launch ({controller}): "
-        f"{goal(its, plant, controller)}\n\n![distributions](figures/robustness_{plant}.png)"
-    )
+    return PLANT.format(
+        plant=plant, tables="\n\n".join(tables), controller=controller, goal=goal(its, plant, controller)
+    ).strip()
 
 
 def _worst(own: Sequence[Summary], seed: int) -> Iterator[list[str]]:

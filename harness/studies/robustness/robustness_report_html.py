@@ -9,19 +9,18 @@ import numpy as np
 
 from ...base.errors import SimulationError
 from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
-from ...views.colours import COLOURS
 from ...views.html.figure_selector import chosen
-from ...views.html.linked_figures import Columns, Curve, Panel, linked, stacked, window
+from ...views.html.linked_figures import linked, stacked, tables
 from ...views.html.paired_runs import Pair, pair_sections
 from ...views.html.report_page import Section, write_report
 from ...views.html.report_tables import Heading, Row, Table
+from ...views.html.thinning import thinned
+from ...views.panels import Axis
 from .case_runs import CaseRunner
 from .draws import draw
 from .outcome import METRICS, SHOWN, VERDICTS, Outcome
+from .robustness_figures import distributions
 from .summary import LEVELS, Summary, cells, goal, summaries
-
-SHARES = np.linspace(0.0, 100.0, 201)
-"""In %, of the runs, at which the distributions are drawn."""
 
 
 def report(outcomes: Sequence[Outcome], runner: CaseRunner, provenance: Mapping[str, Any], path: Path) -> None:
@@ -73,40 +72,16 @@ def _table(found: Sequence[Summary]) -> Table:
 
 
 def _distributions(found: Sequence[Summary]) -> Section:
-    """Of a manoeuvre on a plant the values that a share of the runs does not exceed, with each controller."""
-    controllers = list(dict.fromkeys(summary.controller for summary in found))
+    """Of a manoeuvre on a plant the share of the runs that stays below each value, with each controller."""
     groups: dict[str, list[Summary]] = {}
     for summary in found:
         groups.setdefault(f"{summary.manoeuvre} on {summary.plant}", []).append(summary)
-    x_range = window(0.0, 100.0)
-    choices = {name: [_values(group)] for name, group in groups.items()}
-    control, (source,) = chosen("Runs", choices, dict.fromkeys(choices, (0.0, 100.0)), x_range, "distribution")
-    panels = [
-        Panel(
-            f"{column.plain_heading}, {column.unit}",
-            [
-                Curve(f"{metric} {name}", name, COLOURS[k % len(COLOURS)], width=2.2 if k == 0 else 1.2)
-                for k, name in reversed(list(enumerate(controllers)))
-            ],
-            "share",
-            "log",
-        )
-        for metric, column in SHOWN.items()
-        if metric in ("settling_time", "overshoot", "jerk_rms_to_50_Hz", "response_delay")
-    ]
-    text = "What a share of the draws does not exceed; a curve ends where the rest has no value, as what never settles."
-    figures = linked(panels, source, x_range, "share of the draws, %")
+    panels = {name: distributions(group) for name, group in groups.items()}
+    choices = {name: thinned(tables(each), len(panels)) for name, each in panels.items()}
+    control, sources = chosen("Runs", choices, name="distribution")
+    text = "Which share of the draws stays below a value; a curve ends where the rest has none, as what never settles."
+    figures = linked(next(iter(panels.values())), Axis("", (0.0, 1.0)), sources=sources)
     return Section("Distributions", text, figures=[control, stacked(figures)])
-
-
-def _values(group: Sequence[Summary]) -> Columns:
-    columns: dict[str, np.ndarray] = {"share": SHARES}
-    for summary in group:
-        for name, column in SHOWN.items():
-            values = np.array([outcome.magnitude(name) for outcome in summary.outcomes]) * column.factor
-            levels = np.quantile(values, SHARES / 100.0, method="inverted_cdf")
-            columns[f"{name} {summary.controller}"] = np.where(np.isfinite(levels), levels, np.nan)
-    return columns
 
 
 def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[str, Pair]]:

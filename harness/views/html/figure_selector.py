@@ -1,6 +1,7 @@
 """A control by which the figures show one of many things whose data are all in the page."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from .linked_figures import Columns, source_of
@@ -11,24 +12,24 @@ if TYPE_CHECKING:
 
 SHOW = """
 shown.forEach((source, k) => { source.data = choices[this.value][k].data })
-const [start, end] = windows[this.value]
-x_range.setv({start, end, reset_start: start, reset_end: end})
+const [start, end] = windows[this.value] ?? []
+x_range?.setv({start, end, reset_start: start, reset_end: end})
 """
 
 
 def chosen(
     title: str,
     choices: Mapping[str, Sequence[Columns]],
-    windows: Mapping[str, tuple[float, float]],
-    x_range: "Range1d",
+    windows: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+    x_range: "Range1d | None" = None,
     name: str = CHOICE,
 ) -> "tuple[Select, list[ColumnDataSource]]":
     """The control, and the sources of the figures, which show the first of the choices.
 
     Args:
-        choices: the columns of each source, by the names of the choices.
+        choices: the tables of each source, by the names of the choices.
         windows: what of the abscissa each choice shows at first.
-        x_range: of the abscissa.
+        x_range: of the abscissa; None: all choices show the same of it.
     """
     from bokeh.models import CustomJS, Select
 

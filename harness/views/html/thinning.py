@@ -1,6 +1,10 @@
 """How much of the signals goes into a page."""
 
+from collections.abc import Sequence
+
 import numpy as np
+
+from .linked_figures import Columns
 
 VALUES = 550_000
 """That a page may have, of 4 bytes each and a third more as text: 3 MB."""
@@ -12,6 +16,12 @@ MOST_ROWS = 3000
 def stride(rows: int, of_how_many: int, columns: int) -> int:
     """Every how many-th row of a run is kept, where a page has so many runs of so many columns."""
     return max(1, -(-rows // max(100, min(MOST_ROWS, VALUES // (of_how_many * columns)))))
+
+
+def thinned(tables: Sequence[Columns], runs: int) -> list[Columns]:
+    """The tables of a run with as many rows as a page of so many runs has."""
+    columns = sum(map(len, tables))
+    return [{name: column[:: stride(len(column), runs, columns)] for name, column in table.items()} for table in tables]
 
 
 def extremes(t: np.ndarray, signals: np.ndarray, pieces: int) -> tuple[np.ndarray, np.ndarray]:

@@ -101,7 +101,7 @@ def status(view: Browser) -> str:
 
 
 def test_curves_follow_a_slider_and_the_run_without_control_stays(view: Browser) -> None:
-    torque = view.figure("gear torque, N·m")
+    torque = view.figure("gear torque in N·m")
     eventually(lambda: torque.pixels(BLUE) > 300)
     assert torque.pixels(GREY) > 300
     before = metrics(view)
@@ -127,7 +127,7 @@ def test_a_slider_can_be_dragged(view: Browser) -> None:
 
 
 def test_control_can_be_switched_off_and_others_stand_beside(view: Browser) -> None:
-    torque = view.figure("gear torque, N·m")
+    torque = view.figure("gear torque in N·m")
     put(view, "control", False, "active")
     eventually(lambda: "DampingController" not in metrics(view))
     view.painted()
@@ -142,7 +142,7 @@ def test_plant_and_manoeuvre_are_chosen(view: Browser) -> None:
     put(view, "plant", "ValidationVehicle")
     eventually(lambda: metrics(view) != before)
     put(view, "manoeuvre", "creep")
-    eventually(lambda: view.figure("gear torque, N·m").x() == (0.0, 12.0))
+    eventually(lambda: view.figure("gear torque in N·m").x() == (0.0, 12.0))
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,7 @@ def test_clicks_save_the_car_the_gains_and_a_report(view: Browser, running: Serv
     press(view, "save report")
     eventually(lambda: "report_1.html" in status(view))
     view.open((running.folder / "report_1.html").as_uri())
-    assert view.figure("gear torque, N·m").pixels(BLUE) > 300
+    assert view.figure("gear torque in N·m").pixels(BLUE) > 300
 
 
 def press(view: Browser, name: str) -> None:

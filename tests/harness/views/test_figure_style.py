@@ -146,8 +146,8 @@ def test_a_step_is_marked_as_the_metrics_find_it(drawn: Drawn, name: str, axes: 
     assert peak - final == pytest.approx(
         metrics.overshoot * (answer.final[500] - STEPS[0]["plant.T_gear"][998]), rel=1e-6
     )
-    settled = [each for each in found.collections if each.get_label() != BAND]
-    assert settled[0].get_segments()[0][0, 0] == pytest.approx(1.0 + metrics.settling_time)  # type: ignore[attr-defined]
+    (settled,) = (x for line in found.lines if np.ptp(x := np.asarray(line.get_xdata())) == 0.0)
+    assert settled[0] == pytest.approx(1.0 + metrics.settling_time)
     text = notes(found)
     assert f"overshoot {100.0 * metrics.overshoot:.0f} %, settling {1e3 * metrics.settling_time:.0f} ms" in text
     assert f"5-50 Hz rms {metrics.gear_torque_rms:.1f} N·m" in text

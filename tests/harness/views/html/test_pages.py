@@ -41,7 +41,7 @@ def require_clean(page: Path, browser: Browser) -> None:
 def test_the_curves_are_there_and_nothing_is_fetched_and_the_console_is_silent(
     opened: Browser, comparison: Path
 ) -> None:
-    torque = opened.figure("gear torque, N·m")
+    torque = opened.figure("gear torque in N·m")
     assert torque.pixels(BLUE) > 300
     assert torque.pixels(GREY) > 300
     assert opened.figure("gear torque over demand").pixels(BLUE) > 300
@@ -49,7 +49,7 @@ def test_the_curves_are_there_and_nothing_is_fetched_and_the_console_is_silent(
 
 
 def test_a_box_zooms_all_panels_in_time_and_none_in_frequency(opened: Browser) -> None:
-    torque, speed = opened.figure("gear torque, N·m"), opened.figure("motor speed, rad/s")
+    torque, speed = opened.figure("gear torque in N·m"), opened.figure("motor speed in rad/s")
     frequency = opened.figure("gear torque over demand")
     (start, end), before = speed.x(), frequency.x()
     torque.zoom()
@@ -62,7 +62,7 @@ def test_a_box_zooms_all_panels_in_time_and_none_in_frequency(opened: Browser) -
 
 
 def test_a_click_in_the_legend_hides_the_curve_and_another_shows_it(opened: Browser) -> None:
-    torque = opened.figure("gear torque, N·m")
+    torque = opened.figure("gear torque in N·m")
     shown = torque.pixels(BLUE)
     torque.click_on_legend(1)
     assert torque.pixels(BLUE) == 0
@@ -72,7 +72,7 @@ def test_a_click_in_the_legend_hides_the_curve_and_another_shows_it(opened: Brow
 
 
 def test_a_click_on_a_row_shows_that_run(opened: Browser) -> None:
-    torque = opened.figure("gear torque, N·m")
+    torque = opened.figure("gear torque in N·m")
     assert torque.x() == (0.9, 2.4)
     opened.js("document.querySelector('tr[data-choice^=creep]').click()")
     opened.painted()
@@ -96,14 +96,14 @@ def test_the_report_of_a_replay_shows_pieces_of_the_drive(chromium: Browser, bot
     written = ["--output", str(tmp_path), "--report", str(page), "--quiet"]
     assert main(["replay", str(drive), "--plant", "TwoMassDriveline", "--fmus", str(both_built), *written]) == 0
     chromium.open(page.as_uri())
-    torque = chromium.figure("gear torque, N·m")
+    torque = chromium.figure("gear torque in N·m")
     assert torque.pixels(BLUE) > 300
     chromium.js("document.querySelector('tr[data-choice]').click()")
     chromium.painted()
     start, end = torque.x()
     assert end - start == 6.0
     assert torque.pixels(BLUE) > 300
-    assert chromium.figure("share of the time, %").pixels(BLUE) > 100
+    assert chromium.figure("share of the time in %").pixels(BLUE) > 100
     require_clean(page, chromium)
 
 
@@ -118,9 +118,9 @@ def test_the_report_of_an_identification_shows_response_and_innovations(
     assert main(["identify", str(recording), *written]) == 0
     chromium.open(page.as_uri())
     for label, colour in (
-        ("motor speed, rad/s", BLUE),
-        ("motor speed over torque, dB", VERMILION),
-        ("density", BLUE),
+        ("motor speed in rad/s", BLUE),
+        ("motor speed over torque in dB", VERMILION),
+        ("density", "#7fb8d8"),  # BLUE, half of it
     ):
         assert chromium.figure(label).pixels(colour) > 100, label
     require_clean(page, chromium)
@@ -134,8 +134,8 @@ def test_the_report_of_a_campaign_of_cars_shows_distributions_and_the_worst(
     written = ["--output", str(tmp_path), "--report", str(page), "--quiet"]
     assert main(["robustness", *what, "--fmus", str(both_built), *written]) == 0
     chromium.open(page.as_uri())
-    assert chromium.figure("settling, ms").pixels("#000000") > 300
-    assert chromium.figure("gear torque, N·m").pixels(BLUE) > 300
+    assert chromium.figure("share of the draws in %").pixels("#000000") > 300
+    assert chromium.figure("gear torque in N·m").pixels(BLUE) > 300
     require_clean(page, chromium)
 
 
@@ -145,5 +145,5 @@ def test_the_report_of_faults_shows_the_worst_cases(chromium: Browser, both_buil
     assert main(["faults", *what, "--output", str(tmp_path), "--report", str(page), "--quiet"]) in (0, 1)
     chromium.open(page.as_uri())
     assert chromium.figure("measured over limit").pixels("#000000") > 100
-    assert chromium.figure("gear torque, N·m").pixels(BLUE) > 300
+    assert chromium.figure("gear torque in N·m").pixels(BLUE) > 300
     require_clean(page, chromium)

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from driveline.harness.commands.cli import main
-from driveline.harness.views.html.linked_figures import Curve, Panel, linked, source_of, window
+from driveline.harness.views.html.linked_figures import linked
 from driveline.harness.views.html.report_page import Section, require_report, write_report
 from driveline.harness.views.html.report_tables import Heading, Row, Table
-from driveline.harness.views.html.thinning import MOST_ROWS, VALUES, extremes, stride
+from driveline.harness.views.html.thinning import MOST_ROWS, VALUES, extremes, stride, thinned
+from driveline.harness.views.panels import Axis, Curve, Panel
 
 PROVENANCE = {"program": "p", "commit": None, "command_line": "c", "fmus": {}, "inputs": {}, "run": {"seed": 1}}
 
@@ -56,9 +57,7 @@ def test_the_report_of_another_run_is_not_replaced(
 def test_names_of_files_are_text_and_nothing_else(tmp_path: Path) -> None:
     evil = "<script>alert(1)</script>"
     table = Table([Heading(evil, evil, True)], [Row([evil], evil)], [evil])
-    figures = linked(
-        [Panel(evil, [Curve(evil, evil, "black")])], source_of({"time": ONE, evil: ONE}), window(0, 1), evil
-    )
+    figures = linked([Panel(evil, [Curve(ONE, ONE, evil)], evil)], Axis(evil, (0.0, 1.0)))
     provenance = {**PROVENANCE, "inputs": {evil: evil}}
     write_report(evil, evil, [Section(evil, evil, table, figures)], provenance, tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
@@ -72,6 +71,8 @@ def test_no_page_holds_more_values_than_it_may() -> None:
     assert stride(MOST_ROWS + 1, 2, 10) == 2
     many = 40
     assert many * 10 * 10_000 / stride(10_000, many, 10) <= VALUES
+    run = [{"x": np.zeros(10_000), f"y {k}": np.zeros(10_000)} for k in range(5)]
+    assert many * sum(column.size for table in thinned(run, many) for column in table.values()) <= VALUES
 
 
 def test_no_peak_is_lost_where_a_drive_is_shown_as_a_whole() -> None:

@@ -1,0 +1,74 @@
+"""Panels as data: what is cut, what shares a table on a page, and that both renderers draw every part."""
+
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from driveline.harness.views.figure_options import FigureOptions
+from driveline.harness.views.figure_style import plot
+from driveline.harness.views.html.linked_figures import linked, tables
+from driveline.harness.views.panels import Arrow, Axis, Band, Bars, Curve, Level, Panel, Part, Points, Spans, within
+
+T = np.linspace(0.0, 4.0, 5)
+X = Axis("time in s", (0.0, 4.0))
+PARTS: dict[type, Part] = {
+    Curve: Curve(T, T, "a curve", held=True),
+    Points: Points(T, T, "points", marker="square"),
+    Band: Band(T, T - 1.0, T + 1.0, "a band"),
+    Bars: Bars(T, T, 0.5, "bars"),
+    Spans: Spans(T[:2], T[:2] + 0.5, "spans"),
+    Level: Level(2.0, upright=True),
+    Arrow: Arrow(1.0, 2.0, 3.0),
+}
+
+
+@pytest.mark.parametrize("kind", get_args(Part))
+def test_every_part_is_drawn_in_a_file_and_on_a_page(
+    kind: type, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: (drawn.append(figure), path.touch()))
+    panel = Panel("a quantity in N·m", [PARTS[kind]])
+    plot([[panel]], X, "title", tmp_path / "figure", FigureOptions(kinds=("png",)))
+    (axes,) = drawn[0].axes
+    assert [*axes.lines, *axes.patches, *axes.collections, *axes.texts]
+    (page,) = linked([panel], X)
+    plain = linked([Panel("a quantity in N·m", [])], X)[0]
+    assert len(page.renderers) + len(page.center) > len(plain.renderers) + len(plain.center)
+
+
+def test_outside_of_a_window_nothing_is_left_but_the_gaps_between_curves() -> None:
+    x = np.array([0.0, 1.0, np.nan, 2.0, 3.0])
+    panel = Panel("y", [Curve(x, x), PARTS[Level], Spans(np.array([0.0, 1.5]), np.array([1.2, 9.0]))])
+    curve, level, spans = within([panel], 1.0, 2.0)[0].parts
+    assert isinstance(curve, Curve)
+    assert isinstance(spans, Spans)
+    np.testing.assert_array_equal(curve.x, [1.0, np.nan, 2.0])
+    assert level is PARTS[Level]
+    np.testing.assert_array_equal(spans.x, [1.0, 1.5])
+    np.testing.assert_array_equal(spans.end, [1.2, 2.0])
+
+
+def test_on_a_page_what_has_the_same_abscissas_is_one_table() -> None:
+    other = T[:3]
+    panels = [Panel("a", [Curve(T, T), Curve(other, other)]), Panel("b", [Band(T.copy(), T, T), PARTS[Level]])]
+    of_t, of_other = tables(panels)
+    assert len(of_t) == 4
+    assert len(of_other) == 2
+    (source,) = {renderer.data_source for renderer in linked(panels[1:], X)[0].renderers}  # type: ignore[attr-defined]
+    assert len(source.data) == 3
+
+
+def test_a_legend_is_told_once_and_a_label_not_broken_on_a_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: (drawn.append(figure), path.touch()))
+    one, other = (Panel("gear torque\nin N·m", [Curve(T, T, name)]) for name in ("one", "other"))
+    plot([[one], [one], [other]], X, "title", tmp_path / "figure", FigureOptions(kinds=("png",)))
+    assert [bool(axes.get_legend()) for axes in drawn[0].axes] == [True, False, True]
+    assert [axes.get_xlabel() for axes in drawn[0].axes] == ["", "", "time in s"]
+    assert linked([one], X)[0].yaxis.axis_label == "gear torque in N·m"
