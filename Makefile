@@ -6,7 +6,7 @@ DEMO := $(VENV)/demo
 READY := $(VENV)/ready
 SITE := $(VENV)/site
 
-.PHONY: help setup demo test test-target mutation fuzz lint check cross bench docs site dist clean
+.PHONY: help setup demo test test-all test-target mutation fuzz lint check cross bench docs site dist clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
@@ -38,8 +38,13 @@ demo: $(DEMO) ## build the FMUs, compare with and without damping, replay a shor
 	$(BIN)/driveline compare --replace
 	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv --replace
 
-test: $(READY) ## all tests
-	$(BIN)/python -m pytest -n auto --dist loadfile
+TEST := $(BIN)/python -m pytest -n auto --dist worksteal
+
+test: $(READY) ## the tests but the slow ones; once set up, without network
+	$(TEST) -m 'not slow'
+
+test-all: $(READY) ## all tests
+	$(TEST)
 
 test-target: $(READY) ## the controller's C on an emulated processor; says what to apt-get install
 	$(BIN)/python -m driveline.fmus.target
@@ -130,4 +135,4 @@ dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked
 	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
 
 clean: ## everything that was made
-	rm -rf $(VENV) build dist results site *.egg-info harness/cosimulation/_steps.*
+	rm -rf $(VENV) build dist results site .pytest_cache *.egg-info harness/cosimulation/_steps.*

@@ -1,5 +1,6 @@
 """What several tests share."""
 
+import os
 import tempfile
 from shutil import copytree
 
@@ -10,10 +11,25 @@ from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.python.packaging import build
 from tests.browser import browser
+from tests.compiling import caching_compiler
 
 # the same examples in every run, and nothing timed
 settings.register_profile("driveline", deadline=None, derandomize=True)
 settings.load_profile("driveline")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compiles through what keeps its results with the cache of pytest, unless a compiler is named from outside."""
+    if "CC" not in os.environ and hasattr(config, "cache"):
+        command = caching_compiler(config.cache.mkdir("compiled"))
+        if command:
+            os.environ["CC"] = str(command)
+
+
+@pytest.fixture
+def uncached_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The compiler itself, for tests of what it makes of the same source again."""
+    monkeypatch.delenv("CC", raising=False)
 
 
 @pytest.fixture(scope="session")

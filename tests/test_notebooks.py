@@ -10,6 +10,7 @@ import pytest
 
 from tests import ROOT
 from tests.notebooks import NOTEBOOKS, cleared
+from tests.slow import slow
 
 SHOWN = {
     "first_run": """
@@ -49,6 +50,8 @@ IMPORTS = """
     from pathlib import Path
     from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
     """
+
+QUICK = [path for path in NOTEBOOKS if path.stem in ("first_run", "your_vehicle")]
 
 FIGURES = {"first_run": 1, "your_vehicle": 1, "your_controller": 2, "sweep": 2, "from_recording": 2}
 
@@ -108,7 +111,7 @@ def executed(path: Path, last_cell: str, folder: Path) -> tuple[list[Any], list[
     return [output for cell in notebook.cells for output in cell.get("outputs", ())], displayed
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", slow(NOTEBOOKS, but=QUICK), ids=lambda path: path.stem)
 def test_a_notebook_runs_and_shows_what_it_says(path: Path, folder_of_user: Path) -> None:
     outputs, displayed = executed(path, dedent(IMPORTS) + dedent(SHOWN[path.stem]), folder_of_user)
     assert [output for output in outputs if output.get("name") == "stderr"] == [], "nothing is warned of"

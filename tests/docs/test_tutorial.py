@@ -21,6 +21,7 @@ def metrics(folder: str) -> dict[str, list[str]]:
     return {damping: row for row in cells for damping in ("off", "on") if damping in row}
 
 
+@pytest.mark.slow
 def test_its_commands_give_its_figures(
     both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

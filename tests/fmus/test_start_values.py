@@ -86,6 +86,7 @@ def test_start_values_of_the_native_fmus(compiled: Path, gains: Path) -> None:
     check_start_values(compiled / NATIVE, gains)
 
 
+@pytest.mark.slow
 def test_fmus_that_run_python_run_as_if_the_parameters_had_been_set(of_python: Path, built: Path, gains: Path) -> None:
     check_runs(of_python, built, "python", gains)
 

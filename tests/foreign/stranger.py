@@ -2,12 +2,12 @@
 
 import subprocess
 from pathlib import Path
-from shutil import which
 from zipfile import ZipFile
 
 import fmpy
 import pytest
 
+from driveline.fmus.native.compiler import CompilerError, host_compiler
 from tests.foreign import UNITS
 
 SOURCE = Path(__file__).with_name("stranger.c")
@@ -19,9 +19,10 @@ OUTPUTS = ("omega_1", "omega_2", "omega_wheel_L", "omega_wheel_R", "T_gear", "v"
 
 def build_stranger(folder: Path, name: str = "stranger", **does: str) -> Path:
     """Builds NAME.fmu; `does` is C by the macro of stranger.c whose place it takes."""
-    compiler = which("cc")
-    if compiler is None:
-        pytest.skip("there is no C compiler")
+    try:
+        compiler = host_compiler()
+    except CompilerError as reason:
+        pytest.skip(str(reason))
     library = folder / f"{name}{fmpy.sharedLibraryExtension}"
     macros = [f"-D{macro}={code}" for macro, code in does.items()]
     subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, SOURCE, "-o", library, "-lm"], check=True)

@@ -31,10 +31,9 @@ def program(fmu: Path, folder: Path) -> list[str]:
     """
     fmpy.extract(str(fmu), str(folder))
     sources = folder / "sources"
-    made = folder / "host"
-    files = [str(HOST), str(sources / "all.c")]
-    command = [str(host_compiler()), *SANITIZED, f"-I{sources}", *files, "-o", str(made), "-lm"]
-    compiled = subprocess.run(command, capture_output=True, text=True, check=False)
+    made = folder.resolve() / "host"
+    command = [host_compiler(), *SANITIZED, "-I.", str(HOST), "all.c", "-o", str(made), "-lm"]
+    compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         raise NotPossible("the compiler has no sanitizers")
     if compiled.returncode:

@@ -3,7 +3,7 @@
 import argparse
 import io
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from random import Random
 
@@ -62,7 +62,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         arguments = [command, *(fixed if command == RUN else []), *(w for a in drawn for w in words(a, random))]
         message, out = io.StringIO(), io.StringIO()
         try:
-            with redirect_stderr(message), redirect_stdout(out):
+            with chdir(folder), redirect_stderr(message), redirect_stdout(out):  # which odd words name files in
                 answer = code(arguments)
         except Exception as error:
             raise Unclean(f"driveline {arguments}: {error!r}") from error

@@ -55,7 +55,11 @@ PLANTS = [
 
 
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize(("plant", "equations", "names"), PLANTS, ids=["simple", "vehicle"])
+@pytest.mark.parametrize(
+    ("plant", "equations", "names"),
+    [PLANTS[0], pytest.param(*PLANTS[1], marks=pytest.mark.slow)],
+    ids=["simple", "vehicle"],
+)
 def test_agrees_with_an_independent_solution(
     plant: ModuleType, equations: reference.Reference, names: tuple[str, ...], case: str
 ) -> None:

@@ -8,8 +8,11 @@ import pytest
 
 from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.block.integrator import Integrator
+from tests.slow import slow
 
-PLANTS = pytest.mark.parametrize("plant", [two_mass_driveline, validation_vehicle], ids=lambda m: m.BLOCK.name)
+BOTH = [two_mass_driveline, validation_vehicle]
+PLANTS = pytest.mark.parametrize("plant", BOTH, ids=lambda m: m.BLOCK.name)
+LONG_ON_PLANTS = pytest.mark.parametrize("plant", slow(BOTH, but=(two_mass_driveline,)), ids=lambda m: m.BLOCK.name)
 
 
 def drive(plant: ModuleType, duration: float, u_of_t: Any, h: float = 2e-3, **start: float) -> list[Any]:
@@ -30,7 +33,7 @@ def test_a_car_at_rest_stays_at_rest(plant: ModuleType) -> None:
     assert y.v == y.omega_1 == y.omega_wheel_L == y.T_gear == 0.0
 
 
-@PLANTS
+@LONG_ON_PLANTS
 def test_brakes_hold_the_car_on_a_grade(plant: ModuleType) -> None:
     slope = np.arctan(0.1)
 
@@ -45,7 +48,7 @@ def test_brakes_hold_the_car_on_a_grade(plant: ModuleType) -> None:
     assert all(abs(y.v) < 1e-3 for y in outputs[-500:])
 
 
-@PLANTS
+@LONG_ON_PLANTS
 def test_without_brakes_the_car_rolls_back_and_turns_round(plant: ModuleType) -> None:
     outputs = drive(plant, 4.0, lambda t: (0.0, 0.0, 0.1), v_0=2.0)
     speeds = np.array([y.v for y in outputs])
@@ -54,7 +57,7 @@ def test_without_brakes_the_car_rolls_back_and_turns_round(plant: ModuleType) ->
     assert np.isfinite(np.array(outputs)).all()
 
 
-@PLANTS
+@LONG_ON_PLANTS
 def test_braking_ends_in_standstill_without_chatter(plant: ModuleType) -> None:
     def inputs(t: float) -> tuple[float, float, float]:
         return 0.0, float(np.interp(t, [0.2, 0.6], [0.0, 1500.0])), 0.0

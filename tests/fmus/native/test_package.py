@@ -55,11 +55,13 @@ def test_it_needs_nothing_besides_itself(native, name):
         assert not [entry for entry in archive.namelist() if "externalDependencies" in entry]
 
 
+@pytest.mark.usefixtures("uncached_compiler")
 @every_fmu
 def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
     assert native_builder(FMUS[name], tmp_path).read_bytes() == (native / f"{name}.fmu").read_bytes()
 
 
+@pytest.mark.usefixtures("uncached_compiler")
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="there is no cmake")
 @pytest.mark.parametrize("name", ["MotorTorqueLoop", "DampingController"])
 def test_its_sources_compile_with_fmpy(native, tmp_path, name):

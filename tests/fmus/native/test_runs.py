@@ -8,6 +8,7 @@ import pytest
 from driveline.fmus.catalogue import FMUS
 from driveline.models.block.runner import runner
 from tests.fmus.host import opened
+from tests.slow import slow
 
 TOLERANCE = 1e-9
 """Relative; flanks are crossed, where a difference of rounding may grow."""
@@ -38,7 +39,7 @@ def inputs(name, k, draw):
     return {"T_mot": draw.uniform(-60.0, 80.0), "T_brake": draw.choice((0.0, 0.0, 800.0)), "slope": 0.05 * swing}
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", slow(FMUS, but=FMUS.keys() - {"ValidationVehicle"}))
 def test_ten_seconds_are_equal(native, tmp_path, name):
     block, draw = FMUS[name].block, random.Random(name)
     start = {"v_0": 8.0, "T_0": 20.0} if "v_0" in block.Parameters._fields else {}

@@ -56,6 +56,7 @@ def test_it_runs_and_the_process_ends_with_0(command, libpython):
 
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed")
+@pytest.mark.slow
 def test_at_the_end_nothing_is_used_that_was_given_back(command, libpython):
     valgrind = ["valgrind", "-q", "--undef-value-errors=no", "--leak-check=no", f"--error-exitcode={FAULT}"]
     done = subprocess.run(

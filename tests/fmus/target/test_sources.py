@@ -4,6 +4,7 @@ import math
 import re
 import shutil
 import subprocess
+from functools import cache
 from pathlib import Path
 from platform import machine
 
@@ -39,8 +40,9 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     }
 
 
+@cache
 def fed(name: str, fmus: Path) -> Case:
-    """What the controller gets in a manoeuvre."""
+    """What the controller gets in a manoeuvre; to be copied where it is changed."""
     given = {"seed": 1, "folder": fmus, "build": "native"}
     plant = "TwoMassDriveline"
     return recorded(MANOEUVRES[name], looped(plant, given), plant, CONTROLLER.Input._fields, given)
@@ -77,7 +79,7 @@ FAULTS = {
 def test_single_precision_recognises_a_fault_within_a_sample(
     fault: str, programs: dict[str, Path], both_built: Path
 ) -> None:
-    inputs = fed("drive", both_built).inputs
+    inputs = fed("drive", both_built).inputs.copy()
     name, value = FAULTS[fault]
     column = CONTROLLER.Input._fields.index(name)
     inputs[1000:1200, column] = inputs[1000, column] if value is None else value

@@ -17,6 +17,7 @@ from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
+from tests.signals import heed_signals
 
 COMPARE = [sys.executable, "-m", "driveline", "compare"]
 """Long enough to be stopped on its way: all manoeuvres on both plants."""
@@ -40,7 +41,7 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),  # whoever runs the tests may ignore it
+        preexec_fn=heed_signals,
     )
     deadline = time.monotonic() + 60.0
     while not list(temporary.rglob("*.so")) and time.monotonic() < deadline:
@@ -60,6 +61,7 @@ def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_signals,
     )
     deadline = time.monotonic() + 60.0
     while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
@@ -92,13 +94,31 @@ def test_a_stop_while_workers_begin_waits_until_they_are_known(number: signal.Si
             signal.raise_signal(number)
             known.append("worker")
 
-    with pytest.raises(Stopped):
-        begin()
+    before = signal.signal(number, signal.SIG_DFL)  # one that is ignored stays so
+    try:
+        with pytest.raises(Stopped):
+            begin()
+    finally:
+        signal.signal(number, before)
     assert known == ["worker"]
 
 
 class Ended(Exception):
     """What the handler of a signal raises."""
+
+
+def end_in_a_step(number: signal.Signals, over: threading.Event) -> None:
+    """Sends the signal to this process while its main thread runs the Python of an FMU in a step.
+
+    An exception while PythonFMU makes an instance would leave the process unable to make another.
+    """
+    while not over.wait(0.001):
+        frame = sys._current_frames().get(threading.main_thread().ident or 0)
+        while frame:
+            if frame.f_code.co_name == "do_step":
+                os.kill(os.getpid(), number)
+                return
+            frame = frame.f_back
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -111,14 +131,16 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
     loop: dict[str, Any] = {"plant": "ValidationVehicle", "folder": built, "build": "python"}
     simulate(replace(MANOEUVRES["drive"], duration=0.01), **loop)  # whose Python has been imported by then
     before = signal.signal(number, end)
-    clock = threading.Timer(0.7, os.kill, (os.getpid(), number))
-    clock.start()
+    over = threading.Event()
+    sender = threading.Thread(target=end_in_a_step, args=(number, over))
+    sender.start()
     try:
         with pytest.raises(Ended):
             simulate(MANOEUVRES["drive"], **loop)
         assert signal.getsignal(number) is end
     finally:
-        clock.join()
+        over.set()
+        sender.join()
         signal.signal(number, before)
 
 

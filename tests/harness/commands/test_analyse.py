@@ -36,6 +36,7 @@ def found() -> Analysis:
     )
 
 
+@pytest.mark.slow
 def test_the_page_shows_the_figures_that_are_written(found: Analysis, tmp_path: Path) -> None:
     files = write(found, " --controller SpeedWashout", tmp_path)
     assert all(file.is_file() for file in files)

@@ -40,7 +40,7 @@ def test_a_comparison_measures_a_step_of_a_file_as_one_of_the_catalogue(native, 
     )
     names = [x for name in (str(tipin), "tipin15", str(pulse)) for x in ("--manoeuvre", name)]
     command = ["compare", *names, "--plant", "TwoMassDriveline", "--fmus", str(native.parent), "--quiet"]
-    assert main([*command, "--output", str(tmp_path / "out")]) == 0
+    assert main([*command, "--figures", "png", "--output", str(tmp_path / "out")]) == 0
     with (tmp_path / "out" / "metrics.csv").open(encoding="utf-8", newline="") as file:
         rows = {(row["manoeuvre"], row["control"]): row for row in csv.DictReader(file)}
     for control in "01":
@@ -81,10 +81,10 @@ def test_what_the_loop_just_takes_is_driven(native, tmp_path):
     assert main(["simulate", "--manoeuvre", str(path), "--fmus", str(native.parent), "--output", str(tmp_path)]) == 0
 
 
-def test_two_manoeuvres_of_one_name_are_refused(tmp_path, capsys):
+def test_two_manoeuvres_of_one_name_are_refused(native, tmp_path, capsys):
     path = tmp_path / "tipin15.toml"
     path.write_text(TIPIN, encoding="utf-8")
-    assert main(["compare", "--manoeuvre", "tipin15", "--manoeuvre", str(path)]) == 2
+    assert main(["compare", "--manoeuvre", "tipin15", "--manoeuvre", str(path), "--fmus", str(native.parent)]) == 2
     assert "two manoeuvres are called tipin15; rename the file of one" in capsys.readouterr().err
 
 

@@ -93,6 +93,7 @@ def test_a_parameter_of_the_same_name_in_another_unit_is_refused_unless_it_is_ma
     assert given("--vehicle", VAN, "--map", "plant.m=m", plant=plant)["plant.m"] == 3500.0
 
 
+@pytest.mark.slow
 def test_a_comparison_gives_each_plant_its_own(both_built, tmp_path):
     options = ("--vehicle", VAN, "--manoeuvre", "tipin15", "--fmus", str(both_built), "--output", str(tmp_path))
     assert main(["compare", *options, "--quiet"]) == 0

@@ -40,6 +40,7 @@ def robustness(
 OURS, ALL = ("--controller", "DampingController"), ("--controller", "DampingController", "--controller", "SpeedWashout")
 
 
+@pytest.mark.slow
 def test_the_folder_gets_the_runs_the_page_and_the_figures(
     robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -14,6 +14,7 @@ from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.foreign.stranger import build_stranger
+from tests.signals import heed_signals
 
 COMMANDS = {
     "simulate": ["simulate"],
@@ -37,6 +38,7 @@ def drive(native, tmp_path):
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            preexec_fn=heed_signals,
         )
 
     return start, temporary

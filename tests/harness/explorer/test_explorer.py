@@ -20,6 +20,7 @@ from driveline.harness.commands.cli import main
 from driveline.harness.views.colours import BLUE, GREY, VERMILION
 from tests import ROOT
 from tests.browser import Browser
+from tests.signals import heed_signals
 
 PATIENCE = 60.0
 """In s, for what takes milliseconds on a machine that has nothing else to do."""
@@ -39,6 +40,7 @@ class Served:
             stderr=subprocess.PIPE,
             text=True,
             start_new_session=True,
+            preexec_fn=heed_signals,
         )
         assert self.process.stdout is not None
         line = self.process.stdout.readline()

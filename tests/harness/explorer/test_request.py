@@ -100,6 +100,7 @@ def test_an_unknown_parameter_is_answered_with_the_nearest(runner: RequestRunner
         runner.require_parameter("plant.ks")
 
 
+@pytest.mark.slow
 def test_sliders_end_within_what_every_fmu_takes(runner: RequestRunner) -> None:
     for knob in (*runner.car, *runner.gains):
         assert knob.low <= knob.value <= knob.high, knob.name

@@ -25,6 +25,7 @@ from driveline.harness.manoeuvres.prbs import shift_register
 from driveline.harness.recordings.file_units import FileUnit
 from driveline.harness.recordings.measurement import Measurement
 from driveline.harness.views.figure_options import FigureOptions
+from tests.slow import slow
 
 CAR = Parameters(J_1=0.055, J_2=0.3, C=117.4, d=0.3, phi_B=0.157)
 T_S, COUNT, SIGMA, SIGMA_LOAD = 0.002, 1500, 0.15, 0.5
@@ -179,7 +180,7 @@ PLOTS: dict[str, Plot] = {
 }
 
 
-@pytest.mark.parametrize("load", [True, False], ids=["with load", "without load"])
+@pytest.mark.parametrize("load", slow([True, False], but=(True,)), ids=["with load", "without load"])
 @pytest.mark.parametrize("plot", PLOTS)
 def test_the_same_answer_gives_the_same_bytes(plot: str, load: bool, tmp_path: Path) -> None:
     one = answer() if load else without_load()

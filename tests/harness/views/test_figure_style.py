@@ -30,6 +30,7 @@ from driveline.harness.views.figure_style import titled
 from driveline.harness.views.replay_figure import plot_replay
 from driveline.harness.views.run_figure import plot_run
 from driveline.harness.views.step_figure import plot_step
+from tests.slow import slow
 
 TIPIN, DRIVE = MANOEUVRES["tipin15"], MANOEUVRES["drive"]
 OPEN = (1.010, 1.030)
@@ -266,7 +267,7 @@ def test_legends_and_notes_cover_no_curve(drawn: Drawn, name: str) -> None:
                     assert not ((at[:, 0] > box.x0) & (at[:, 1] > box.y0)).any()
 
 
-@pytest.mark.parametrize("name", ["step", "replay"])
+@pytest.mark.parametrize("name", slow(["step", "replay"], but=("replay",)))
 def test_the_same_runs_give_the_same_files_of_every_kind(name: str, tmp_path: Path) -> None:
     first, second = ([*PLOTS[name](tmp_path / part / "run", FigureOptions(kinds=tuple(KINDS)))] for part in "ab")
     assert [file.suffix for file in first] == [".png", ".pdf", ".svg"]

@@ -13,6 +13,7 @@ from driveline.harness.studies.coupling import monolithic
 from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.block.types import ContinuousBlock
 from driveline.models.controller.supervision import FALLBACK
+from tests.slow import slow
 
 V_0 = 15.0
 ONSET, END, DURATION = 0.3, 0.9, 1.5
@@ -29,7 +30,9 @@ FAULTS: dict[str, Callable[[float], float]] = {
 }
 
 both_plants = pytest.mark.parametrize(
-    "plant", [two_mass_driveline.BLOCK, validation_vehicle.BLOCK], ids=lambda block: block.name
+    "plant",
+    slow([two_mass_driveline.BLOCK, validation_vehicle.BLOCK], but=(two_mass_driveline.BLOCK,)),
+    ids=lambda block: block.name,
 )
 
 

@@ -19,6 +19,7 @@ from driveline.harness.studies.back_to_back.back_to_back import (
 )
 from driveline.harness.studies.back_to_back.back_to_back_page import LoopRow, page
 from driveline.models import two_mass_driveline
+from tests.slow import slow
 
 EXACT = 1e-12
 """Where no flank is crossed."""
@@ -34,7 +35,7 @@ def short(name: str) -> Manoeuvre:
     return replace(MANOEUVRES[name], duration=1.5)
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", slow(FMUS, but=FMUS.keys() - {"ValidationVehicle"}))
 def test_random_inputs_give_the_same_in_functions_and_both_builds(both_built, name):
     allowed = AFTER_FLANKS if name in PLANTS else EXACT
     for seed in (1, 2):
@@ -42,7 +43,7 @@ def test_random_inputs_give_the_same_in_functions_and_both_builds(both_built, na
         assert max(found) <= allowed
 
 
-@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize("plant", slow(PLANTS, but=("TwoMassDriveline",)))
 @pytest.mark.parametrize("manoeuvre", ["tipin15", "hill_hold"])
 def test_the_loop_does_not_see_which_build_a_block_is_of(both_built, plant, manoeuvre):
     found = compare_loop(plant, short(manoeuvre), both_built)

@@ -18,6 +18,7 @@ def found(native: Path) -> Iterator[Bounded]:
         yield bounded("tipin0", {"folder": native.parent, "build": "native", "parameters": {}})
 
 
+@pytest.mark.slow
 def test_nothing_is_better_than_the_bound_and_a_run_reaches_it(found: Bounded) -> None:
     ratio = found.ratio(found.jointly)
     assert found.bound - 1e-4 <= ratio <= found.bound + 0.005
@@ -25,6 +26,7 @@ def test_nothing_is_better_than_the_bound_and_a_run_reaches_it(found: Bounded) -
     assert found.jointly.deviation < 0.01
 
 
+@pytest.mark.slow
 def test_the_optimum_answers_the_driver_as_the_controller_does(found: Bounded) -> None:
     reached, best = found.task.reached, found.jointly.metrics
     assert best.response_delay == reached.response_delay
@@ -33,6 +35,7 @@ def test_the_optimum_answers_the_driver_as_the_controller_does(found: Bounded) -
     assert abs(best.stationary_torque_change) < 1e-9
 
 
+@pytest.mark.slow
 def test_one_metric_alone_can_be_smaller_than_all_jointly_and_the_others_are_kept(found: Bounded) -> None:
     for name, optimum in found.alone.items():
         assert getattr(optimum.metrics, name) <= 1.001 * getattr(found.jointly.metrics, name)
@@ -41,6 +44,7 @@ def test_one_metric_alone_can_be_smaller_than_all_jointly_and_the_others_are_kep
         assert optimum.metrics.settling_time <= found.task.reached.settling_time
 
 
+@pytest.mark.slow
 def test_page_and_record_tell_the_same(found: Bounded, tmp_path: Path) -> None:
     files = write([found], "DampingController", "", tmp_path)
     page = files[0].read_text(encoding="utf-8")
