@@ -80,8 +80,8 @@ bench: $(READY) ## cost per communication step, side by side and in other hosts,
 
 docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline build
-	$(BIN)/driveline coupling --output docs
-	$(BIN)/driveline back-to-back --output docs
+	$(BIN)/driveline study coupling --output docs
+	$(BIN)/driveline study back-to-back --output docs
 	$(BIN)/python -m docs.studies.design_page
 	$(BIN)/python -m docs.studies.calibration_page
 	$(BIN)/driveline build NoDamping SpeedWashout SpeedDifference PaperObserver LinearObserver PerfectState
@@ -108,7 +108,7 @@ docs: cross ## the pages of the documentation that are computed
 	$(BIN)/driveline robustness --cases 300 --quiet
 	cp results/robustness/robustness.md docs/
 	cp results/robustness/figures/*.png docs/figures/
-	$(BIN)/driveline bound --replace --quiet
+	$(BIN)/driveline study bound --replace --quiet
 	cp results/bound/bound.md docs/
 	cp results/bound/figures/bound.png docs/figures/
 	$(BIN)/driveline compare --replace

@@ -21,7 +21,8 @@ from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.runs import kept_loaded
 from driveline.harness.explorer.request import Request
 from driveline.harness.explorer.request_runs import RequestRunner
-from driveline.harness.loop.places import BUILD, NATIVE, PLACES, PLANTS
+from driveline.harness.loop.places import NATIVE, PLACES, PLANTS
+from driveline.harness.loop.settings import Settings
 from tests.browser import browser
 
 OURS = PLACES["controller"][0]
@@ -47,8 +48,7 @@ move()
 
 def computing(plant: str, name: str, start: float, step: float, moves: int) -> float:
     """Median time of a core in ms from what is wanted to the answer."""
-    settings = {"parameters": {}, "controller": OURS, "folder": BUILD, "build": NATIVE}
-    runner, request = RequestRunner({(plant, OURS): (plant, settings)}), Request(plant, "tipin15")
+    runner, request = RequestRunner({(plant, OURS): Settings(plant=plant, build=NATIVE)}), Request(plant, "tipin15")
     took = []
     with kept_loaded():
         runner.answer(request)

@@ -29,7 +29,8 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.steps import MakeSteps, interpreted
 from driveline.harness.cosimulation.system import Scheme, System
-from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import loop
 from driveline.harness.loop.stale_fmus import warn_of_stale
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines

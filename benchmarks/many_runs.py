@@ -22,7 +22,8 @@ from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.steps import Refusal, interpreted
-from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.many_runs import run_many

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from docs.site import ROOT
-from driveline.harness.commands.cli import COMMANDS, EXIT_CODES, complete_commands, parser
+from driveline.harness.commands.cli import COMMANDS, EXIT_CODES, PURPOSES, complete_commands, parser
 
 FOLDER = "commands"
 
@@ -28,8 +28,10 @@ def pages() -> Mapping[str, str]:
 
 
 def _index(top: argparse.ArgumentParser) -> str:
-    table = [f"| [`driveline {name}`]({name}.md) | {text} |" for name, text in COMMANDS.items()]
-    lines = ["# The command line", "", "| command | what it does |", "|---|---|", *table]
+    lines = ["# The command line"]
+    for purpose, commands in PURPOSES.items():
+        lines += ["", f"## {purpose[0].upper()}{purpose[1:]}", "", "| command | what it does |", "|---|---|"]
+        lines += [f"| [`driveline {name}`]({name}.md) | {text} |" for name, text in commands.items()]
     return "\n".join([*lines, "", *_options(top), "", f"{EXIT_CODES[0].upper()}{EXIT_CODES[1:]}.", ""])
 
 

@@ -22,7 +22,7 @@ MADE_BY = {
     "worst_*.png": "driveline robustness --cases 300",
     "faults.png": "driveline faults --cases 10000",
     "fault_pairs.png": "driveline faults --cases 10000",
-    "bound.png": "driveline bound",
+    "bound.png": "driveline study bound",
     "front.png": "driveline design --search results/ours --evaluations 200",
     "target.png": "driveline target record",
     "*.svg": BY_HAND,

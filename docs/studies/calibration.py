@@ -2,7 +2,6 @@
 
 from functools import cache
 from itertools import product
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +11,8 @@ from driveline.harness.design.design_trials import loop_parameters, mean
 from driveline.harness.design.design_weights import CAN as BUS
 from driveline.harness.design.design_weights import MOTOR, PARAMETERS, PLANT, WEIGHTS, drive_train, records
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
-from driveline.harness.loop.places import BUILD, PLACES, PLANTS
+from driveline.harness.loop.places import PLACES, PLANTS
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import NOTHING
@@ -68,17 +68,14 @@ class Answer(NamedTuple):
     fallback: float
 
 
-def answered(case: Case, seeds: tuple[int, ...] = (1, 2, 3), folder: Path = BUILD, build: str | None = None) -> Answer:
+def answered(case: Case, seeds: tuple[int, ...] = (1, 2, 3), settings: Settings | None = None) -> Answer:
     """What a case gives.
 
     Args:
-        folder, build: see `driveline.simulate`.
+        settings: of the runs beside what the case says.
     """
     manoeuvre = {**MANOEUVRES, STANDSTILL.name: STANDSTILL}[case.manoeuvre]
-    runs = [
-        simulate(manoeuvre, case.plant, parameters=dict(case.given), seed=seed, folder=folder, build=build)
-        for seed in seeds
-    ]
+    runs = [simulate(manoeuvre, settings, plant=case.plant, parameters=dict(case.given), seed=seed) for seed in seeds]
     fallback = np.mean([np.mean(run["controller.status"] == FALLBACK) for run in runs])
     return Answer(mean([evaluate(run, manoeuvre) for run in runs]), float(fallback))
 

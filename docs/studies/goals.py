@@ -19,7 +19,8 @@ from driveline.harness.base.interruption import script
 from driveline.harness.design.design_trials import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
-from driveline.harness.loop.places import BUILD, PLACES, PLANTS
+from driveline.harness.loop.places import PLACES, PLANTS
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
@@ -116,11 +117,11 @@ def runs(goals: tuple[Goal, ...] = GOALS, seeds: tuple[int, ...] = HELD_OUT_SEED
     return [Run(*each, seed) for each in dict.fromkeys(found) for seed in seeds]
 
 
-def measured(run: Run, parameters: Mapping[str, Any], folder: Path = BUILD, build: str | None = None) -> Metrics:
-    """The metrics of a run with these parameters of the controller."""
+def measured(run: Run, parameters: Mapping[str, Any], settings: Settings | None = None) -> Metrics:
+    """The metrics of a run with these parameters of the controller, else with the settings."""
     manoeuvre = MANOEUVRES[run.manoeuvre]
     given = deviating(parameters, run.plant, PLACES["controller"][0], run.deviation)
-    results = simulate(manoeuvre, run.plant, run.control, parameters=given, seed=run.seed, folder=folder, build=build)
+    results = simulate(manoeuvre, settings, plant=run.plant, control=run.control, parameters=given, seed=run.seed)
     return evaluate(results, manoeuvre)
 
 
@@ -156,16 +157,19 @@ def missed(values: Reached) -> list[tuple[Goal, str]]:
     return [key for key, value in values.items() if value > MET * most(*key)]
 
 
-def monte_carlo(draws: int, parameters: Mapping[str, Any], folder: Path = BUILD, build: str | None = None) -> list[str]:
+def monte_carlo(draws: int, parameters: Mapping[str, Any], settings: Settings | None = None) -> list[str]:
     """What is bounded and quiet, and 95 % of the settling times of tip-in and launch, of so many draws on each plant.
 
     Args:
         parameters: of the controller.
+        settings: of the runs beside plant and parameters.
     """
-    controller = PLACES["controller"][0]
-    common = {"folder": folder, "build": build}
-    settings = {plant: common | {"parameters": loop_parameters(parameters, plant)} for plant in PLANTS}
-    runner = CaseRunner({(plant, controller): (plant, settings[plant]) for plant in PLANTS}, seed=1)
+    controller, usual = PLACES["controller"][0], settings or Settings()
+    loops = {
+        (plant, controller): usual.replace(plant=plant, parameters=loop_parameters(parameters, plant))
+        for plant in PLANTS
+    }
+    runner = CaseRunner(loops, seed=1)
     found = summaries(campaign(runner, range(1, draws + 1)))
     return [told(found, plant, controller) for plant in PLANTS]
 

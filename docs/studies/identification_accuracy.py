@@ -65,7 +65,7 @@ def recording(
 ) -> tuple[Measurement, np.ndarray]:
     """A test drive as recorded, and the true signals."""
     drive = binary_torque("prbs", **TEST_DRIVE, v_0=TEST_SPEED / 3.6)
-    results = simulate(drive, plant, False, parameters=parameters or {}, seed=seed)
+    results = simulate(drive, plant, control=False, parameters=parameters, seed=seed)
     with TemporaryDirectory() as folder:
         path = Path(folder, f"{plant}_{seed}.csv")
         write_csv(sensed(results, PLANT.i, wheels or WHEELS, seed), path)

@@ -3,8 +3,6 @@
 import argparse
 
 from ...fmus.building import build_command
-from ...fmus.errors import BuildError
-from ..base.errors import DrivelineError
 from ..loop.places import BUILD
 
 DESCRIPTION = build_command.DESCRIPTION
@@ -16,8 +14,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    try:
-        build_command.run(args)
-    except BuildError as reason:
-        raise DrivelineError(str(reason)) from reason
+    build_command.run(args)
     return 0

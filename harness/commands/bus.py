@@ -2,7 +2,6 @@
 
 import argparse
 
-from ..base.errors import DrivelineError
 from ..loop.places import PLACES
 from .options import add_output, add_printing
 from .printing import Printer
@@ -25,22 +24,16 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     from ...fmus.building.options import file
 
-    action = parser.add_argument("--vehicle", type=file, metavar="FILE.toml", help="what belongs to the car")
-    action.complete = "file"  # type: ignore[attr-defined]
+    parser.add_argument("--vehicle", type=file, metavar="FILE.toml", help="what belongs to the car")
     add_output(parser, "results/bus", "the database")
     add_printing(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from ...fmus.building.parameter_files import read_vehicle
-    from ...fmus.errors import ParameterFileError
     from ..exchange.bus.database import telegrams, write_dbc
 
-    try:
-        car = read_vehicle(args.vehicle) if args.vehicle else {}
-    except ParameterFileError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
-    path = args.output / "driveline.dbc"
+    car, path = read_vehicle(args.vehicle) if args.vehicle else {}, args.output / "driveline.dbc"
     write_dbc(telegrams(dict.fromkeys(PLACES, car)), path)
-    Printer(args).say(f"written: {path}")
+    Printer(args).files([path])
     return 0

@@ -29,8 +29,7 @@ FORMATS = ("text", "json", "junit")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    files = parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
-    files.complete = "file"  # type: ignore[attr-defined]
+    parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
     parser.add_argument("--strict", action="store_true", help="warnings and notes count as errors do")
     parser.add_argument("--quick", action="store_true", help="of the behaviours only the first steps of a run")
     parser.add_argument(

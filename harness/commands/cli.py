@@ -1,17 +1,16 @@
 """The command line `driveline`: finds the command and answers mistakes in one sentence.
 
-A command is a module of `harness.commands` with DESCRIPTION, EXAMPLES, add_arguments(parser) and run(args) -> int. It
-is imported only when it is asked for, and itself imports what it needs when it runs, so that help and mistakes are
-answered at once.
+A command is a module of `harness.commands` with DESCRIPTION, EXAMPLES, add_arguments(parser) and run(args) -> int, or
+with ACTIONS that are such modules. It is imported only when it is asked for, and itself imports what it needs when it
+runs, so that help and mistakes are answered at once.
 """
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from errno import ENOSPC
-from importlib import import_module
+from functools import partial
 from io import TextIOWrapper
-from types import ModuleType
 from typing import NoReturn
 
 from ..base.errors import DrivelineError
@@ -20,33 +19,45 @@ from ..base.known_names import nearest
 from ..base.plain_text import plain, reason
 from ..base.progress import hidden
 from ..base.status_line import waiting
+from .course import command, run
+from .options import EXPERTS
 
-COMMANDS = {
-    "build": "build the FMUs",
-    "simulate": "drive the loop through one manoeuvre and write its signals",
-    "compare": "run the manoeuvres without and with damping and compare",
-    "replay": "drive a recorded torque demand and road without and with damping",
-    "record": "drive with a pseudo-random torque and record it as a real car would",
-    "identify": "identify the drive train from a recorded test drive",
-    "faults": "put faults on the controller's signals and judge what it makes of them",
-    "robustness": "drive random cars and sensors with every controller",
-    "explore": "turn knobs in a browser and see what becomes of the runs",
-    "check": "check FMUs for compliance",
-    "design": "compute the gains of the controller",
-    "analyse": "margins, poles and sensitivities of the loop",
-    "ssp": "write the loop for other tools (System Structure Package)",
-    "target": "the controller's C on its processor",
-    "bus": "write the database of the bus (DBC)",
-    "bound": "compute what no controller can beat, beside what ours reaches",
-    "coupling": "measure coupling error and dead time of the master",
-    "back-to-back": "compare both builds of each block with its functions",
+PURPOSES = {
+    "run": {
+        "simulate": "drive one manoeuvre and write its signals and metrics",
+        "compare": "drive the manoeuvres without and with damping and compare",
+        "explore": "turn knobs in a browser and see what becomes of the runs",
+    },
+    "recordings": {
+        "replay": "drive a recorded torque demand and road without and with damping",
+        "record": "drive with a pseudo-random torque and record it as a real car would",
+        "identify": "identify the drive train from a recorded test drive",
+    },
+    "car and controller": {
+        "design": "compute the gains of the controller for a car",
+        "analyse": "margins, poles and sensitivities of the loop",
+        "target": "the controller's C on its processor",
+    },
+    "FMUs": {
+        "build": "build the FMUs",
+        "check": "check FMUs for compliance",
+        "ssp": "write the loop for other tools (System Structure Package)",
+        "bus": "write the database of the bus (DBC)",
+    },
+    "studies": {
+        "faults": "put faults on the controller's signals and judge what it makes of them",
+        "robustness": "drive cars and sensors that are drawn at random with every controller",
+        "study": "what is measured of the project itself: its bound, its coupling, its builds",
+    },
 }
+"""The commands, each with what it does, by what they are for."""
+
+COMMANDS = {name: text for commands in PURPOSES.values() for name, text in commands.items()}
 
 DESCRIPTION = """\
 Active damping of drive-train oscillations: the closed loop of FMUs, with and without damping.
 
-First `driveline build`, then for example `driveline simulate --manoeuvre tipin15`;
-`driveline COMMAND --help` explains a command.
+For example `driveline simulate --manoeuvre tipin15`; `driveline help COMMAND` explains a command.
 """
 
 EXIT_CODES = (
@@ -54,11 +65,6 @@ EXIT_CODES = (
 )
 
 SHELLS = ("bash", "zsh", "tcsh")
-
-
-def command(name: str) -> ModuleType:
-    """The module of a command."""
-    return import_module(f".{name.replace('-', '_')}", __package__)
 
 
 class Parser(argparse.ArgumentParser):
@@ -74,9 +80,31 @@ class Parser(argparse.ArgumentParser):
         """Adds description, examples and arguments of the command."""
         if self.command is None:
             return
-        module, self.command = command(self.command), None
+        name, self.command = self.command, None
+        module = command(name)
         self.description, self.epilog = module.DESCRIPTION, module.EXAMPLES
-        module.add_arguments(self)
+        if hasattr(module, "ACTIONS"):
+            self.add_commands(module.ACTIONS, "action")
+        else:
+            module.add_arguments(self)
+            self.set_defaults(module=name, program=self.prog)
+            self.usage = self.short_usage()
+        self._action_groups.sort(key=lambda group: group.title == EXPERTS)
+
+    def add_commands(self, commands: Mapping[str, tuple[str, str]], dest: str) -> None:
+        """Adds commands by their names, each with its module and what it does; `dest` gets the one that is given."""
+        subparsers = self.add_subparsers(
+            dest=dest, metavar=dest.upper(), required=True, prog=self.prog, parser_class=Parser
+        )
+        for name, (module, text) in commands.items():
+            one = subparsers.add_parser(name, help=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+            one.command = module
+
+    def short_usage(self) -> str:
+        """How the command is called, without its options one by one."""
+        formatter = self._get_formatter()
+        formatter.add_usage(None, self._get_positional_actions(), [], prefix="")
+        return formatter.format_help().strip().replace(self.prog, f"{self.prog} [OPTION ...]", 1)
 
     def parse_known_args(self, args=None, namespace=None):  # type: ignore[override]
         self.add_command()
@@ -93,6 +121,25 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}\n(`{self.prog} --help` explains)\n")
+
+
+class Top(Parser):
+    """The parser of `driveline` itself, whose help has the commands by what they are for."""
+
+    def format_help(self) -> str:
+        formatter = self._get_formatter()
+        formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups)
+        formatter.add_text(self.description)
+        (commands,) = (action for action in self._actions if isinstance(action, argparse._SubParsersAction))
+        named = {action.dest: action for action in commands._get_subactions()}
+        options = [action for action in self._actions if action is not commands]
+        sections = {purpose: [named[name] for name in names] for purpose, names in PURPOSES.items()}
+        for title, actions in {**sections, "options": options}.items():
+            formatter.start_section(title)
+            formatter.add_arguments(actions)
+            formatter.end_section()
+        formatter.add_text(self.epilog)
+        return formatter.format_help()
 
 
 class Version(argparse.Action):
@@ -116,9 +163,16 @@ class Completion(argparse.Action):
         parser.exit()
 
 
+COMPLETED = {"FILE": "file", "RECORDING": "file", "FOLDER": "directory"}
+"""What completes an argument, by how its metavar begins."""
+
+
 def complete_commands(parser: argparse.ArgumentParser) -> None:
-    """Adds the arguments of all commands, and of what they can be told to do."""
+    """Adds the arguments of all commands, and of what they can be told to do; those that are paths complete as such."""
     for action in parser._actions:
+        for start, how in COMPLETED.items():
+            if str(action.metavar).startswith(start):
+                action.complete = how  # type: ignore[attr-defined]
         if isinstance(action, argparse._SubParsersAction):
             for subparser in action.choices.values():
                 subparser.add_command()
@@ -127,8 +181,8 @@ def complete_commands(parser: argparse.ArgumentParser) -> None:
 
 def parser() -> Parser:
     """The parser with all commands."""
-    style = argparse.RawDescriptionHelpFormatter
-    top = Parser(prog="driveline", description=DESCRIPTION, epilog=EXIT_CODES, formatter_class=style)
+    style = partial(argparse.RawDescriptionHelpFormatter, max_help_position=16)
+    top = Top(prog="driveline", description=DESCRIPTION, epilog=EXIT_CODES, formatter_class=style)
     top.add_argument("--version", action=Version, nargs=0, help="print the version and exit")
     top.add_argument(
         "--print-completion",
@@ -137,9 +191,7 @@ def parser() -> Parser:
         metavar="SHELL",
         help=f"print the completion for {', '.join(SHELLS)} and exit",
     )
-    subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name, text in COMMANDS.items():
-        subparsers.add_parser(name, help=text, formatter_class=style).command = name
+    top.add_commands({name: (name, text) for name, text in COMMANDS.items()}, "command")
     return top
 
 
@@ -149,18 +201,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: without the name of the program; None for those of the process.
     """
-    name = "driveline"
+    name, words = "driveline", list(sys.argv[1:] if arguments is None else arguments)
+    if words[:1] == ["help"]:
+        words = [*words[1:], "--help"]
     reopen_closed_streams()
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # who reads a pipe need not wait for the end either
     try:
         with stoppable():
             try:
-                args = parser().parse_args(arguments)
-                name = f"driveline {args.command}"
+                args = parser().parse_args(words)
+                name = args.program
                 silent = getattr(args, "quiet", False) or getattr(args, "json", False)
                 with hidden(silent), waiting(name, enabled=not silent):
-                    return command(args.command).run(args)
+                    return run(args)
             finally:
                 sys.stdout.flush()
     except BrokenPipeError as gone:

@@ -1,26 +1,21 @@
 """`driveline compare`: what active damping does, on both plants and on all manoeuvres."""
 
 import argparse
-from pathlib import Path
 from typing import Any
 
-from ..loop.built_fmus import built
-from ..loop.places import PLANTS
 from ..manoeuvres.catalogue import COMPARED
 from ..metrics.run_metrics import Metrics
 from ..views.html.report_page import require_report
-from ..views.metrics_table import legend, reasons
-from .manoeuvres import OWN, add_manoeuvre, chosen, digests, files, require_files_drivable
+from ..views.metrics_table import legend
+from .course import job
+from .manoeuvres import OWN, add_manoeuvre, chosen
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, figure_options
-from .printing import Printer
-from .settings import blocks, caption, distinguishing, other_format, settings
-
-LEGEND = legend(Metrics)
+from .settings import caption, distinguishing, other_format, settings_of_plants
 
 DESCRIPTION = f"""\
 Runs every manoeuvre on every plant twice, with the damping off and on, and prints one table:
 
-{LEGEND}
+{legend(Metrics)}
 
 --manoeuvre also takes {OWN};
 metrics that make no sense for it, such as the settling of a pulse, are a dash.
@@ -56,64 +51,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     require_report(args.report)
-    plants = list(dict.fromkeys(args.plant or PLANTS))
-    builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
+    given = settings_of_plants(args)
     # here and not above: mistakes and help are answered without them
-    from ..simulation.provenance import content, recorded, write_record
-    from ..simulation.simulate import looped
+    from ..simulation.provenance import write_record
     from ..studies.compare.compare import cases, run_cases, write_figures, write_tables
-    from ..views.signals_file import require_format, signals_path
-    from ..views.terminal import print_table, runs_table
+    from ..views.signals_file import signals_path
+    from ..views.terminal import print_runs
 
-    out = Printer(args)
-    requested = args.manoeuvre or COMPARED
-    manoeuvres = chosen(requested)
-    drawing = figure_options(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
-    todo = cases(plants, list(manoeuvres))
-    given = {plant: settings(args, plant, build) for plant, build in builds.items()}
-    systems = {plant: looped(plant, given[plant]) for plant in plants}
-    record, tables = args.output / "compare.json", [args.output / name for name in ("table.md", "metrics.csv")]
-    same: dict[str, Any] = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
-    same |= {"manoeuvres": list(manoeuvres)} | digests(requested) | other_format(args)
-    by_name = {Path(plant).stem: system for plant, system in systems.items()}
-    read = [*files(requested).values(), args.vehicle, args.parameters]
-    signals = {case: signals_path(args.output / "runs" / case.file_name, args.format) for case in todo}
-    require_format(args.format)
-    report = [args.report] if args.report else []
-    with recorded(record, same, by_name, read, [*tables, *report], args.replace) as made:
-        for plant in plants:
-            require_files_drivable(requested, manoeuvres, made.fits[Path(plant).stem], given[plant]["parameters"])
+    requested, by_name = chosen(args.manoeuvre or COMPARED), {each.plant_name: each for each in given.values()}
+    manoeuvres, read = requested.manoeuvres, list(requested.files.values())
+    shown = figure_options(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
+    same: dict[str, Any] = {name: distinguishing(each) for name, each in by_name.items()}
+    same |= {"manoeuvres": list(manoeuvres)} | requested.digests | other_format(args)
+    runs = {case: args.output / "runs" / case.file_name for case in cases(list(given), list(manoeuvres))}
+    signals = {case: signals_path(stem, args.format) for case, stem in runs.items()}
+    first = [args.output / name for name in ("table.md", "metrics.csv")]
+    with job(args, args.output / "compare.json", same, by_name, first, read) as made:
+        requested.require_drivable(made.fits, by_name)
         made.begin(*(path.with_suffix(".json") for path in signals.values()))
-        outcomes = run_cases(todo, args.output / "runs", given, manoeuvres, args.format)
-        rows = [outcome.row for outcome in outcomes]
-        if not out.silent:
-            print_table(runs_table(rows))
-        for reason in reasons(rows):
-            out.say(reason)
-        out.say(f"{LEGEND}\n")
-        tables = write_tables(outcomes, args.output)
-        figures = write_figures(outcomes, args.output, drawing, manoeuvres)
-        made.files += [*tables, *figures]
+        outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
+        made.wrote(*write_tables(outcomes, args.output), *write_figures(outcomes, args.output, shown, manoeuvres))
         for case, path in signals.items():
-            own = distinguishing(given[case.plant], systems[case.plant], manoeuvres[case.manoeuvre])
+            own = distinguishing(given[case.plant], manoeuvres[case.manoeuvre])
             one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
             write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
-        if args.report:
+        for provenance, path in made.reports():
             from ..studies.compare import compare_report as page
 
-            runs = [(outcome.row, outcome.results) for outcome in outcomes]
-            page.report(runs, manoeuvres, content(same, made.fits, [], read), args.report)
-            made.files += report
-    out.say(f"FMUs:    {', '.join(f'{Path(plant).stem} {build}' for plant, build in builds.items())}")
-    out.say(f"tables:  {' '.join(map(str, tables))}")
-    kind, *others = drawing.kinds
-    beside = f" (and {', '.join(f'.{other}' for other in others)})" if others else ""
-    for figure in figures:
-        if figure.suffix == f".{kind}":
-            out.say(f"figure:  {figure}{beside}")
-    out.say(f"signals: {args.output / 'runs'}/*{next(iter(signals.values())).suffix} ({len(outcomes)} runs)")
-    for path in report:
-        out.say(f"report:  {path}")
-    out.say(f"made by: {record} (version, FMUs, parameters, units), and one beside the signals of every run")
-    out.document({"runs": [outcome.record for outcome in outcomes], "files": made.files})
+            page.report([(each.row, each.results) for each in outcomes], manoeuvres, provenance, path)
+        builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
+        made.out.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {args.output / 'runs'}")
+        made.tell(print_runs, [each.row for each in outcomes], runs=[each.record for each in outcomes])
     return 0

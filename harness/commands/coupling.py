@@ -1,11 +1,12 @@
-"""`driveline coupling`: what co-simulation does to the loop, measured."""
+"""`driveline study coupling`: what co-simulation does to the loop, measured."""
 
 import argparse
 from itertools import product
 
 from ..cosimulation.system import Scheme
 from ..loop.built_fmus import built
-from ..loop.places import PLANTS, STEP_SIZE, loop
+from ..loop.places import PLANTS, STEP_SIZE
+from ..loop.settings import loop
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
@@ -19,8 +20,8 @@ output folder.
 
 EXAMPLES = """\
 examples:
-  driveline coupling                             writes results/coupling.md
-  driveline coupling --output docs               writes docs/coupling.md
+  driveline study coupling            writes results/coupling.md
+  driveline study coupling            --output docs               writes docs/coupling.md
 """
 
 DEAD_TIME_STEPS = (STEP_SIZE, 0.5 * STEP_SIZE)
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     for plant in PLANTS:
-        built(plant, args.fmus)
+        built(plant, folder=args.fmus)
     # here and not above: only this measurement needs the models
     from ..base.atomic_files import write_text
     from ..cosimulation.schedule import transfers
@@ -44,17 +45,21 @@ def run(args: argparse.Namespace) -> int:
     from ..studies.coupling.dead_time import dead_times
     from ..studies.coupling.step_dependence import compare_all
 
-    cases = [(plant, manoeuvre, scheme) for plant in PLANTS for manoeuvre in MANOEUVRES for scheme in Scheme]
+    path = args.output / "coupling.md"
     fitted = fit(loop(folder=args.fmus))
     text = page(
-        [compare(plant, manoeuvre, scheme, folder=args.fmus) for plant, manoeuvre, scheme in cases],
+        [
+            compare(plant, each, scheme, folder=args.fmus)
+            for plant in PLANTS
+            for each in MANOEUVRES
+            for scheme in Scheme
+        ],
         {(s, h): dead_times(s, h, args.fmus) for s, h in product(Scheme, DEAD_TIME_STEPS)},
         transfers(fitted.system, fitted.interfaces),
         list(fitted.interfaces),
         STEP_SIZE,
         compare_all(args.fmus),
     )
-    path = args.output / "coupling.md"
     write_text(text, path)
-    Printer(args).say(f"page: {path}")
+    Printer(args).files([path])
     return 0

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...fmus.building.options import file
-from ..base.errors import DrivelineError
 from .options import add_printing, add_replace
 from .printing import Printer
 from .search_options import add_search, require_search, run_search, write_gains
@@ -43,25 +42,17 @@ Drive train: {alone.frequency:.2f} Hz; damped: {damped.frequency:.2f} Hz, dampin
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     for option, meaning in (("--vehicle", "the car (default: that of all blocks)"), ("--output", "for the gains")):
-        action = parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
-        action.complete = "file"  # type: ignore[attr-defined]
+        parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
     add_search(parser)
     add_replace(parser)
     add_printing(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    # here and not above: mistakes and help are answered without them
-    from ...fmus.errors import ParameterFileError
-
-    try:
-        if args.search is not None:
-            return run_search(args)
-        require_search(args)
-        text = designed(args.vehicle)
-    except ParameterFileError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
-    out = Printer(args)
+    if args.search is not None:
+        return run_search(args)
+    require_search(args)
+    text, out = designed(args.vehicle), Printer(args)
     if args.output is None:
         out.say(text.rstrip())
     else:

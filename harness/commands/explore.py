@@ -5,11 +5,10 @@ from argparse import ArgumentTypeError
 from pathlib import Path
 
 from ..base.status_line import no_longer_waiting
-from ..loop.places import PLACES, PLANTS
 from ..views.html.report_page import require_drawing
 from .options import add_loop, add_output, add_plant, add_printing, assignment, count
 from .printing import Printer
-from .settings import settings_of_each
+from .settings import settings_of_pairs
 
 DESCRIPTION = """\
 Serves a page on this machine alone, for a browser: plant, manoeuvre, backlash, stiffness, mass, delay, gains, sport to
@@ -51,18 +50,8 @@ def _port(text: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..base.known_names import require_different
-    from ..studies.drives.replay import by_name
-
     require_drawing("the explorer")
-    plants = list(dict.fromkeys(args.plant or PLANTS))
-    require_different(plants)
-    controllers = by_name(args.controller or PLACES["controller"])
-    given = {
-        (Path(plant).stem, name): (plant, settings)
-        for plant in plants
-        for name, settings in settings_of_each(args, plant, controllers).items()
-    }
+    given = settings_of_pairs(args)
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..explorer.request_runs import Answer, RequestRunner
     from ..explorer.saving import save_files, save_report

@@ -2,16 +2,15 @@
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.known_names import require_different
-from ..loop.built_fmus import built, made_if_missing
-from ..loop.places import NATIVE, PLANTS
+from ..loop.built_fmus import made_if_missing
+from ..loop.places import NATIVE
+from ..loop.settings import loop
 from ..views.html.report_page import require_report
-from .options import add_loop, add_output, add_plant, add_printing, add_report, count
-from .printing import Printer
-from .settings import as_given, blocks, caption, distinguishing, settings
+from .course import Job, campaign_job, job
+from .options import add_cases, add_loop, add_output, add_plant, add_printing, add_report
+from .settings import as_given, caption, distinguishing, settings_of_plants
 
 if TYPE_CHECKING:
     from ..cosimulation.system import System
@@ -45,13 +44,9 @@ examples:
 exit code: 1 if a case is not clean
 """
 
-MOST_CASES = 1_000_000
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--cases", type=_number, default=1000, metavar="COUNT", help="how many (default: %(default)s)")
-    parser.add_argument("--case", type=_number, metavar="NUMBER", help="only the case of this number, with a figure")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the cases")
+    add_cases(parser, 1000, 1_000_000, "only the case of this number, with a figure")
     add_plant(parser, several=True)
     add_loop(parser)
     add_output(parser, "results/faults", "the cases, the page and the figures", of_a_run=True)
@@ -59,86 +54,55 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_printing(parser, table=True)
 
 
-def _number(text: str) -> int:
-    return count(text, 1, MOST_CASES)
-
-
 def run(args: argparse.Namespace) -> int:
     require_report(args.report)
-    plants = list(dict.fromkeys(args.plant or PLANTS))
-    require_different(plants)
-    given = {plant: settings(args, plant, built(plant, args.fmus, args.build, **blocks(args))) for plant in plants}
+    given = settings_of_plants(args)
     # here and not above: mistakes and help are answered without them
     from ...fmus.signal_faults import FMU
-    from ..simulation.simulate import looped
     from ..studies.faults.fault_injection import FaultRunner, with_faults
 
     with made_if_missing(FMU, args.fmus, NATIVE) as injector:
-        runner, systems = FaultRunner(injector, given), {plant: looped(plant, given[plant]) for plant in plants}
-        same = {Path(plant).stem: distinguishing(given[plant], systems[plant], None) for plant in plants}
-        tried = {Path(plant).stem: with_faults(system, injector) for plant, system in systems.items()}
+        runner = FaultRunner(injector, given)
+        same: dict[str, Any] = {each.plant_name: distinguishing(each) for each in given.values()}
+        tried = {each.plant_name: with_faults(loop(each), injector) for each in given.values()}
         return (_all if args.case is None else _one)(args, runner, same, tried)
 
 
-def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: dict[str, "System"]) -> int:
-    from ..simulation.case_archive import resumable
+def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
     from ..studies.faults.fault_archive import table
     from ..studies.faults.fault_campaign import campaign
     from ..studies.faults.fault_campaign import distinguishing as of_the_cases
     from ..studies.faults.fault_report import write
 
-    cases, record = args.output / "faults.csv", args.output / "faults.json"
-    same, kept = same | of_the_cases(runner, args.seed), table(args.seed, runner.plants)
-    with resumable(cases, kept, record, same, systems, _read(args), _report(args), args.replace) as made:
-        outcomes = campaign(runner, range(1, args.cases + 1), args.seed, made.archive, scheduler=args.scheduler)
-        made.archive.sort(lambda case: case.number)
-        made.files += write(outcomes, f" {as_given(args)}", args.output)
-        made.files += _reported(args, outcomes, runner, made.provenance)
-    return _said(args, outcomes, [*made.files, record])
+    record, cases = args.output / "faults.json", args.output / "faults.csv"
+    same |= of_the_cases(runner, args.seed)
+    with campaign_job(args, record, cases, table(args.seed, runner.plants), same, systems) as (made, archive):
+        outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, scheduler=args.scheduler)
+        archive.sort(lambda case: case.number)
+        made.wrote(*write(outcomes, f" {as_given(args)}", args.output))
+        return _tell(made, outcomes, runner)
 
 
-def _one(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: dict[str, "System"]) -> int:
+def _one(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
     """One case again."""
-    from ..simulation.provenance import content, recorded
     from ..studies.faults.fault_report import write_case
 
-    name, read, same = f"case_{args.case}", _read(args), same | {"case": args.case}
-    record, results = args.output / f"{name}.json", [args.output / f"{name}.csv", *_report(args)]
-    with recorded(record, same, systems, read, results, args.replace) as made:
+    record, signals = (args.output / f"case_{args.case}{ending}" for ending in (".json", ".csv"))
+    with job(args, record, same | {"case": args.case}, systems, [signals]) as made:
         made.begin()
         outcome, files = write_case(args.case, args.seed, runner, args.output, caption(args))
-        Printer(args).say(f"case {outcome.case}")
-        made.files += [*files, *_reported(args, [outcome], runner, content(same, made.fits, [], read))]
-    return _said(args, [outcome], [*made.files, record])
+        made.wrote(*files)
+        made.out.say(f"case {outcome.case}")
+        return _tell(made, [outcome], runner)
 
 
-def _said(args: argparse.Namespace, outcomes: Sequence["Outcome"], files: Sequence[Path]) -> int:
-    """Says what came of the cases, and which files were written; returns the exit code."""
+def _tell(made: Job, outcomes: "Sequence[Outcome]", runner: "FaultRunner") -> int:
+    """Writes the report if one is asked for, and says what came of the cases; returns the exit code."""
     from ..studies.faults.fault_report import announce
 
-    out = Printer(args)
-    if not out.silent:
-        announce(outcomes)
-    for file in files:
-        out.say(f"written: {file}")
-    out.document({"cases": [outcome.record for outcome in outcomes], "files": files[:-1]})
-    return int(any(outcome.failed for outcome in outcomes))
-
-
-def _read(args: argparse.Namespace) -> list[Path | None]:
-    return [args.vehicle, args.parameters]
-
-
-def _report(args: argparse.Namespace) -> list[Path]:
-    return [args.report] if args.report else []
-
-
-def _reported(
-    args: argparse.Namespace, outcomes: Sequence["Outcome"], runner: "FaultRunner", provenance: Any
-) -> list[Path]:
-    """Writes the report if one is asked for; returns the file."""
-    for path in _report(args):
+    for provenance, path in made.reports():
         from ..studies.faults import fault_report_html
 
         fault_report_html.report(outcomes, runner, provenance, path)
-    return _report(args)
+    made.tell(announce, outcomes, cases=[outcome.record for outcome in outcomes])
+    return int(any(outcome.failed for outcome in outcomes))

@@ -3,6 +3,7 @@
 import argparse
 import json
 import os
+from collections.abc import Sequence
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
@@ -12,6 +13,7 @@ from ...fmus.building.options import file
 from ..base.errors import DrivelineError
 from ..base.optional_packages import required
 from ..views.html.report_page import require_report
+from .course import job
 from .options import add_figures, add_printing, add_replace, add_report, figure_options
 from .printing import Printer
 from .recording_options import add_recording, of_databases
@@ -56,10 +58,9 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recording(parser, "the recorded test drive")
-    action = parser.add_argument(
+    parser.add_argument(
         "--vehicle", type=file, metavar="FILE.toml", help="what is known of the car (default: that of all blocks)"
     )
-    action.complete = "file"  # type: ignore[attr-defined]
     parser.add_argument(
         "--free",
         action="append",
@@ -67,13 +68,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=FREE,
         help="identify this too, which is else as known (repeatable); d is freed where the data ask for it",
     )
-    action = parser.add_argument(
+    parser.add_argument(
         "--output",
         type=Path,
         metavar="FILE.toml",
         help="the vehicle file (default: results/identify/RECORDING_car.toml); the others are beside it",
     )
-    action.complete = "file"  # type: ignore[attr-defined]
     parser.add_argument(
         "--design",
         action="store_true",
@@ -88,79 +88,70 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ...fmus.building.parameter_files import read_vehicle
-    from ...fmus.errors import ParameterFileError
-    from ..base.atomic_files import write_text
     from ..design.design_weights import records
     from ..recordings.measurement import read_measurement
-    from ..simulation.provenance import content, recorded
 
     require_report(args.report)
-    try:
-        vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
-    except ParameterFileError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
+    vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     plant, _, _ = records(vehicle)
-    out = Printer(args)
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
-    if output.suffix != ".toml":
-        raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
-    require_folder(output)
-    if {"J_1", "g_T"} <= set(args.free):
-        raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
+    require_possible(args.free, output)
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
-    drawing = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
+    shown = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "native")
     if args.design:
         require_fmus()
+    from ..base.atomic_files import write_text
     from ..identification import car_file
     from ..identification.prior_knowledge import identified as identified_car
 
-    record = output.with_suffix(".json")
-    same = {
-        "recording": sha256(args.recording.read_bytes()).hexdigest(),
-        "vehicle": vehicle,
-        "free": sorted(set(args.free)),
-        "columns": dict(args.columns),
-        "aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases],
-        **of_databases(args),
-    }
-    read = [args.recording, *args.databases, *args.aliases, args.vehicle]
-    report = [args.report] if args.report else []
     everything = output.with_name(f"{output.stem}_identified.json")
-    with recorded(record, same, {}, read, [output, everything, *report], args.replace) as made:
-        identified = identified_car(recording, vehicle, list(dict.fromkeys(args.free)), out.say)
-        for delay in recording.delays:
-            out.say(f"delay: {delay}")
-        for line in car_file.lines(identified):
-            out.say(line)
-        for warning in identified.warnings:
-            out.say(f"warning: {warning}")
+    same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "vehicle": vehicle}
+    same |= {"free": sorted(set(args.free)), "columns": dict(args.columns)}
+    same |= {"aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases], **of_databases(args)}
+    read, first = [args.recording, *args.databases, *args.aliases], [output, everything]
+    with job(args, output.with_suffix(".json"), same, {}, first, read) as made:
+        identified = identified_car(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
+        say(identified, recording, made.out)
         made.begin()
+        figures = draw(identified, recording, output.with_suffix(""), shown)
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        figures = draw(identified, recording, output.with_suffix(""), drawing)
         write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
-        made.files += [output, everything, *figures]
-        if args.report:
+        made.wrote(output, everything, *figures)
+        for provenance, path in made.reports():
             from ..identification import identification_report_html
 
-            identification_report_html.report(identified, recording, content(same, {}, [], read), args.report)
-            made.files += report
+            identification_report_html.report(identified, recording, provenance, path)
         if args.design:
-            made.files += redesign(output, vehicle, args.replace, out)
-    for path in (*made.files, record):
-        out.say(f"written: {path}")
+            made.wrote(*redesign(output, vehicle, args.replace, made.out))
     return 0
 
 
-def require_folder(output: Path) -> None:
-    """Refuses a file whose folder is not there and cannot be made."""
+def require_possible(free: Sequence[str], output: Path) -> None:
+    """
+    Raises:
+        DrivelineError: the vehicle file cannot be written, or what is to be identified cannot be told apart.
+    """
+    if output.suffix != ".toml":
+        raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
     there = next(folder for folder in output.absolute().parents if folder.exists())
     if not (there.is_dir() and os.access(there, os.W_OK)):
         raise DrivelineError(f"--output {output}: {there} is no folder that can be written to")
+    if {"J_1", "g_T"} <= set(free):
+        raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
 
 
-def draw(identified: "Identified", recording: "Measurement", stem: Path, drawing: "FigureOptions") -> list[Path]:
+def say(identified: "Identified", recording: "Measurement", out: Printer) -> None:
+    """What was found, and what is likely to be wrong with the recording."""
+    from ..identification import car_file
+
+    delays, warnings = (f"delay: {delay}" for delay in recording.delays), (f"warning: {w}" for w in identified.warnings)
+    for line in (*delays, *car_file.lines(identified), *warnings):
+        out.say(line)
+
+
+def draw(identified: "Identified", recording: "Measurement", stem: Path, shown: "FigureOptions") -> list[Path]:
     """The figures, STEM_simulation.png and so on."""
     from ..identification.fit_figures import plot_innovations, plot_simulation
     from ..identification.uncertainty_figures import plot_cost, plot_response
@@ -168,7 +159,7 @@ def draw(identified: "Identified", recording: "Measurement", stem: Path, drawing
     def named(what: str) -> Path:
         return stem.with_name(f"{stem.name}_{what}")
 
-    one = drawing._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
+    one = shown._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
     return [
         *plot_simulation(identified, recording, named("simulation"), one),
         *plot_innovations(identified, named("innovations"), one),

@@ -1,14 +1,15 @@
 """--manoeuvre: one of the catalogue by its name, or a file of the user's own."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..base.plain_text import plain
+from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .options import names_or_files
@@ -28,7 +29,18 @@ def add_manoeuvre(parser: argparse.ArgumentParser, what: str, **how: Any) -> Non
         how: further arguments of `add_argument`.
     """
     action = parser.add_argument("--manoeuvre", type=name_or_file, metavar="NAME|FILE", help=what, **how)
+    parser.add_argument("--list", action=List, nargs=0, help="print the manoeuvres and exit")
     action.complete = names_or_files(tuple(MANOEUVRES), ("toml", "csv"), "manoeuvre")  # type: ignore[attr-defined]
+
+
+class List(argparse.Action):
+    """Prints the manoeuvres of the catalogue, a line each."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> NoReturn:
+        width = max(map(len, MANOEUVRES))
+        for each in MANOEUVRES.values():
+            print(f"{each.name:{width}}  {each.description} ({each.duration:g} s)")
+        parser.exit()
 
 
 def name_or_file(text: str) -> str:
@@ -41,11 +53,40 @@ def name_or_file(text: str) -> str:
     return text
 
 
-def chosen(texts: Sequence[str]) -> dict[str, Manoeuvre]:
-    """The manoeuvres by their names, in that order, each once.
+class Chosen(NamedTuple):
+    """What --manoeuvre says, once or several times.
+
+    Attributes:
+        manoeuvres: by their names, in the order in which they were given, each once.
+        files: of those that are files.
+    """
+
+    manoeuvres: Mapping[str, Manoeuvre]
+    files: Mapping[str, Path]
+
+    @property
+    def digests(self) -> dict[str, Any]:
+        """What distinguishes a run by the files of its manoeuvres; nothing if there are none."""
+        found = {name: sha256(path.read_bytes()).hexdigest() for name, path in self.files.items()}
+        return {"manoeuvre_files": found} if found else {}
+
+    def require_drivable(self, fits: "Mapping[str, Fit]", given: Mapping[str, Settings]) -> None:
+        """Refuses those of files that the loops of the plants, by their names, cannot be driven through, see
+        `harness.manoeuvres.drivable`."""
+        from ..manoeuvres.drivable import require_drivable
+
+        for plant, fitted in fits.items():
+            for name, path in self.files.items():
+                require_drivable(self.manoeuvres[name], fitted, given[plant].parameters, str(path))
+
+
+def chosen(texts: Iterable[str]) -> Chosen:
+    """
+    Args:
+        texts: names of the catalogue and files.
 
     Raises:
-        DrivelineError: a file is refused; two have the same name.
+        DrivelineError: a file is refused; two manoeuvres have the same name.
     """
     from ..manoeuvres.manoeuvre_file import read_manoeuvre
 
@@ -54,25 +95,4 @@ def chosen(texts: Sequence[str]) -> dict[str, Manoeuvre]:
         manoeuvre = MANOEUVRES[text] if text in MANOEUVRES else read_manoeuvre(Path(text))
         if found.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
             raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename the file of one")
-    return found
-
-
-def files(texts: Sequence[str]) -> dict[str, Path]:
-    """Of those that are files, by their names."""
-    return {Path(text).stem: Path(text) for text in texts if text not in MANOEUVRES}
-
-
-def digests(texts: Sequence[str]) -> dict[str, Any]:
-    """What distinguishes a run by the files of its manoeuvres; nothing if there are none."""
-    found = {name: sha256(path.read_bytes()).hexdigest() for name, path in files(texts).items()}
-    return {"manoeuvre_files": found} if found else {}
-
-
-def require_files_drivable(
-    texts: Sequence[str], manoeuvres: Mapping[str, Manoeuvre], fitted: "Fit", parameters: Mapping[str, float]
-) -> None:
-    """Refuses those of files that a loop cannot be driven through, see `harness.manoeuvres.drivable`."""
-    from ..manoeuvres.drivable import require_drivable
-
-    for name, path in files(texts).items():
-        require_drivable(manoeuvres[name], fitted, parameters, str(path))
+    return Chosen(found, {Path(text).stem: Path(text) for text in texts if text not in MANOEUVRES})

@@ -19,22 +19,47 @@ from ..views.signals_file import FORMATS
 OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
 """The blocks of the loop beside the plant, and what they are."""
 
+EXPERTS = "options for experts"
+"""The last group of a help."""
+
 LEAST_WINDOW = 0.01
 """In s, of the figures: a few samples."""
 
 
-def add_plant(parser: argparse.ArgumentParser, several: bool = False, default: str = PLANTS[0]) -> None:
-    """--plant; `several` can be given, or one with a default."""
-    block = f"{' or '.join(PLANTS)}, or an FMU with the same interface"
-    if several:
-        action = parser.add_argument(
-            "--plant", metavar="NAME|FILE", action="append", help=f"only this plant, {block} (repeatable)"
-        )
-    else:
-        action = parser.add_argument(
-            "--plant", metavar="NAME|FILE", default=default, help=f"{block} (default: %(default)s)"
-        )
+def experts(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
+    """The group of the options that few need."""
+    there = (group for group in parser._action_groups if group.title == EXPERTS)
+    return next(there, None) or parser.add_argument_group(EXPERTS)
+
+
+def add_plant(
+    parser: argparse.ArgumentParser, several: bool = False, default: str = PLANTS[0], because: str = ""
+) -> None:
+    """--plant; `several` can be given, by default both, or one with a default, if it is not the usual one because of
+    something."""
+    block = f"the car: {' or '.join(PLANTS)}, or an FMU with the same interface"
+    usual = "repeatable; default: both" if several else f"default: %(default)s{because and f', {because}'}"
+    action = parser.add_argument(
+        "--plant",
+        metavar="NAME|FILE",
+        action="append" if several else "store",
+        default=None if several else default,
+        help=f"{block} ({usual})",
+    )
     action.complete = _names_or_fmus(PLANTS)  # type: ignore[attr-defined]
+
+
+def add_controller(parser: argparse.ArgumentParser) -> None:
+    """--controller, of the project, and the files with the values of car and controller."""
+    names = PLACES["controller"]
+    parser.add_argument(
+        "--controller",
+        choices=names,
+        metavar="NAME",
+        default=names[0],
+        help=f"damping control: {', '.join(names)} (default: %(default)s)",
+    )
+    add_parameter_files(parser)
 
 
 def names_or_files(names: Sequence[str], endings: Sequence[str], what: str) -> dict[str, Any]:
@@ -84,7 +109,7 @@ def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None 
     add_parameter_files(parser)
     for place, meaning in OTHERS.items():
         names = PLACES[place]
-        action = parser.add_argument(
+        action = (parser if place == "controller" else experts(parser)).add_argument(
             f"--{place}",
             metavar="NAME|FILE",
             action="append" if place in several else "store",
@@ -93,7 +118,7 @@ def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None 
             f"({'repeatable; ' if place in several else ''}default: {several.get(place, names[0])})",
         )
         action.complete = _names_or_fmus(names)  # type: ignore[attr-defined]
-    parser.add_argument(
+    experts(parser).add_argument(
         "--map",
         action="append",
         default=[],
@@ -101,32 +126,45 @@ def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None 
         help="what an FMU calls a variable of the loop, as in plant.T_gear=Shaft.tau; units are converted (repeatable)",
     )
     parser.add_argument("--seed", type=seed, default=1, help="of the sensor noise (default: %(default)s)")
-    parser.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
+    experts(parser).add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     add_fmus(parser)
     add_limits(parser)
 
 
-def add_fmus(parser: argparse._ActionsContainer) -> None:
-    action = parser.add_argument(
+def add_cases(parser: argparse.ArgumentParser, default: int, most: int, one: str) -> None:
+    """--cases, --case and --scheduler; `one` says what a single case is."""
+
+    def number(text: str) -> int:
+        return count(text, 1, most)
+
+    parser.add_argument(
+        "--cases", type=number, default=default, metavar="COUNT", help="how many (default: %(default)s)"
+    )
+    parser.add_argument("--case", type=number, metavar="NUMBER", help=one)
+    experts(parser).add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the cases")
+
+
+def add_fmus(parser: argparse.ArgumentParser) -> None:
+    experts(parser).add_argument(
         "--fmus",
         type=folder,
         default=BUILD,
         metavar="FOLDER",
         help="of the built FMUs, with the native ones in its folder native (default: %(default)s)",
     )
-    action.complete = "directory"  # type: ignore[attr-defined]
 
 
 def add_limits(parser: argparse.ArgumentParser) -> None:
     """What FMUs that are not ours may take."""
-    parser.add_argument(
+    group = experts(parser)
+    group.add_argument(
         "--time-limit",
         type=seconds,
         default=USUAL.call,
         metavar="SECONDS",
         help="how long a call of an FMU that is given by its path may last (default: %(default)g)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--unpacked-limit",
         type=megabytes,
         default=USUAL.unpacked,
@@ -140,14 +178,13 @@ def add_output(parser: argparse.ArgumentParser, default: str, files: str, of_a_r
 
     Where they are the results of a run that options distinguish, --replace too.
     """
-    action = parser.add_argument(
+    parser.add_argument(
         "--output",
         type=_output,
         default=default,
         metavar="FOLDER",
         help=f"for {files} (default: %(default)s)",
     )
-    action.complete = "directory"  # type: ignore[attr-defined]
     if of_a_run:
         add_replace(parser)
 
@@ -214,13 +251,12 @@ def window(text: str) -> tuple[float, float]:
 
 def add_report(parser: argparse.ArgumentParser) -> None:
     """--report, one page with all that the command has found."""
-    action = parser.add_argument(
+    parser.add_argument(
         "--report",
         type=Path,
         metavar="FILE.html",
         help="one page to send to others: verdict, tables, figures to zoom, what made it (docs/report.md)",
     )
-    action.complete = "file"  # type: ignore[attr-defined]
 
 
 def add_replace(parser: argparse.ArgumentParser) -> None:

@@ -2,7 +2,12 @@
 
 import argparse
 import json
+from collections.abc import Iterable
+from itertools import groupby
+from pathlib import Path
 from typing import Any
+
+from ..views.figure_options import KINDS
 
 
 class Printer:
@@ -21,6 +26,13 @@ class Printer:
         """A line for people."""
         if not self.silent:
             print(text)
+
+    def files(self, paths: Iterable[Path]) -> None:
+        """A line for each file that was written, one for all kinds of a figure."""
+        for _, alike in groupby(paths, lambda path: path.with_suffix("") if path.suffix[1:] in KINDS else path):
+            first, *others = alike
+            beside = f" (and {', '.join(other.suffix for other in others)})" if others else ""
+            self.say(f"written: {first}{beside}")
 
     def document(self, content: Any) -> None:
         """The document for tools."""

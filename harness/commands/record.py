@@ -2,15 +2,13 @@
 
 import argparse
 from dataclasses import asdict
-from pathlib import Path
 
-from ..loop.built_fmus import built
-from ..loop.places import STEP_SIZE
-from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED, binary_torque
+from ..loop.settings import loop
+from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
+from .course import job
 from .frames import add_frames, require_frames, write_frames
 from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
-from .printing import Printer
-from .settings import blocks, distinguishing, other_format, settings
+from .settings import distinguishing, other_format, settings
 
 DESCRIPTION = """\
 Drives the car with a pseudo-random binary torque demand, on a road on which it about keeps its speed, and
@@ -73,51 +71,31 @@ def _order(text: str) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
-    build = built(args.plant, args.fmus, args.build, **blocks(args))
+    given = settings(args, args.plant).replace(control=args.control == "on")
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.experiment import require_steps
-    from ..cosimulation.wiring import fit, out_of_bounds, require
-    from ..manoeuvres.road_load import RoadLoad, torque_limit
-    from ..simulation.excitation_drive import MeasurementWheels, holding_slope, require_demand, require_sensors, sensed
-    from ..simulation.provenance import recorded
-    from ..simulation.simulate import looped, simulate, start
-    from ..views.signals_file import require_format, signals_path, write_signals
+    from ..simulation.excitation_drive import MeasurementWheels, planned, sensed
+    from ..simulation.simulate import simulate
+    from ..views.signals_file import signals_path, write_signals
 
-    out = Printer(args)
-    plant = Path(args.plant).stem
-    name = f"{plant}_prbs_{args.control}"
-    recording, record = signals_path(args.output / name, args.format), args.output / f"{name}.json"
-    require_format(args.format)
-    given = settings(args, args.plant, build)
-    system = looped(args.plant, given)
-    fitted = fit(system)
-    require_sensors(fitted.interfaces)
-    require_frames(args, system.own)
-    require_steps(args.duration, STEP_SIZE)
-    require_demand(args.mean, args.amplitude, args.clock, torque_limit(fitted.interfaces["motor"], given["parameters"]))
-    load = RoadLoad.of_plant(fitted.interfaces["plant"], given["parameters"])
-    v_0 = args.speed / 3.6
-    slope = holding_slope(load, args.mean, v_0)
+    plant, stem = given.plant_name, args.output / f"{given.plant_name}_prbs_{args.control}"
+    require_frames(args, loop(given).own)
     demand = {name: getattr(args, name) for name in ("mean", "amplitude", "clock", "order", "duration")}
-    manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
-    require(out_of_bounds(fitted, start(manoeuvre) | given["parameters"]))
-    wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
-    same = {"demand": demand | {"speed": args.speed, "slope": slope}, "damping": args.control}
-    same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, system, manoeuvre) | other_format(args)
-    with recorded(record, same, {plant: system}, [args.vehicle, args.parameters], [recording], args.replace) as made:
-        results = simulate(manoeuvre, plant=args.plant, control=args.control == "on", **given)
+    drive, wheels = (
+        planned(given, demand, args.speed / 3.6),
+        MeasurementWheels(args.noise, args.offset, args.gain_error),
+    )
+    same = {"demand": demand | {"speed": args.speed, "slope": drive.slope}, "damping": args.control}
+    same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, drive.manoeuvre) | other_format(args)
+    record, recording = stem.with_name(f"{stem.name}.json"), signals_path(stem, args.format)
+    with job(args, record, same, {plant: given}, [recording]) as made:
+        made.out.say(
+            f"{drive.manoeuvre.description}, {args.duration:g} s on {plant}, {given.build} FMUs, "
+            f"damping {args.control}, slope {100.0 * drive.slope:.2f} %"
+        )
+        results = simulate(drive.manoeuvre, given)
         made.begin()
-        write_signals(sensed(results, load.i, wheels, given["seed"]), args.output / name, args.format)
-        made.files += [recording, *write_frames(args, results, fitted, given["parameters"], args.output / name)]
-    out.say(
-        f"{manoeuvre.description}, {args.duration:g} s on {plant}, {build} FMUs, damping {args.control}, "
-        f"slope {100.0 * slope:.2f} %"
-    )
-    v = results["plant.v"]
-    out.say(
-        f"speed {3.6 * v.min():.1f} to {3.6 * v.max():.1f} km/h, gear torque up to "
-        f"{abs(results['plant.T_gear']).max():.0f} N.m"
-    )
-    for file in (*made.files, record):
-        out.say(f"written: {file}")
+        made.wrote(write_signals(sensed(results, drive.load.i, wheels, given.seed), stem, args.format))
+        made.wrote(*write_frames(args, results, made.fits[plant], given.parameters, stem))
+        v, T_gear = 3.6 * results["plant.v"], abs(results["plant.T_gear"]).max()
+        made.out.say(f"speed {v.min():.1f} to {v.max():.1f} km/h, gear torque up to {T_gear:.0f} N.m")
     return 0

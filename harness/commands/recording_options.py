@@ -12,9 +12,8 @@ from ..recordings.quantities import QUANTITIES
 
 def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
     """RECORDING, --dbc, --column and --aliases; `what` says what is recorded."""
-    file = parser.add_argument("recording", type=Path, metavar="RECORDING", help=f"{what} (docs/recordings.md)")
-    file.complete = "file"  # type: ignore[attr-defined]
-    action = parser.add_argument(
+    parser.add_argument("recording", type=Path, metavar="RECORDING", help=f"{what} (docs/recordings.md)")
+    parser.add_argument(
         "--dbc",
         action="append",
         default=[],
@@ -23,7 +22,6 @@ def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
         metavar="FILE.dbc",
         help="of a log of a bus (BLF, ASC): what its frames mean (repeatable)",
     )
-    action.complete = "file"  # type: ignore[attr-defined]
     parser.add_argument(
         "--column",
         action="append",
@@ -34,7 +32,7 @@ def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
         help="the column of a quantity, where its name does not tell, as in v='Speed 2 [km/h]'; with a minus before "
         f"the heading its sign is turned; quantities: {', '.join(QUANTITIES)} (repeatable)",
     )
-    action = parser.add_argument(
+    parser.add_argument(
         "--aliases",
         action="append",
         default=[],
@@ -42,7 +40,6 @@ def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
         metavar="FILE.toml",
         help="more names of quantities, as in omega_1 = ['n_EM1'] (repeatable)",
     )
-    action.complete = "file"  # type: ignore[attr-defined]
 
 
 def of_databases(args: argparse.Namespace) -> dict[str, Any]:

@@ -7,9 +7,8 @@ from typing import Any
 
 from rich.table import Table
 
-from ..base.errors import DrivelineError
 from ..loop.built_fmus import built
-from ..loop.places import BUILD, PLACES, PLANTS
+from ..loop.places import PLACES, PLANTS
 from .design import designed
 from .printing import Printer
 from .search_options import write_gains
@@ -22,7 +21,7 @@ def require_fmus() -> None:
         DrivelineError: they cannot be built.
     """
     for plant in PLANTS:
-        built(plant, BUILD)
+        built(plant)
 
 
 def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer) -> Iterator[Path]:
@@ -36,12 +35,11 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
 
     Raises:
         DesignError: there is no controller for this car.
-        DrivelineError: there are other gains, the vehicle file has what the controller cannot be set to, or the
-            controller cannot be built.
+        DrivelineError: there are other gains.
+        BuildError: the vehicle file has what the controller cannot be set to, or the controller cannot be built.
     """
     from ...fmus.building.builds import build_fmus
     from ...fmus.building.parameter_files import read_files, read_vehicle
-    from ...fmus.errors import BuildError
     from ..design.design_weights import WEIGHTS
     from ..design.redesign import softened
 
@@ -53,12 +51,9 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
             f"washout at {share:.2f} of its frequency, for less overshoot in the mean than before: "
             "torque is withheld longer"
         )
-    try:
-        write_gains(designed(car, weights), gains, replace)
-        yield gains
-        yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
-    except BuildError as reason:
-        raise DrivelineError(str(reason)) from reason
+    write_gains(designed(car, weights), gains, replace)
+    yield gains
+    yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
     out.say(f"to drive with them: driveline simulate --vehicle {quote(str(car))} --parameters {quote(str(gains))}")
     if not out.silent:
         from ..views.terminal import print_table

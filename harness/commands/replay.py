@@ -2,13 +2,13 @@
 
 import argparse
 from hashlib import sha256
-from pathlib import Path
 
 from ..loop.places import PLACES, PLANTS
 from ..metrics.run_metrics import RideMetrics
 from ..recordings.quantities import aliases, example
 from ..views.html.report_page import require_report
 from ..views.metrics_table import legend
+from .course import job
 from .options import (
     add_figures,
     add_format,
@@ -20,11 +20,8 @@ from .options import (
     figure_options,
     seconds,
 )
-from .printing import Printer
 from .recording_options import add_recording, of_databases
 from .settings import caption, distinguishing, other_format, settings_of_each
-
-LEGEND = legend(RideMetrics)
 
 NAMES = aliases()
 COLUMNS = ", ".join(example(quantity, NAMES) for quantity in ("time", "v", "elevation", "T_mot"))
@@ -40,7 +37,7 @@ and once with each controller. Brake and grade keep the simulated car at the rec
 found by driving without damping and are then the same for all; nothing in them is as fast as 1 Hz
 (docs/replay.md). The table shows
 
-{LEGEND}
+{legend(RideMetrics)}
 
 in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
 folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
@@ -61,7 +58,7 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recording(parser, "the recorded drive")
-    add_plant(parser, default=PLANTS[1])
+    add_plant(parser, default=PLANTS[1], because="nearer to the real cars of recordings")
     parser.add_argument(
         "--held",
         type=seconds,
@@ -78,61 +75,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.wiring import fit
-    from ..manoeuvres.road_load import RoadLoad, Track, torque_limit
     from ..manoeuvres.speed_following import require_held
     from ..recordings.drive import read_drive
-    from ..simulation.provenance import content, recorded
-    from ..simulation.simulate import looped
-    from ..studies.drives.replay import by_name, records, replay, write
-    from ..views.signals_file import require_format
-    from ..views.terminal import print_table, rides_reasons, rides_table
+    from ..studies.drives.replay import by_name, on_road, records, replay, write
+    from ..views.terminal import print_rides, rides_reasons
 
-    out = Printer(args)
     require_report(args.report)
     require_held(args.held)
-    require_format(args.format)
+    own = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held} | other_format(args)
     recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
-    if recording.elevation is None:
-        out.say(f"{args.recording} has no elevation: the road is level")
-    controllers = by_name(args.controller or PLACES["controller"][:1])
-    plant = Path(args.plant).stem
-    given = settings_of_each(args, args.plant, controllers)
-    systems = {name: looped(args.plant, settings) for name, settings in given.items()}
-    first = next(iter(given))
-    interfaces, parameters = fit(systems[first]).interfaces, given[first]["parameters"]
-    load = RoadLoad.of_plant(interfaces["plant"], parameters)
-    track = Track.of(recording, torque_limit(interfaces["motor"], parameters))
-    drawing = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
+    given = settings_of_each(args, args.plant, by_name(args.controller or PLACES["controller"][:1]))
+    first = next(iter(given.values()))
+    track, load = on_road(recording, first)
+    shown = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
+    same = own | {"controllers": list(given), "columns": dict(args.columns)} | of_databases(args)
+    same |= {f"with {name}": distinguishing(each) for name, each in given.items()}
+    read = [args.recording, *args.databases, *args.aliases]
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
-    same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held, "controllers": list(given)}
-    same |= {"columns": dict(args.columns)} | of_databases(args) | other_format(args)
-    same |= {f"with {name}": distinguishing(given[name], system, None) for name, system in systems.items()}
-    read = [args.recording, *args.databases, *args.aliases, args.vehicle, args.parameters]
-    report = [args.report] if args.report else []
-    with recorded(record, same, systems, read, [metrics, *report], args.replace) as made:
-        out.say(
-            f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {given[first]['build']} FMUs, without damping and "
-            f"with {', '.join(given)}"
-        )
-        rides = replay(track, load, args.plant, given, args.held)
-        shown = {ride.controller: ride.metrics for ride in rides}
-        if not out.silent:
-            print_table(rides_table(shown, f"{plant} on {recording.name}"))
-        reasons = rides_reasons(shown)
-        for reason in reasons:
-            out.say(reason)
-        out.say(f"{LEGEND}\n")
+    with job(args, record, same, given, [metrics], read) as made:
+        level = "" if recording.elevation is not None else "; it has no elevation: the road is level"
+        plant, title = first.plant_name, f"{first.plant_name} on the recorded drive {track.name}"
+        made.out.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {first.build} FMUs, {', '.join(given)}{level}")
+        rides = replay(track, load, given, args.held)
         made.begin()
-        made.files += write(rides, track, plant, args.output, drawing, args.format, recording.file_units)
-        if args.report:
+        made.wrote(*write(rides, track, plant, args.output, shown, args.format, recording.file_units))
+        metrics_of = {ride.controller: ride.metrics for ride in rides}
+        for provenance, path in made.reports():
             from ..studies.drives import replay_report as page
 
             drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
-            title = f"{plant} on the recorded drive {track.name}"
-            page.report(drawn, (track.t, track.v), title, reasons, content(same, made.fits, [], read), args.report)
-            made.files += report
-    for file in (*made.files, record):
-        out.say(f"written: {file}")
-    out.document({"runs": records(rides, track, plant), "files": made.files})
+            page.report(drawn, (track.t, track.v), title, rides_reasons(metrics_of), provenance, path)
+        made.tell(print_rides, metrics_of, f"{plant} on {recording.name}", runs=records(rides, track, plant))
     return 0

@@ -1,18 +1,19 @@
 """`driveline robustness`: the Monte-Carlo of cars and sensors, the same draws for every controller."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..loop.places import PLACES, PLANTS
+from ..loop.places import PLACES
+from ..loop.settings import Settings
 from ..views.html.report_page import require_report
-from .options import add_loop, add_output, add_plant, add_printing, add_report, count
-from .printing import Printer
-from .settings import as_given, caption, distinguishing, settings_of_each
+from .course import campaign_job, job
+from .options import add_cases, add_loop, add_output, add_plant, add_printing, add_report
+from .settings import as_given, caption, distinguishing, settings_of_pairs
 
 if TYPE_CHECKING:
-    from ..studies.robustness.case_runs import CaseRunner, Given
+    from ..studies.robustness.case_runs import CaseRunner
     from ..studies.robustness.outcome import Outcome
 
 DESCRIPTION = """\
@@ -35,13 +36,9 @@ examples:
   driveline robustness --scheduler tcp://10.0.0.1:8786       on a Dask cluster
 """
 
-MOST_CASES = 100_000
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--cases", type=_number, default=300, metavar="COUNT", help="how many (default: %(default)s)")
-    parser.add_argument("--case", type=_number, metavar="NUMBER", help="only the draw of this number, with figures")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the cases")
+    add_cases(parser, 300, 100_000, "only the draw of this number, with figures")
     add_plant(parser, several=True)
     add_loop(parser, several={"controller": "all of these"})
     add_output(parser, "results/robustness", "the runs, the page and the figures", of_a_run=True)
@@ -49,88 +46,57 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_printing(parser, table=True)
 
 
-def _number(text: str) -> int:
-    return count(text, 1, MOST_CASES)
-
-
 def run(args: argparse.Namespace) -> int:
-    # here and not above: mistakes and help are answered without them
-    from ..base.known_names import require_different
-    from ..studies.drives.replay import by_name
-    from ..studies.robustness.case_runs import CaseRunner
-
     require_report(args.report)
-    plants = list(dict.fromkeys(args.plant or PLANTS))
-    require_different(plants)
-    controllers = by_name(args.controller or PLACES["controller"])
-    given = {
-        (Path(plant).stem, name): (plant, of_each)
-        for plant in plants
-        for name, of_each in settings_of_each(args, plant, controllers).items()
-    }
-    runner = CaseRunner(given, args.seed)
-    return _one(args, runner, given) if args.case is not None else _all(args, runner, given)
+    given = settings_of_pairs(args)
+    # here and not above: mistakes and help are answered without them
+    from ..studies.robustness.case_runs import CaseRunner
+    from ..studies.robustness.robustness_campaign import distinguishing as of_the_draws
+
+    runner, loops = CaseRunner(given, args.seed), {" with ".join(key): each for key, each in given.items()}
+    same = of_the_draws(runner) | {name: distinguishing(each) for name, each in loops.items()}
+    return (_all if args.case is None else _one)(args, runner, same, loops)
 
 
-def _all(args: argparse.Namespace, runner: "CaseRunner", given: "Given") -> int:
-    from ..simulation.case_archive import resumable
+def _all(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
     from ..studies.robustness.campaign_archive import RUNS
     from ..studies.robustness.robustness_campaign import campaign, order
     from ..studies.robustness.robustness_report import announce, write
     from ..studies.robustness.summary import summaries
 
-    out, same, systems = Printer(args), _distinguishing(runner, given), _systems(given)
-    record, runs, read = args.output / "robustness.json", args.output / "runs.csv", [args.vehicle, args.parameters]
-    with resumable(runs, RUNS, record, same, systems, read, _report(args), args.replace) as made:
-        outcomes = campaign(runner, range(1, args.cases + 1), made.archive, scheduler=args.scheduler)
-        made.archive.sort(order(runner))
-        made.files += write(outcomes, runner, _as_given(args), caption(args), args.output)
-        made.files += _reported(args, outcomes, runner, made.provenance)
-    if not out.silent:
-        announce(outcomes)
-    for file in (*made.files, record):
-        out.say(f"written: {file}")
-    out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": made.files})
+    record, runs = args.output / "robustness.json", args.output / "runs.csv"
+    with campaign_job(args, record, runs, RUNS, same, loops) as (made, archive):
+        outcomes = campaign(runner, range(1, args.cases + 1), archive, scheduler=args.scheduler)
+        archive.sort(order(runner))
+        made.wrote(*write(outcomes, runner, _as_given(args), caption(args), args.output))
+        for provenance, path in made.reports():
+            _report(outcomes, runner, provenance, path)
+        made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
     return 0
 
 
-def _one(args: argparse.Namespace, runner: "CaseRunner", given: "Given") -> int:
+def _one(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
     """One draw again."""
-    from ..simulation.provenance import content, recorded
     from ..studies.robustness.draws import draw
     from ..studies.robustness.robustness_campaign import campaign
     from ..studies.robustness.robustness_report import announce, write_draw
     from ..studies.robustness.summary import summaries
 
-    out, name, read = Printer(args), f"draw_{args.case}", [args.vehicle, args.parameters]
-    record, same = args.output / f"{name}.json", _distinguishing(runner, given) | {"case": args.case}
-    with recorded(record, same, _systems(given), read, _report(args), args.replace) as made:
-        out.say(f"draw {draw(args.case, args.seed)}")
+    with job(args, args.output / f"draw_{args.case}.json", same | {"case": args.case}, loops) as made:
+        made.out.say(f"draw {draw(args.case, args.seed)}")
         outcomes = campaign(runner, [args.case], scheduler=args.scheduler)
         made.begin()
-        made.files += write_draw(outcomes, runner, caption(args), args.output)
-        made.files += _reported(args, outcomes, runner, content(same, made.fits, [], read))
-    if not out.silent:
-        announce(outcomes)
-    for file in (*made.files, record):
-        out.say(f"written: {file}")
-    out.document({"summaries": [summary.record for summary in summaries(outcomes)], "files": made.files})
+        made.wrote(*write_draw(outcomes, runner, caption(args), args.output))
+        for provenance, path in made.reports():
+            _report(outcomes, runner, provenance, path)
+        made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
     return 0
 
 
-def _report(args: argparse.Namespace) -> list[Path]:
-    return [args.report] if args.report else []
+def _report(outcomes: Sequence["Outcome"], runner: "CaseRunner", provenance: Mapping[str, Any], path: Path) -> None:
+    from ..studies.robustness import robustness_report_html
 
-
-def _reported(
-    args: argparse.Namespace, outcomes: Sequence["Outcome"], runner: "CaseRunner", provenance: Any
-) -> list[Path]:
-    """Writes the report if one is asked for; returns the file."""
-    for path in _report(args):
-        from ..studies.robustness import robustness_report_html
-
-        robustness_report_html.report(outcomes, runner, provenance, path)
-    return _report(args)
+    robustness_report_html.report(outcomes, runner, provenance, path)
 
 
 def _as_given(args: argparse.Namespace) -> str:
@@ -138,18 +104,3 @@ def _as_given(args: argparse.Namespace) -> str:
     ours = PLACES["controller"][0]
     alone = f" --controller {ours}" if args.controller == [ours] else ""
     return f"{alone} {as_given(args)}".rstrip()
-
-
-def _systems(given: "Given") -> dict[str, Any]:
-    """The systems that run, by the names of plant and controller."""
-    from ..simulation.simulate import looped
-
-    return {" with ".join(key): looped(*loop) for key, loop in given.items()}
-
-
-def _distinguishing(runner: "CaseRunner", given: "Given") -> dict[str, Any]:
-    from ..studies.robustness.robustness_campaign import distinguishing as of_the_draws
-
-    systems = _systems(given)
-    loops = {" with ".join(key): loop for key, (_, loop) in given.items()}
-    return of_the_draws(runner) | {name: distinguishing(loops[name], system, None) for name, system in systems.items()}

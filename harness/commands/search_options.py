@@ -12,7 +12,8 @@ from ..base.plain_text import quoted
 from ..base.written_numbers import real
 from ..loop.built_fmus import built
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
-from .options import add_fmus, count, seed
+from ..loop.settings import Settings
+from .options import add_fmus, count, experts, seed
 from .printing import Printer
 
 if TYPE_CHECKING:
@@ -37,8 +38,7 @@ SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)
 def add_search(parser: argparse.ArgumentParser) -> None:
     """--search and the options that are for it alone; `None` where they are not given."""
     group = parser.add_argument_group("searching")
-    action = group.add_argument("--search", type=output_folder, metavar="FOLDER", help="search, in this folder")
-    action.complete = "directory"  # type: ignore[attr-defined]
+    group.add_argument("--search", type=output_folder, metavar="FOLDER", help="search, in this folder")
     options: dict[str, tuple[str, dict[str, Any]]] = {
         "controller": ("whose parameters", {"choices": PLACES["controller"]}),
         "evaluations": ("how many candidates", {"type": _evaluations}),
@@ -48,8 +48,8 @@ def add_search(parser: argparse.ArgumentParser) -> None:
     for name, (meaning, how) in options.items():
         group.add_argument(f"--{name}", metavar=METAVARS[name], help=f"{meaning} (default: {DEFAULTS[name]})", **how)
     group.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the candidates")
-    group.add_argument("--build", choices=BUILDS, help=BUILD_HELP)
-    add_fmus(group)
+    experts(parser).add_argument("--build", choices=BUILDS, help=BUILD_HELP)
+    add_fmus(parser)
 
 
 def _evaluations(text: str) -> int:
@@ -90,7 +90,7 @@ def run_search(args: argparse.Namespace) -> int:
     )
     car = read_vehicle(args.vehicle) if args.vehicle else {}
     where = space(controller, car)
-    evaluation = CostEvaluation(controller, car, args.fmus, _build(args, controller))
+    evaluation = CostEvaluation(Settings(controller=controller, folder=args.fmus, build=_build(args, controller)), car)
     gains = args.search / "gains.toml" if args.output is None else args.output
     visited = tune(
         evaluation, where, evaluations, number, args.search, args.replace, [args.vehicle], scheduler=args.scheduler
@@ -112,8 +112,12 @@ def run_search(args: argparse.Namespace) -> int:
 def _build(args: argparse.Namespace, controller: str) -> str:
     """The build that runs with both plants, for this controller and the one that it is measured by."""
     names = {DEFAULTS["controller"], controller}
-    builds = {built(plant, args.fmus, args.build, controller=name) for plant in PLANTS for name in sorted(names)}
-    return builds.pop() if len(builds) == 1 else BUILDS[0]
+    builds = {
+        built(plant, folder=args.fmus, build=args.build, controller=name).build
+        for plant in PLANTS
+        for name in sorted(names)
+    }
+    return BUILDS[1] if builds == {BUILDS[1]} else BUILDS[0]
 
 
 def chosen(

@@ -1,4 +1,4 @@
-"""What the options of a run say: the arguments of `driveline.simulate`, and what tells runs apart."""
+"""What the options of a run say: its settings, and what tells runs apart."""
 
 import argparse
 import logging
@@ -7,19 +7,17 @@ from shlex import quote
 from typing import Any
 
 from ..base.errors import DrivelineError
+from ..base.known_names import require_different
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
 from ..loop.built_fmus import built
-from ..loop.places import BUILD, PLACES, STEP_SIZE
+from ..loop.places import BUILD, PLACES, PLANTS, STEP_SIZE
+from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
+from ..views.signals_file import require_format
 from .options import OTHERS
 
 LOG = logging.getLogger(__name__)
-
-
-def blocks(args: argparse.Namespace) -> dict[str, Any]:
-    """The blocks of the loop beside the plant."""
-    return {place: getattr(args, place) for place in OTHERS}
 
 
 def limits(args: argparse.Namespace) -> Limits:
@@ -27,50 +25,91 @@ def limits(args: argparse.Namespace) -> Limits:
     return Limits(args.time_limit, args.unpacked_limit)
 
 
-def settings(args: argparse.Namespace, plant: str, build: str) -> dict[str, Any]:
-    """What the options of `add_loop` say for a plant and a build, as arguments of `driveline.simulate`.
+def settings(args: argparse.Namespace, plant: str) -> Settings:
+    """What the options of `add_loop` say for a plant; the FMUs are there then.
 
     Raises:
         WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter, or not
             with that value.
-        DrivelineError: a file of parameters is refused.
+        DrivelineError: an FMU is missing.
+        ParameterFileError: a file of parameters is refused.
     """
+    blocks = {place: getattr(args, place) for place in OTHERS}
+    made = built(plant, **blocks, seed=args.seed, folder=args.fmus, build=args.build, limits=limits(args))
+    # here and not above: mistakes and help are answered without them
     from ..cosimulation.mapping import parsed
     from ..cosimulation.wiring import fit, out_of_bounds, require
-    from ..simulation.simulate import looped
 
-    given = {
-        "seed": args.seed,
-        "folder": args.fmus,
-        "build": build,
-        "mapping": parsed(args.map),
-        "limits": limits(args),
-        **blocks(args),
-    }
-    system = looped(plant, given)
+    made = made.replace(mapping=parsed(args.map))
+    system = loop(made)
     parameters = _from_files(args, system) | dict(args.assignments)
     require(out_of_bounds(fit(system, parameters=parameters), parameters))
-    return given | {"parameters": parameters}
+    return made.replace(parameters=parameters)
 
 
-def settings_of_each(args: argparse.Namespace, plant: str, controllers: Mapping[str, str]) -> dict[str, dict[str, Any]]:
-    """What the options say for each of several controllers (names or files, by the names that tables give them), whose
+def settings_of_ours(args: argparse.Namespace, plants: Iterable[str]) -> dict[str, Settings]:
+    """What --vehicle, --parameters, --controller and --fmus say for each of these plants, all FMUs being the project's.
+
+    Raises:
+        DrivelineError: an FMU is missing.
+        ParameterFileError: a file of parameters is refused.
+    """
+    from ...fmus.building.parameter_files import read_files
+
+    values = read_files(args.vehicle, args.parameters)
+    made = {plant: built(plant, folder=args.fmus, controller=args.controller) for plant in plants}
+    from ..design.design_trials import loop_parameters
+
+    return {
+        plant: each.replace(parameters=loop_parameters(values, plant, args.controller)) for plant, each in made.items()
+    }
+
+
+def settings_of_plants(args: argparse.Namespace) -> dict[str, Settings]:
+    """What the options say for each of the plants that --plant names, by default all of the project.
+
+    Raises:
+        WiringError, DrivelineError, ParameterFileError: as of `settings`, or two plants have the same name.
+    """
+    plants = dict.fromkeys(args.plant or PLANTS)
+    require_different(plants)
+    return {plant: settings(args, plant) for plant in plants}
+
+
+def settings_of_pairs(args: argparse.Namespace) -> dict[tuple[str, str], Settings]:
+    """What the options say for each plant with each controller, by default all of the project, by the names of both.
+
+    Raises:
+        WiringError, DrivelineError, ParameterFileError: as of `settings_of_plants` and `settings_of_each`.
+    """
+    from ..studies.drives.replay import by_name
+
+    plants, controllers = dict.fromkeys(args.plant or PLANTS), by_name(args.controller or PLACES["controller"])
+    require_different(plants)
+    return {
+        (each.plant_name, name): each
+        for plant in plants
+        for name, each in settings_of_each(args, plant, controllers).items()
+    }
+
+
+def settings_of_each(args: argparse.Namespace, plant: str, controllers: Mapping[str, str]) -> dict[str, Settings]:
+    """What the options say for each of several controllers (names or files, by the names that tables give them); the
     FMUs are there then.
 
     Of several the file of parameters is for those that have all that it names; the others keep theirs.
 
     Raises:
-        WiringError, DrivelineError: as of `settings`, or the file is for none of them.
+        WiringError, DrivelineError, ParameterFileError: as of `settings`, or the file is for none of them.
     """
     found, refusals = {}, []
     for name, controller in controllers.items():
         one = argparse.Namespace(**{**vars(args), "controller": controller})
-        build = built(plant, args.fmus, args.build, **blocks(one))
         try:
-            found[name] = settings(one, plant, build)
+            found[name] = settings(one, plant)
         except NotTaken as refusal:
             refusals.append(refusal)
-            found[name] = settings(argparse.Namespace(**{**vars(one), "parameters": None}), plant, build)
+            found[name] = settings(argparse.Namespace(**{**vars(one), "parameters": None}), plant)
     if len(refusals) == len(controllers):
         raise refusals[0]
     return found
@@ -81,17 +120,22 @@ class NotTaken(DrivelineError):
 
 
 def other_format(args: argparse.Namespace) -> dict[str, Any]:
-    """What distinguishes a run by the format of its signals: nothing, if it is the usual one."""
+    """What distinguishes a run by the format of its signals: nothing, if it is the usual one.
+
+    Raises:
+        MissingExtra: the package that writes it is not installed.
+    """
+    require_format(args.format)
     return {} if args.format == "csv" else {"format": args.format}
 
 
 def as_given(args: argparse.Namespace) -> str:
-    """The options that make a run what it is, as they are given."""
+    """The options that make runs what they are, as they are given."""
     given = [
-        ("seed", args.seed),
-        *(("plant", plant) for plant in args.plant or ()),
+        ("seed", getattr(args, "seed", None)),
+        *((name, value) for name in ("manoeuvre", "plant") for value in getattr(args, name, None) or ()),
         *_set(args),
-        ("build", args.build),
+        ("build", getattr(args, "build", None)),
         ("fmus", None if args.fmus == BUILD else args.fmus),
     ]
     return _joined(given)
@@ -106,9 +150,9 @@ def caption(args: argparse.Namespace) -> str:
 def _set(args: argparse.Namespace) -> list[tuple[str, Any]]:
     """The options for blocks and parameters."""
     return [
-        *((place, block) for place, given in blocks(args).items() for block in _other_than(PLACES[place][0], given)),
-        *(("set", f"{name}={value!r}") for name, value in args.assignments),
-        *(("map", text) for text in args.map),
+        *((place, block) for place in OTHERS for block in _other_than(PLACES[place][0], getattr(args, place, None))),
+        *(("set", f"{name}={value!r}") for name, value in getattr(args, "assignments", ())),
+        *(("map", text) for text in getattr(args, "map", ())),
         *((name, getattr(args, name)) for name in ("vehicle", "parameters")),
     ]
 
@@ -123,29 +167,29 @@ def _joined(options: Iterable[tuple[str, Any]]) -> str:
     return " ".join(f"--{name} {quote(str(value))}" for name, value in options if value is not None)
 
 
-def distinguishing(given: Mapping[str, Any], system: System, manoeuvre: Manoeuvre | None) -> dict[str, Any]:
+def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[str, Any]:
     """What distinguishes a run of the loop from others: all that was set, and the FMUs: ours by the start values
     that they were built with, others by their content.
 
     Args:
-        given: of `settings`.
         manoeuvre: None: several.
     """
     from ...fmus.origin import origin_of
     from ..simulation.provenance import digest
     from ..simulation.simulate import start
 
+    system = loop(made)
     ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
     others = {name: path for name, path in system.instances.items() if name not in system.own}
-    own = start(manoeuvre, given["seed"]) if manoeuvre else {}
+    own = start(manoeuvre, made.seed) if manoeuvre else {}
     digests = {name: digest(path) for name, path in others.items() if path.is_file()}
     return {
         "fmus": {name: str(path) for name, path in system.instances.items()},
         "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
         **({"digests": digests} if digests else {}),
-        "parameters": own | given["parameters"],
-        "seed": given["seed"],
-        "mapping": given["mapping"],
+        "parameters": {**own, **made.parameters},
+        "seed": made.seed,
+        "mapping": made.mapping,
     }
 
 
@@ -153,7 +197,8 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     """`instance.parameter` -> value: what --vehicle and --parameters name, for every instance that has it.
 
     Raises:
-        DrivelineError: a file is refused.
+        ParameterFileError: a file is refused.
+        NotTaken: the controller does not have all that it names.
         WiringError: an FMU that is not ours has a parameter of the same name in another unit.
     """
     if args.vehicle is None and args.parameters is None:
@@ -168,10 +213,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
         for instance, interface in interfaces.items()
     }
     every = set().union(*names.values())
-    try:
-        values = read_files(args.vehicle, args.parameters, others=every)
-    except ParameterFileError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
+    values = read_files(args.vehicle, args.parameters, others=every)
     try:
         require_taken(args.parameters, every, system.instances["controller"].name)
     except ParameterFileError as refusal:

@@ -1,16 +1,20 @@
 """`driveline ssp`: the loop as a System Structure Package."""
 
 import argparse
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..base.known_names import require_different
-from ..loop.built_fmus import built, made_if_missing
-from ..loop.places import PLANTS
-from .manoeuvres import add_manoeuvre, chosen, digests, files, require_files_drivable
+from ..loop.built_fmus import made_if_missing
+from ..loop.places import BUILDS, PLANTS
+from ..loop.settings import Settings, loop
+from ..manoeuvres.manoeuvre import Manoeuvre
+from .course import job
+from .manoeuvres import add_manoeuvre, chosen
 from .options import add_loop, add_output, add_plant, add_printing
-from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import distinguishing, settings_of_plants
+
+if TYPE_CHECKING:
+    from ..cosimulation.wiring import Fit
+    from ..exchange.ssp.package import Variant
 
 DESCRIPTION = """\
 Writes the closed loop as a System Structure Package (SSP 1.0), one file driveline.ssp in which everything is
@@ -44,37 +48,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    plants = list(dict.fromkeys(args.plant or PLANTS))
-    require_different(plants)
-    builds = {plant: built(plant, args.fmus, args.build, **blocks(args)) for plant in plants}
+    given = {each.plant_name: each for each in settings_of_plants(args).values()}
     # here and not above: mistakes and help are answered without them
     from ...fmus.archive import write_archive
     from ...fmus.manoeuvre import FMU
-    from ..exchange.ssp.loop_with_source import points, with_source
-    from ..exchange.ssp.package import Variant, package
-    from ..simulation.provenance import recorded
-    from ..simulation.simulate import looped, start
+    from ..exchange.ssp.loop_with_source import with_source
+    from ..exchange.ssp.package import package
 
-    out = Printer(args)
-    (manoeuvre,) = chosen([args.manoeuvre]).values()
-    given = {Path(plant).stem: settings(args, plant, build) for plant, build in builds.items()}
-    systems = {Path(plant).stem: looped(plant, given[Path(plant).stem]) for plant in plants}
-    ssp, record = args.output / "driveline.ssp", args.output / "driveline.json"
-    same: dict[str, Any] = {name: distinguishing(given[name], systems[name], manoeuvre) for name in systems}
-    same |= {"plants": plants, "manoeuvre": manoeuvre.name} | digests([args.manoeuvre])
-    read = [*files([args.manoeuvre]).values(), args.vehicle, args.parameters]
-    with made_if_missing(FMU, args.fmus, builds[plants[0]]) as source:
-        sourced = {name: with_source(system, source) for name, system in systems.items()}
-        with recorded(record, same, sourced, read, [ssp], args.replace) as made:
-            variants = {}
-            for name, fitted in made.fits.items():
-                require_files_drivable([args.manoeuvre], {manoeuvre.name: manoeuvre}, fitted, given[name]["parameters"])
-                lines = points(manoeuvre, fitted)
-                variants[name] = Variant(fitted, start(manoeuvre, args.seed) | lines | given[name]["parameters"])
+    asked = chosen([args.manoeuvre])
+    (manoeuvre,) = asked.manoeuvres.values()
+    ssp = args.output / "driveline.ssp"
+    same: dict[str, Any] = {name: distinguishing(each, manoeuvre) for name, each in given.items()}
+    same |= {"plants": list(dict.fromkeys(args.plant or PLANTS)), "manoeuvre": manoeuvre.name} | asked.digests
+    build = next(iter(given.values())).build or BUILDS[0]
+    with made_if_missing(FMU, args.fmus, build) as source:
+        sourced = {name: with_source(loop(each), source) for name, each in given.items()}
+        with job(args, args.output / "driveline.json", same, sourced, [ssp], list(asked.files.values())) as made:
+            asked.require_drivable(made.fits, given)
+            variants = {name: _variant(fitted, manoeuvre, given[name]) for name, fitted in made.fits.items()}
             content = package(variants, manoeuvre)
             made.begin()
             write_archive(content, ssp)
-            made.files.append(ssp)
-    out.say(f"{ssp} ({ssp.stat().st_size / 1024:.0f} kB): {manoeuvre.name}, variants {', '.join(variants)}")
-    out.say(f"made by: {record} (version, FMUs, parameters, units)")
+            made.wrote(ssp)
+            made.out.say(f"{manoeuvre.name}, variants {', '.join(variants)}, {ssp.stat().st_size / 1024:.0f} kB")
     return 0
+
+
+def _variant(fitted: "Fit", manoeuvre: Manoeuvre, given: Settings) -> "Variant":
+    from ..exchange.ssp.loop_with_source import points
+    from ..exchange.ssp.package import Variant
+    from ..simulation.simulate import start
+
+    return Variant(fitted, {**start(manoeuvre, given.seed), **points(manoeuvre, fitted), **given.parameters})

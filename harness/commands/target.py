@@ -1,11 +1,5 @@
 """`driveline target`: the controller's C for a processor; each action is a module of its own, target_ACTION."""
 
-import argparse
-from importlib import import_module
-
-from ...fmus.building.options import add_parameter_files
-from ..loop.places import PLACES
-
 DESCRIPTION = """\
 The controller on the processor that it is meant for, in C (docs/target.md).
 """
@@ -20,26 +14,9 @@ examples:
 """
 
 ACTIONS = {
-    "export": "write the C of a controller",
-    "build": "build the FMU of a controller that runs on an emulated Cortex-M4F",
-    "image": "compile its image for that target, and describe it for calibration tools (A2L)",
-    "record": "run it on an emulated Cortex-M4F, off-line, and compare",
+    "export": ("target-export", "write the C of a controller"),
+    "build": ("target-build", "build the FMU of a controller that runs on an emulated Cortex-M4F"),
+    "image": ("target-image", "compile its image for that target, and describe it for calibration tools (A2L)"),
+    "record": ("target-record", "run it on an emulated Cortex-M4F, off-line, and compare"),
 }
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    for name, text in ACTIONS.items():
-        action = actions.add_parser(name, help=text, formatter_class=argparse.RawDescriptionHelpFormatter)
-        action.command = f"target-{name}"  # type: ignore[attr-defined]  # its arguments are added when it is asked for
-
-
-def add_controller(parser: argparse.ArgumentParser) -> None:
-    """Which controller an action is for, with which values."""
-    names = PLACES["controller"]
-    parser.add_argument("--controller", choices=names, default=names[0], help="(default: %(default)s)")
-    add_parameter_files(parser)
-
-
-def run(args: argparse.Namespace) -> int:
-    return import_module(f".target_{args.action}", __package__).run(args)
+"""Each with its module, and what it does."""

@@ -3,9 +3,8 @@
 import argparse
 
 from ...fmus.building.options import output_folder
-from .options import add_printing
+from .options import add_controller, add_printing
 from .printing import Printer
-from .target import add_controller
 
 DESCRIPTION = """\
 Builds the FMU of a controller whose start, step and outputs are computed by its C on an emulated Cortex-M4F (QEMU,
@@ -27,10 +26,9 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_controller(parser)
-    action = parser.add_argument(
+    parser.add_argument(
         "--output", type=output_folder, default="build/on_target", metavar="FOLDER", help="(default: %(default)s)"
     )
-    action.complete = "directory"  # type: ignore[attr-defined]
     add_printing(parser)
 
 

@@ -3,9 +3,8 @@
 import argparse
 
 from ..base.errors import DrivelineError
-from .options import add_output, add_printing
+from .options import add_controller, add_output, add_printing
 from .printing import Printer
-from .target import add_controller
 
 DESCRIPTION = """\
 Writes the C of a controller: NAME.h and NAME.c, the structs and the arithmetic of its FMU in C99 without
@@ -49,5 +48,5 @@ def run(args: argparse.Namespace) -> int:
             require_same_text(text, path)
     for path, text in files.items():
         write_text(text, path)
-        Printer(args).say(f"written: {path}")
+    Printer(args).files(files)
     return 0

@@ -2,9 +2,8 @@
 
 import argparse
 
-from .options import add_output, add_printing
+from .options import add_controller, add_output, add_printing
 from .printing import Printer
-from .target import add_controller
 
 DESCRIPTION = """\
 Compiles the image with a controller behind a link for the emulated Cortex-M4F, controller.elf, and describes it for
@@ -32,6 +31,5 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..exchange.target.target_build import write_image
 
-    for path in write_image(args.controller, args.output, args.vehicle, args.parameters):
-        Printer(args).say(f"written: {path}")
+    Printer(args).files(write_image(args.controller, args.output, args.vehicle, args.parameters))
     return 0

@@ -1,15 +1,13 @@
 """`driveline target record`: the controller's C on the emulated target, off-line, beside the same on this machine."""
 
 import argparse
-from pathlib import Path
-from typing import Any
 
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
-from ..loop.built_fmus import built
+from ..loop.places import PLACES
+from .course import job
 from .options import add_loop, add_output, add_plant, add_printing
-from .printing import Printer
-from .settings import blocks, distinguishing, settings
+from .settings import distinguishing, settings
 
 DESCRIPTION = """\
 Runs the C of a controller on an emulated Cortex-M4F (QEMU, machine mps2-an386) and compares every sample with the
@@ -41,37 +39,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from ..loop.places import PLACES
-
     if args.controller not in PLACES["controller"]:
         raise DrivelineError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
-    build = built(args.plant, args.fmus, args.build, **blocks(args))
+    given = settings(args, args.plant)
     # here and not above: mistakes and help are answered without them
-    from ..exchange.target.offline_test import record, write
-    from ..simulation.provenance import recorded
-    from ..simulation.simulate import looped
+    from ..exchange.target.offline_test import announce, record, write
 
-    out = Printer(args)
-    given: dict[str, Any] = settings(args, args.plant, build)
-    system, plant = looped(args.plant, given), Path(args.plant).stem
-    same = distinguishing(given, system, None)
-    read = [args.vehicle, args.parameters]
-    with recorded(
-        args.output / "target.json", same, {plant: system}, read, [args.output / "target.md"], args.replace
-    ) as made:
-        found = record(args.controller, system, args.plant, given)
+    plant, page = given.plant_name, args.output / "target.md"
+    with job(args, args.output / "target.json", distinguishing(given), {plant: given}, [page]) as made:
+        found = record(given)
         made.begin()
-        made.files += write(found, args.controller, plant, args.output)
-    for each in found.comparisons:
-        out.say(
-            f"{each.case.name}: {len(each.case.inputs)} samples, {each.differing} with a differing bit, T_ref within "
-            f"{each.T_ref:.1g} N.m of double precision, at most {each.instructions[1]} instructions"
-        )
-    for each in found.loops:
-        out.say(
-            f"{each.manoeuvre} in the loop: {each.differing} samples differ from off-line, T_ref within "
-            f"{each.T_ref:.1g} N.m of the loop in double precision"
-        )
-    for file in (*made.files, args.output / "target.json"):
-        out.say(f"written: {file}")
+        made.wrote(*write(found, args.controller, plant, args.output))
+        made.tell(announce, found)
     return int(not found.passed)

@@ -10,7 +10,9 @@ import numpy as np
 
 from ...fmus.building.parameter_files import for_instances, read_vehicle
 from ...fmus.catalogue import EVERY
-from ..loop.places import BUILD, PLACES
+from ..loop.places import PLACES
+from ..loop.settings import Settings
+from ..loop.settings import settings as settings_of
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..metrics.declaration import declared
 from ..metrics.evaluate import evaluate
@@ -64,7 +66,7 @@ def of_controller(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
 def settled(plant: str, manoeuvre: str, parameters: Mapping[str, Any], seed: int = 1) -> tuple[float, float]:
     """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value."""
     course = MANOEUVRES[manoeuvre]
-    metrics = evaluate(simulate(course, plant, True, parameters=parameters, seed=seed), course)
+    metrics = evaluate(simulate(course, plant, parameters=parameters, seed=seed), course)
     return metrics.settling_time, metrics.overshoot
 
 
@@ -76,28 +78,15 @@ def parameters(trial: Trial) -> dict[str, Any]:
     return loop_parameters(values, trial.plant)
 
 
-def measured(
-    trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), folder: Path = BUILD, build: str | None = None
-) -> Metrics:
+def measured(trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), settings: Settings | None = None) -> Metrics:
     """The metrics of a trial, each the mean over the seeds of the noise.
 
     Args:
-        folder, build: see `driveline.simulate`.
+        settings: of the runs beside what the trial says.
     """
-    manoeuvre = MANOEUVRES[trial.manoeuvre]
-    runs = [
-        simulate(
-            manoeuvre,
-            plant=trial.plant,
-            control=trial.gains is not Gains.NONE,
-            parameters=parameters(trial),
-            seed=seed,
-            folder=folder,
-            build=build,
-        )
-        for seed in seeds
-    ]
-    return mean([evaluate(results, manoeuvre) for results in runs])
+    manoeuvre, control = MANOEUVRES[trial.manoeuvre], trial.gains is not Gains.NONE
+    made = settings_of(settings, plant=trial.plant, control=control, parameters=parameters(trial))
+    return mean([evaluate(simulate(manoeuvre, made, seed=seed), manoeuvre) for seed in seeds])
 
 
 def mean(found: Sequence[Metrics]) -> Metrics:

@@ -9,15 +9,16 @@ import numpy as np
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..cosimulation.wiring import Fit, fit, out_of_bounds, require
+from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..metrics.evaluate import evaluate
 from ..metrics.run_metrics import Metrics
-from ..simulation.simulate import looped, simulate
+from ..simulation.simulate import simulate
 from .knobs import CAR, GAINS, Knob, knobs
 from .request import Request, characterised, parameters
 
-Given = Mapping[tuple[str, str], tuple[str, Mapping[str, Any]]]
-"""By the names of plant and controller the plant (name or file) and what else `driveline.simulate` takes."""
+Given = Mapping[tuple[str, str], Settings]
+"""The settings of the loops by the names of plant and controller."""
 
 
 class Run(NamedTuple):
@@ -51,7 +52,7 @@ class RequestRunner:
         self._undamped: tuple[Any, Run] | None = None
         self.controllers = list(dict.fromkeys(controller for _, controller in given))
         fits = [self.fit(plant, self.controllers[0]) for plant in self.plants]
-        start = {key: value for plant in self.plants for key, value in self.settings(plant)["parameters"].items()}
+        start = {key: value for plant in self.plants for key, value in self.settings(plant).parameters.items()}
         self.car: list[Knob] = list(knobs(CAR, fits, start))
         self.gains: list[Knob] = list(knobs(GAINS, fits, start))
 
@@ -59,13 +60,13 @@ class RequestRunner:
     def plants(self) -> list[str]:
         return list(dict.fromkeys(plant for plant, _ in self._given))
 
-    def settings(self, plant: str, controller: str | None = None) -> Mapping[str, Any]:
+    def settings(self, plant: str, controller: str | None = None) -> Settings:
         """Of the loop with a controller, by default with ours."""
-        return self._given[plant, controller or self.controllers[0]][1]
+        return self._given[plant, controller or self.controllers[0]]
 
     @cache  # noqa: B019 (a runner lives as long as the program)
     def fit(self, plant: str, controller: str) -> Fit:
-        return fit(looped(*self._given[plant, controller]))
+        return fit(loop(self._given[plant, controller]))
 
     def require_parameter(self, key: str) -> None:
         """Refuses the name of a parameter, `instance.name`, that no loop has.
@@ -99,7 +100,7 @@ class RequestRunner:
         """Of the loop with a controller."""
         names, settings = self._names(request.plant, controller), self.settings(request.plant, controller)
         gains = self._changed_gains(request) if controller == self.controllers[0] else {}
-        return parameters(request, names, settings["parameters"], gains)
+        return parameters(request, names, settings.parameters, gains)
 
     def _changed_gains(self, request: Request) -> dict[str, float]:
         if request.character == 0.5:
@@ -126,6 +127,6 @@ class RequestRunner:
     def _run(self, request: Request, controller: str, control: bool) -> Run:
         manoeuvre, given = MANOEUVRES[request.manoeuvre], self.parameters(request, controller)
         require(out_of_bounds(self.fit(request.plant, controller), given))
-        plant, settings = self._given[request.plant, controller]
-        results = simulate(manoeuvre, plant, control, **{**settings, "parameters": given})
+        settings = self._given[request.plant, controller]
+        results = simulate(manoeuvre, settings, control=control, parameters=given)
         return Run(results, evaluate(results, manoeuvre))

@@ -5,62 +5,63 @@ from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from ...fmus.errors import BuildError
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
-from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile, chosen_build, loop
+from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
+from .settings import Changes, Settings, chosen_build, loop, settings
 from .stale_fmus import warn_of_stale
 
 if TYPE_CHECKING:
     from ...fmus.fmu import Fmu
 
 
-def built(plant: NameOrFile | None = None, folder: Path = BUILD, build: str | None = None, **others: Any) -> str:
-    """The build that runs with that plant and the other blocks, which is the one asked for if there is one.
+def built(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> Settings:
+    """The settings with the build that runs, which is the one asked for if there is one; arguments as of
+    `harness.loop.settings.settings`.
 
     The project's own FMUs in BUILD are built where they are missing or stale; others are said to be stale.
-
-    Args:
-        plant, others: what stands in the places of the loop, see `harness.loop.places.loop`.
 
     Raises:
         WiringError: there is no such block.
         DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
     """
-    if folder == BUILD:
-        build = _refreshed(plant, build, **others)
-    build = build or chosen_build(plant, folder, **others)
-    system = loop(plant, folder, build, **others)
+    made = settings(given, **changes)
+    if made.folder == BUILD:
+        made = _refreshed(made)
+    made = made.replace(build=made.build or chosen_build(made))
+    system = loop(made)
     missing = [path for name, path in system.instances.items() if name in system.own and not path.is_file()]
     if missing:
-        where = "" if folder == BUILD else f" --output {quote(str(folder))}"
-        only = f" --build {NATIVE}" if build == NATIVE else ""
+        where = "" if made.folder == BUILD else f" --output {quote(str(made.folder))}"
+        only = f" --build {NATIVE}" if made.build == NATIVE else ""
         name = f" {missing[0].stem}" if missing[0].stem in COMPARATORS else ""
         raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{name}{only}{where}` makes it")
     warn_of_stale(system)
-    return build
+    return made
 
 
-def _refreshed(plant: NameOrFile | None, build: str | None, **others: Any) -> str | None:
-    """Builds what is missing or stale in BUILD for a loop; the build that runs, None for that of `chosen_build`."""
+def _refreshed(made: Settings) -> Settings:
+    """Builds what is missing or stale in BUILD for a loop; with another build where the native one is not possible."""
     from ...fmus.building.builds import NotPossible, refreshed
 
-    system = loop(plant, BUILD, build or NATIVE, **others)
+    build = made.build or NATIVE
+    system = loop(made, build=build)
     names = [path.stem for name, path in system.instances.items() if name in system.own]
     try:
-        made = refreshed(names, BUILD, build or NATIVE)
+        new = refreshed(names, BUILD, build)
     except NotPossible as reason:
-        if build is not None:
+        if made.build is not None:
             raise DrivelineError(str(reason)) from reason
         warn_once(f"no native FMUs: {reason}")
-        return _refreshed(plant, BUILDS[0], **others)
+        return _refreshed(made.replace(build=BUILDS[0]))
     except BuildError as reason:
         raise DrivelineError(str(reason)) from reason
-    if made:
-        warn_once(f"built, as missing or stale: {', '.join(map(str, made))}")
-    return build
+    if new:
+        warn_once(f"built, as missing or stale: {', '.join(map(str, new))}")
+    return made
 
 
 @contextmanager

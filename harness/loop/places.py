@@ -1,12 +1,9 @@
 """The closed loop as data: its places, what stands in them, how they are connected, and what a run gives."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
-from ..base.errors import WiringError
-from ..base.known_names import nearest
-from ..cosimulation.limits import USUAL, Limits
-from ..cosimulation.system import Connection, Port, System
+from ..cosimulation.system import Connection, Port
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -40,7 +37,7 @@ STEP_SIZE = 1e-3
 """Communication step of the loop in s, unless another is asked for."""
 
 T_S = 2e-3
-"""Sample time of the controller in s."""
+"""Sample time of the controller in s; no FMU tells it, so the harness declares it, here alone."""
 
 NameOrFile = str | Path
 """What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""
@@ -99,83 +96,3 @@ OPTIONAL: Mapping[str, float | None] = {
     "can.seed": None,
 }
 """A controller need not use every measurement, and without `enable` it is always on; not every sensor has noise."""
-
-
-def loop(
-    plant: NameOrFile | None = None,
-    folder: Path = BUILD,
-    build: str | None = None,
-    *,
-    controller: NameOrFile | None = None,
-    motor: NameOrFile | None = None,
-    can: NameOrFile | None = None,
-    mapping: Mapping[str, str] | None = None,
-    limits: Limits = USUAL,
-) -> System:
-    """The closed loop: controller, motor, plant and the wheel speeds over CAN.
-
-    Args:
-        plant, controller, motor, can: one of PLACES, or the path of an FMU; None: the first of PLACES.
-        folder: of the built FMUs.
-        build: one of BUILDS; None: see `chosen_build`.
-        mapping: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in the place of the plant,
-            see `harness.cosimulation.mapping`.
-        limits: of FMUs that are given by their path.
-
-    Raises:
-        WiringError: there is no such block or build.
-    """
-    blocks = {"plant": plant, "controller": controller, "motor": motor, "can": can}
-    files = _files(blocks, folder, build or _chosen_build(blocks, folder))
-    return System(
-        instances=files,
-        connections=CONNECTIONS + (TRUTH if files["controller"].stem == "PerfectState" else ()),
-        inputs=INPUTS,
-        parameters=PARAMETERS,
-        outputs=OUTPUTS,
-        mapping=dict(mapping or {}),
-        optional=OPTIONAL,
-        own=frozenset(place for place, block in blocks.items() if block is None or str(block) in PLACES[place]),
-        limits=limits,
-    )
-
-
-def chosen_build(
-    plant: NameOrFile | None = None,
-    folder: Path = BUILD,
-    *,
-    controller: NameOrFile | None = None,
-    motor: NameOrFile | None = None,
-    can: NameOrFile | None = None,
-) -> str:
-    """The build that runs if none is asked for: native where all FMUs of the loop have that build.
-
-    Raises:
-        WiringError: there is no such block.
-    """
-    return _chosen_build({"plant": plant, "controller": controller, "motor": motor, "can": can}, folder)
-
-
-def _chosen_build(blocks: Mapping[str, NameOrFile | None], folder: Path) -> str:
-    native = _files(blocks, folder, NATIVE)
-    return NATIVE if all(path.is_file() for path in native.values()) else "python"
-
-
-def _files(blocks: Mapping[str, NameOrFile | None], folder: Path, build: str) -> dict[str, Path]:
-    if build not in BUILDS:
-        raise WiringError(f"unknown build {build}; {nearest(build, BUILDS)}")
-    if build == NATIVE:
-        folder = folder / NATIVE
-    return {place: _file(place, blocks[place], names, folder) for place, names in PLACES.items()}
-
-
-def _file(place: str, block: NameOrFile | None, names: Sequence[str], folder: Path) -> Path:
-    if block is None:
-        block = names[0]
-    if str(block) in names:
-        return folder / f"{block}.fmu"
-    path = Path(block)
-    if path.suffix == ".fmu":
-        return path
-    name = str(block) or "(an empty name)"
-    raise WiringError(f"unknown {place} {name}; {nearest(str(block), names)} (or give the path of a .fmu file)")

@@ -3,15 +3,23 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import asin
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base.errors import WiringError
+from ..cosimulation.experiment import require_steps
 from ..cosimulation.interface import Interface
-from ..manoeuvres.road_load import RoadLoad
+from ..cosimulation.wiring import fit, out_of_bounds, require
+from ..loop.places import T_S
+from ..loop.settings import Settings, loop
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.prbs import binary_torque
+from ..manoeuvres.road_load import RoadLoad, torque_limit
 from ..manoeuvres.speed_following import SIN_MAX
-from ..metrics.evaluate import T_S, at_samples
+from ..metrics.evaluate import at_samples
 from ..recordings.quantities import QUANTITIES, aliases
+from .simulate import start
 
 RECORDED = {
     "omega_1": "motor.omega_1_meas",
@@ -82,6 +90,36 @@ def require_sensors(interfaces: Mapping[str, Interface]) -> None:
             raise WiringError(
                 f"{interfaces[instance].path} has no {', '.join(lacking)}; a test drive records {', '.join(outputs)}"
             )
+
+
+class PlannedDrive(NamedTuple):
+    """A test drive before it is driven, the road load of the plant, and the slope in rad on which it keeps speed."""
+
+    manoeuvre: Manoeuvre
+    load: RoadLoad
+    slope: float
+
+
+def planned(settings: Settings, demand: Mapping[str, Any], v_0: float) -> PlannedDrive:
+    """A test drive of a loop under a pseudo-random binary torque.
+
+    Args:
+        demand: arguments of `harness.manoeuvres.prbs.binary_torque`: mean, amplitude, clock, order and duration.
+        v_0: speed in m/s.
+
+    Raises:
+        WiringError: the FMUs do not have what is recorded, or nobody can drive so.
+    """
+    fitted = fit(loop(settings))
+    require_sensors(fitted.interfaces)
+    require_steps(demand["duration"], settings.step_size)
+    T_max = torque_limit(fitted.interfaces["motor"], settings.parameters)
+    require_demand(demand["mean"], demand["amplitude"], demand["clock"], T_max)
+    load = RoadLoad.of_plant(fitted.interfaces["plant"], settings.parameters)
+    slope = holding_slope(load, demand["mean"], v_0)
+    manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
+    require(out_of_bounds(fitted, {**start(manoeuvre), **settings.parameters}))
+    return PlannedDrive(manoeuvre, load, slope)
 
 
 def holding_slope(load: RoadLoad, mean: float, v_0: float) -> float:

@@ -3,11 +3,10 @@
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from ..base.errors import DrivelineError
 from ..cosimulation.system import System
-from ..loop.places import PLACES
+from ..loop.settings import Settings
 from .provenance import digest
 
 
@@ -16,10 +15,10 @@ def absolute(block: str) -> str:
     return str(Path(block).absolute()) if Path(block).suffix == ".fmu" else block
 
 
-def anywhere(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of `driveline.simulate` with whole paths, so that any process can make the runs."""
-    places = {place: absolute(str(settings[place])) for place in PLACES if settings.get(place)}
-    return {**settings, **places, "folder": Path(settings["folder"]).absolute()}
+def anywhere(settings: Settings) -> Settings:
+    """The settings with whole paths, so that any process can make the runs."""
+    blocks = {place: absolute(str(block)) for place, block in settings.blocks.items()}
+    return settings.replace(**blocks, folder=settings.folder.absolute())  # type: ignore[arg-type]
 
 
 def digests(systems: Iterable[System]) -> dict[Path, str]:

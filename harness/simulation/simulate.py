@@ -3,59 +3,40 @@
 import logging
 from collections.abc import Mapping
 from numbers import Real
-from pathlib import Path
 from sys import float_info
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from ..base.collected_warnings import warn_once
 from ..base.errors import WiringError
+from ..base.plain_text import plain
 from ..cosimulation.experiment import Experiment, Source, require_steps
-from ..cosimulation.limits import USUAL, Limits
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
-from ..cosimulation.system import Port, Scheme, System
-from ..loop.places import BUILD, INPUTS, PARAMETERS, STEP_SIZE, NameOrFile, loop
+from ..cosimulation.system import Port
+from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
+from ..loop.settings import Changes, Settings, loop
+from ..loop.settings import settings as settings_of
 from ..loop.stale_fmus import warn_of_stale
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
-from ..metrics.evaluate import T_S
-from .arguments import require_arguments
 
 LOG = logging.getLogger(__name__)
 
 
 def simulate(
-    manoeuvre: Manoeuvre,
-    plant: NameOrFile | None = None,
-    control: bool = True,
-    parameters: Mapping[str, float] | None = None,
-    step_size: float = STEP_SIZE,
-    scheme: Scheme = Scheme.PROPAGATED,
-    seed: int = 1,
-    folder: str | Path = BUILD,
-    build: str | None = None,
-    *,
-    controller: NameOrFile | None = None,
-    motor: NameOrFile | None = None,
-    can: NameOrFile | None = None,
-    mapping: Mapping[str, str] | None = None,
-    limits: Limits = USUAL,
+    manoeuvre: Manoeuvre, settings: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
 ) -> Results:
     """Drives the closed loop through a manoeuvre.
 
+    `simulate(tipin)`, `simulate(tipin, "ValidationVehicle", seed=7)` and `simulate(tipin, settings, control=False)`
+    are what there is to write: the keyword arguments are the fields of `harness.loop.settings.Settings`.
+
     Args:
-        plant, controller, motor, can: name of a block of the project, or path of an FMU; see
-            `harness.loop.places.loop`.
-        control: whether the damping control is enabled.
-        parameters: `instance.variable` -> value, beside the start and the seeds that this sets.
-        step_size: communication step in s.
-        seed: of all noise and jitter.
-        folder: of the built FMUs.
-        build: "native" or "python"; None: see `harness.loop.places.chosen_build`.
-        mapping: names of the loop -> names of an FMU, see `harness.cosimulation.mapping`.
-        limits: of FMUs that are given by their path.
+        settings: of the run, or only the name or file of its plant; by default those of `Settings()`.
+        changes: fields of the settings that are to be others: plant, controller, motor, can, control, parameters,
+            step_size, scheme, seed, folder, build, mapping, limits.
 
     Returns:
         Structured array, see `harness.cosimulation.master.Loop.run`, with the units of its columns.
@@ -65,30 +46,26 @@ def simulate(
         MemoryError: the results of so many steps do not fit in memory.
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
-    blocks: dict[str, Any] = {"plant": plant, "controller": controller, "motor": motor, "can": can}
-    require_arguments(manoeuvre=manoeuvre, **blocks, control=control, parameters=parameters, step_size=step_size)
-    require_arguments(scheme=scheme, seed=seed, folder=folder, build=build, mapping=mapping, limits=limits)
-    given = _checked(start(manoeuvre, seed) | dict(parameters or {}))
-    require_steps(manoeuvre.duration, step_size)
-    _warn(manoeuvre, given, step_size)
-    system = loop(folder=Path(folder), build=build, mapping=mapping, limits=limits, **blocks)
+    if not isinstance(manoeuvre, Manoeuvre):
+        said = plain(repr(manoeuvre), 60)
+        raise WiringError(f"manoeuvre = {said}: it must be a Manoeuvre, such as MANOEUVRES['tipin15']")
+    made = settings_of(settings, **changes)
+    given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
+    require_steps(manoeuvre.duration, made.step_size)
+    _warn(manoeuvre, given, made.step_size)
+    system = loop(made)
     warn_of_stale(system)
     return run(
         system,
         Experiment(
             duration=manoeuvre.duration,
-            step_size=step_size,
-            inputs=signals(manoeuvre, control, step_size),
+            step_size=made.step_size,
+            inputs=signals(manoeuvre, made.control, made.step_size),
             parameters=given,
-            scheme=scheme,
+            scheme=made.scheme,
             label=manoeuvre.name,
         ),
     )
-
-
-def looped(plant: NameOrFile, settings: Mapping[str, Any]) -> System:
-    """The loop that `simulate` runs with a plant and these further arguments."""
-    return loop(plant, **{name: value for name, value in settings.items() if name not in ("parameters", "seed")})
 
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:

@@ -8,8 +8,8 @@ from rich.table import Table
 from rich.text import Text
 
 from ..metrics.declaration import declared
-from ..metrics.run_metrics import RideMetrics
-from .metrics_table import RIDES_SHOWN, SHOWN, Row, cells, ride_rows
+from ..metrics.run_metrics import Metrics, RideMetrics
+from .metrics_table import RIDES_SHOWN, SHOWN, Row, cells, legend, reasons, ride_rows
 
 NUMBER_WIDTH = 5
 """Columns of the terminal that a number may need."""
@@ -60,6 +60,18 @@ def runs_table(rows: Sequence[Row]) -> Table:
             table.add_row(f"[bold]{row.plant}[/bold]")
         table.add_row(*cells(row), style="dim" if not row.control else "")
     return table
+
+
+def print_runs(rows: Sequence[Row]) -> None:
+    """Prints the table of the runs, why it has dashes, and what its columns are."""
+    print_table(runs_table(rows))
+    print("\n".join([*reasons(rows), legend(Metrics), ""]))
+
+
+def print_rides(rides: Mapping[str, RideMetrics], title: str) -> None:
+    """Prints the table of the rides, why it has dashes, and what its columns are."""
+    print_table(rides_table(rides, title))
+    print("\n".join([*rides_reasons(rides), legend(RideMetrics), ""]))
 
 
 def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:

@@ -13,7 +13,8 @@ from driveline.fmus.building.builds import build_fmus
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.exchange.compliance.check import check
-from driveline.harness.loop.places import NATIVE, PLANTS, loop
+from driveline.harness.loop.places import NATIVE, PLANTS
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
@@ -79,7 +80,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         try:
             if random.random() < CHECKS:
                 list(check(path, quick=True))
-            fit(loop(str(path), folder, NATIVE))
+            fit(loop(str(path), folder=folder, build=NATIVE))
             if random.random() > RUNS:
                 return "fits"
             simulate(MANOEUVRES["tipin0"], plant=str(path), folder=folder, build=NATIVE)

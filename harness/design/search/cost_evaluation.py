@@ -1,7 +1,7 @@
 """Costs of a controller: on a car, in the runs that count, against what the reference makes of them.
 
 ```python
-evaluation = CostEvaluation("SpeedWashout")
+evaluation = CostEvaluation(Settings(controller="SpeedWashout"))
 with evaluation.opened() as costs_of:
     print([costs.total() for costs in costs_of([{"k_v": 1.5}, {"k_v": 2.5}])])
 ```
@@ -15,11 +15,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...cosimulation.system import System
-from ...loop.places import BUILD, PLACES, PLANTS, loop
+from ...loop.places import PLACES, PLANTS
+from ...loop.settings import Settings, loop
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import many
-from ...simulation.same_fmus import digests, require_same_fmus
+from ...simulation.same_fmus import anywhere, digests, require_same_fmus
 from ...simulation.simulate import simulate
 from ..design import design
 from ..design_weights import records
@@ -47,33 +48,34 @@ class CostEvaluation:
     """A controller on a car.
 
     Attributes:
-        controller: by name.
+        settings: of the loop with the controller; plant, parameters and seed are those of the runs.
         car: entries of the vehicle file.
-        folder, build: of the FMUs, see `driveline.simulate`.
         runs: that count.
     """
 
-    controller: str = REFERENCE
+    settings: Settings = field(default_factory=Settings)
     car: Mapping[str, Any] = field(default_factory=dict)
-    folder: Path = BUILD
-    build: str | None = None
     runs: Sequence[Run] = field(default_factory=lambda: RUNS)
+
+    @property
+    def controller(self) -> str:
+        """Its name."""
+        return str(self.settings.controller)
 
     def system(self, plant: str, controller: str) -> System:
         """The loop with a plant and a controller."""
-        return loop(plant, self.folder, self.build, controller=controller)
+        return loop(self.settings, plant=plant, controller=controller)
 
     def measured(self, trial: Trial) -> Metrics:
         """The metrics of one run."""
         controller, parameters, run = trial
         results = simulate(
             run.manoeuvre,
+            self.settings,
             plant=run.plant,
             controller=controller,
             parameters=deviating({**self.car, **parameters}, run.plant, controller, run.deviation),
             seed=run.seed,
-            folder=self.folder,
-            build=self.build,
         )
         return evaluate(results, run.manoeuvre)
 
@@ -96,7 +98,7 @@ class CostEvaluation:
         Args:
             workers, scheduler: see `harness.simulation.many_runs.run_many`.
         """
-        wanted, evaluation = self.digests(), replace(self, folder=self.folder.absolute())
+        wanted, evaluation = self.digests(), replace(self, settings=anywhere(self.settings))
 
         def measured(trial: Trial) -> Metrics:
             require_same_fmus(wanted)

@@ -1,13 +1,14 @@
 """The controller on the target in the loop, beside the loop with the model and beside off-line."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...cosimulation.system import System
+from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.evaluate import at_samples
 from ...simulation.simulate import simulate
@@ -34,14 +35,14 @@ class InLoop(NamedTuple):
 
 
 def in_loop(
-    programs: Programs, controller: str, system: System, plant: str, names: Sequence[str], given: Mapping[str, Any]
+    programs: Programs, controller: str, system: System, names: Sequence[str], settings: Settings
 ) -> Iterator[InLoop]:
     """Drives every manoeuvre.
 
     Args:
         controller: its name.
         names: of its inputs.
-        given: settings of the loop.
+        settings: of the loop.
 
     Raises:
         SimulationError: the target was lost, hung or crashed.
@@ -49,8 +50,8 @@ def in_loop(
     with TemporaryDirectory(prefix="driveline-") as temporary:
         path = built_on_target(controller, Path(temporary))
         for manoeuvre in MANOEUVRES.values():
-            there = at_samples(simulate(manoeuvre, plant=plant, **{**given, "controller": path}))
-            here = at_samples(simulate(manoeuvre, plant=plant, **given))
+            there = at_samples(simulate(manoeuvre, settings, controller=path))
+            here = at_samples(simulate(manoeuvre, settings))
             off_line = responses(programs.single(), fed(manoeuvre, there, system, names))
             T_ref = np.array([answer.outputs[0] for answer in off_line])
             distance, twist = (np.abs(there[name] - here[name]) for name in ("controller.T_ref", "plant.T_gear"))

@@ -3,12 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf, nan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...cosimulation.interface import Interface
 from ...cosimulation.system import System
+from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
@@ -51,14 +52,14 @@ class Case(NamedTuple):
     drawn: bool = False
 
 
-def recorded(manoeuvre: Manoeuvre, system: System, plant: str, names: Sequence[str], given: Mapping[str, Any]) -> Case:
+def recorded(manoeuvre: Manoeuvre, system: System, names: Sequence[str], settings: Settings) -> Case:
     """What the controller of a loop got in a manoeuvre.
 
     Args:
         names: of its inputs.
-        given: settings of the run, see `harness.commands.settings`.
+        settings: of the loop.
     """
-    return fed(manoeuvre, at_samples(simulate(manoeuvre, plant=plant, **given)), system, names)
+    return fed(manoeuvre, at_samples(simulate(manoeuvre, settings)), system, names)
 
 
 def fed(manoeuvre: Manoeuvre, results: np.ndarray, system: System, names: Sequence[str]) -> Case:
@@ -69,14 +70,14 @@ def fed(manoeuvre: Manoeuvre, results: np.ndarray, system: System, names: Sequen
 
 
 def cases_in_loop(
-    system: System, interfaces: Mapping[str, Interface], plant: str, names: Sequence[str], given: Mapping[str, Any]
+    system: System, interfaces: Mapping[str, Interface], names: Sequence[str], settings: Settings
 ) -> Iterator[Case]:
     """What it got in every manoeuvre and on the recorded drive; arguments as for `recorded`."""
     for manoeuvre in MANOEUVRES.values():
-        yield recorded(manoeuvre, system, plant, names, given)
-    track = Track.of(read_drive(Path(TOWN_DRIVE)), torque_limit(interfaces["motor"], given["parameters"]))
-    load = RoadLoad.of_plant(interfaces["plant"], given["parameters"])
-    yield recorded(followed(track, load, plant, given)[0], system, plant, names, given)
+        yield recorded(manoeuvre, system, names, settings)
+    track = Track.of(read_drive(Path(TOWN_DRIVE)), torque_limit(interfaces["motor"], settings.parameters))
+    load = RoadLoad.of_plant(interfaces["plant"], settings.parameters)
+    yield recorded(followed(track, load, settings)[0], system, names, settings)
 
 
 def random_inputs(cases: Sequence[Case], seed: int, samples: int = SAMPLES) -> Iterator[Case]:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from ...views.colours import BLUE, VERMILION
 from ...views.figure_style import plot
 from ...views.panels import DASHED, Axis, Curve, Panel

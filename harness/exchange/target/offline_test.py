@@ -1,8 +1,6 @@
 """The off-line test of the controller on the target: all cases, and what it writes."""
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -12,9 +10,9 @@ from ...base.atomic_files import write_text
 from ...base.csv_file import write_csv
 from ...base.errors import DrivelineError
 from ...base.progress import progress
-from ...cosimulation.system import System
 from ...cosimulation.wiring import fit
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
+from ...loop.settings import Settings, loop
 from .c_export import with_values
 from .comparison import Comparison, compare, responses
 from .in_loop import in_loop
@@ -33,24 +31,22 @@ PARTS = ("NoDamping", "LinearObserver", "PaperObserver")
 """Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
 
 
-def record(controller: str, system: System, plant: str, given: Mapping[str, Any]) -> Record:
+def record(settings: Settings) -> Record:
     """Runs all cases on the target and on this machine, and every manoeuvre with the target in the loop.
 
     Args:
-        controller: its name.
-        system: the loop with it.
-        plant: its name or file.
-        given: settings of the loop, see `harness.commands.settings`.
+        settings: of the loop with the controller, which is one of the project.
 
     Raises:
         DrivelineError: a compiler or the emulator is missing.
         SimulationError: the target was lost, hung or crashed.
     """
+    controller, system = str(settings.controller), loop(settings)
     interfaces = fit(system).interfaces
     own = interfaces["controller"]
     inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
     values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
-    values |= {name: given["parameters"].get(f"controller.{name}", value) for name, value in values.items()}
+    values |= {name: settings.parameters.get(f"controller.{name}", value) for name, value in values.items()}
     sources = with_values(controller, "float", values)
     try:
         found = findings(sources)
@@ -58,16 +54,16 @@ def record(controller: str, system: System, plant: str, given: Mapping[str, Any]
         raise DrivelineError(str(refusal)) from refusal
     with programs(controller, values) as made, progress(MANY, "target") as done:
         comparisons: list[Comparison] = []
-        cases = list(cases_in_loop(system, interfaces, plant, inputs, given))
-        cases += random_inputs(cases, given["seed"])
+        cases = list(cases_in_loop(system, interfaces, inputs, settings))
+        cases += random_inputs(cases, settings.seed)
         for case in cases:
             comparisons.append(compare(made, case, outputs))
             done(len(comparisons))
         states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
-        comparisons.append(compare(made, random_states(cases[-2], states, given["seed"]), outputs))
+        comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
         loops = []
-        for loop in in_loop(made, controller, system, plant, inputs, given):
-            loops.append(loop)
+        for each in in_loop(made, controller, system, inputs, settings):
+            loops.append(each)
             done(len(comparisons) + len(loops))
         with made.target() as link:
             size = size_of(made.image, made.name, link)
@@ -82,6 +78,20 @@ def _part(controller: str, case: Case) -> Part:
         most = max(answer.count for answer in responses(made.target(), case)[1:])
         with made.target() as link:
             return Part(controller, most, size_of(made.image, made.name, link).flash)
+
+
+def announce(found: Record) -> None:
+    """Prints a line for each case, off-line and in the loop."""
+    for each in found.comparisons:
+        print(
+            f"{each.case.name}: {len(each.case.inputs)} samples, {each.differing} with a differing bit, T_ref within "
+            f"{each.T_ref:.1g} N.m of double precision, at most {each.instructions[1]} instructions"
+        )
+    for each in found.loops:
+        print(
+            f"{each.manoeuvre} in the loop: {each.differing} samples differ from off-line, T_ref within "
+            f"{each.T_ref:.1g} N.m of the loop in double precision"
+        )
 
 
 def write(found: Record, controller: str, plant: str, folder: Path) -> list[Path]:

@@ -7,8 +7,8 @@ from pathlib import Path
 from ....fmus.target.deviations import LARGEST_STACK, Finding, reason
 from ....fmus.target.image import CODE, PACKAGES, PROCESSOR
 from ....fmus.target.link import LIMIT
+from ...loop.places import T_S
 from ...manoeuvres.catalogue import MANOEUVRES
-from ...metrics.evaluate import T_S
 from ...views.markdown import markdown_table
 from .comparison import ABSOLUTE, RELATIVE, Comparison
 from .in_loop import InLoop

@@ -7,21 +7,24 @@ with one instance after the other exchanged.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ....fmus.catalogue import EVERY
+from ....fmus.catalogue import EVERY, FMUS
 from ....models.block.declaration import Boolean, Integer, Real, variables
 from ....models.block.runner import runner
 from ....models.block.types import Block
 from ...cosimulation.experiment import Experiment, Source
 from ...cosimulation.runs import run
 from ...cosimulation.system import Scheme, System
-from ...loop.places import NATIVE, loop
-from ...manoeuvres.catalogue import KMH
+from ...loop.places import NATIVE, PLANTS
+from ...loop.settings import loop
+from ...manoeuvres.catalogue import KMH, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
+from ...simulation.many_runs import run_many
 from ...simulation.simulate import signals, start
 
 STEP_SIZE = 1e-3
@@ -109,6 +112,14 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
     return chosen
 
 
+class LoopRow(NamedTuple):
+    """One manoeuvre with one plant; differences by instance."""
+
+    plant: str
+    manoeuvre: str
+    blocks: Mapping[str, Differences]
+
+
 def compare_block(name: str, given: Given, folder: Path) -> Differences:
     """A block of the project alone; the native FMUs are in the folder `native` of the folder."""
     native = by_fmu(folder / NATIVE / f"{name}.fmu", given)
@@ -116,9 +127,21 @@ def compare_block(name: str, given: Given, folder: Path) -> Differences:
     return Differences(difference(functions, native), difference(by_fmu(folder / f"{name}.fmu", given), native))
 
 
+def compare_all(steps: int, folder: Path) -> tuple[dict[str, Differences], list[LoopRow]]:
+    """Each block of the project alone under random inputs, and in the loop in every manoeuvre with each plant, on all
+    cores; arguments as of `random_inputs` and `compare_block`."""
+    alone = run_many(
+        lambda name: compare_block(name, random_inputs(FMUS[name].block, steps), folder), FMUS, label="blocks alone"
+    )
+    cases = list(product(PLANTS, MANOEUVRES))
+    found = run_many(lambda case: compare_loop(case[0], MANOEUVRES[case[1]], folder), cases, label="blocks in the loop")
+    rows = [LoopRow(plant, name, blocks) for (plant, name), blocks in zip(cases, found, strict=True)]
+    return dict(zip(FMUS, alone, strict=True)), rows
+
+
 def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Differences]:
     """All blocks in the loop, by the name of the instance; folder as for `compare_block`."""
-    native, python = loop(plant, folder, NATIVE), loop(plant, folder, "python")
+    native, python = (loop(plant, folder=folder, build=build) for build in (NATIVE, "python"))
     reference = drive(native, manoeuvre)
     found = {}
     for instance, path in native.instances.items():

@@ -1,21 +1,12 @@
-"""The documentation page that `driveline back-to-back` writes."""
+"""The documentation page that `driveline study back-to-back` writes."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from ...views.markdown import markdown_table
-from .back_to_back import STEP_SIZE, Differences
+from .back_to_back import STEP_SIZE, Differences, LoopRow
 
 PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
-
-
-class LoopRow(NamedTuple):
-    """One manoeuvre with one plant; differences by instance."""
-
-    plant: str
-    manoeuvre: str
-    blocks: Mapping[str, Differences]
 
 
 def page(random: Mapping[str, Differences], random_steps: int, loops: Sequence[LoopRow]) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from ...metrics.oscillation import SPAN
 from ...metrics.step_response import SETTLED, fitted
 from .bound_task import Task

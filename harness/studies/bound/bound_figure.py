@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...metrics.evaluate import T_S, at_samples
+from ...loop.places import T_S
+from ...metrics.evaluate import at_samples
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
 from ...views.figure_style import plot
 from ...views.panels import DASHED, Axis, Curve, Panel

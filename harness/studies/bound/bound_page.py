@@ -1,10 +1,11 @@
-"""The page that `driveline bound` writes."""
+"""The page that `driveline study bound` writes."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from ...loop.places import T_S
 from ...metrics.declaration import Column, declared
-from ...metrics.evaluate import T_S, WITHHELD
+from ...metrics.evaluate import WITHHELD
 from ...metrics.run_metrics import Metrics
 from ...views.markdown import markdown_table
 from ...views.metrics_table import number

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base.atomic_files import write_text
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from ...views.metrics_table import values
 from ...views.terminal import plain_table, print_table
 from .bound_figure import plot_bounds

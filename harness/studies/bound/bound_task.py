@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ....models.controller.supervision import Parameters, limited
+from ....models.controller.supervision import T_S, Parameters, limited
 from ...base.errors import SimulationError
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...metrics.evaluate import T_S, WINDOW, WITHHELD, at_samples, evaluate
+from ...metrics.evaluate import WINDOW, WITHHELD, at_samples, evaluate
 from ...metrics.run_metrics import Metrics
 from ...metrics.step_response import fitted, initial_value
 from .contacts import GAP, PARTS, Contacts

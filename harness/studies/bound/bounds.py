@@ -4,18 +4,19 @@ The car is first linear along the run of the controller, then along the best tor
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ....models.controller.supervision import Parameters
 from ...cosimulation.wiring import fit
 from ...loop.places import PLANTS
+from ...loop.settings import Settings, loop
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.evaluate import at_samples, evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import run_many
-from ...simulation.simulate import looped, simulate, start
+from ...simulation.simulate import simulate, start
 from ..margins.linear_plant import NOISELESS
 from .bound_task import Task, task
 from .contacts import Contacts
@@ -70,21 +71,21 @@ class Bounded(NamedTuple):
         return max(getattr(optimum.metrics, n) / getattr(self.task.reached, n) for n in self.task.metrics)
 
 
-def bounded(name: str, settings: Mapping[str, Any]) -> Bounded:
+def bounded(name: str, settings: Settings) -> Bounded:
     """The bounds of a manoeuvre for a controller.
 
     Args:
         name: of the manoeuvre.
-        settings: arguments of `driveline.simulate` beside the manoeuvre and the plant.
+        settings: of the loop with the design model, PLANT.
 
     Raises:
         SimulationError: the run of the controller lacks a metric.
     """
     manoeuvre = MANOEUVRES[name]
-    quiet = dict(settings) | {"parameters": settings["parameters"] | {f"motor.{n}": v for n, v in NOISELESS.items()}}
-    blocks = fit(looped(PLANT, quiet)).parameters(start(manoeuvre) | quiet["parameters"])
+    quiet = settings.with_parameters({f"motor.{n}": v for n, v in NOISELESS.items()})
+    blocks = fit(loop(quiet)).parameters({**start(manoeuvre), **quiet.parameters})
     limits = {name: value for name, value in blocks["controller"].items() if name in Parameters._fields}
-    given = task(manoeuvre, simulate(manoeuvre, PLANT, **quiet), Parameters(**limits))
+    given = task(manoeuvre, simulate(manoeuvre, quiet), Parameters(**limits))
     of_car = {f"{place}.{name}": value for place in ("plant", "motor") for name, value in blocks[place].items()}
 
     search = Search(given, linear_car(given.results, of_car, given.first), given.metrics)
@@ -105,12 +106,12 @@ def bounded(name: str, settings: Mapping[str, Any]) -> Bounded:
     return Bounded(given, jointly, min(each.solution.bound for each in found), len(found), alone)
 
 
-def all_bounded(names: Sequence[str], settings: Mapping[str, Any]) -> list[Bounded]:
+def all_bounded(names: Sequence[str], settings: Settings) -> list[Bounded]:
     """The bounds of some manoeuvres, on all cores."""
     return run_many(lambda name: bounded(name, settings), names, label="bounding")
 
 
-def _verified(search: Search, contacts: Contacts, solution: Solution, settings: Mapping[str, Any]) -> Optimum:
+def _verified(search: Search, contacts: Contacts, solution: Solution, settings: Settings) -> Optimum:
     given = search.task
     results = open_loop_run(given.manoeuvre, given.reference(solution.u), settings)
     expected = value(search.predictor.predict(contacts).T_gear(np.arange(len(given.times))), solution.u)

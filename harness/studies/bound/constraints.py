@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from ...metrics.step_response import REACHED, fitted
 from .active_constraints import SWING_RESERVE, ActiveConstraints, settled_swing
 from .bound_task import Task

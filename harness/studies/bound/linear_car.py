@@ -15,7 +15,8 @@ from scipy.linalg import expm
 
 from ....models import two_mass_driveline
 from ....models.physics import vehicle
-from ...metrics.evaluate import T_S, at_samples
+from ...loop.places import T_S
+from ...metrics.evaluate import at_samples
 from ..margins.jacobians import rates
 from ..margins.linear_plant import motor_and_plant
 from ..margins.operating_point import MOTOR

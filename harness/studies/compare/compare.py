@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from ...base.known_names import require_different
 from ...cosimulation.results import Results
+from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
@@ -22,10 +23,6 @@ from ...views.metrics_table import Row, values, write_markdown, write_metrics
 from ...views.signals_file import write_signals
 
 CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
-
-Settings = Mapping[str, Mapping[str, Any]]
-"""By plant, further arguments of `driveline.simulate`."""
-
 
 Manoeuvres = Mapping[str, Manoeuvre]
 """By name."""
@@ -87,13 +84,13 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
 def run_case(
     case: Case,
     output: Path,
-    settings: Settings,
+    settings: Mapping[str, Settings],
     manoeuvres: Manoeuvres = MANOEUVRES,
     format: str = "csv",
 ) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
     manoeuvre = manoeuvres[case.manoeuvre]
-    results = simulate(manoeuvre, plant=case.plant, control=case.control, **settings.get(case.plant, {}))
+    results = simulate(manoeuvre, settings[case.plant], control=case.control)
     write_signals(at_samples(results), output / case.file_name, format)
     return Outcome(case, evaluate(results, manoeuvre), results)
 
@@ -101,7 +98,7 @@ def run_case(
 def run_cases(
     todo: Sequence[Case],
     output: Path,
-    settings: Settings,
+    settings: Mapping[str, Settings],
     manoeuvres: Manoeuvres = MANOEUVRES,
     format: str = "csv",
 ) -> list[Outcome]:
@@ -109,7 +106,7 @@ def run_cases(
 
     Args:
         output: folder for the files of signals.
-        settings: of the runs with each plant.
+        settings: by the plants of the cases.
         format: of those files, one of `harness.views.signals_file.FORMATS`.
     """
     one = partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres, format=format)

@@ -14,7 +14,8 @@ from ....models.controller.supervision import T_S
 from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
 from ...cosimulation.system import Scheme
-from ...loop.places import BUILD, loop
+from ...loop.places import BUILD
+from ...loop.settings import loop
 from ...manoeuvres.catalogue import KMH
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import Signal, lines
@@ -99,7 +100,7 @@ def cosimulated(
         scheme,
         label=f"{plant}, {scheme.value}, {1e3 * step_size:g} ms",
     )
-    return run(loop(plant, folder), experiment)[:: round(T_S / step_size)]
+    return run(loop(plant, folder=folder), experiment)[:: round(T_S / step_size)]
 
 
 def compare(

@@ -6,10 +6,10 @@ from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
-from ...loop.places import BUILD, PLANTS
+from ...loop.places import BUILD, PLANTS, T_S
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.declaration import declared
-from ...metrics.evaluate import T_S, evaluate
+from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
@@ -53,7 +53,7 @@ def compare(case: Case, folder: Path = BUILD, steps: Sequence[float] = STEPS) ->
     """The deviations of a case, with the FMUs in `folder`."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
     coarse, fine = (
-        evaluate(simulate(manoeuvre, case.plant, case.control, step_size=step, folder=folder), manoeuvre)
+        evaluate(simulate(manoeuvre, case.plant, control=case.control, step_size=step, folder=folder), manoeuvre)
         for step in steps
     )
     return deviations(coarse, fine)

@@ -10,13 +10,16 @@ import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
 from ...base.errors import DrivelineError
+from ...cosimulation.wiring import fit
+from ...loop.settings import Settings, loop
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...manoeuvres.road_load import RoadLoad, Track
+from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
 from ...manoeuvres.speed_following import drive, lacking_force, needed_force
 from ...metrics.damage import damage, require_counting
 from ...metrics.declaration import given, measured
 from ...metrics.evaluate import at_samples, evaluate
 from ...metrics.run_metrics import RideMetrics
+from ...recordings.drive import Drive
 from ...recordings.file_units import FileUnit
 from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
@@ -50,9 +53,6 @@ MOST_DRIVES = 6
 UNDAMPED = "without damping"
 """The ride with which the others are compared, as tables name it."""
 
-Settings = Mapping[str, Any]
-"""Further arguments of `driveline.simulate`."""
-
 
 @dataclass(frozen=True, eq=False)
 class Ride:
@@ -76,9 +76,9 @@ class Ride:
         return self.controller if self.control else "off"
 
 
-def signals_of(manoeuvre: Manoeuvre, plant: str, control: bool, settings: Settings) -> np.ndarray:
+def signals_of(manoeuvre: Manoeuvre, settings: Settings) -> np.ndarray:
     """The columns KEPT of a run, at the samples of the controller."""
-    return repack_fields(at_samples(simulate(manoeuvre, plant=plant, control=control, **settings))[KEPT])
+    return repack_fields(at_samples(simulate(manoeuvre, settings))[KEPT])
 
 
 def speed_error(signals: np.ndarray, track: Track) -> float:
@@ -99,23 +99,28 @@ def ride_of(controller: str, signals: np.ndarray, manoeuvre: Manoeuvre, track: T
 
 
 def followed(
-    track: Track, load: RoadLoad, plant: str, settings: Settings, held: float | None = None
+    track: Track, load: RoadLoad, settings: Settings, held: float | None = None
 ) -> tuple[Manoeuvre, np.ndarray]:
     """The manoeuvre in which the car without control keeps the recorded speed, and the signals of that run."""
     F, lacking = needed_force(track, load), 0.0
     for _ in range(MOST_DRIVES):
         F = F + lacking
         manoeuvre = drive(track, load, F, held)
-        signals = signals_of(manoeuvre, plant, False, settings)
+        signals = signals_of(manoeuvre, settings.replace(control=False))
         if speed_error(signals, track) <= CLOSE:
             break
         lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
     return manoeuvre, signals
 
 
-def replay(
-    track: Track, load: RoadLoad, plant: str, controllers: Mapping[str, Settings], held: float | None = None
-) -> list[Ride]:
+def on_road(recording: Drive, settings: Settings) -> tuple[Track, RoadLoad]:
+    """What the loop is to do of a recorded drive, and the road load of its plant."""
+    interfaces = fit(loop(settings)).interfaces
+    limit = torque_limit(interfaces["motor"], settings.parameters)
+    return Track.of(recording, limit), RoadLoad.of_plant(interfaces["plant"], settings.parameters)
+
+
+def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], held: float | None = None) -> list[Ride]:
     """The ride without damping, then that with each controller, on the same road.
 
     Args:
@@ -128,16 +133,14 @@ def replay(
     """
     require_counting()
     first = next(iter(controllers.values()))
-    manoeuvre, undamped = followed(track, load, plant, first, held)
-    one = partial(_damped, manoeuvre, track, plant, controllers)
+    manoeuvre, undamped = followed(track, load, first, held)
+    one = partial(_damped, manoeuvre, track, controllers)
     damped = run_many(one, controllers, workers=2, label=track.name)
     return [ride_of(UNDAMPED, undamped, manoeuvre, track), *damped]
 
 
-def _damped(
-    manoeuvre: Manoeuvre, track: Track, plant: str, controllers: Mapping[str, Settings], controller: str
-) -> Ride:
-    return ride_of(controller, signals_of(manoeuvre, plant, True, controllers[controller]), manoeuvre, track)
+def _damped(manoeuvre: Manoeuvre, track: Track, controllers: Mapping[str, Settings], controller: str) -> Ride:
+    return ride_of(controller, signals_of(manoeuvre, controllers[controller]), manoeuvre, track)
 
 
 def by_name(controllers: Sequence[str]) -> dict[str, str]:

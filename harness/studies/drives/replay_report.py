@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import welch
 
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from ...metrics.oscillation import amplitude
 from ...metrics.run_metrics import RideMetrics
 from ...metrics.spectrum import TO_50_HZ

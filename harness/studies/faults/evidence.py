@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from .fault_cases import DURATION, Fault
 from .fault_injection import Limits, Runs
 

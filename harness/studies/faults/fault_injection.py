@@ -13,12 +13,13 @@ from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
 from ...cosimulation.system import Connection, Port, System
 from ...cosimulation.wiring import Fit, fit
+from ...loop.settings import Settings, loop
 from ...loop.stale_fmus import warn_of_stale
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import Signal, lines
 from ...metrics.evaluate import at_samples
-from ...simulation.same_fmus import absolute, anywhere, digests, require_same_fmus
-from ...simulation.simulate import looped, signals, start
+from ...simulation.same_fmus import anywhere, digests, require_same_fmus
+from ...simulation.simulate import signals, start
 from .fault_cases import DURATION, SITUATIONS, Case, Fault
 from .fault_catalogue import ICE, LOCK, SPIN
 
@@ -47,9 +48,6 @@ KEPT = ["controller.status", "controller.T_damp", "plant.T_gear"]
 
 SLIPPERY = {"mu": ICE, "c_slip": 1e4}
 """Parameters of a plant that make ice, the first that it has. Tyres without a limit of friction get slip instead."""
-
-Settings = Mapping[str, Any]
-"""Arguments of `driveline.simulate` for the loop with a plant."""
 
 
 class Runs(NamedTuple):
@@ -116,7 +114,7 @@ class FaultRunner:
     def limits(self, plant: str) -> Limits:
         """As the parameters of the controller say."""
         controller = self._fit(plant).interfaces["controller"]
-        given = self._settings[plant]["parameters"]
+        given = self._settings[plant].parameters
 
         def value(name: str) -> float:
             variable = controller.variables.get(name)
@@ -144,7 +142,7 @@ class FaultRunner:
     ) -> np.ndarray:
         manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
         parameters = start(manoeuvre, noise) | (_slippery(self._fit(plant)) if on_ice else {})
-        parameters |= dict(self._settings[plant]["parameters"]) | _parameters(faults, noise)
+        parameters |= dict(self._settings[plant].parameters) | _parameters(faults, noise)
         given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
         return at_samples(run(self._system(plant), Experiment(DURATION, **given)))
 
@@ -155,7 +153,7 @@ class FaultRunner:
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
-        return with_faults(looped(absolute(plant), self._settings[plant]), self._injector)
+        return with_faults(loop(self._settings[plant]), self._injector)
 
 
 def with_faults(system: System, injector: Path) -> System:

@@ -11,7 +11,7 @@ from math import inf
 
 import numpy as np
 
-from ...metrics.evaluate import T_S
+from ...loop.places import T_S
 from ...metrics.oscillation import amplitude
 from ...metrics.spectrum import band_rms
 from .evidence import (

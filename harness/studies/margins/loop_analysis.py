@@ -1,12 +1,13 @@
 """The whole analysis of the loop with a controller, on all cores: linear, and from runs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
 from ....fmus.catalogue import EVERY
 from ...base.errors import DrivelineError
+from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.estimate import EstimateMetrics, estimate_metrics
 from ...metrics.evaluate import evaluate
@@ -149,27 +150,25 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
     return At(part.plant, speed, loop, drive_train_mode(loop.mean), margins(loop))
 
 
-def run_of(run: Run, settings: Mapping[str, Mapping[str, Any]]) -> tuple[Metrics, EstimateMetrics]:
-    """What a run of the loop is worth; settings by plant, as of `driveline.simulate`."""
-    given = dict(settings[run.plant])
-    if run.parameter is not None:
-        given["parameters"] = {**given["parameters"], run.parameter: run.value}
+def run_of(run: Run, settings: Mapping[str, Settings]) -> tuple[Metrics, EstimateMetrics]:
+    """What a run of the loop is worth; settings by plant."""
+    changed = {} if run.parameter is None else {run.parameter: run.value}
     manoeuvre = MANOEUVRES[run.manoeuvre]
-    results = simulate(manoeuvre, plant=run.plant, **given)
+    results = simulate(manoeuvre, settings[run.plant].with_parameters(changed))
     return evaluate(results, manoeuvre), estimate_metrics(results)
 
 
-def analyse(plants: Sequence[str], controller: str, settings: Mapping[str, Mapping[str, Any]]) -> Analysis:
+def analyse(settings: Mapping[str, Settings]) -> Analysis:
     """Analyses the loop.
 
     Args:
-        plants, controller: names of blocks of the project.
-        settings: by plant, arguments of `driveline.simulate`, parameters among them.
+        settings: by the names of plants of the project, with one of its controllers.
 
     Raises:
         NotLinear, DrivelineError: see `linear_part`.
     """
-    parameters = {plant: settings[plant]["parameters"] for plant in plants}
+    plants, controller = list(settings), str(next(iter(settings.values())).controller)
+    parameters = {plant: settings[plant].parameters for plant in plants}
     pieces = [*(f"{speed:g}" for speed in SPEEDS), *BY_NAME, "backlash"]
     parts = [Part(plant, piece) for plant in plants for piece in pieces]
     linear = partial(linear_part, controller=controller, parameters=parameters)

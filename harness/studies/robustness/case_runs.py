@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from math import nan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,31 +11,27 @@ from ...base.errors import SimulationError, UnpackingError
 from ...base.plain_text import plain
 from ...cosimulation.wiring import fit
 from ...design.uncertainty_box import changed
+from ...loop.settings import Settings, loop
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.evaluate import evaluate
-from ...simulation.same_fmus import absolute, anywhere, digests, require_same_fmus
-from ...simulation.simulate import looped, simulate
+from ...simulation.same_fmus import anywhere, digests, require_same_fmus
+from ...simulation.simulate import simulate
 from .draws import draw
 from .outcome import METRICS, PEAK, Case, Outcome
 
-Settings = Mapping[str, Any]
-"""Arguments of `driveline.simulate` for a loop."""
-
-Given = Mapping[tuple[str, str], tuple[str, Settings]]
-"""By the names of plant and controller the plant (name or file) and the settings of the loop."""
+Given = Mapping[tuple[str, str], Settings]
+"""The settings of the loops by the names of plant and controller."""
 
 
 class Loop(NamedTuple):
     """A plant with a controller.
 
     Attributes:
-        plant: its name or file.
         settings: of its runs, with absolute paths, so that any process can make them.
         blocks: the parameters of each block by its place, as they are without a deviation.
         digests: of the FMUs.
     """
 
-    plant: str
     settings: Settings
     blocks: Mapping[str, Mapping[str, float]]
     digests: Mapping[Path, str]
@@ -51,7 +47,7 @@ class CaseRunner:
 
     def __init__(self, given: Given, seed: int) -> None:
         self.seed = seed
-        self.loops = {key: _loop(*loop) for key, loop in given.items()}
+        self.loops = {key: _loop(settings) for key, settings in given.items()}
 
     def results(self, case: Case, control: bool = True) -> np.ndarray:
         """The signals of a case.
@@ -63,10 +59,10 @@ class CaseRunner:
             DrivelineError: an FMU is not the one that it is where the campaign was begun.
             SimulationError: see `driveline.simulate`.
         """
-        loop, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
-        require_same_fmus(loop.digests)
-        settings = {**loop.settings, "parameters": loop.settings["parameters"] | changed(loop.blocks, drawn.deviation)}
-        return simulate(MANOEUVRES[case.manoeuvre], loop.plant, control, **{**settings, "seed": drawn.noise})
+        one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
+        require_same_fmus(one.digests)
+        settings = one.settings.with_parameters(changed(one.blocks, drawn.deviation))
+        return simulate(MANOEUVRES[case.manoeuvre], settings, control=control, seed=drawn.noise)
 
     def outcome(self, case: Case) -> Outcome:
         """What came of a case; one that an FMU ends has no metrics.
@@ -89,7 +85,6 @@ class CaseRunner:
         return self.loops[case.plant, case.controller].blocks["motor"].get("T_max", np.inf)
 
 
-def _loop(plant: str, settings: Settings) -> Loop:
-    system = looped(plant, settings)
-    blocks = fit(system).parameters(settings["parameters"])
-    return Loop(absolute(plant), anywhere(settings), blocks, digests([system]))
+def _loop(settings: Settings) -> Loop:
+    system = loop(settings)
+    return Loop(anywhere(settings), fit(system).parameters(settings.parameters), digests([system]))

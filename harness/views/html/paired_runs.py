@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...loop.places import T_S
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...metrics.evaluate import T_S, added_torque, at_samples
+from ...metrics.evaluate import added_torque, at_samples
 from ...metrics.frequency_response import amplitude_spectrum, frequency_response
 from ...metrics.spectrum import TO_50_HZ
 from ..colours import BLACK, BLUE, GREEN, GREY

@@ -22,6 +22,7 @@ from docs.studies.calibration_tables import COLUMNS, matters, signed
 from driveline.harness.design.design_weights import PARAMETERS
 from driveline.harness.design.uncertainty_box import Deviation
 from driveline.harness.loop.places import NATIVE, PLANTS
+from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.models.controller import damping_law
@@ -57,7 +58,8 @@ def test_a_stiffer_car_is_told_with_its_stiffness_and_gets_more_damping() -> Non
 
 def test_less_damping_overshoots_more_and_pulls_away_sooner(both_built: Path) -> None:
     less = changed_law("k_d")[0]
-    found = [answered(Case("TwoMassDriveline", "launch", given), (1,), both_built, NATIVE) for given in ((), less)]
+    settings = Settings(folder=both_built, build=NATIVE)
+    found = [answered(Case("TwoMassDriveline", "launch", given), (1,), settings) for given in ((), less)]
     default, soft = (each.metrics for each in found)
     assert soft.overshoot > 1.5 * default.overshoot
     assert soft.response_delay < default.response_delay

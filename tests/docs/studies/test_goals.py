@@ -11,6 +11,7 @@ from docs.studies.goals import GOALS, MONTE_CARLO, UNITS, Goal, monte_carlo, rea
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
 from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation import many_runs
 
@@ -65,8 +66,8 @@ def test_what_control_adds_is_the_difference_to_none() -> None:
 
 def test_the_monte_carlo_is_told_for_both_plants(native: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(many_runs, "_cores", lambda: 1)
-    fmus = native.parent, "native"
-    cells = monte_carlo(1, {}, *fmus)
+    settings = Settings(folder=native.parent, build="native")
+    cells = monte_carlo(1, {}, settings)
     assert len(cells) == len(MONTE_CARLO) == len(PLANTS)
     assert all(re.fullmatch(r"100 %; 0\.\d\d / 0\.\d\d s", text) for text in cells)
-    assert monte_carlo(1, {"k_d": 0.2}, *fmus) != cells
+    assert monte_carlo(1, {"k_d": 0.2}, settings) != cells

@@ -38,7 +38,9 @@ def vehicle(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_vehicle_of_the_users_own_is_damped_in_the_loop(vehicle: Path, both_built: Path) -> None:
     tipin = MANOEUVRES["tipin15"]
-    damped, free = (evaluate(simulate(tipin, vehicle, control, folder=both_built), tipin) for control in (True, False))
+    damped, free = (
+        evaluate(simulate(tipin, vehicle, control=control, folder=both_built), tipin) for control in (True, False)
+    )
     assert free.settling_time > 1.0
     assert damped.settling_time < 0.2
 

@@ -21,8 +21,8 @@ from driveline.fmus.target.sources import CONTROLLERS, PRECISIONS, target_source
 from driveline.fmus.two_mass_driveline import FMU as CONTINUOUS
 from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.offline_cases import Case, recorded
+from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.simulate import looped
 from driveline.models.controller.supervision import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
 
@@ -43,9 +43,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 @cache
 def fed(name: str, fmus: Path) -> Case:
     """What the controller gets in a manoeuvre; to be copied where it is changed."""
-    given = {"seed": 1, "folder": fmus, "build": "native"}
-    plant = "TwoMassDriveline"
-    return recorded(MANOEUVRES[name], looped(plant, given), plant, CONTROLLER.Input._fields, given)
+    settings = Settings(folder=fmus, build="native")
+    return recorded(MANOEUVRES[name], loop(settings), CONTROLLER.Input._fields, settings)
 
 
 def outputs(programs: dict[str, Path], precision: str, inputs: np.ndarray) -> np.ndarray:

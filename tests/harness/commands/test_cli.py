@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib.metadata import version
@@ -10,8 +11,9 @@ from xml.etree import ElementTree
 import pytest
 from fmpy.util import read_csv
 
-from driveline.harness.commands.cli import COMMANDS, SHELLS, main
+from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS, main
 from driveline.harness.loop.places import PLANTS
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
 from tests import ROOT
@@ -27,19 +29,49 @@ def answer(capsys, *arguments):
     return code, *capsys.readouterr()
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [*COMMANDS, "target record", "study back-to-back", "study bound", "study coupling"])
 def test_every_command_teaches(capsys, command):
-    code, out, _ = answer(capsys, command, "--help")
+    message = answer(capsys, *command.split(), "--help")
+    assert message == answer(capsys, "help", *command.split())
+    code, out, _ = message
     assert code == 0
     assert "examples:" in out
     assert f"driveline {command}" in out
 
 
-def test_help_names_commands_and_exit_codes(capsys):
-    code, out, _ = answer(capsys, "--help")
-    assert code == 0
-    assert all(command in out for command in COMMANDS)
-    assert "0 done, 1 something went wrong or there are findings, 2 wrong use" in out
+def test_help_has_the_commands_by_what_they_are_for_and_the_exit_codes(capsys):
+    for asked in (["--help"], ["help"]):
+        code, out, _ = answer(capsys, *asked)
+        assert code == 0
+        sections = re.split(r"^(\S.*):\n", out, flags=re.M)
+        listed = {
+            title: set(re.findall(r"^  (\S+)", text, re.M))
+            for title, text in zip(sections[1::2], sections[2::2], strict=True)
+        }
+        assert {title: listed[title] for title in PURPOSES} == {title: set(names) for title, names in PURPOSES.items()}
+        assert "0 done, 1 something went wrong or there are findings, 2 wrong use" in out
+
+
+def test_what_experts_need_stands_at_the_end_of_the_options(capsys):
+    _, out, _ = answer(capsys, "simulate", "--help")
+    first, _, last = out.partition("options for experts:")
+    assert all(option in last and f"  {option}" not in first for option in ("--time-limit", "--scheme", "--build"))
+    assert "--manoeuvre" in first
+    assert first.startswith("usage: driveline simulate [OPTION ...]\n")
+
+
+@pytest.mark.parametrize("command", ["simulate", "compare", "ssp"])
+def test_the_manoeuvres_are_listed_a_line_each(capsys, command):
+    code, out, err = answer(capsys, command, "--list")
+    assert (code, err) == (0, "")
+    assert [line.split()[0] for line in out.splitlines()] == list(MANOEUVRES)
+    assert out.splitlines()[0] == "tipin15       tip-in through the backlash at 15 km/h (6 s)"
+
+
+@pytest.mark.parametrize("command", ["bound", "coupling", "back-to-back"])
+def test_what_is_measured_of_the_project_is_a_study(capsys, command):
+    assert answer(capsys, command)[0] == 2
+    assert answer(capsys, "study", command, "--help")[0] == 0
 
 
 def test_the_version_is_that_of_the_package(capsys):
@@ -72,6 +104,8 @@ def test_the_version_is_that_of_the_package(capsys):
         (["compare", "--manoeuvre", "launc"], "did you mean launch"),
         (["--print-completion", "bsh"], "did you mean bash"),
         ([], "COMMAND"),
+        (["help", "simulat"], "did you mean simulate"),
+        (["study", "bond"], "did you mean bound"),
     ],
 )
 def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
@@ -177,6 +211,26 @@ def test_simulate_writes_what_was_asked_for(simulate, built):
     # undisturbed, the resolver shows the speed of the plant at the same instant
     assert (signals["motor.omega_1_meas"] == signals["plant.omega_1"]).all()
     assert "plant.T_mot is held, motor.omega_1 is held" in out
+
+
+def test_simulate_tells_the_metrics_of_its_run(simulate, tmp_path):
+    (code, out, err), folder = simulate("--json")
+    assert (code, err) == (0, "")
+    document = json.loads(out)
+    (run,) = document["runs"]
+    assert (run["plant"], run["manoeuvre"], run["control"]) == (PLANTS[0], "tipin15", True)
+    assert 0.05 < run["settling_time_s"] < 0.1
+    assert document["files"] == [str(folder / "TwoMassDriveline_tipin15_on.csv")]
+    (code, out, _), _ = simulate()
+    assert code == 0
+    assert f" {1e3 * run['settling_time_s']:.0f} " in next(line for line in out.splitlines() if "tipin15    " in line)
+
+
+def test_with_steps_that_miss_the_samples_of_the_controller_it_is_said_why_there_are_no_metrics(simulate):
+    (code, out, _), folder = simulate("--step", "0.0015")
+    assert code == 0
+    assert "no metrics: the results are 1.5 ms apart; the metrics need a whole fraction" in out
+    assert (folder / "TwoMassDriveline_tipin15_on.csv").is_file()
 
 
 def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):

@@ -2,6 +2,7 @@
 
 import pytest
 
+from driveline.fmus.errors import ParameterFileError
 from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.commands.cli import main, parser
 from driveline.harness.commands.settings import settings
@@ -16,8 +17,8 @@ def given(built):
     """What options of `driveline simulate` give the loop as parameters."""
 
     def parameters(*options, plant="TwoMassDriveline"):
-        args = parser().parse_args(["simulate", "--plant", str(plant), "--fmus", str(built), *options])
-        return settings(args, str(plant), "python")["parameters"]
+        run = ["simulate", "--plant", str(plant), "--fmus", str(built), "--build", "python"]
+        return settings(parser().parse_args([*run, *options]), str(plant)).parameters
 
     return parameters
 
@@ -56,7 +57,7 @@ def test_without_files_only_what_is_set_is_given(given):
 
 
 def test_a_refused_file_is_answered_with_its_line(given, gains):
-    with pytest.raises(DrivelineError, match=r"gains\.toml, line 1: k_d does not belong here"):
+    with pytest.raises(ParameterFileError, match=r"gains\.toml, line 1: k_d does not belong here"):
         given("--vehicle", gains)
 
 

@@ -65,7 +65,7 @@ def test_those_of_the_project_are_built_again_and_it_is_said_once(
 def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(built_fmus, "BUILD", both_built)
     plant = both_built / "mine.fmu"
-    assert built_fmus.built(str(plant), both_built, "python") == "python"
+    assert built_fmus.built(str(plant), folder=both_built, build="python").build == "python"
 
 
 def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(

@@ -11,7 +11,7 @@ import pytest
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Scheme
-from driveline.harness.loop.places import loop
+from driveline.harness.loop.settings import loop
 
 STEPS, STEP_SIZE = 400, 1e-3
 T_DRIVER = 60.0
@@ -29,7 +29,7 @@ def check_loop(script: str, plant: str, build: str, fmus: Path, folder: Path, **
         folder: in which the script runs.
         environment: added to that of the process.
     """
-    system = loop(plant, fmus, build)
+    system = loop(plant, folder=fmus, build=build)
     job = {
         "fmus": {name: str(path) for name, path in system.instances.items()},
         "start": START | {"controller.T_driver": T_DRIVER},

@@ -12,7 +12,8 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Connection, Scheme, System
-from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
 from tests.foreign import build_relay
@@ -34,7 +35,7 @@ def drive(running, manoeuvre=TIPIN, step_size=1e-3, scheme=Scheme.PROPAGATED, **
 @pytest.mark.parametrize("build", ["native", "python"])
 @pytest.mark.parametrize("plant", PLANTS)
 def test_a_further_run_is_that_of_a_fresh_loop(both_built, plant, build):
-    system = loop(plant, both_built, build)
+    system = loop(plant, folder=both_built, build=build)
     with loaded(system) as running:
         fresh = drive(running)
         drive(running, LAUNCH, 2e-3, Scheme.JACOBI, plant__phi_B=0.3, motor__seed=7, controller__k_d=0.0)
@@ -47,7 +48,7 @@ def test_a_further_run_is_that_of_a_fresh_loop(both_built, plant, build):
 
 
 def test_a_loop_whose_run_was_refused_stays_usable(both_built):
-    system = loop(PLANTS[0], both_built, "native")
+    system = loop(PLANTS[0], folder=both_built, build="native")
     too_large = replace(TIPIN, slope=lambda t: np.where(t < 0.5, 0.0, 0.6))
     with loaded(system) as running:
         fresh = drive(running)

@@ -12,7 +12,8 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.mapping import parsed
 from driveline.harness.cosimulation.steps import interpreted
-from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
 from tests.foreign import build_car, tampered
@@ -62,7 +63,7 @@ def test_other_names_and_units_drive_the_loop_with_the_same_results(built, plain
 def test_compiled_steps_and_those_in_python_convert_alike(built, theirs):
     results = []
     for make in (CompiledSteps, interpreted):
-        with loaded(loop(theirs, built, mapping=MAPPING), make_steps=make) as running:
+        with loaded(loop(theirs, folder=built, mapping=MAPPING), make_steps=make) as running:
             results.append(running.run(Experiment(TIPIN.duration, 1e-3, signals(TIPIN), start(TIPIN))).tobytes())
     assert results[0] == results[1]
 

@@ -15,7 +15,7 @@ from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
 from driveline.harness.cosimulation.system import Connection, Scheme, System
 from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.loop.places import loop
+from driveline.harness.loop.settings import loop
 from tests.foreign import build_relay, tampered
 
 

@@ -11,7 +11,8 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.cosimulation.system import Connection, Scheme, System
-from driveline.harness.loop.places import PLANTS, loop
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
 from tests.foreign import build_relay
@@ -43,14 +44,14 @@ def relay(tmp_path_factory):
 @pytest.mark.parametrize("scheme", Scheme)
 @pytest.mark.parametrize("plant", PLANTS)
 def test_native_fmus_make_the_same_steps(native, plant, scheme):
-    system = loop(plant, native.parent, "native")
+    system = loop(plant, folder=native.parent, build="native")
     compiled, in_python = both(system, tipin(scheme))
     assert compiled == in_python
 
 
 @pytest.mark.parametrize("scheme", Scheme)
 def test_fmus_that_run_python_make_the_same_steps(built, scheme):
-    compiled, in_python = both(loop(PLANTS[0], built, "python"), tipin(scheme))
+    compiled, in_python = both(loop(PLANTS[0], folder=built, build="python"), tipin(scheme))
     assert compiled == in_python
 
 

@@ -23,7 +23,7 @@ from driveline.harness.cosimulation.process_answers import LENGTH, Answer, Inval
 from driveline.harness.cosimulation.runs import kept_loaded, run
 from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.cosimulation.system import System
-from driveline.harness.loop.places import loop as looped
+from driveline.harness.loop.settings import loop as looped
 from tests import ROOT
 from tests.foreign.stranger import build_stranger
 

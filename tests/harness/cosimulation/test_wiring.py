@@ -13,7 +13,8 @@ from driveline.harness.cosimulation.interface import Interface, unit_of
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Connection, System
 from driveline.harness.cosimulation.wiring import fit, out_of_bounds
-from driveline.harness.loop.places import PLANTS, chosen_build, loop
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from tests.foreign import tampered
@@ -68,7 +69,7 @@ def test_native_builds_run_where_the_whole_loop_has_them(tmp_path):
     folder = tmp_path / "native"
     folder.mkdir()
     for name in ("MotorTorqueLoop", "DampingController", "WheelSpeedCan", PLANTS[0]):
-        assert chosen_build(PLANTS[0], tmp_path) == "python"
+        assert chosen_build(PLANTS[0], folder=tmp_path) == "python"
         (folder / f"{name}.fmu").touch()
     for plant, build, parent in (
         (PLANTS[0], None, folder),
@@ -76,11 +77,11 @@ def test_native_builds_run_where_the_whole_loop_has_them(tmp_path):
         (PLANTS[0], "python", tmp_path),
         (PLANTS[1], "native", folder),
     ):
-        assert {path.parent for path in loop(plant, tmp_path, build).instances.values()} == {parent}
+        assert {path.parent for path in loop(plant, folder=tmp_path, build=build).instances.values()} == {parent}
     theirs = folder / f"{PLANTS[0]}.fmu"
-    assert loop(theirs, tmp_path).instances["plant"] == theirs
+    assert loop(theirs, folder=tmp_path).instances["plant"] == theirs
     with pytest.raises(WiringError, match="unknown build nativ; did you mean native"):
-        loop(PLANTS[0], tmp_path, "nativ")
+        loop(PLANTS[0], folder=tmp_path, build="nativ")
 
 
 def test_a_plant_from_elsewhere_runs_in_the_loop(built, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 from driveline.harness.design.design_trials import Gains, Trial, measured, parameters
 from driveline.harness.loop.places import NATIVE, PLANTS
+from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation.many_runs import run_many
 from tests import ROOT
@@ -25,7 +26,7 @@ TRIALS = [
 
 @pytest.fixture(scope="module")
 def found(both_built: Path) -> dict[Trial, Metrics]:
-    run = partial(measured, folder=both_built, build=NATIVE)
+    run = partial(measured, settings=Settings(folder=both_built, build=NATIVE))
     return dict(zip(TRIALS, run_many(run, TRIALS, workers=1), strict=True))
 
 

@@ -9,6 +9,7 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.runs import kept_loaded
 from driveline.harness.explorer.request import COMFORT, SPORT, Request, characterised, parameters
 from driveline.harness.explorer.request_runs import RequestRunner
+from driveline.harness.loop.settings import Settings
 
 NAMES = {"plant": ["phi_B", "m"], "controller": ["phi_B", "k_d"], "motor": ["tau"]}
 
@@ -20,7 +21,7 @@ def runner(with_washout: Path) -> RequestRunner:
     """Both plants, our controller and another."""
     return RequestRunner(
         {
-            (plant, name): (plant, {"parameters": {}, "controller": name, "folder": with_washout, "build": "native"})
+            (plant, name): Settings(plant=plant, controller=name, folder=with_washout, build="native")
             for plant in ("TwoMassDriveline", "ValidationVehicle")
             for name in ("DampingController", "SpeedWashout")
         }

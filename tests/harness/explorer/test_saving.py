@@ -9,12 +9,13 @@ from driveline.harness.cosimulation.runs import kept_loaded
 from driveline.harness.explorer.request import Request
 from driveline.harness.explorer.request_runs import RequestRunner
 from driveline.harness.explorer.saving import save_files, save_report
+from driveline.harness.loop.settings import Settings
 
 
 @pytest.fixture
 def runner(both_built: Path) -> RequestRunner:
-    given = {"parameters": {}, "controller": "DampingController", "folder": both_built, "build": "native"}
-    return RequestRunner({("TwoMassDriveline", "DampingController"): ("TwoMassDriveline", given)})
+    settings = Settings(folder=both_built, build="native")
+    return RequestRunner({("TwoMassDriveline", "DampingController"): settings})
 
 
 REQUEST = Request("TwoMassDriveline", "tipin15", car={"phi_B": 0.3, "m": 2000.0}, gains={"k_d": 2.0})

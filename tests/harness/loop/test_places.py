@@ -12,7 +12,8 @@ from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.runs import run
-from driveline.harness.loop.places import CONNECTIONS, OPTIONAL, PLACES, PLANTS, chosen_build, loop
+from driveline.harness.loop.places import CONNECTIONS, OPTIONAL, PLACES, PLANTS
+from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
 from tests import ROOT
@@ -88,7 +89,7 @@ def test_a_controller_need_not_use_every_signal(built, relay, caplog):
 def test_what_is_always_on_cannot_be_switched_off(built, relay):
     with pytest.raises(WiringError, match=r"controller\.enable: Relay\.fmu does not have it and .* always 1"):
         simulate(SHORT, folder=built, controller=relay, mapping=FEEDTHROUGH, control=False)
-    system = loop(PLANTS[0], built, controller=relay, mapping=FEEDTHROUGH)
+    system = loop(PLANTS[0], folder=built, controller=relay, mapping=FEEDTHROUGH)
     at_times = signals(SHORT) | {"controller.enable": lambda t: t < 0.5}
     with pytest.raises(WiringError, match=r"controller\.enable"):
         run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))

@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from driveline.harness.loop.places import T_S
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.metrics.damage import damage
 from driveline.harness.metrics.declaration import Absent, declared
-from driveline.harness.metrics.evaluate import COLUMNS, T_S, evaluate, impact_speed
+from driveline.harness.metrics.evaluate import COLUMNS, evaluate, impact_speed
 from driveline.harness.metrics.oscillation import amplitude
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.metrics.spectrum import band_rms
@@ -32,7 +33,7 @@ def run(duration=6.0, interval=1e-3, **signals):
 
 
 def test_the_samples_are_those_of_the_controller():
-    """No FMU tells its sample time, so the metrics declare it."""
+    """No FMU tells its sample time, so the harness declares it."""
     assert supervision.T_S == T_S
 
 

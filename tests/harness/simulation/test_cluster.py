@@ -18,6 +18,7 @@ from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import tune
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import many
 from driveline.harness.simulation.simulate import simulate
@@ -78,13 +79,15 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
 
 def test_faults_and_search_on_a_cluster_are_those_here(cluster, native, native_builder, tmp_path):
     folder, address = native.parent, cluster.scheduler_address
-    loop = {"parameters": {}, "folder": folder, "build": "native", "mapping": {}}
-    faults = FaultRunner(native_builder(FMU, tmp_path), {"TwoMassDriveline": loop})
+    settings = Settings(folder=folder, build="native")
+    faults = FaultRunner(native_builder(FMU, tmp_path), {"TwoMassDriveline": settings})
     assert campaign(faults, [1, 2], 1, scheduler=address) == campaign(faults, [1, 2], 1, workers=1)
-    search = CostEvaluation(folder=folder, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
+    search = CostEvaluation(settings, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
     there, here = (
-        tune(search, space("DampingController", {}), 3, 1, tmp_path / name, **given)
-        for name, given in (("there", {"scheduler": address}), ("here", {"workers": 1}))
+        tune(
+            search, space("DampingController", {}), 3, 1, tmp_path / str(workers), workers=workers, scheduler=scheduler
+        )
+        for workers, scheduler in ((None, address), (1, None))
     )
     assert there == here
 
@@ -145,7 +148,7 @@ def test_without_the_package_the_extra_is_named(monkeypatch):
 
 
 def test_loops_that_are_closed_are_loaded_again(native, tmp_path):
-    from driveline.harness.loop.places import loop
+    from driveline.harness.loop.settings import loop
 
     loops, system = KeptLoops(tmp_path), loop(folder=native.parent, build="native")
     first = loops.loop(system, (), ())

@@ -18,7 +18,8 @@ from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
 from driveline.harness.loop import built_fmus as building
 from driveline.harness.loop import places
-from driveline.harness.loop.places import NATIVE, loop
+from driveline.harness.loop.places import NATIVE
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate

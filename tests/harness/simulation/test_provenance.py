@@ -20,8 +20,7 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import distinguishing
 from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.system import System
-from driveline.harness.loop.places import loop
+from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation import provenance, simulate
 from driveline.harness.simulation.provenance import require_same_run
 
@@ -184,35 +183,35 @@ def test_an_unknown_parameter_is_named_although_there_are_results_of_another_run
     assert "did you mean J_1" in capsys.readouterr().err
 
 
-def told_apart(system: System) -> dict[str, Any]:
-    return distinguishing({"parameters": {}, "seed": 1, "mapping": {}}, system, None)
+def told_apart(**settings: Any) -> dict[str, Any]:
+    return distinguishing(Settings(**settings))
 
 
 def test_an_fmu_that_was_built_for_another_car_makes_another_run(both_built: Path, tmp_path: Path) -> None:
     folder = tmp_path / "fmus"
     copytree(both_built, folder)
-    before = told_apart(loop(folder=folder, build="python"))
-    assert told_apart(loop(folder=folder, build="python")) == before
+    before = told_apart(folder=folder, build="python")
+    assert told_apart(folder=folder, build="python") == before
     path = folder / "TwoMassDriveline.fmu"
     with ZipFile(path) as archive:
         entry = json.loads(archive.read(ENTRY))
     with ZipFile(path, "w") as archive:
         archive.writestr(ENTRY, json.dumps(entry | {"start_values": {"m": 1200.0}}))
-    assert told_apart(loop(folder=folder, build="python")) != before
+    assert told_apart(folder=folder, build="python") != before
 
 
 def test_an_fmu_of_ones_own_that_was_built_again_makes_another_run(both_built: Path, tmp_path: Path) -> None:
     plant = tmp_path / "mine.fmu"
     plant.write_bytes(b"one")
-    before = told_apart(loop(plant, both_built))
-    assert told_apart(loop(plant, both_built)) == before
+    before = told_apart(plant=plant, folder=both_built)
+    assert told_apart(plant=plant, folder=both_built) == before
     plant.write_bytes(b"another")
-    assert told_apart(loop(plant, both_built)) != before
+    assert told_apart(plant=plant, folder=both_built) != before
     assert before["digests"].keys() == {"plant"}
 
 
 def test_there_are_no_digests_of_fmus_of_ones_own_where_there_are_none(both_built: Path, tmp_path: Path) -> None:
-    same = told_apart(loop(folder=both_built))
+    same = told_apart(folder=both_built)
     assert "digests" not in same
     (tmp_path / "table.md").touch()
     for before, refused in ((same | {"digests": {}}, False), (same | {"digests": {"plant": "sha256:0"}}, True)):

@@ -8,6 +8,7 @@ from driveline.harness.base.errors import SimulationError
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
+from driveline.harness.loop.settings import Settings
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0), Run("ValidationVehicle", "launch", NOMINAL, 2, 1.0))
 SOFT, HARD = {"k_d": 1.5}, {"k_d": 3.0}
@@ -15,7 +16,7 @@ SOFT, HARD = {"k_d": 1.5}, {"k_d": 3.0}
 
 @pytest.fixture
 def evaluation(native: Path) -> CostEvaluation:
-    return CostEvaluation(folder=native.parent, runs=SHORT)
+    return CostEvaluation(Settings(folder=native.parent), runs=SHORT)
 
 
 def test_the_designed_gains_cost_one_and_others_cost_otherwise(evaluation: CostEvaluation) -> None:
@@ -35,7 +36,7 @@ def test_what_a_candidate_costs_depends_on_nothing_else(evaluation: CostEvaluati
 
 def test_a_car_has_its_own_reference(native: Path) -> None:
     car = {"J_1": 0.09, "C": 210.0}
-    evaluation = CostEvaluation(car=car, folder=native.parent, runs=SHORT[:1])
+    evaluation = CostEvaluation(Settings(folder=native.parent), car, runs=SHORT[:1])
     assert evaluation.reference()["k_d"] != pytest.approx(CostEvaluation().reference()["k_d"], rel=0.1)
     with evaluation.opened(workers=1) as costs_of:
         assert next(costs_of([evaluation.reference()])) == (1.0, 1.0, 1.0)

@@ -14,6 +14,7 @@ from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import EVALUATIONS, RECORD, tune
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
+from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation.case_archive import CaseArchive
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0), Run("TwoMassDriveline", "launch", NOMINAL, 2, 1.0))
@@ -23,7 +24,7 @@ COUNT = 12
 
 @pytest.fixture
 def evaluation(native: Path) -> CostEvaluation:
-    return CostEvaluation(folder=native.parent, runs=SHORT)
+    return CostEvaluation(Settings(folder=native.parent), runs=SHORT)
 
 
 def searched(

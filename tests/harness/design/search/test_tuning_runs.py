@@ -10,10 +10,9 @@ from driveline.harness.design.search.tuning_runs import (
     SLOW_MOTOR,
 )
 from driveline.harness.design.uncertainty_box import BOX, NOMINAL
-from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.places import PLANTS, T_S
 from driveline.harness.manoeuvres.catalogue import COMPARED
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
-from driveline.harness.metrics.evaluate import T_S
 
 PART_OF_ANOTHER = {"prbs15"}
 

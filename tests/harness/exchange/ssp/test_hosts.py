@@ -12,7 +12,8 @@ from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.exchange.ssp.loop_with_source import points, with_source
-from driveline.harness.loop.places import PLANTS, STEP_SIZE, loop
+from driveline.harness.loop.places import PLANTS, STEP_SIZE
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate, start
 
@@ -55,7 +56,7 @@ def test_tools_that_hand_on_after_the_step_get_what_our_master_gets_under_jacobi
 
 @pytest.mark.parametrize("plant", PLANTS)
 def test_fmpy_gets_that_too_where_the_zeros_are_right_that_it_begins_with(packaged, fmus, plant) -> None:
-    ours = simulate(MANOEUVRES["launch"], plant, True, QUIET, scheme=Scheme.JACOBI, folder=fmus)
+    ours = simulate(MANOEUVRES["launch"], plant, parameters=QUIET, scheme=Scheme.JACOBI, folder=fmus)
     quiet = [option for name, value in QUIET.items() for option in ("--set", f"{name}={value}")]
     compare(run_in("FMPy", packaged("--manoeuvre", "launch", *quiet), plant, STEPS), ours, OUTPUTS)
 
@@ -69,7 +70,7 @@ def test_fmpy_gets_what_our_master_would_get_if_all_inputs_began_with_zero(packa
 
     monkeypatch.setattr(Loop, "_propagate", zeros)
     manoeuvre = MANOEUVRES["tipin15"]
-    system = with_source(loop(plant, fmus, "native"), fmus / "native" / "Manoeuvre.fmu")
+    system = with_source(loop(plant, folder=fmus, build="native"), fmus / "native" / "Manoeuvre.fmu")
     given = start(manoeuvre) | points(manoeuvre, fit(system))
     duration = STEPS * STEP_SIZE
     ours = run(system, Experiment(duration, STEP_SIZE, {"controller.enable": True}, given, Scheme.JACOBI))

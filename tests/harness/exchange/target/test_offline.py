@@ -17,8 +17,8 @@ from driveline.harness.exchange.target.programs import Programs, programs
 from driveline.harness.exchange.target.sample_timing import Schedule
 from driveline.harness.exchange.target.size import Size, size_of
 from driveline.harness.exchange.target.target_page import page
+from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.simulate import looped
 from driveline.models.damping_controller import BLOCK
 
 INPUTS, OUTPUTS = BLOCK.Input._fields, BLOCK.Output._fields
@@ -30,8 +30,8 @@ FEW = 600
 
 @pytest.fixture(scope="module")
 def launch_brake(both_built: Path) -> Case:
-    given = {"seed": 1, "folder": both_built, "build": "native"}
-    return recorded(MANOEUVRES["launch_brake"], looped(PLANT, given), PLANT, INPUTS, given)
+    settings = Settings(plant=PLANT, folder=both_built, build="native")
+    return recorded(MANOEUVRES["launch_brake"], loop(settings), INPUTS, settings)
 
 
 @pytest.fixture(scope="module")

@@ -11,13 +11,14 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.studies.back_to_back.back_to_back import (
     Differences,
+    LoopRow,
     by_functions,
     compare_block,
     compare_loop,
     difference,
     random_inputs,
 )
-from driveline.harness.studies.back_to_back.back_to_back_page import LoopRow, page
+from driveline.harness.studies.back_to_back.back_to_back_page import page
 from driveline.models import two_mass_driveline
 from tests.slow import slow
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from driveline.harness.base.errors import SimulationError
+from driveline.harness.loop.settings import Settings
 from driveline.harness.studies.bound.bound_report import record, write
 from driveline.harness.studies.bound.bounds import Bounded, bounded
 
@@ -15,7 +16,7 @@ from driveline.harness.studies.bound.bounds import Bounded, bounded
 def found(native: Path) -> Iterator[Bounded]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("driveline.harness.studies.bound.bounds.ALONE", ("jerk_rms_to_50_Hz",))
-        yield bounded("tipin0", {"folder": native.parent, "build": "native", "parameters": {}})
+        yield bounded("tipin0", Settings(folder=native.parent, build="native"))
 
 
 @pytest.mark.slow
@@ -59,10 +60,7 @@ def test_page_and_record_tell_the_same(found: Bounded, tmp_path: Path) -> None:
 
 def test_what_the_controller_does_not_reach_is_no_bound(native: Path) -> None:
     """Undamped, with springs that hardly lose anything, the gear torque still swings when the run ends."""
-    settings = {
-        "folder": native.parent,
-        "build": "native",
-        "parameters": {"plant.c_slip": 1e6, "controller.k_d": 0.0, "controller.k_T": 0.0},
-    }
+    undamped = {"plant.c_slip": 1e6, "controller.k_d": 0.0, "controller.k_T": 0.0}
+    settings = Settings(folder=native.parent, build="native", parameters=undamped)
     with pytest.raises(SimulationError, match=r"tipin0: no bound without settling_time: .* still swings"):
         bounded("tipin0", settings)

@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.harness.loop.places import T_S
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.metrics.evaluate import T_S, at_samples, evaluate
+from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts, band_rms
 from driveline.harness.simulation.simulate import simulate, start
 from driveline.harness.studies.bound.bound_task import Task, task
@@ -30,7 +32,7 @@ def tipin(native: Path) -> Task:
 
 def test_a_run_is_driven_by_the_torque_that_is_given(tipin: Task, native: Path) -> None:
     given = at_samples(tipin.results)["controller.T_ref"]
-    results = open_loop_run(tipin.manoeuvre, given, {"folder": native.parent, "build": "native", "parameters": QUIET})
+    results = open_loop_run(tipin.manoeuvre, given, Settings(folder=native.parent, build="native", parameters=QUIET))
     assert np.array_equal(at_samples(results)["controller.T_ref"][2:], given[2:])
     moving = results["time"] > tipin.manoeuvre.t_0
     assert results["plant.T_gear"][moving] == pytest.approx(tipin.results["plant.T_gear"][moving], abs=2e-3)
@@ -40,7 +42,7 @@ def test_a_run_is_driven_by_the_torque_that_is_given(tipin: Task, native: Path) 
 def test_the_linear_car_moves_as_the_design_model_and_its_norms_are_the_metrics(tipin: Task, native: Path) -> None:
     """Linear along the run itself nothing is left out but what changes between two samples."""
     u = at_samples(tipin.results)["controller.T_ref"][tipin.first :][: len(tipin.lower)]
-    settings = {"folder": native.parent, "build": "native", "parameters": QUIET}
+    settings = Settings(folder=native.parent, build="native", parameters=QUIET)
     results = open_loop_run(tipin.manoeuvre, tipin.reference(u), settings)
     car = linear_car(results, start(tipin.manoeuvre), tipin.first)
     prediction = Predictor(car, tipin.horizon, 1).predict(tipin.contacts)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.simulation.simulate import simulate, start
@@ -16,21 +17,21 @@ from driveline.harness.studies.bound.open_loop_run import open_loop_run
 from driveline.harness.studies.bound.switching_search import FINE, Search, holds
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 
-NATIVE = {"build": "native", "parameters": {f"motor.{name}": value for name, value in NOISELESS.items()}}
+NATIVE = Settings(build="native", parameters={f"motor.{name}": value for name, value in NOISELESS.items()})
 
 
 @pytest.fixture(scope="module")
 def search(native: Path) -> Search:
     """Of the pull away, for all metrics."""
     manoeuvre = MANOEUVRES["launch"]
-    given = task(manoeuvre, simulate(manoeuvre, folder=native.parent, **NATIVE))
+    given = task(manoeuvre, simulate(manoeuvre, NATIVE, folder=native.parent))
     return Search(given, linear_car(given.results, start(manoeuvre), given.first), given.metrics)
 
 
 def test_the_design_model_does_what_the_programme_promises(search: Search, native: Path) -> None:
     of, contacts = search.task, search.task.contacts._replace(ends=(48,))
     found = search.solve(contacts)
-    run = open_loop_run(of.manoeuvre, of.reference(found.u), NATIVE | {"folder": native.parent})
+    run = open_loop_run(of.manoeuvre, of.reference(found.u), NATIVE.replace(folder=native.parent))
     promised = value(search.predictor.predict(contacts).T_gear(np.arange(len(of.times))), found.u)
     assert promised == pytest.approx(at_samples(run)["plant.T_gear"][of.first :], abs=0.05)
     metrics = evaluate(run, of.manoeuvre)

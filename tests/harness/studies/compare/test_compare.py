@@ -7,6 +7,7 @@ import pytest
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import Settings
 from driveline.harness.studies.compare.compare import cases, run_cases, write_figures, write_tables
 
 
@@ -32,9 +33,8 @@ def test_an_unknown_plant_is_answered_with_the_nearest(capsys):
 def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
-    outcomes = list(
-        run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", {plant: {"folder": native.parent} for plant in PLANTS})
-    )
+    settings = {plant: Settings(plant=plant, folder=native.parent) for plant in PLANTS}
+    outcomes = run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", settings)
     write_tables(outcomes, folder)
     write_figures(outcomes, folder)
     return folder

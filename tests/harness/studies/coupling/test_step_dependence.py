@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from driveline.harness.loop.places import T_S
 from driveline.harness.metrics.declaration import declared
-from driveline.harness.metrics.evaluate import T_S
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.studies.coupling.step_dependence import Case, compare, deviations
 
@@ -40,7 +40,7 @@ def test_anything_over_nothing_is_without_bound() -> None:
 def test_every_metric_is_within_one_percent_of_that_with_half_the_step(
     native: Path, plant: str, manoeuvre: str
 ) -> None:
-    """The whole of it, at a tenth of the step, is measured by `driveline coupling`."""
+    """The whole of it, at a tenth of the step, is measured by `driveline study coupling`."""
     found = compare(Case(plant, manoeuvre, True), native.parent, (1e-3, 5e-4))
     assert len(found) >= 6
     assert {name: share for name, share in found.items() if share > 0.01} == {}

@@ -14,13 +14,13 @@ import pytest
 from driveline.harness.base.errors import MissingExtra, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.loop.places import STEP_SIZE
+from driveline.harness.loop.places import STEP_SIZE, T_S
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.signals import Lines
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
 from driveline.harness.manoeuvres.town_drive import PATH
-from driveline.harness.metrics.evaluate import T_S
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
@@ -44,7 +44,7 @@ def short_drive(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def settings(native):
-    return {"folder": native.parent, "build": "native"}
+    return Settings(plant="ValidationVehicle", folder=native.parent, build="native")
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def replayed(settings, load, short_drive, tmp_path_factory):
     folder = tmp_path_factory.mktemp("replay")
     track = Track.of(read_drive(short_drive))
     controllers = {"DampingController": settings, "Again": settings}
-    rides = replay(track, load, "ValidationVehicle", controllers, held=0.5)
+    rides = replay(track, load, controllers, held=0.5)
     write(rides, track, "ValidationVehicle", folder)
     return rides, folder
 
@@ -94,8 +94,9 @@ def runs(settings, load):
     @cache
     def run(name, plant):
         track = DRIVES[name]()
-        manoeuvre, undamped = followed(track, load, plant, settings)
-        return track, undamped, signals_of(manoeuvre, plant, True, settings)
+        made = settings.replace(plant=plant)
+        manoeuvre, undamped = followed(track, load, made)
+        return track, undamped, signals_of(manoeuvre, made)
 
     return run
 
@@ -131,7 +132,9 @@ def test_the_car_keeps_the_recorded_speed_stands_where_it_stood_and_never_rolls_
 def test_from_the_recording_alone_a_car_of_other_inertia_does_not_keep_the_speed(runs, settings, load):
     """Why the force along the road is found by driving."""
     track = runs("town", "TwoMassDriveline")[0]
-    signals = signals_of(drive(track, load, needed_force(track, load)), "TwoMassDriveline", False, settings)
+    signals = signals_of(
+        drive(track, load, needed_force(track, load)), settings.replace(plant="TwoMassDriveline", control=False)
+    )
     assert speed_error(signals, track) > 5.0 * CLOSE
 
 
@@ -143,10 +146,11 @@ def test_what_damping_is_worth_is_the_same_as_on_a_level_road_without_it(setting
     t = whole.t[part] - whole.t[part][0]
     track = replace(whole, t=t, v=whole.v[part], T_driver=whole.T_driver[part], slope=whole.slope[part])
     level = Manoeuvre("level", "", float(t[-1]), float(track.v[0]), Lines(t, track.T_driver))
-    manoeuvre, undamped = followed(track, load, plant, settings)
+    made = settings.replace(plant=plant)
+    manoeuvre, undamped = followed(track, load, made)
     pairs = (
-        (undamped, signals_of(manoeuvre, plant, True, settings)),
-        tuple(signals_of(level, plant, control, settings) for control in (False, True)),
+        (undamped, signals_of(manoeuvre, made)),
+        tuple(signals_of(level, made.replace(control=control)) for control in (False, True)),
     )
     for signal, derivative in (("plant.T_gear", False), ("plant.a_body", True)):
         with_it, without_it = (
@@ -230,4 +234,4 @@ def test_without_the_counting_package_the_extra_is_named_before_the_run(short_dr
     monkeypatch.setitem(sys.modules, "rainflow", None)
     load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
     with pytest.raises(MissingExtra, match="extra `replay`"):
-        replay(Track.of(read_drive(short_drive)), load, "ValidationVehicle", {"DampingController": {}})
+        replay(Track.of(read_drive(short_drive)), load, {"DampingController": Settings()})

@@ -3,6 +3,8 @@
 import pytest
 
 from driveline.fmus.signal_faults import FMU
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import Settings
 
 
 @pytest.fixture(scope="session")
@@ -14,6 +16,4 @@ def injector(native_builder, tmp_path_factory):
 @pytest.fixture(scope="session")
 def settings(native):
     """Of the loop with each plant, on freshly built FMUs."""
-    given = {"parameters": {}, "folder": native.parent, "build": "native", "mapping": {}}
-    loop = given | {"controller": None, "motor": None, "can": None}
-    return {"TwoMassDriveline": loop, "ValidationVehicle": loop}
+    return {plant: Settings(plant=plant, folder=native.parent, build="native") for plant in PLANTS}

@@ -12,7 +12,7 @@ from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.loop.places import loop
+from driveline.harness.loop.settings import loop
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
 from driveline.harness.studies.faults.fault_campaign import campaign
@@ -57,7 +57,7 @@ def test_a_contradiction_and_a_leap_are_what_the_controller_takes_for_them():
 
 def test_plants_of_the_same_name_are_refused(tmp_path):
     with pytest.raises(DrivelineError, match="two plants are called car"):
-        FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": {}, "theirs/car.fmu": {}})
+        FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": Settings(), "theirs/car.fmu": Settings()})
 
 
 def test_half_of_the_cases_are_pairs_of_different_kinds():
@@ -69,7 +69,7 @@ def test_half_of_the_cases_are_pairs_of_different_kinds():
 @pytest.mark.parametrize("plant", PLANTS)
 def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant):
     manoeuvre = SITUATIONS["gap"].manoeuvre
-    plain = loop(plant, settings[plant]["folder"], "native")
+    plain = loop(settings[plant])
     direct, through = (
         run(system, Experiment(1.3, inputs=signals(manoeuvre), parameters=start(manoeuvre)))
         for system in (plain, with_faults(plain, injector))
@@ -82,7 +82,7 @@ def test_a_controller_without_what_the_judges_read_is_named(injector, settings, 
     def change(xml):
         return xml.replace(f'name="{name}"', f'name="my_{name}"')
 
-    folder = settings["TwoMassDriveline"]["folder"]
+    folder = settings["TwoMassDriveline"].folder
     mine = tampered(folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
     with pytest.raises(WiringError, match=rf"controller\.{name}: mine\.fmu has no output {name}"):
         fit(with_faults(loop(folder=folder, build="native", controller=mine), injector))

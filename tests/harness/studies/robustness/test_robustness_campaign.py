@@ -8,6 +8,7 @@ import pytest
 from driveline.harness.base.errors import DrivelineError, SimulationError, UnpackingError
 from driveline.harness.design.uncertainty_box import Deviation, changed, deviating
 from driveline.harness.loop.places import PLACES
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.case_archive import CaseArchive
@@ -88,14 +89,8 @@ def controllers(native_builder, native, tmp_path_factory):
 
 
 def runner(folder, plant="ValidationVehicle", controller="DampingController", parameters=()):
-    settings = {
-        "parameters": dict(parameters),
-        "folder": folder,
-        "build": "native",
-        "controller": controller,
-        "seed": 1,
-    }
-    return CaseRunner({(plant, controller): (plant, settings)}, seed=1)
+    settings = Settings(plant=plant, controller=controller, parameters=dict(parameters), folder=folder, build="native")
+    return CaseRunner({(plant, controller): settings}, seed=1)
 
 
 @pytest.mark.parametrize("plant", PLACES["plant"])

@@ -1,21 +1,23 @@
-"""What `driveline.simulate` takes from Python: a value of another kind gets one line that names it."""
+"""What the settings of a run take from Python: a value of another kind gets one line that names it."""
 
 from collections.abc import Callable, Mapping
 from numbers import Integral, Real
 from os import PathLike
 from typing import Any
 
-import numpy as np
-
 from ..base.errors import WiringError
 from ..base.plain_text import plain
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme
-from ..manoeuvres.manoeuvre import Manoeuvre
 
 
 def _block(value: Any) -> bool:
     return value is None or isinstance(value, str | PathLike)
+
+
+def _number(value: Any) -> bool:
+    """Whether it is a real number or a truth value, of numpy too, which help and mistakes are answered without."""
+    return isinstance(value, Real) or type(value).__name__ in ("bool", "bool_")
 
 
 def _texts(value: Any, of: type) -> bool:
@@ -28,12 +30,11 @@ def _texts(value: Any, of: type) -> bool:
 BLOCK = (_block, "the name of a block, or the path of an FMU")
 
 ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "manoeuvre": (lambda value: isinstance(value, Manoeuvre), "a Manoeuvre, such as MANOEUVRES['tipin15']"),
     "plant": BLOCK,
     "controller": BLOCK,
     "motor": BLOCK,
     "can": BLOCK,
-    "control": (lambda value: isinstance(value, Real | np.bool_) and value in (True, False), "True or False"),
+    "control": (lambda value: _number(value) and value in (True, False), "True or False"),
     "parameters": (lambda value: _texts(value, object), "a dictionary such as {'plant.J_1': 0.06}"),
     "step_size": (lambda value: isinstance(value, Real), "a number of seconds"),
     "scheme": (lambda value: isinstance(value, Scheme | str), "a Scheme or its name"),

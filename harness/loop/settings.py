@@ -1,0 +1,174 @@
+"""The settings of a run of the loop, as a record, and the loop that they make."""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypedDict, Unpack
+
+from ..base.errors import WiringError
+from ..base.known_names import nearest
+from ..cosimulation.limits import USUAL, Limits
+from ..cosimulation.system import Scheme, System
+from .arguments import require_arguments
+from .places import (
+    BUILD,
+    BUILDS,
+    CONNECTIONS,
+    INPUTS,
+    NATIVE,
+    OPTIONAL,
+    OUTPUTS,
+    PARAMETERS,
+    PLACES,
+    STEP_SIZE,
+    TRUTH,
+    NameOrFile,
+)
+
+
+class Changes(TypedDict, total=False):
+    """The fields of `Settings` as keyword arguments; None is what is usual."""
+
+    plant: NameOrFile | None
+    controller: NameOrFile | None
+    motor: NameOrFile | None
+    can: NameOrFile | None
+    control: bool
+    parameters: Mapping[str, float] | None
+    step_size: float
+    scheme: Scheme | str
+    seed: int
+    folder: str | Path
+    build: str | None
+    mapping: Mapping[str, str] | None
+    limits: Limits
+
+
+@dataclass(frozen=True)
+class Settings:
+    """All that makes a run of the loop what it is, beside the manoeuvre.
+
+    Attributes:
+        plant, controller, motor, can: what stands in these places, one of `harness.loop.places.PLACES` or the path of
+            an FMU.
+        control: whether the damping control is enabled.
+        parameters: `instance.variable` -> value, beside the start and the seeds that a run sets.
+        step_size: communication step in s.
+        scheme: when outputs reach inputs.
+        seed: of all noise and jitter.
+        folder: of the built FMUs.
+        build: "native" or "python"; None: see `chosen_build`.
+        mapping: names of the loop -> names of an FMU: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in
+            the place of the plant, see `harness.cosimulation.mapping`.
+        limits: of FMUs that are given by their path.
+
+    Raises:
+        WiringError: names a value that no run can take, whatever the FMUs are.
+    """
+
+    plant: NameOrFile = PLACES["plant"][0]
+    controller: NameOrFile = PLACES["controller"][0]
+    motor: NameOrFile = PLACES["motor"][0]
+    can: NameOrFile = PLACES["can"][0]
+    control: bool = True
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    step_size: float = STEP_SIZE
+    scheme: Scheme = Scheme.PROPAGATED
+    seed: int = 1
+    folder: Path = BUILD
+    build: str | None = None
+    mapping: Mapping[str, str] = field(default_factory=dict)
+    limits: Limits = USUAL
+
+    def __post_init__(self) -> None:
+        require_arguments(**vars(self))
+        given = {name: PLACES[name][0] if block is None else block for name, block in self.blocks.items()}
+        given |= {"parameters": dict(self.parameters or {}), "mapping": dict(self.mapping or {})}
+        for name, value in {**given, "scheme": Scheme(self.scheme), "folder": Path(self.folder)}.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def blocks(self) -> dict[str, NameOrFile]:
+        """What stands in each place of the loop."""
+        return {place: getattr(self, place) for place in PLACES}
+
+    @property
+    def plant_name(self) -> str:
+        """By which tables and files name the plant."""
+        return Path(self.plant).stem
+
+    def replace(self, **changes: Unpack[Changes]) -> "Settings":
+        """The same with other values of these fields."""
+        return dataclasses.replace(self, **changes)  # type: ignore[arg-type]  # None and names become values above
+
+    def with_parameters(self, parameters: Mapping[str, float]) -> "Settings":
+        """The same with these parameters too, `instance.variable` -> value."""
+        return self.replace(parameters={**self.parameters, **parameters})
+
+
+def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> Settings:
+    """What a function was given: settings or only a plant, its name or file, and what is to be changed of that.
+
+    Raises:
+        WiringError: names a value that no run can take.
+        TypeError: there is no such field, or the plant is given twice.
+    """
+    if isinstance(given, Settings):
+        return given.replace(**changes)
+    if given is not None:
+        if "plant" in changes:
+            raise TypeError(f"plant is given twice: {given} and {changes['plant']}")
+        changes["plant"] = given
+    return Settings().replace(**changes)
+
+
+def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> System:
+    """The closed loop of controller, motor, plant and the wheel speeds over CAN, as settings say; arguments as of
+    `settings`.
+
+    Raises:
+        WiringError: there is no such block or build.
+    """
+    made = settings(given, **changes)
+    files = _files(made, made.build or chosen_build(made))
+    return System(
+        instances=files,
+        connections=CONNECTIONS + (TRUTH if files["controller"].stem == "PerfectState" else ()),
+        inputs=INPUTS,
+        parameters=PARAMETERS,
+        outputs=OUTPUTS,
+        mapping=made.mapping,
+        optional=OPTIONAL,
+        own=frozenset(place for place, block in made.blocks.items() if str(block) in PLACES[place]),
+        limits=made.limits,
+    )
+
+
+def chosen_build(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> str:
+    """The build that runs if none is asked for: native where all FMUs of the loop have that build; arguments as of
+    `settings`.
+
+    Raises:
+        WiringError: there is no such block.
+    """
+    native = _files(settings(given, **changes), NATIVE)
+    return NATIVE if all(path.is_file() for path in native.values()) else "python"
+
+
+def _files(made: Settings, build: str) -> dict[str, Path]:
+    if build not in BUILDS:
+        raise WiringError(f"unknown build {build}; {nearest(build, BUILDS)}")
+    folder = made.folder / NATIVE if build == NATIVE else made.folder
+    return {place: _file(place, block, folder) for place, block in made.blocks.items()}
+
+
+def _file(place: str, block: NameOrFile, folder: Path) -> Path:
+    names = PLACES[place]
+    if str(block) in names:
+        return folder / f"{block}.fmu"
+    path = Path(block)
+    if path.suffix == ".fmu":
+        return path
+    name = str(block) or "(an empty name)"
+    raise WiringError(f"unknown {place} {name}; {nearest(str(block), names)} (or give the path of a .fmu file)")
