@@ -12,7 +12,7 @@ from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.loop.settings import loop
+from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
 from driveline.harness.studies.faults.fault_campaign import campaign
