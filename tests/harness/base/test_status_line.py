@@ -36,7 +36,7 @@ class Terminal(io.StringIO):
 @pytest.fixture(autouse=True)
 def time_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(subject, "QUIET", -1.0)
-    monkeypatch.setattr(subject, "BEAT", 0.001)
+    monkeypatch.setattr(subject, "INTERVAL", 0.001)
     monkeypatch.setenv("TERM", "xterm")
 
 
