@@ -1,89 +1,14 @@
 """The order of the rooms: each imports only from those before it, so that no circle can be."""
 
-import ast
-import importlib.util
 import sys
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
+from docs.studies.rooms import ORDER, imports, modules, room, source
 from tests import ROOT
-
-ORDER = (
-    "models.block",
-    "models.physics",
-    "models.controller",
-    "models.comparators",
-    "models",
-    "fmus",
-    "fmus.description",
-    "fmus.native",
-    "fmus.python",
-    "fmus.target",
-    "fmus.building",
-    "harness.base",
-    "harness.cosimulation",
-    "harness.loop",
-    "harness.recordings",
-    "harness.manoeuvres",
-    "harness.metrics",
-    "harness.simulation",
-    "harness.views",
-    "harness.views.html",
-    "harness.design",
-    "harness.design.search",
-    "harness.identification",
-    "harness.studies.compare",
-    "harness.studies.drives",
-    "harness.studies.margins",
-    "harness.studies.coupling",
-    "harness.studies.back_to_back",
-    "harness.studies.bound",
-    "harness.studies.faults",
-    "harness.studies.robustness",
-    "harness.exchange.ssp",
-    "harness.exchange.bus",
-    "harness.exchange.target",
-    "harness.exchange.compliance",
-    "harness.explorer",
-    "harness.commands",
-    "docs.studies",
-    "docs.site",
-)
-"""Each once; a folder that holds others is a room of its own."""
 
 KNOW_THE_MODELS = ("harness.design", "harness.identification", "harness.studies", "harness.exchange", "docs.studies")
 """Rooms beside models and fmus that may import the equations; all others see FMUs only as FMUs."""
-
-
-def modules() -> Iterator[str]:
-    for folder in ("models", "fmus", "harness", "docs"):
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            if path.name != "__init__.py":
-                yield ".".join(path.relative_to(ROOT).with_suffix("").parts)
-
-
-def source(module: str) -> Path:
-    return ROOT.joinpath(*module.split(".")).with_suffix(".py")
-
-
-def imports(module: str) -> Iterator[str]:
-    """What a module imports, ours without the name of the package: of `from a import b` the module a.b, or a where b
-    is something in it."""
-    package = module.rpartition(".")[0]
-    for node in ast.walk(ast.parse(source(module).read_bytes())):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = importlib.util.resolve_name("." * node.level + (node.module or ""), f"driveline.{package}")
-            base = base.removeprefix("driveline.")
-            for alias in node.names:
-                yield f"{base}.{alias.name}" if source(f"{base}.{alias.name}").is_file() else base
-
-
-def room(module: str) -> str:
-    return module if (ROOT / module.replace(".", "/")).is_dir() else module.rpartition(".")[0]
 
 
 @pytest.mark.parametrize("module", list(modules()))

@@ -9,11 +9,13 @@ import pytest
 
 from driveline.fmus.signal_faults import FMU
 from driveline.harness.commands.cli import main
-from driveline.harness.design.search import cost_evaluation
+from driveline.harness.design.search import cost_evaluation, pareto_figure
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.simulation import many_runs
 from driveline.harness.simulation.case_archive import GOES_ON, CaseArchive
+from driveline.harness.studies.faults import fault_report
+from driveline.harness.studies.robustness import robustness_report
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),)
 
@@ -59,10 +61,14 @@ def command(fmus: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Kind, Path
     """Runs a command in this process, without figures, into a folder."""
     monkeypatch.setattr(many_runs, "_cores", lambda: 1)
     monkeypatch.setattr(cost_evaluation, "RUNS", SHORT)
-    for plot in ("faults.report.plot_matrix", "faults.report.plot_pairs", "tuning.front_figure.plot_front"):
-        monkeypatch.setattr(f"harness.{plot}", lambda *args: [])
-    for plot in ("plot_distributions", "plot_draw"):
-        monkeypatch.setattr(f"driveline.harness.studies.robustness.robustness_report.{plot}", lambda *args: [])
+    for module, plot in (
+        (fault_report, "plot_matrix"),
+        (fault_report, "plot_pairs"),
+        (pareto_figure, "plot_front"),
+        (robustness_report, "plot_distributions"),
+        (robustness_report, "plot_draw"),
+    ):
+        monkeypatch.setattr(module, plot, lambda *args: [])
     return lambda kind, folder: main([*kind.given, "--fmus", str(fmus), kind.output, str(folder), "--quiet"])
 
 

@@ -143,6 +143,6 @@ def test_a_campaign_survives_a_process_that_is_killed(injector, settings, tmp_pa
 def test_an_fmu_that_was_changed_since_is_refused(injector, settings, tmp_path):
     mine = shutil.copy(injector, tmp_path / "SignalFaults.fmu")
     runner = FaultRunner(mine, settings)
-    mine.write_bytes((settings["TwoMassDriveline"]["folder"] / "native" / "WheelSpeedCan.fmu").read_bytes())
+    mine.write_bytes((settings["TwoMassDriveline"].folder / "native" / "WheelSpeedCan.fmu").read_bytes())
     with pytest.raises(DrivelineError, match=r"SignalFaults\.fmu is not the one that the campaign was begun with"):
         campaign(runner, [1], 3, workers=1)
