@@ -1,4 +1,4 @@
-"""The rooms of the code in their order, and the picture of it in docs/architecture.md: `python -m docs.studies.rooms`."""
+"""The rooms of the code in their order; `python -m docs.studies.rooms` draws it for docs/architecture.md."""
 
 import ast
 from collections import Counter

@@ -156,8 +156,8 @@ def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
     assert BUILD == ROOT / "build"
     package, left_out = tmp_path / "site/driveline", ignore_patterns("__pycache__", "*.so", "models", "fmus", "harness")
     copytree(ROOT / "driveline", package, ignore=left_out)
-    for folder in ("fmus", "models", "harness"):
-        copytree(ROOT / folder, package / folder, ignore=ignore_patterns("__pycache__", "*.so"))
+    for name in ("fmus", "models", "harness"):
+        copytree(ROOT / name, package / name, ignore=ignore_patterns("__pycache__", "*.so"))
     statement = "from driveline.harness.loop.places import BUILD; print(BUILD)"
     done = subprocess.run(
         [sys.executable, "-c", statement],
