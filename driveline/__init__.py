@@ -37,13 +37,20 @@ def __getattr__(name: str) -> Any:
     if name == "__all__":
         return __dir__()
     if name not in _public():
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_nearest(name)}")
     place, attribute = _public()[name]
     module = import_module(place, __name__)
     if not hasattr(module, attribute):  # a module in a package
         return import_module(f"{place}.{attribute}", __name__)
     globals()[name] = found = getattr(module, attribute)
     return found
+
+
+def _nearest(name: str) -> str:
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, _public(), n=2)
+    return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
 def __dir__() -> list[str]:

@@ -13,7 +13,7 @@ PACKAGE = __name__.removesuffix("fmus.fmu")
 
 @dataclass(frozen=True)
 class Fmu:
-    """One FMU.
+    """One FMU: a block, and what an FMU shows of it beside.
 
     Attributes:
         block: what it runs.
@@ -34,7 +34,7 @@ class Fmu:
 
     @property
     def module(self) -> str:
-        """Module that holds the equations, for example models.two_mass_driveline; a stranger's with all its name."""
+        """Module that holds the equations, for example `models.two_mass_driveline`; a stranger's with all its name."""
         return self.block.module.removeprefix(PACKAGE)
 
     @property

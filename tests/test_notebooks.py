@@ -15,11 +15,12 @@ from tests.slow import slow
 SHOWN = {
     "first_run": """
         assert signals.attrs["units"]["plant.T_gear"] == "N.m"
-        assert evaluate(on, tipin).settling_time < 0.5 * evaluate(off, tipin).settling_time
+        worth = driveline.frame(runs).settling_time
+        assert worth["with damping"] < 0.5 * worth["without damping"]
         assert Path("results/first_run.csv").read_text().startswith("time [s],")
         """,
     "your_vehicle": """
-        found = frame({name: evaluate(results, tipin) for name, results in runs.items()})
+        found = driveline.frame({name: driveline.evaluate(results, tipin) for name, results in runs.items()})
         assert list(found.overshoot) == sorted(found.overshoot, reverse=True)
         assert found.settling_time["with damping"] < 0.2 < 1.0 < found.settling_time["without damping"]
         assert gains["k_d"] > 3.0
@@ -39,8 +40,8 @@ SHOWN = {
         assert abs(vehicle["phi_B"] / CAR["plant.phi_B"] - 1.0) < 0.15
         overshoot = worth.overshoot.unstack()
         assert (overshoot.redesigned < 0.8 * overshoot.before).all() and (overshoot.before < overshoot.none).all()
-        assert {"C", "phi_B", "tau"} <= read_vehicle(Path("results/car.toml")).keys()
-        assert read_parameters(Path("results/gains.toml"))["k_d"] > 2.0
+        assert {"C", "phi_B", "tau"} <= driveline.read_vehicle(Path("results/car.toml")).keys()
+        assert driveline.read_parameters(Path("results/gains.toml"))["k_d"] > 2.0
         """,
 }
 """What must hold at the end of each notebook, by the names of its cells."""
@@ -48,7 +49,6 @@ SHOWN = {
 IMPORTS = """
     import pandas as pd
     from pathlib import Path
-    from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
     """
 
 QUICK = [path for path in NOTEBOOKS if path.stem in ("first_run", "your_vehicle")]

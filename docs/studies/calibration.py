@@ -9,7 +9,7 @@ import numpy as np
 from driveline.harness.design.design import damping_law, design
 from driveline.harness.design.design_trials import loop_parameters, mean
 from driveline.harness.design.design_weights import CAN as BUS
-from driveline.harness.design.design_weights import MOTOR, PARAMETERS, PLANT, WEIGHTS, drive_train, records
+from driveline.harness.design.design_weights import MOTOR, PARAMETERS, PLANT, WEIGHTS, drive_train
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
@@ -92,7 +92,7 @@ def another_car(plant: str, deviation: Deviation) -> tuple[Given, Given]:
     controller = PLACES["controller"][0]
     car = deviating({}, plant, controller, deviation)
     vehicle = {name.partition(".")[2]: value for name, value in deviating({}, PLANTS[0], controller, deviation).items()}
-    own = loop_parameters(vehicle | design(*records(vehicle)), plant)
+    own = loop_parameters(vehicle | design(vehicle), plant)
     assumed = {name: value for name, value in own.items() if name.startswith("controller.")}
     return tuple(car.items()), tuple((car | assumed).items())
 

@@ -15,12 +15,12 @@ import numpy as np
 
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import loop_records, of_controller, settled
-from driveline.harness.design.design_weights import MOTOR, PLANT, records
+from driveline.harness.design.design_trials import controller_parameters, loop_records, settled
+from driveline.harness.design.design_weights import MOTOR, PLANT
 from driveline.harness.design.kalman import DesignError
 from driveline.harness.design.redesign import MANOEUVRES, softened
 from driveline.harness.design.uncertainty_box import Deviation, changed
-from driveline.harness.identification.car_file import car
+from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train import Parameters
 from driveline.harness.identification.drive_train_response import response
 from driveline.harness.identification.identify import (
@@ -319,14 +319,14 @@ def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
     true = changed(blocks, deviation)
     try:
         recorded, _ = recording(plant, seed, true)
-        assumed = car(identified(recorded), {})
+        assumed = identified_car(identified(recorded))
     except RecordingError as reason:
         return Redesigned(plant, number, {}, {}, {}, str(reason))
     before = {name: settled(plant, name, true, seed) for name in MANOEUVRES}
     try:
-        gains = design(*records(assumed), weights=softened(assumed, {}))
+        gains = design(assumed, weights=softened(assumed, {}))
     except DesignError as reason:
         return Redesigned(plant, number, before, {}, assumed, str(reason))
-    controller = of_controller({**assumed, **gains}, plant)
+    controller = controller_parameters({**assumed, **gains}, plant)
     after = {name: settled(plant, name, true | controller, seed) for name in MANOEUVRES}
     return Redesigned(plant, number, before, after, assumed)

@@ -2,7 +2,8 @@
 
 
 class DrivelineError(Exception):
-    """Base of all errors of the harness; the command line prints them without a traceback."""
+    """Base of all errors that the user can mend, but for those of the build; the command line prints them without a
+    traceback."""
 
     exit_code = 2
 

@@ -72,13 +72,13 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None) -> s
         DesignError: there is no controller for this car.
     """
     from ...fmus.building.parameter_files import read_vehicle
-    from ..design.design import design, gains_file
+    from ..design.design import gains_file, gains_of
     from ..design.design_weights import WEIGHTS, records
     from ..design.kalman import DesignError
     from ..studies.margins.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
-    gains = design(plant, motor, can, weights or WEIGHTS)
+    gains = gains_of(plant, motor, can, weights or WEIGHTS)
     alone, damped = swing(plant, motor, gains)
     if damped.damping_ratio <= alone.damping_ratio:
         raise DesignError(

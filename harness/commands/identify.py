@@ -103,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
         require_fmus()
     from ..base.atomic_files import write_text
     from ..identification import car_file
-    from ..identification.prior_knowledge import identified as identified_car
+    from ..identification.prior_knowledge import identify
 
     everything = output.with_name(f"{output.stem}_identified.json")
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "vehicle": vehicle}
@@ -111,12 +111,12 @@ def run(args: argparse.Namespace) -> int:
     same |= {"aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases], **of_databases(args)}
     read, first = [args.recording, *args.databases, *args.aliases], [output, everything]
     with job(args, output.with_suffix(".json"), same, {}, first, read) as made:
-        identified = identified_car(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
+        identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
         say(identified, recording, made.out)
         made.begin()
         figures = draw(identified, recording, output.with_suffix(""), shown)
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        write_text(car_file.text(identified, vehicle, f"The car of {args.recording.name}, by {program}."), output)
+        write_text(car_file.vehicle_file(identified, f"The car of {args.recording.name}, by {program}.", vehicle), output)
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
         made.wrote(output, everything, *figures)
         for provenance, path in made.reports():
@@ -147,7 +147,7 @@ def say(identified: "Identified", recording: "Measurement", out: Printer) -> Non
     from ..identification import car_file
 
     delays, warnings = (f"delay: {delay}" for delay in recording.delays), (f"warning: {w}" for w in identified.warnings)
-    for line in (*delays, *car_file.lines(identified), *warnings):
+    for line in (*delays, *car_file.identified_lines(identified), *warnings):
         out.say(line)
 
 

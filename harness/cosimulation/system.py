@@ -13,7 +13,7 @@ from .limits import USUAL, Limits
 
 
 class Scheme(Enum):
-    """When an output reaches the inputs it feeds; see harness.cosimulation.schedule.
+    """When an output reaches the inputs it feeds; docs/coupling.md shows what each makes of the loop.
 
     `Scheme("jacobi")` is the scheme of that name.
 
@@ -60,7 +60,7 @@ class System:
         inputs: what is fed from outside.
         parameters: what every run sets.
         outputs: what is evaluated after the run; other outputs are recorded too.
-        mapping: `instance.variable` of the loop -> variable of the FMU, see `harness.cosimulation.mapping`.
+        mapping: `instance.variable` of the loop -> variable of the FMU.
         own: instances whose FMUs are the project's; those of the others run in a process of their own.
         limits: of the others.
         any_value: instances that put out NaN on purpose; with all others it ends the run.

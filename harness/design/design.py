@@ -10,12 +10,44 @@ from math import sqrt
 from typing import Any
 
 from ...fmus.description.variables import Variable
-from .design_weights import CAN, MOTOR, PARAMETERS, PLANT, WEIGHTS, Can, DriveTrain, Motor, Plant, Weights, drive_train
+from .design_weights import (
+    CAN,
+    MOTOR,
+    PARAMETERS,
+    PLANT,
+    WEIGHTS,
+    Can,
+    DriveTrain,
+    Motor,
+    Plant,
+    Weights,
+    drive_train,
+    records,
+)
 from .kalman import DesignError, estimator_gains
 
 
-def design(plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS) -> dict[str, float]:
-    """All parameters of the controller that are designed, by name, in SI units.
+def design(vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS) -> dict[str, float]:
+    """All parameters of the controller that are designed for a car, by name, in SI units.
+
+        gains = driveline.design({"m": 1900.0, "C": 150.0})
+        gains["k_d"]  # in N.m.s/rad
+
+    Args:
+        vehicle: entries of a vehicle file, in SI units, as `read_vehicle` gives them; what they do not name is that
+            of the default car.
+        weights: what the designer decides.
+
+    Raises:
+        DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
+    """
+    return gains_of(*records(vehicle or {}), weights)
+
+
+def gains_of(
+    plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS
+) -> dict[str, float]:
+    """The same for the records of a car.
 
     Args:
         plant, motor, can: the car.
@@ -33,7 +65,7 @@ def design(plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: 
 def literal_observer(
     plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS
 ) -> dict[str, float]:
-    """The gains of the paper's observer taken literally, by name; args and errors as of `design`."""
+    """The gains of the paper's observer taken literally, by name; args and errors as of `gains_of`."""
     return possible(estimator_gains(plant, motor, can, drive_train(plant, motor, can, weights), weights, literal=True))
 
 

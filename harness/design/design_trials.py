@@ -19,7 +19,6 @@ from ..metrics.evaluate import evaluate
 from ..metrics.run_metrics import Metrics
 from ..simulation.simulate import simulate
 from .design import design
-from .design_weights import records
 
 
 class Gains(Enum):
@@ -42,7 +41,7 @@ class Trial(NamedTuple):
 @cache
 def own_gains(vehicle: Path | None) -> dict[str, float]:
     """The gains designed for the car of a vehicle file."""
-    return design(*records(read_vehicle(vehicle) if vehicle else {}))
+    return design(read_vehicle(vehicle) if vehicle else {})
 
 
 def loop_records(plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
@@ -52,14 +51,20 @@ def loop_records(plant: str, controller: str = PLACES["controller"][0]) -> dict[
 
 
 def loop_parameters(values: Mapping[str, Any], plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
-    """Entries of parameter files as parameters of the loop with a plant and a controller of ours, `instance.name` ->
-    value."""
+    """Entries of parameter files as parameters of the loop with a plant and a controller of ours.
+
+        van = driveline.read_files(Path("van.toml"), Path("van_gains.toml"))
+        driveline.simulate(tipin, "ValidationVehicle", parameters=driveline.loop_parameters(van, "ValidationVehicle"))
+
+    Returns:
+        `instance.name` -> value, for every block that has the name.
+    """
     records = loop_records(plant, controller)
     return for_instances(values, {place: record._fields for place, record in records.items()})
 
 
-def of_controller(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
-    """Those of the controller alone: what it assumes, whatever the car is."""
+def controller_parameters(values: Mapping[str, Any], plant: str) -> dict[str, Any]:
+    """Of `loop_parameters` those of the controller alone: what it assumes, whatever the car is."""
     return {name: value for name, value in loop_parameters(values, plant).items() if name.startswith("controller.")}
 
 

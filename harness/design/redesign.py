@@ -8,8 +8,8 @@ import numpy as np
 
 from ..loop.places import PLANTS
 from .design import design
-from .design_trials import loop_parameters, of_controller, settled
-from .design_weights import WEIGHTS, Weights, records
+from .design_trials import controller_parameters, loop_parameters, settled
+from .design_weights import WEIGHTS, Weights
 
 MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
 """In which controllers are compared."""
@@ -28,9 +28,9 @@ def worth(plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[s
         car: entries of a vehicle file, for plant, motor and bus.
         assumed: entries of a vehicle file and of gains, for the controller.
     """
-    true, of_car = loop_parameters(car, plant), of_controller(car, plant)
+    true, of_car = loop_parameters(car, plant), controller_parameters(car, plant)
     others = {name: value for name, value in true.items() if name not in of_car}
-    return settled(plant, manoeuvre, others | of_controller(assumed, plant))
+    return settled(plant, manoeuvre, others | controller_parameters(assumed, plant))
 
 
 def softened(car: Mapping[str, Any], before: Mapping[str, Any]) -> Weights:
@@ -46,7 +46,7 @@ def softened(car: Mapping[str, Any], before: Mapping[str, Any]) -> Weights:
     """
     bearable = MARGIN * _overshoots(car, before)
     weights = WEIGHTS
-    while np.any(_overshoots(car, {**car, **design(*records(car), weights=weights)}) > bearable):
+    while np.any(_overshoots(car, {**car, **design(car, weights)}) > bearable):
         if weights.washout * SOFTER < WEIGHTS.washout * SOFTEST:
             break
         weights = replace(weights, washout=SOFTER * weights.washout)

@@ -1,1 +1,5 @@
 """Identification: from a recording of a test drive to the parameters of the design model (paper, Section IV)."""
+
+from ..base.optional_packages import required
+
+required("casadi", "identifying a model", "native")

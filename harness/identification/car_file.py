@@ -33,8 +33,8 @@ def found(identified: Identified) -> list[tuple[str, float, float]]:
     return [row for row in rows if row[2] > 0.0]
 
 
-def lines(identified: Identified) -> list[str]:
-    """What was found, a line each, for people."""
+def identified_lines(identified: Identified) -> list[str]:
+    """What was found, for people, a line each: parameters with unit and half of their 95 % interval, and how they fit."""
     quality = identified.quality
     every = found(identified)
     width = max(len(name) for name, *_ in every)
@@ -55,8 +55,8 @@ def lines(identified: Identified) -> list[str]:
     ]
 
 
-def car(identified: Identified, vehicle: Mapping[str, Any]) -> dict[str, Any]:
-    """Entries of the vehicle file: what the controller's model needs.
+def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Entries of the vehicle file, in SI units: what the controller's model needs, as `design` takes it.
 
     Args:
         vehicle: entries of the one that was given, which stay but for those that were identified.
@@ -67,20 +67,25 @@ def car(identified: Identified, vehicle: Mapping[str, Any]) -> dict[str, Any]:
         entries["J_1"] = p.J_1
     if identified.loop:
         entries["tau"] = identified.loop.loop.tau
-    return {**vehicle, **{name: float(f"{value:.6g}") for name, value in entries.items()}}
+    return {**(vehicle or {}), **{name: float(f"{value:.6g}") for name, value in entries.items()}}
 
 
-def text(identified: Identified, vehicle: Mapping[str, Any], comment: str) -> str:
-    """The vehicle file as TOML, under what was identified."""
+def vehicle_file(identified: Identified, comment: str, vehicle: Mapping[str, Any] | None = None) -> str:
+    """The text of the vehicle file, TOML with the entries of `identified_car` under what was identified.
+
+    Args:
+        comment: how it begins.
+        vehicle: see `identified_car`.
+    """
     known = [
-        *lines(identified),
+        *identified_lines(identified),
         *(f"warning: {warning}" for warning in identified.warnings),
         "",
         "What follows is what the controller's model needs of this car: C is that of the two masses that answer as the",
         "car does on its own, tyre and vehicle included. J_2 stays as it was.",
     ]
     head = "\n".join(f"# {line}".rstrip() for line in [*comment.splitlines(), "", *known])
-    entries = car(identified, vehicle)
+    entries = identified_car(identified, vehicle)
     return f"{head}\n\n" + "".join(
         f"{name} = {'true' if value is True else 'false' if value is False else repr(value)}\n"
         for name, value in entries.items()

@@ -74,13 +74,15 @@ Log = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """Attributes:
-    method: "prediction error" or "output error".
-    p: the parameters.
-    covariance: of the free ones, in their order.
-    free: their names.
-    noise: of the recording, or what the model lacks.
-    warnings: what may be wrong, a sentence each.
+    """Parameters that were found, in SI units.
+
+    Attributes:
+        method: "prediction error" or "output error".
+        p: the parameters.
+        covariance: of the free ones, in their order.
+        free: their names.
+        noise: of the recording, or what the model lacks.
+        warnings: what may be wrong, a sentence each.
     """
 
     method: str
@@ -98,12 +100,14 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class Identified(Estimate):
-    """Attributes:
-    name: WITH_LOAD: J_2 is that of the wheels; WITHOUT_LOAD: J_2 carries the vehicle.
-    loop: motor control, if its demand was recorded.
-    tyre: what hangs on the wheels; None if J_2 carries it.
-    quality: on the last quarter of the recording, with parameters found on the rest.
-    drive: the recording.
+    """What a recording tells of a drive train: parameters `p` in SI units, their `covariance` and `warnings`.
+
+    Attributes:
+        name: WITH_LOAD: J_2 is that of the wheels; WITHOUT_LOAD: J_2 carries the vehicle.
+        loop: motor control, if its demand was recorded.
+        tyre: what hangs on the wheels; None if J_2 carries it.
+        quality: on the last quarter of the recording, with parameters found on the rest.
+        drive: the recording.
     """
 
     name: str

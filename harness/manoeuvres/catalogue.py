@@ -74,5 +74,6 @@ MANOEUVRES: dict[str, Manoeuvre] = {
         ),
     )
 }
+"""The manoeuvres of the project, by name."""
 
 COMPARED = tuple(name for name in MANOEUVRES if name not in ("prbs15", "launch_brake", "hill_hold"))

@@ -23,6 +23,9 @@ def composed(
     """A manoeuvre whose metrics refer to what it is: a step, of which they take instant and height, where the demand
     makes one and brake and slope stay as they are; of a demand of straight lines they take the plateaus.
 
+        demand = [driveline.constant(-12.0), driveline.step(1.0, 112.0)]
+        kick = driveline.composed("kick", duration=6.0, v_0=15 / 3.6, T_driver=demand)
+
     Args:
         name: of results and files.
         duration: in s.

@@ -40,11 +40,11 @@ EXAMPLES = {"s": "200 ms", "Hz": "5 Hz", "N.m": "0.1 kN.m", "rad": "5 %", "m/s":
 def read_manoeuvre(path: Path) -> Manoeuvre:
     """The manoeuvre of a file, with the name of the file.
 
-    TOML is what ends with .toml; all else is read as a recording is (`harness.recordings`).
+    TOML is what ends with .toml; all else is a table of the signals over time and read as a recording is.
 
     Raises:
         ManoeuvreError: names file, key and value, and what is allowed.
-        RecordingError: of a table, see `harness.recordings.channels.Channels.read`.
+        RecordingError: of a table; names the file, the column and what is wrong.
     """
     return _from_toml(path) if path.suffix == ".toml" else _from_table(path)
 

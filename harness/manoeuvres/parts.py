@@ -142,7 +142,11 @@ def chirp(amplitude: float, first: float, last: float, begin: float, end: float)
 
 
 def prbs(amplitude: float, clock: float = 0.04, order: int = 9, begin: float = 0.0, end: float = LONGEST) -> Binary:
-    """Jumps between the amplitude and minus the amplitude, or stays, every `clock` s, see `harness.manoeuvres.prbs`."""
+    """Pseudo-random binary: jumps between the amplitude and minus the amplitude, or stays, every `clock` s.
+
+    Args:
+        order: of the shift register; the bits begin again after 2**order - 1 of them.
+    """
     require(amplitude=amplitude, clock=clock, begin=begin, end=end)
     if order not in FEEDBACK:
         raise ManoeuvreError(f"order = {order}: it must be one of {', '.join(map(str, FEEDBACK))}")

@@ -25,7 +25,9 @@ JerkRms = Annotated[
 
 @dataclass(frozen=True)
 class Metrics(NotebookTable):
-    """Torques are those of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
+    """What a run is worth, in SI units; NaN where a metric makes no sense for it, and `absent` says why.
+
+    Torques are those of the motor side. A swing is half of the peak to peak within 0.2 s. What the control adds is
     T_ref - T_driver, the demand delayed by the one sample that every controller needs. Rms and peak values are those
     from 0.2 s before a step to 4 s after it, in every other manoeuvre those of the whole record.
     """

@@ -45,11 +45,14 @@ def read_drive(
     """Reads a recorded drive. Columns are found by name and converted by unit; others are ignored.
 
     Args:
-        columns, names, databases: see `harness.recordings.channels.Channels`.
+        columns: by quantity the heading of its column, where that is not to be found by name.
+        names: files of aliases beside ours.
+        databases: of the bus, if the file is a log of its frames.
 
     Raises:
-        RecordingError: see `harness.recordings.channels.Channels.read`; the elevation may be missing, and in the place
-            of the speed of the vehicle there may be that of the wheels over ground, in km/h for example.
+        RecordingError: names the file, the column and what is wrong. The elevation may be missing, and in the place of
+            the speed of the vehicle there may be that of the wheels over ground, in km/h for example.
+        MissingExtra: a package that reads such files is not installed.
     """
     recording = Channels(path, columns, names, databases)
     speed = "v" if recording.has("v") or not recording.has(WHEELS) else WHEELS

@@ -43,7 +43,7 @@ class Measurement:
         T_load: load torque in N.m, negative when it brakes; None if it was not recorded.
         T_ref: torque demand in N.m, each held until the next; None if it was not recorded.
         columns: heading of the column by quantity.
-        delays: that the recording tells, see `harness.recordings.delays`.
+        delays: between signals that belong together, as the recording tells them.
         warnings: what is odd but can be used, a sentence each.
         file_units: of T_mot, omega_1, omega_2 and T_load.
     """
@@ -80,11 +80,14 @@ def read_measurement(
     Args:
         i: gear ratio.
         r: radius of the tyre in m.
-        columns, names, databases: see `harness.recordings.channels.Channels`.
+        columns: by quantity the heading of its column, where that is not to be found by name.
+        names: files of aliases beside ours.
+        databases: of the bus, if the file is a log of its frames.
 
     Raises:
-        RecordingError: see `harness.recordings.channels.Channels.read`, `harness.recordings.signal_checks` and
-            `harness.recordings.relations`.
+        RecordingError: names the file, the column and what is wrong: a column that is missing, unreadable or in
+            another unit, a signal that is frozen or impossible, signals that contradict each other.
+        MissingExtra: a package that reads such files is not installed.
     """
     recording = Channels(path, columns, names, databases)
     wheels, loads = _present(recording, WHEEL_SPEEDS), _present(recording, LOADS)

@@ -31,7 +31,10 @@ def simulate(
     """Drives the closed loop through a manoeuvre.
 
     `simulate(tipin)`, `simulate(tipin, "ValidationVehicle", seed=7)` and `simulate(tipin, settings, control=False)`
-    are what there is to write: the keyword arguments are the fields of `harness.loop.settings.Settings`.
+    are what there is to write: the keyword arguments are the fields of `Settings`.
+
+        results = driveline.simulate(driveline.MANOEUVRES["tipin15"], "ValidationVehicle")
+        results["plant.T_gear"]  # in N.m, a sample for each of results["time"]
 
     Args:
         settings: of the run, or only the name or file of its plant; by default those of `Settings()`.
@@ -39,7 +42,8 @@ def simulate(
             step_size, scheme, seed, folder, build, mapping, limits.
 
     Returns:
-        Structured array, see `harness.cosimulation.master.Loop.run`, with the units of its columns.
+        Structured array with the units of its columns: a row for each instant k * step_size, k = 0, 1, ..., with
+        `time`, each input (held from that instant on) and each output `instance.variable`.
 
     Raises:
         WiringError: a block, a parameter or an argument does not fit.

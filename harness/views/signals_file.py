@@ -126,6 +126,10 @@ def signals_path(stem: Path, format: str) -> Path:
 def write_signals(results: np.ndarray, stem: Path, format: str = "csv") -> Path:
     """Writes a structured array, its first column the time in s, with the units that it knows; returns the file.
 
+    Args:
+        stem: path of the file without its ending.
+        format: "csv", "csv-units" (with the units in the headings), "parquet" or "mf4".
+
     Raises:
         MissingExtra: the package that writes the format is not installed.
     """

@@ -162,7 +162,7 @@ def supervised(
     """A controller as a block: its parameters are those of the estimator, of the law and of the supervision.
 
     Args:
-        name, description, module: see `models.block.types`.
+        name, description, module: see `SampledBlock`.
     """
     controller = Supervised(estimator, law)
     return SampledBlock(

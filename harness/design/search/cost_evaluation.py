@@ -1,11 +1,4 @@
-"""Costs of a controller: on a car, in the runs that count, against what the reference makes of them.
-
-```python
-evaluation = CostEvaluation(Settings(controller="SpeedWashout"))
-with evaluation.opened() as costs_of:
-    print([costs.total() for costs in costs_of([{"k_v": 1.5}, {"k_v": 2.5}])])
-```
-"""
+"""Costs of a controller: on a car, in the runs that count, against what the reference makes of them."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,7 +16,6 @@ from ...simulation.many_runs import many
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
 from ...simulation.simulate import simulate
 from ..design import design
-from ..design_weights import records
 from ..uncertainty_box import deviating
 from .controller_cost import Costs, costs
 from .tuning_runs import RUNS, Run
@@ -45,7 +37,11 @@ class Trial(NamedTuple):
 
 @dataclass(frozen=True)
 class CostEvaluation:
-    """A controller on a car.
+    """A controller on a car, whose parameters cost what they make of the runs that count.
+
+        evaluation = driveline.CostEvaluation(driveline.Settings(controller="SpeedWashout"))
+        with evaluation.opened() as costs_of:
+            print([costs.total() for costs in costs_of([{"k_v": 1.5}, {"k_v": 2.5}])])
 
     Attributes:
         settings: of the loop with the controller; plant, parameters and seed are those of the runs.
@@ -81,7 +77,7 @@ class CostEvaluation:
 
     def reference(self) -> dict[str, float]:
         """The gains that are computed for the car."""
-        return design(*records(self.car))
+        return design(self.car)
 
     def digests(self) -> dict[Path, str]:
         """Of the FMUs that run."""
@@ -96,7 +92,7 @@ class CostEvaluation:
         The same candidates cost the same, whoever stands beside them and however many processes share the runs.
 
         Args:
-            workers, scheduler: see `harness.simulation.many_runs.run_many`.
+            workers, scheduler: see `run_many`.
         """
         wanted, evaluation = self.digests(), replace(self, settings=anywhere(self.settings))
 

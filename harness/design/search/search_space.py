@@ -103,7 +103,7 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
 
 
 def _computed(car: Mapping[str, Any]) -> tuple[dict[str, float], ...]:
-    return design(*records(car)), literal_observer(*records(car))
+    return design(car), literal_observer(*records(car))
 
 
 @cache

@@ -56,10 +56,12 @@ UNDAMPED = "without damping"
 
 @dataclass(frozen=True, eq=False)
 class Ride:
-    """A recorded drive that was simulated; the signals are the columns KEPT at the samples of the controller.
+    """A recorded drive that was simulated.
 
     Attributes:
-        controller: its name, or UNDAMPED.
+        controller: its name, or "without damping".
+        metrics: in SI units.
+        signals: structured array with `time` and the most important columns of `Results`, a row every 2 ms.
     """
 
     controller: str

@@ -125,8 +125,8 @@ def line_of(piece: str) -> int:
             f"line {line_of('p.r * braking_force')}: MyVehicle cannot be built: AttributeError",
         ),
         (
-            EXAMPLE.replace("tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"),
-            f"line {line_of('tanh(x.v / p.v_rr)')}: MyVehicle cannot be built: TypeError: a model",
+            EXAMPLE.replace("operators.tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"),
+            f"line {line_of('operators.tanh(x.v / p.v_rr)')}: MyVehicle cannot be built: TypeError: a model",
         ),
     ],
 )

@@ -8,7 +8,6 @@ import pytest
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands.cli import main
 from driveline.harness.design.design import design
-from driveline.harness.design.design_weights import records
 from tests import ROOT
 
 VAN = ROOT / "examples" / "cars" / "van.toml"
@@ -22,7 +21,7 @@ def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.Ca
         "# Gains of the DampingController for van.toml, by `driveline design` (driveline-damping"
     )
     assert lines[1] == "# Drive train: 6.97 Hz; damped: 8.12 Hz, damping ratio 0.60."
-    expected = design(*records(read_vehicle(VAN)))
+    expected = design(read_vehicle(VAN))
     assert tomllib.loads(text) == pytest.approx(expected, rel=1e-5)
     assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)
 
@@ -33,7 +32,7 @@ def test_the_gains_are_written_to_a_file_that_the_other_commands_take(
     path = tmp_path / "new" / "gains.toml"
     assert main(["design", "--vehicle", str(VAN), "--output", str(path)]) == 0
     assert capsys.readouterr().out == f"gains: {path}\n"
-    assert read_parameters(path)["k_d"] == pytest.approx(design(*records(read_vehicle(VAN)))["k_d"], rel=1e-5)
+    assert read_parameters(path)["k_d"] == pytest.approx(design(read_vehicle(VAN))["k_d"], rel=1e-5)
     assert [file.name for file in path.parent.iterdir()] == ["gains.toml"]
 
 

@@ -14,7 +14,7 @@ from driveline.fmus.building.parameter_files import read_parameters, read_vehicl
 from driveline.harness.commands.cli import main
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
-from driveline.harness.design.design_weights import PLANT, records
+from driveline.harness.design.design_weights import PLANT
 
 FIGURES = {
     f"car_{name}.{ending}" for name in ("simulation", "innovations", "cost", "response") for ending in ("png", "pdf")
@@ -178,7 +178,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
     assert identify("--design") == 0
     folder = tmp_path / "out"
     car, gains = read_vehicle(folder / "car.toml"), read_parameters(folder / "car_gains.toml")
-    assert gains == pytest.approx(design(*records(car)), rel=1e-5)
+    assert gains == pytest.approx(design(car), rel=1e-5)
     fmus = [folder / "car_fmus" / where / "DampingController.fmu" for where in (".", "native")]
     for fmu in fmus:
         start = {variable.name: str(variable.start) for variable in read_model_description(str(fmu)).modelVariables}

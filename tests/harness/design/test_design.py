@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from driveline.harness.commands.design import designed
-from driveline.harness.design.design import design, literal_observer
+from driveline.harness.design.design import design, gains_of, literal_observer
 from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
 from driveline.harness.design.kalman import DesignError, motor_speed_gains, process_noise, speed_noise, transition
 from driveline.harness.studies.margins.modes import swing
@@ -62,7 +62,7 @@ def test_a_car_is_the_default_car_where_its_file_says_nothing() -> None:
 def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float) -> None:
     """All inertias, stiffness and torques larger by one factor: the same motions, torques larger by that factor."""
     plant = PLANT._replace(J_1=scale * PLANT.J_1, J_2=scale * PLANT.J_2, C=scale * PLANT.C, m=scale * PLANT.m)
-    gains, default = design(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
+    gains, default = gains_of(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
     with_torque = {"k_d", "T_gap", *(f"{L}_T_l" for L in ("L", "Lw", "L_can"))}
     for name, value in gains.items():
         assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
@@ -79,12 +79,12 @@ def test_the_vehicle_takes_its_share_of_the_gear_torque() -> None:
 def test_of_light_wheels_the_vehicle_takes_all_that_the_controller_allows() -> None:
     physical = PLANT._replace(J_2=1.9 / 81.0)
     assert drive_train(physical, MOTOR, CAN).lambda_v == 0.99
-    assert swing(physical, MOTOR, design(physical))[1].damping_ratio > 0.4
+    assert swing(physical, MOTOR, gains_of(physical))[1].damping_ratio > 0.4
 
 
 def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_the_phase() -> None:
-    stiff, soft = design(PLANT._replace(C=2.0 * PLANT.C)), design(PLANT._replace(C=0.5 * PLANT.C))
-    default, slow_motor = design(), design(PLANT._replace(C=0.5 * PLANT.C), MOTOR._replace(tau=2.0 * MOTOR.tau))
+    stiff, soft = gains_of(PLANT._replace(C=2.0 * PLANT.C)), gains_of(PLANT._replace(C=0.5 * PLANT.C))
+    default, slow_motor = design(), gains_of(PLANT._replace(C=0.5 * PLANT.C), MOTOR._replace(tau=2.0 * MOTOR.tau))
     assert stiff["k_d"] == pytest.approx(default["k_d"] * sqrt(2.0), rel=STORED_DIGITS)
     train = drive_train(PLANT, MOTOR, CAN)
     assert soft["k_d"] == pytest.approx(WEIGHTS.phase * PLANT.J_1 / train.T_dead, rel=STORED_DIGITS)
@@ -93,7 +93,7 @@ def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_t
 
 def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
     """Washout, haste and return follow its frequencies, of which one is the motor's with it and one the vehicle's."""
-    stiff, default = design(PLANT._replace(C=4.0 * PLANT.C)), design()
+    stiff, default = gains_of(PLANT._replace(C=4.0 * PLANT.C)), design()
     assert stiff["omega_w"] == pytest.approx(2.0 * default["omega_w"], rel=STORED_DIGITS)
     assert stiff["omega_slow"] == pytest.approx(2.0 * default["omega_slow"], rel=STORED_DIGITS)
     assert stiff["t_return"] == pytest.approx(0.5 * default["t_return"], rel=STORED_DIGITS)
@@ -105,7 +105,7 @@ def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_to
         return sqrt((WEIGHTS.bounce * T) ** 2 + 4.0 * WEIGHTS.brake * PLANT.C * phi_B * T)
 
     narrow, wide = 0.5 * PLANT.phi_B, 2.0 * PLANT.phi_B
-    soft, hard = (design(PLANT._replace(phi_B=gap))["T_gap"] for gap in (narrow, wide))
+    soft, hard = (gains_of(PLANT._replace(phi_B=gap))["T_gap"] for gap in (narrow, wide))
     assert soft == pytest.approx(WEIGHTS.landing * MOTOR.T_max)
     assert begins(soft, narrow) < WEIGHTS.impact * MOTOR.T_max
     assert begins(hard, wide) == pytest.approx(WEIGHTS.impact * MOTOR.T_max)
@@ -114,8 +114,8 @@ def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_to
 
 def test_an_older_message_corrects_less() -> None:
     late = CAN._replace(d_min=0.02, d_max=0.04)
-    assert design(can=late)["T_age"] == pytest.approx(design()["T_age"] + 0.017)
-    assert 0.0 < design(can=late)["L_can_omega_2"] < design()["L_can_omega_2"]
+    assert gains_of(can=late)["T_age"] == pytest.approx(design()["T_age"] + 0.017)
+    assert 0.0 < gains_of(can=late)["L_can_omega_2"] < design()["L_can_omega_2"]
 
 
 def test_more_damping_is_asked_for_by_a_larger_damping_ratio() -> None:
@@ -141,7 +141,7 @@ def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
 )
 def test_what_the_controller_cannot_be_set_to_is_said(car: dict[str, float], message: str) -> None:
     with pytest.raises(DesignError, match=message):
-        design(*records(car))
+        design(car)
 
 
 def test_a_filter_that_does_not_exist_shows_its_matrices() -> None:

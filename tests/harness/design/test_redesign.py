@@ -8,7 +8,7 @@ import pytest
 
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
-from driveline.harness.design.design_weights import WEIGHTS, records
+from driveline.harness.design.design_weights import WEIGHTS
 from driveline.harness.design.redesign import MANOEUVRES, MARGIN, SOFTER, SOFTEST, softened, worth
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.simulation.simulate import simulate
@@ -33,7 +33,7 @@ def overshoot(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
     return of
 
 
-OMEGA_W = design(*records(CAR))["omega_w"]
+OMEGA_W = design(CAR)["omega_w"]
 
 
 @pytest.mark.parametrize("plant", PLANTS)
@@ -63,7 +63,7 @@ def test_what_a_controller_is_worth_depends_on_the_car_and_on_what_it_is_told(
         return simulate(*args, **options, folder=both_built)
 
     monkeypatch.setattr("driveline.harness.design.design_trials.simulate", quick)
-    car, gains = {"C": 90.0}, design(*records({"C": 90.0}))
+    car, gains = {"C": 90.0}, design({"C": 90.0})
     settling, overshoot = worth("TwoMassDriveline", "tipin15", car, {})
     assert worth("TwoMassDriveline", "tipin15", car, {**car, **gains}) != (settling, overshoot)
     assert [parameters["plant.C"] for parameters in given] == [90.0, 90.0]

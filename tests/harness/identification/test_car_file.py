@@ -36,12 +36,12 @@ GIVEN = {"m": 2100.0, "J_2": 0.31, "C": 90.0, "tau": 0.004}
 
 def test_the_vehicle_file_is_read_back(tmp_path: Path) -> None:
     path = tmp_path / "car.toml"
-    path.write_text(car_file.text(FOUND, GIVEN, "The car of a drive."), encoding="utf-8")
-    assert read_vehicle(path) == car_file.car(FOUND, GIVEN)
+    path.write_text(car_file.vehicle_file(FOUND, "The car of a drive.", GIVEN), encoding="utf-8")
+    assert read_vehicle(path) == car_file.identified_car(FOUND, GIVEN)
 
 
 def test_what_was_identified_replaces_entries_and_the_others_stay() -> None:
-    entries = car_file.car(FOUND, GIVEN)
+    entries = car_file.identified_car(FOUND, GIVEN)
     same = equivalent(P, FOUND.tyre, FOUND.resonance)
     assert entries == pytest.approx({"m": 2100.0, "J_2": 0.31, "C": same.C, "phi_B": P.phi_B, "tau": 0.00312346}, 1e-5)
     assert same.C != pytest.approx(P.C, rel=1e-2)
@@ -49,25 +49,25 @@ def test_what_was_identified_replaces_entries_and_the_others_stay() -> None:
 
 def test_entries_of_every_type_stay(tmp_path: Path) -> None:
     """true and false, as TOML has them."""
-    text = car_file.text(FOUND, {"m": 2100, "whatever": True, "other": False}, "A car.")
+    text = car_file.vehicle_file(FOUND, "A car.", {"m": 2100, "whatever": True, "other": False})
     assert "\nm = 2100\nwhatever = true\nother = false\n" in text
 
 
 def test_what_was_not_free_is_not_written() -> None:
-    assert car_file.car(replace(FOUND, loop=None), {}).keys() == {"C", "phi_B"}
+    assert car_file.identified_car(replace(FOUND, loop=None), {}).keys() == {"C", "phi_B"}
     freed = replace(FOUND, free=("J_1", *FREE[1:]))
-    assert car_file.car(freed, {})["J_1"] == P.J_1
+    assert car_file.identified_car(freed, {})["J_1"] == P.J_1
 
 
 def test_without_the_load_torque_the_stiffness_is_that_of_the_two_masses() -> None:
     found = replace(FOUND, name=WITHOUT_LOAD, tyre=None)
-    assert car_file.car(found, {})["C"] == pytest.approx(P.C, rel=1e-6)
-    assert "effective, without load torque" in car_file.lines(found)[0]
-    assert "J_2 carries the vehicle" in car_file.lines(found)[0]
+    assert car_file.identified_car(found, {})["C"] == pytest.approx(P.C, rel=1e-6)
+    assert "effective, without load torque" in car_file.identified_lines(found)[0]
+    assert "J_2 carries the vehicle" in car_file.identified_lines(found)[0]
 
 
 def test_people_are_told_each_parameter_with_its_interval_and_unit() -> None:
-    lines = car_file.lines(FOUND)
+    lines = car_file.identified_lines(FOUND)
     assert lines[0] == (
         "identified with load torque, by prediction error: J_2 is that of the wheels alone; 95 % intervals"
     )
@@ -82,7 +82,7 @@ def test_people_are_told_each_parameter_with_its_interval_and_unit() -> None:
 
 
 def test_the_file_tells_in_comments_what_was_found_and_what_is_odd() -> None:
-    head, _, body = car_file.text(FOUND, {}, "The car of a drive.").partition("\n\n")
+    head, _, body = car_file.vehicle_file(FOUND, "The car of a drive.").partition("\n\n")
     assert head.startswith("# The car of a drive.\n#\n# identified with load torque")
     assert "\n# warning: something is odd\n" in head
     assert all(line.startswith("#") and len(line) <= 130 for line in head.splitlines())

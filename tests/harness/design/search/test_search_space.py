@@ -54,7 +54,7 @@ def test_our_law_is_searched_and_what_is_computed_is_not() -> None:
 
 
 def test_the_start_is_what_the_formulas_make_of_the_car() -> None:
-    designed = design(*records(VAN))
+    designed = design(VAN)
     found = space(OURS, VAN)
     assert found.parameters(found.start) == pytest.approx(designed, rel=1e-5)
     k_d = next(each for each in found.searched if each.name == "k_d")

@@ -5,7 +5,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from driveline.harness.design.design import design
+from driveline.harness.design.design import design, gains_of
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
 from driveline.harness.studies.margins.linear_loop import linear_loop
 from driveline.harness.studies.margins.modes import modes, rigid, swing
@@ -20,7 +20,7 @@ SECOND_CAR = {"J_1": 0.09, "J_2": 0.45, "C": 210.0, "phi_B": 0.06, "i": 10.5, "m
 )
 def test_the_loop_is_stable_in_contact_and_swings_less_than_without_damping(car: dict[str, float]) -> None:
     plant, motor, can = records(car)
-    gains = design(plant, motor, can)
+    gains = gains_of(plant, motor, can)
     poles = np.abs(np.linalg.eigvals(rigid(plant, motor, gains).closed()))
     assert np.sort(poles)[-2] < 1.0, "all but one,"
     assert poles.max() == pytest.approx(1.0), "the speed of the car"

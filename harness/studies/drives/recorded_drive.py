@@ -1,0 +1,59 @@
+"""A recorded drive through the simulated vehicle, as a program asks for it."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...cosimulation.system import System
+from ...cosimulation.wiring import fit
+from ...loop.places import PLACES, PLANTS, NameOrFile
+from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
+from ...manoeuvres.speed_following import require_held
+from ...recordings.drive import Drive
+from ...simulation.simulate import looped
+from .replay import Ride, by_name
+from .replay import replay as rides
+
+
+def replay(
+    drive: Drive,
+    plant: NameOrFile = PLANTS[1],
+    controllers: Sequence[NameOrFile] = PLACES["controller"][:1],
+    held: float | None = None,
+    **settings: Any,
+) -> list[Ride]:
+    """Drives a vehicle with the torque demand of a recorded drive, once without damping and once with each controller.
+
+    Brake and grade keep the simulated car at the recorded speed; they are the same for all. See also
+    `driveline replay`.
+
+        drive = driveline.read_drive(Path("my_trip.csv"))
+        rides = driveline.replay(drive, controllers=["DampingController", "SpeedWashout"])
+        driveline.frame({ride.controller: ride.metrics for ride in rides})
+
+    Args:
+        drive: as `read_drive` reads it.
+        plant: name of a plant of the project, or path of an FMU.
+        controllers: names of controllers of the project, or paths of FMUs; the first is the one that is switched off.
+        held: seconds for which the demand is sampled and held, a rougher foot; None: straight lines.
+        settings: further arguments of `simulate`, for all rides.
+
+    Returns:
+        The ride without damping, then one with each controller; signals in SI units, a row every 2 ms.
+
+    Raises:
+        DrivelineError: two controllers have the same name, and what `simulate` raises.
+        WiringError: `held` is less than a communication step, or the motor or plant lacks what the road load needs.
+        MissingExtra: the extra `replay` is not installed.
+    """
+    require_held(held)
+    named = by_name([str(controller) for controller in controllers])
+    given = {name: {**settings, "controller": controller} for name, controller in named.items()}
+    return rides(*on_road(drive, plant, next(iter(given.values()))), str(plant), given, held)
+
+
+def on_road(drive: Drive, plant: NameOrFile, settings: dict[str, Any]) -> tuple[Track, RoadLoad]:
+    """What a loop is to do of a recorded drive, and the road load of its plant."""
+    system: System = looped(plant, settings)
+    interfaces, parameters = fit(system).interfaces, settings.get("parameters")
+    track = Track.of(drive, torque_limit(interfaces["motor"], parameters))
+    return track, RoadLoad.of_plant(interfaces["plant"], parameters)

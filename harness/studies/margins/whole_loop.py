@@ -1,0 +1,35 @@
+"""The whole analysis of a loop, as a program asks for it."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ...design.design_trials import loop_parameters
+from ...loop.places import PLACES, PLANTS
+from .loop_analysis import Analysis
+from .loop_analysis import analyse as analysis
+
+
+def analyse(
+    plants: Sequence[str] = PLANTS,
+    controller: str = PLACES["controller"][0],
+    car: Mapping[str, Any] | None = None,
+    **settings: Any,
+) -> Analysis:
+    """How stable the loop is, what it depends on, and how good the estimate is, on all cores; see also
+    `driveline analyse`. It takes minutes.
+
+        found = driveline.analyse(["TwoMassDriveline"])
+        for at in found.at:
+            print(at.speed, at.margins.phase_margin)  # in km/h and rad
+
+    Args:
+        plants, controller: names of blocks of the project.
+        car: entries of a vehicle file and of gains, in SI units, as `read_files` gives them; what they do not name is
+            that of the default car.
+        settings: further arguments of `simulate`, for all runs.
+
+    Raises:
+        DrivelineError: the controller is not linear in contact, or the loop with it is not stable.
+    """
+    each = {plant: {"parameters": loop_parameters(car or {}, plant, controller)} for plant in plants}
+    return analysis(plants, controller, {p: {**settings, "controller": controller, **each[p]} for p in plants})
