@@ -1,94 +1,96 @@
 # Run: one run of the closed loop, or many
-# FMUs: those of the project, and blocks of your own
-from .fmus.building.builds import build_fmus as build_fmus
-from .fmus.building.parameter_files import read_files as read_files
-from .fmus.building.parameter_files import read_parameters as read_parameters
-
-# Car and controller: from a vehicle to gains
-from .fmus.building.parameter_files import read_vehicle as read_vehicle
-from .fmus.errors import BuildError as BuildError
-from .fmus.errors import ParameterFileError as ParameterFileError
-from .fmus.fmu import Fmu as Fmu
-
-# Errors: what can be mended; the message says what is wrong and what is allowed
-from .harness.base.errors import DrivelineError as DrivelineError
-from .harness.base.errors import MissingExtra as MissingExtra
-from .harness.base.errors import SimulationError as SimulationError
-from .harness.base.errors import WiringError as WiringError
-from .harness.cosimulation.experiment import Experiment as Experiment
-from .harness.cosimulation.limits import Limits as Limits
-from .harness.cosimulation.loading import loaded as loaded
-from .harness.cosimulation.master import Loop as Loop
-from .harness.cosimulation.results import Results as Results
+from .harness.simulation.simulate import simulate as simulate
+from .harness.metrics.evaluate import evaluate as evaluate
+from .harness.simulation.many_runs import run_many as run_many
+from .harness.simulation.many_runs import many as many
 from .harness.cosimulation.runs import kept_loaded as kept_loaded
-from .harness.cosimulation.system import Connection as Connection
-from .harness.cosimulation.system import Port as Port
-
-# Systems: the loop with other schemes and limits, or a system of your own
-from .harness.cosimulation.system import Scheme as Scheme
-from .harness.cosimulation.system import System as System
-from .harness.design.design import design as design
-from .harness.design.design import gains_file as gains_file
-from .harness.design.design_trials import controller_parameters as controller_parameters
-from .harness.design.design_trials import loop_parameters as loop_parameters
-from .harness.design.design_weights import Weights as Weights
-from .harness.design.kalman import DesignError as DesignError
-from .harness.design.redesign import softened as softened
-from .harness.design.search.cost_evaluation import CostEvaluation as CostEvaluation
-from .harness.identification.car_file import identified_car as identified_car
-from .harness.identification.car_file import identified_lines as identified_lines
-from .harness.identification.car_file import vehicle_file as vehicle_file
-from .harness.identification.identify import Identified as Identified
-from .harness.identification.prior_knowledge import identify as identify
+from .harness.loop.built_fmus import build_missing as build_missing
+from .harness.cosimulation.results import Results as Results
+from .harness.metrics.run_metrics import Metrics as Metrics
+from .harness.metrics.notebook_table import frame as frame
+from .harness.views.signals_file import write_signals as write_signals
 
 # Manoeuvres: what driver, brakes and road do
 from .harness.manoeuvres.catalogue import MANOEUVRES as MANOEUVRES
-from .harness.manoeuvres.composed import composed as composed
 from .harness.manoeuvres.manoeuvre import Manoeuvre as Manoeuvre
 from .harness.manoeuvres.manoeuvre_file import read_manoeuvre as read_manoeuvre
-from .harness.manoeuvres.parts import ManoeuvreError as ManoeuvreError
-from .harness.manoeuvres.parts import chirp as chirp
+from .harness.manoeuvres.composed import composed as composed
 from .harness.manoeuvres.parts import constant as constant
 from .harness.manoeuvres.parts import points as points
-from .harness.manoeuvres.parts import prbs as prbs
-from .harness.manoeuvres.parts import pulse as pulse
-from .harness.manoeuvres.parts import ramp as ramp
-from .harness.manoeuvres.parts import sine as sine
 from .harness.manoeuvres.parts import step as step
-from .harness.metrics.evaluate import evaluate as evaluate
-from .harness.metrics.notebook_table import frame as frame
-from .harness.metrics.run_metrics import Metrics as Metrics
-from .harness.recordings.drive import Drive as Drive
-from .harness.recordings.drive import read_drive as read_drive
-from .harness.recordings.measurement import Measurement as Measurement
-
-# Recordings: what was measured, and what it says of the car
-from .harness.recordings.measurement import read_measurement as read_measurement
-from .harness.recordings.source import RecordingError as RecordingError
-from .harness.simulation.many_runs import many as many
-from .harness.simulation.many_runs import run_many as run_many
-from .harness.simulation.simulate import simulate as simulate
+from .harness.manoeuvres.parts import ramp as ramp
+from .harness.manoeuvres.parts import pulse as pulse
+from .harness.manoeuvres.parts import sine as sine
+from .harness.manoeuvres.parts import chirp as chirp
+from .harness.manoeuvres.parts import prbs as prbs
 
 # Studies: what many runs say
 from .harness.studies.compare.side_by_side import compare as compare
 from .harness.studies.drives.recorded_drive import replay as replay
 from .harness.studies.drives.replay import Ride as Ride
-from .harness.studies.margins.loop_analysis import Analysis as Analysis
 from .harness.studies.margins.whole_loop import analyse as analyse
-from .harness.views.signals_file import write_signals as write_signals
-from .models.block import operators as operators
-from .models.block.declaration import Boolean as Boolean
-from .models.block.declaration import Integer as Integer
-from .models.block.declaration import Real as Real
+from .harness.studies.margins.loop_analysis import Analysis as Analysis
+
+# Car and controller: from a vehicle to gains
+from .fmus.building.parameter_files import read_vehicle as read_vehicle
+from .fmus.building.parameter_files import read_parameters as read_parameters
+from .fmus.building.parameter_files import read_files as read_files
+from .harness.design.design_trials import loop_parameters as loop_parameters
+from .harness.design.design_trials import controller_parameters as controller_parameters
+from .harness.design.design import design as design
+from .harness.design.design_weights import Weights as Weights
+from .harness.design.redesign import softened as softened
+from .harness.design.design import gains_file as gains_file
+from .harness.design.search.cost_evaluation import CostEvaluation as CostEvaluation
+
+# Recordings: what was measured, and what it says of the car
+from .harness.recordings.measurement import read_measurement as read_measurement
+from .harness.recordings.measurement import Measurement as Measurement
+from .harness.recordings.drive import read_drive as read_drive
+from .harness.recordings.drive import Drive as Drive
+from .harness.identification.prior_knowledge import identify as identify
+from .harness.identification.identify import Identified as Identified
+from .harness.identification.car_file import identified_lines as identified_lines
+from .harness.identification.car_file import identified_car as identified_car
+from .harness.identification.car_file import vehicle_file as vehicle_file
+
+# FMUs: those of the project, and blocks of your own
+from .fmus.building.builds import build_fmus as build_fmus
+from .fmus.fmu import Fmu as Fmu
 from .models.block.types import ContinuousBlock as ContinuousBlock
 from .models.block.types import SampledBlock as SampledBlock
-from .models.comparators import measured_speeds as measured_speeds
-from .models.controller import torque_estimator as torque_estimator
-from .models.controller.damping_law import washed_out as washed_out
-from .models.controller.interfaces import Addition as Addition
+from .models.block.declaration import Real as Real
+from .models.block.declaration import Integer as Integer
+from .models.block.declaration import Boolean as Boolean
+from .models.block import operators as operators
+from .models.physics import plant as plant
+from .models.physics import vehicle as vehicle
+from .models.controller.supervised_controller import supervised as supervised
 from .models.controller.interfaces import Estimator as Estimator
 from .models.controller.interfaces import Law as Law
 from .models.controller.interfaces import Motion as Motion
-from .models.controller.supervised_controller import supervised as supervised
-from .models.physics import plant as plant
-from .models.physics import vehicle as vehicle
+from .models.controller.interfaces import Addition as Addition
+from .models.controller import torque_estimator as torque_estimator
+from .models.comparators import measured_speeds as measured_speeds
+from .models.controller.damping_law import washed_out as washed_out
+
+# Systems: the loop with other schemes and limits, or a system of your own
+from .harness.cosimulation.system import Scheme as Scheme
+from .harness.cosimulation.limits import Limits as Limits
+from .harness.cosimulation.system import System as System
+from .harness.cosimulation.system import Connection as Connection
+from .harness.cosimulation.system import Port as Port
+from .harness.cosimulation.experiment import Experiment as Experiment
+from .harness.cosimulation.loading import loaded as loaded
+from .harness.cosimulation.master import Loop as Loop
+
+# Errors: what can be mended; the message says what is wrong and what is allowed
+from .harness.base.errors import DrivelineError as DrivelineError
+from .harness.base.errors import WiringError as WiringError
+from .harness.base.errors import SimulationError as SimulationError
+from .harness.base.errors import MissingExtra as MissingExtra
+from .harness.manoeuvres.parts import ManoeuvreError as ManoeuvreError
+from .harness.recordings.source import RecordingError as RecordingError
+from .harness.design.kalman import DesignError as DesignError
+from .fmus.errors import BuildError as BuildError
+from .fmus.errors import ParameterFileError as ParameterFileError

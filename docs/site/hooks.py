@@ -19,6 +19,11 @@ COPIED = (
 """Files of the site that no page is made from."""
 
 
+def on_startup(command: str, dirty: bool) -> None:
+    """Docstrings are read from the package as it is installed."""
+    reference.link_packages()
+
+
 def on_config(config):
     """A folder in the navigation stands for the pages that are made for it."""
     config.nav = _with_folders(config.nav)

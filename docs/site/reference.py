@@ -1,50 +1,69 @@
-"""A page for each room of the packages: what stands in the docstrings of its modules."""
+"""The reference of the module `driveline`: a page for each group of its names, from their docstrings."""
 
-import ast
 from collections.abc import Iterator, Mapping
-from pathlib import Path
+from contextlib import suppress
+from typing import NamedTuple
 
 from docs.site import ROOT
 
 FOLDER = "reference"
-PACKAGES = ("harness", "fmus", "models")
-ELSEWHERE = "driveline.harness.commands"
-"""Has pages of its own, made from the parsers."""
+PACKAGE = ROOT / "driveline"
+INSIDE = ("models", "fmus", "harness")
+"""Folders of the checkout that are packages of `driveline` where it is installed."""
+
+
+class Group(NamedTuple):
+    """Names that belong together, as `__init__.pyi` has them below a comment `# Title: what they are for`."""
+
+    title: str
+    about: str
+    names: list[str]
+
+    @property
+    def page(self) -> str:
+        """Its path in the site."""
+        return f"{FOLDER}/{self.title.lower().replace(' ', '_')}.md"
+
+
+def groups() -> Iterator[Group]:
+    """All of them, in their order."""
+    for paragraph in (PACKAGE / "__init__.pyi").read_text(encoding="utf-8").split("\n\n"):
+        head, *imports = paragraph.strip().splitlines()
+        title, _, about = head.removeprefix("# ").partition(": ")
+        yield Group(title, about, [line.rpartition(" as ")[2] for line in imports])
 
 
 def pages() -> Mapping[str, str]:
-    """The pages, by their path in the site; they tell mkdocstrings which modules to show."""
-    rooms = {room: list(_modules(room)) for package in PACKAGES for room in _rooms(package) if room != ELSEWHERE}
-    return {f"{FOLDER}/index.md": _index(list(rooms))} | {
-        f"{FOLDER}/{room}.md": _page(room, modules) for room, modules in rooms.items()
-    }
+    """The pages, by their path in the site; they tell mkdocstrings which names to show."""
+    return {f"{FOLDER}/index.md": _index()} | {group.page: _page(group) for group in groups()}
 
 
-def _rooms(package: str) -> Iterator[str]:
-    for path in sorted((ROOT / package).rglob("__init__.py")):
-        yield ".".join(path.parent.relative_to(ROOT).parts)
+def _index() -> str:
+    rows = [
+        f"| [{group.title}]({group.page.rpartition('/')[2]}) | {group.about} | {_names(group)} |" for group in groups()
+    ]
+    text = (
+        "`import driveline` is all there is to import. What is listed here is public; everything else can change from "
+        "one release to the next. All quantities are in SI units."
+    )
+    return "\n".join(
+        ["# Reference of the Python module", "", text, "", "| group | for | names |", "|---|---|---|", *rows, ""]
+    )
 
 
-def _modules(room: str) -> Iterator[str]:
-    for path in sorted(ROOT.joinpath(*room.split(".")).glob("*.py")):
-        if not path.stem.startswith("__"):
-            yield f"{room}.{path.stem}"
+def _names(group: Group) -> str:
+    page = group.page.rpartition("/")[2]
+    return ", ".join(f"[`{name}`]({page}#driveline.{name})" for name in group.names)
 
 
-def _docstring(path: Path) -> str:
-    return ast.get_docstring(ast.parse(path.read_bytes())) or ""
+def _page(group: Group) -> str:
+    about = f"{group.about[:1].upper()}{group.about[1:]}."
+    return "\n\n".join([f"# {group.title}", about, *(f"::: driveline.{name}" for name in group.names)]) + "\n"
 
 
-def _about(room: str) -> str:
-    return _docstring(ROOT.joinpath(*room.split("."), "__init__.py"))
-
-
-def _index(rooms: list[str]) -> str:
-    first = {room: " ".join(_about(room).partition("\n\n")[0].split()) for room in rooms}
-    rows = [f"| [`{room}`]({room}.md) | {text} |" for room, text in first.items()]
-    head = ["# Reference of the Python packages", "", "From the docstrings; all quantities are in SI units.", ""]
-    return "\n".join([*head, "| package | what is in it |", "|---|---|", *rows, ""])
-
-
-def _page(room: str, modules: list[str]) -> str:
-    return "\n\n".join([f"# {room}", _about(room), *(f"::: {module}" for module in modules)]) + "\n"
+def link_packages() -> None:
+    """Links the folders of the checkout into the package, so that mkdocstrings, which runs nothing, reads it as it is
+    installed."""
+    for folder in INSIDE:
+        with suppress(FileExistsError):
+            (PACKAGE / folder).symlink_to(f"../{folder}")

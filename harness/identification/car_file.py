@@ -34,7 +34,7 @@ def found(identified: Identified) -> list[tuple[str, float, float]]:
 
 
 def identified_lines(identified: Identified) -> list[str]:
-    """What was found, for people, a line each: parameters with unit and half of their 95 % interval, and how they fit."""
+    """What was found, for people, a line each: parameters with unit and 95 % interval, and how they fit."""
     quality = identified.quality
     every = found(identified)
     width = max(len(name) for name, *_ in every)
