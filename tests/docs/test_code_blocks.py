@@ -5,18 +5,21 @@ import ast
 import re
 import tomllib
 from collections.abc import Iterator
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 import yaml
 
+import driveline
 from driveline.harness.commands.cli import COMMANDS, complete_commands, parser
 from tests import ROOT
-from tests.docs.pages import INLINE, PAGES, blocks, commands, named, prose
+from tests.docs.pages import INLINE, PAGES, blocks, commands, named, prose, text_of
 
-OURS = ("harness", "fmus", "models", "benchmarks")
+PUBLIC = frozenset(dir(driveline))
+
+INSIDE = ("driveline.", "harness", "fmus", "models")
+"""What modules begin with that a user does not import."""
 
 EVERY_PAGE = pytest.mark.parametrize("page", PAGES, ids=named)
 
@@ -64,11 +67,28 @@ def options(command: argparse.ArgumentParser, *path: str) -> Iterator[str]:
 def test_python_can_be_read_and_imports_what_is_there(page: Path) -> None:
     for code in blocks(page, "python"):
         for node in ast.walk(ast.parse(code)):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in OURS:
-                module = import_module(str(node.module))
-                assert not [alias.name for alias in node.names if not hasattr(module, alias.name)], node.module
+            if isinstance(node, ast.ImportFrom) and node.module == "driveline":
+                assert {alias.name for alias in node.names} <= PUBLIC
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "driveline":
-                assert hasattr(import_module("driveline"), node.attr), node.attr
+                assert node.attr in PUBLIC
+
+
+@EVERY_PAGE
+def test_what_is_not_public_is_not_shown(page: Path) -> None:
+    for code in blocks(page, "python"):
+        for node in ast.walk(ast.parse(code)):
+            if isinstance(node, ast.Import):
+                assert not [each.name for each in node.names if each.name.startswith(INSIDE)]
+            if isinstance(node, ast.ImportFrom):
+                assert not (node.module or "").startswith(INSIDE)
+    assert not re.findall(r"driveline\.(?:harness|models|fmus)\b", text_of(page))
+
+
+@EVERY_PAGE
+def test_names_in_a_sentence_are_public(page: Path) -> None:
+    for code in INLINE.findall(prose(page)):
+        if name := re.match(r"driveline\.([A-Za-z]\w*)", code):
+            assert name[1] in PUBLIC, code
 
 
 @EVERY_PAGE

@@ -1,0 +1,141 @@
+"""What users import: the names of `driveline`, each with its docstring, and nothing of ours beside it."""
+
+import ast
+import inspect
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib import import_module
+from itertools import pairwise
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import driveline
+from tests import ROOT
+
+STUB = ROOT / "driveline" / "__init__.pyi"
+
+DECLARED = {
+    alias.asname: (node.module, alias.name)
+    for node in ast.parse(STUB.read_bytes()).body
+    if isinstance(node, ast.ImportFrom)
+    for alias in node.names
+}
+"""Module and name there of each public name."""
+
+EVERY_NAME = pytest.mark.parametrize("name", DECLARED)
+
+
+def ran(code: str, folder: Path, **environment: str) -> str:
+    """What a program prints that runs in a folder and finds the package of the checkout."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+    (folder / "script.py").write_text(code, encoding="utf-8")
+    command = [sys.executable, "script.py"]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_file_of_names_declares_each_once_and_nothing_else() -> None:
+    body = ast.parse(STUB.read_bytes()).body
+    assert all(isinstance(node, ast.ImportFrom) and node.level == 1 for node in body)
+    names = [alias.asname for node in body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    assert len(names) == len(set(names))
+    assert all(names), "`import a as a` is what a type checker takes for public"
+
+
+@EVERY_NAME
+def test_a_name_is_what_its_module_has(name: str) -> None:
+    module, there = DECLARED[name]
+    found = getattr(driveline, name)
+    if isinstance(found, ModuleType):
+        assert found is import_module(f"driveline.{module}.{there}")
+    else:
+        assert found is getattr(import_module(f"driveline.{module}"), there)
+
+
+def docstring(name: str) -> str:
+    """Of a name; what is neither a class, a function nor a module has it below its declaration."""
+    found = getattr(driveline, name)
+    if isinstance(found, ModuleType) or inspect.isclass(found) or inspect.isfunction(found):
+        return found.__doc__ or ""
+    body = ast.parse(inspect.getsource(import_module(f"driveline.{DECLARED[name][0]}"))).body
+    for node, below in pairwise(body):
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
+            return str(below.value.value) if isinstance(below, ast.Expr) else ""  # type: ignore[attr-defined]
+    return ""
+
+
+@EVERY_NAME
+def test_a_name_has_a_docstring_of_its_own(name: str) -> None:
+    text = docstring(name)
+    assert text
+    assert not text.startswith(f"{name}("), "that of a dataclass without one"
+    assert not text.lstrip().startswith(("Args:", "Attributes:", "Returns:", "Raises:")), "it says first what it is"
+
+
+@EVERY_NAME
+def test_a_docstring_speaks_of_public_names_alone(name: str) -> None:
+    found = getattr(driveline, name)
+    parts = [member for member in vars(found).values() if inspect.isfunction(member)] if inspect.isclass(found) else []
+    for text in (docstring(name), *(part.__doc__ or "" for part in parts)):
+        assert not re.findall(r"\bharness\.\w+|\bdriveline\.(?:harness|models|fmus)\b", text)
+        for public in re.findall(r"\bdriveline\.(\w+)", text):
+            assert public in DECLARED
+
+
+def code(text: str) -> Iterator[str]:
+    """The lines of a docstring that stand further in than its text, before its arguments."""
+    for block in inspect.cleandoc(text).partition("\n\nArgs:")[0].split("\n\n"):
+        if block.startswith("    "):
+            yield inspect.cleandoc(f"\n{block}")
+
+
+@pytest.mark.parametrize("name", ["simulate", "compare", "replay", "analyse", "design", "identify", "build_missing"])
+def test_what_a_function_is_for_is_shown_by_an_example(name: str) -> None:
+    (example,) = code(docstring(name))
+    assert f"driveline.{name}(" in ast.unparse(ast.parse(example))
+
+
+def test_dir_and_a_star_give_them() -> None:
+    assert dir(driveline) == sorted(DECLARED)
+    given: dict[str, object] = {}
+    exec("from driveline import *", given)
+    assert given.keys() - {"__builtins__"} == DECLARED.keys()
+
+
+def test_a_name_that_is_not_there_gives_the_nearest() -> None:
+    with pytest.raises(AttributeError, match=r"'driveline' has no attribute 'simulat'; did you mean simulate"):
+        driveline.simulat  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match=r"has no attribute 'zzz'$"):
+        driveline.zzz  # type: ignore[attr-defined]  # noqa: B018
+
+
+def test_the_import_waits_for_nothing(tmp_path: Path) -> None:
+    loaded = ran("import sys, driveline\nprint(*sys.modules)", tmp_path).split()
+    assert "driveline" in loaded
+    assert not {"numpy", "scipy", "casadi", "matplotlib", "fmpy", "pandas"} & set(loaded)
+    assert not [name for name in loaded if name.startswith("driveline.")]
+
+
+def test_a_package_that_is_missing_is_named_with_its_extra(tmp_path: Path) -> None:
+    missing = "import sys\nsys.modules['casadi'] = None\nimport driveline\n"
+    identify = "try:\n    driveline.identify\nexcept driveline.MissingExtra as error:\n    print(error)\n"
+    assert "driveline-damping[native]" in ran(missing + identify, tmp_path)
+
+
+def test_a_script_beside_folders_of_the_same_names_runs(both_built: Path, tmp_path: Path) -> None:
+    for folder in ("models", "fmus", "harness"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "__init__.py").write_text("raise ImportError('not this one')\n", encoding="utf-8")
+    script = f"""\
+import driveline
+tipin = driveline.MANOEUVRES["tipin15"]
+results = driveline.simulate(tipin, folder={str(both_built)!r})
+print(driveline.evaluate(results, tipin).settling_time)
+"""
+    assert 0.0 < float(ran(script, tmp_path)) < 0.2
