@@ -20,7 +20,7 @@ from tests import ROOT
 STUB = ROOT / "driveline" / "__init__.pyi"
 
 DECLARED = {
-    alias.asname: (node.module, alias.name)
+    alias.asname or alias.name: (node.module, alias.name)
     for node in ast.parse(STUB.read_bytes()).body
     if isinstance(node, ast.ImportFrom)
     for alias in node.names
