@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import Any
 
+from ...base.errors import DrivelineError
 from ...loop.places import PLANTS, NameOrFile
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -34,9 +35,12 @@ def compare(
         the manoeuvre, and whether the damping was on.
 
     Raises:
-        DrivelineError: two plants have the same name, and what `simulate` raises.
+        DrivelineError: two plants or two manoeuvres have the same name, and what `simulate` raises.
     """
-    by_name = {manoeuvre.name: manoeuvre for manoeuvre in manoeuvres}
+    by_name: dict[str, Manoeuvre] = {}
+    for manoeuvre in manoeuvres:
+        if by_name.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
+            raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename one")
     todo = cases([str(plant) for plant in plants], list(by_name))
     one = partial(_metrics, manoeuvres=by_name, settings=settings)
     return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))

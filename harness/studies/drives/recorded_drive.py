@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from ...base.errors import DrivelineError
 from ...cosimulation.system import System
 from ...cosimulation.wiring import fit
 from ...loop.places import PLACES, PLANTS, NameOrFile
@@ -41,11 +42,13 @@ def replay(
         The ride without damping, then one with each controller; signals in SI units, a row every 2 ms.
 
     Raises:
-        DrivelineError: two controllers have the same name, and what `simulate` raises.
+        DrivelineError: there is no controller, or two have the same name; and what `simulate` raises.
         WiringError: `held` is less than a communication step, or the motor or plant lacks what the road load needs.
         MissingExtra: the extra `replay` is not installed.
     """
     require_held(held)
+    if not controllers:
+        raise DrivelineError("there is no controller to drive with; NoDamping is one too")
     named = by_name([str(controller) for controller in controllers])
     given = {name: {**settings, "controller": controller} for name, controller in named.items()}
     return rides(*on_road(drive, plant, next(iter(given.values()))), str(plant), given, held)

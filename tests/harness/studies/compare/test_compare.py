@@ -4,6 +4,7 @@ import csv
 
 import pytest
 
+import driveline
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import PLANTS
@@ -27,6 +28,22 @@ def test_plants_of_the_same_name_are_refused():
 def test_an_unknown_plant_is_answered_with_the_nearest(capsys):
     assert main(["compare", "--plant", "TwoMassDrivelin"]) == 2
     assert "TwoMassDriveline" in capsys.readouterr().err
+
+
+def test_a_program_gets_the_metrics_of_each_run_by_what_it_was(native):
+    tipin = driveline.MANOEUVRES["tipin15"]
+    settings = {"folder": native.parent, "seed": 2}
+    found = driveline.compare([tipin], ["TwoMassDriveline"], **settings)
+    assert list(found) == [("TwoMassDriveline", "tipin15", control) for control in (False, True)]
+    runs = {case: driveline.simulate(tipin, case.plant, case.control, **settings) for case in found}
+    expected = {case: driveline.evaluate(results, tipin) for case, results in runs.items()}
+    assert driveline.frame(found).equals(driveline.frame(expected))
+
+
+def test_manoeuvres_of_the_same_name_are_refused():
+    slow, fast = (driveline.composed("tip", duration=1.0, T_driver=torque) for torque in (1.0, 2.0))
+    with pytest.raises(DrivelineError, match="two manoeuvres are called tip; rename one"):
+        driveline.compare([slow, fast])
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from shutil import copyfile
 import numpy as np
 import pytest
 
+import driveline
 from driveline.harness.base.errors import MissingExtra, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.interface import Interface
@@ -61,6 +62,28 @@ def replayed(settings, load, short_drive, tmp_path_factory):
     rides = replay(track, load, controllers, held=0.5)
     write(rides, track, "ValidationVehicle", folder)
     return rides, folder
+
+
+def test_a_program_gets_the_same_rides(replayed, short_drive, settings):
+    rides = driveline.replay(driveline.read_drive(short_drive), held=0.5, **settings)
+    assert [ride.controller for ride in rides] == ["without damping", "DampingController"]
+    for ride, expected in zip(rides, replayed[0], strict=False):
+        assert np.array_equal(ride.signals, expected.signals)
+    metrics = driveline.frame({ride.controller: ride.metrics for ride in rides})
+    assert metrics.gear_torque_rms.DampingController < metrics.gear_torque_rms["without damping"]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"controllers": []}, "there is no controller to drive with"),
+        ({"controllers": ["A.fmu", "b/A.fmu"]}, "two controllers are called A"),
+        ({"held": 0.0}, "a demand that is held for 0 s"),
+    ],
+)
+def test_what_a_program_cannot_replay_is_refused(short_drive, given, message):
+    with pytest.raises(driveline.DrivelineError, match=message):
+        driveline.replay(driveline.read_drive(short_drive), **given)
 
 
 def town():
