@@ -116,7 +116,9 @@ def run(args: argparse.Namespace) -> int:
         made.begin()
         figures = draw(identified, recording, output.with_suffix(""), shown)
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        write_text(car_file.vehicle_file(identified, f"The car of {args.recording.name}, by {program}.", vehicle), output)
+        write_text(
+            car_file.vehicle_file(identified, f"The car of {args.recording.name}, by {program}.", vehicle), output
+        )
         write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
         made.wrote(output, everything, *figures)
         for provenance, path in made.reports():

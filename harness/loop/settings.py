@@ -50,7 +50,7 @@ class Settings:
     """All that makes a run of the loop what it is, beside the manoeuvre.
 
     Attributes:
-        plant, controller, motor, can: what stands in these places, one of `harness.loop.places.PLACES` or the path of
+        plant, controller, motor, can: what stands in these places, a block of the project by name or the path of
             an FMU.
         control: whether the damping control is enabled.
         parameters: `instance.variable` -> value, beside the start and the seeds that a run sets.
@@ -60,7 +60,7 @@ class Settings:
         folder: of the built FMUs.
         build: "native" or "python"; None: see `chosen_build`.
         mapping: names of the loop -> names of an FMU: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in
-            the place of the plant, see `harness.cosimulation.mapping`.
+            the place of the plant.
         limits: of FMUs that are given by their path.
 
     Raises:

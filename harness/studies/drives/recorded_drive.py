@@ -1,17 +1,14 @@
 """A recorded drive through the simulated vehicle, as a program asks for it."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Unpack
 
 from ...base.errors import DrivelineError
-from ...cosimulation.system import System
-from ...cosimulation.wiring import fit
 from ...loop.places import PLACES, PLANTS, NameOrFile
-from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
+from ...loop.settings import Changes, Settings
 from ...manoeuvres.speed_following import require_held
 from ...recordings.drive import Drive
-from ...simulation.simulate import looped
-from .replay import Ride, by_name
+from .replay import Ride, by_name, on_road
 from .replay import replay as rides
 
 
@@ -20,7 +17,7 @@ def replay(
     plant: NameOrFile = PLANTS[1],
     controllers: Sequence[NameOrFile] = PLACES["controller"][:1],
     held: float | None = None,
-    **settings: Any,
+    **settings: Unpack[Changes],
 ) -> list[Ride]:
     """Drives a vehicle with the torque demand of a recorded drive, once without damping and once with each controller.
 
@@ -50,13 +47,6 @@ def replay(
     if not controllers:
         raise DrivelineError("there is no controller to drive with; NoDamping is one too")
     named = by_name([str(controller) for controller in controllers])
-    given = {name: {**settings, "controller": controller} for name, controller in named.items()}
-    return rides(*on_road(drive, plant, next(iter(given.values()))), str(plant), given, held)
-
-
-def on_road(drive: Drive, plant: NameOrFile, settings: dict[str, Any]) -> tuple[Track, RoadLoad]:
-    """What a loop is to do of a recorded drive, and the road load of its plant."""
-    system: System = looped(plant, settings)
-    interfaces, parameters = fit(system).interfaces, settings.get("parameters")
-    track = Track.of(drive, torque_limit(interfaces["motor"], parameters))
-    return track, RoadLoad.of_plant(interfaces["plant"], parameters)
+    common = Settings(plant).replace(**settings)
+    given = {name: common.replace(controller=controller) for name, controller in named.items()}
+    return rides(*on_road(drive, next(iter(given.values()))), given, held)

@@ -1,10 +1,11 @@
 """The whole analysis of a loop, as a program asks for it."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 from ...design.design_trials import loop_parameters
 from ...loop.places import PLACES, PLANTS
+from ...loop.settings import Changes, Settings
 from .loop_analysis import Analysis
 from .loop_analysis import analyse as analysis
 
@@ -13,7 +14,7 @@ def analyse(
     plants: Sequence[str] = PLANTS,
     controller: str = PLACES["controller"][0],
     car: Mapping[str, Any] | None = None,
-    **settings: Any,
+    **settings: Unpack[Changes],
 ) -> Analysis:
     """How stable the loop is, what it depends on, and how good the estimate is, on all cores; see also
     `driveline analyse`. It takes minutes.
@@ -31,5 +32,10 @@ def analyse(
     Raises:
         DrivelineError: the controller is not linear in contact, or the loop with it is not stable.
     """
-    each = {plant: {"parameters": loop_parameters(car or {}, plant, controller)} for plant in plants}
-    return analysis(plants, controller, {p: {**settings, "controller": controller, **each[p]} for p in plants})
+    common = Settings(controller=controller).replace(**settings)
+    return analysis(
+        {
+            plant: common.replace(plant=plant).with_parameters(loop_parameters(car or {}, plant, controller))
+            for plant in plants
+        }
+    )

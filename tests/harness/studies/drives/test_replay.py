@@ -65,7 +65,7 @@ def replayed(settings, load, short_drive, tmp_path_factory):
 
 
 def test_a_program_gets_the_same_rides(replayed, short_drive, settings):
-    rides = driveline.replay(driveline.read_drive(short_drive), held=0.5, **settings)
+    rides = driveline.replay(driveline.read_drive(short_drive), held=0.5, folder=settings.folder, build=settings.build)
     assert [ride.controller for ride in rides] == ["without damping", "DampingController"]
     for ride, expected in zip(rides, replayed[0], strict=False):
         assert np.array_equal(ride.signals, expected.signals)

@@ -1,5 +1,7 @@
 """The whole analysis as a program asks for it."""
 
+from pathlib import Path
+
 import pytest
 
 import driveline
@@ -8,10 +10,9 @@ from driveline.harness.studies.margins import whole_loop
 
 def test_car_controller_and_settings_reach_every_plant(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
-    monkeypatch.setattr(whole_loop, "analysis", lambda *given: asked.append(given))
+    monkeypatch.setattr(whole_loop, "analysis", asked.append)
     driveline.analyse(["ValidationVehicle"], "SpeedWashout", {"m": 1900.0, "k_v": 2.0}, folder="here")
-    ((plants, controller, settings),) = asked
-    assert (plants, controller) == (["ValidationVehicle"], "SpeedWashout")
-    given = settings["ValidationVehicle"]
-    assert (given["folder"], given["controller"]) == ("here", "SpeedWashout")
-    assert given["parameters"] == {"plant.m": 1900.0, "controller.k_v": 2.0}
+    ((plant, given),) = asked[0].items()
+    assert plant == given.plant == "ValidationVehicle"
+    assert (given.folder, given.controller) == (Path("here"), "SpeedWashout")
+    assert given.parameters == {"plant.m": 1900.0, "controller.k_v": 2.0}
