@@ -48,4 +48,4 @@ def compare(
 
 def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], settings: Mapping[str, Any]) -> Metrics:
     manoeuvre = manoeuvres[case.manoeuvre]
-    return evaluate(simulate(manoeuvre, case.plant, case.control, **settings), manoeuvre)
+    return evaluate(simulate(manoeuvre, case.plant, control=case.control, **settings), manoeuvre)

@@ -35,7 +35,7 @@ def test_a_program_gets_the_metrics_of_each_run_by_what_it_was(native):
     settings = {"folder": native.parent, "seed": 2}
     found = driveline.compare([tipin], ["TwoMassDriveline"], **settings)
     assert list(found) == [("TwoMassDriveline", "tipin15", control) for control in (False, True)]
-    runs = {case: driveline.simulate(tipin, case.plant, case.control, **settings) for case in found}
+    runs = {case: driveline.simulate(tipin, case.plant, control=case.control, **settings) for case in found}
     expected = {case: driveline.evaluate(results, tipin) for case, results in runs.items()}
     assert driveline.frame(found).equals(driveline.frame(expected))
 
