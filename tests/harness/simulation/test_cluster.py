@@ -119,7 +119,7 @@ def test_what_is_warned_of_on_a_worker_is_told_here(cluster, caplog):
         logging.getLogger("driveline.somewhere").warning("case %s is odd", case)
 
     answers(warns, ["of the cluster"], cluster)
-    logged = [record.getMessage() for record in caplog.records if record.name == "harness"]
+    logged = [record.getMessage() for record in caplog.records if record.name == "driveline"]
     assert logged == ["case of the cluster is odd"]
 
 
