@@ -78,45 +78,8 @@ bench: $(READY) ## cost per communication step, side by side and in other hosts,
 	$(BIN)/python -m benchmarks.hosts
 	$(BIN)/python -m benchmarks.many_runs
 
-docs: cross ## the pages of the documentation that are computed
-	$(BIN)/driveline build
-	$(BIN)/driveline study coupling --output docs
-	$(BIN)/driveline study back-to-back --output docs
-	$(BIN)/python -m docs.studies.design_page
-	$(BIN)/python -m docs.studies.calibration_page
-	$(BIN)/driveline build NoDamping SpeedWashout SpeedDifference PaperObserver LinearObserver PerfectState
-	$(BIN)/python -m docs.studies.comparison_page
-	$(BIN)/python -m docs.studies.goals_page
-	$(BIN)/python -m docs.studies.blocks_page
-	$(BIN)/python -m docs.studies.recordings_page
-	$(BIN)/python -m docs.studies.identification_page
-	$(BIN)/driveline record --plant ValidationVehicle --replace --quiet
-	$(BIN)/driveline identify results/record/ValidationVehicle_prbs_off.csv --output results/identify/identification.toml \
-		--replace --quiet
-	cp results/identify/identification_simulation.png docs/figures/
-	$(BIN)/driveline target record --replace --quiet
-	cp results/target/target.md docs/
-	cp results/target/figures/target.png docs/figures/
-	$(BIN)/driveline analyse --replace --quiet
-	cp results/analyse/analysis.md docs/
-	cp results/analyse/figures/*.png docs/figures/
-	rm -rf results/faults
-	$(BIN)/driveline faults --cases 10000 --replace --quiet || test $$? = 1
-	cp results/faults/faults.md docs/
-	cp results/faults/figures/faults.png results/faults/figures/fault_pairs.png docs/figures/
-	rm -rf results/robustness
-	$(BIN)/driveline robustness --cases 300 --quiet
-	cp results/robustness/robustness.md docs/
-	cp results/robustness/figures/*.png docs/figures/
-	$(BIN)/driveline study bound --replace --quiet
-	cp results/bound/bound.md docs/
-	cp results/bound/figures/bound.png docs/figures/
-	$(BIN)/driveline compare --replace
-	{ printf '# Results\n\n'; \
-		cat results/compare/table.md; \
-		printf '\nMade by `make docs` from the table of `driveline compare`; do not edit.\n'; } > docs/results.md
-	cp results/compare/TwoMassDriveline_drive.png docs/figures/drive.png
-	$(BIN)/python -m docs.studies.tutorial_figures
+docs: cross ## the pages of the documentation that are stale, made anew
+	$(BIN)/python -m docs.studies
 
 $(SITE): $(READY)
 	$(INSTALL) '.[site]'

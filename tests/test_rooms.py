@@ -4,7 +4,8 @@ import sys
 
 import pytest
 
-from docs.studies.rooms import ORDER, imports, modules, room, source
+from docs.studies.imports import imports, reached, source
+from docs.studies.rooms import ORDER, modules, room
 from tests import ROOT
 
 KNOW_THE_MODELS = ("harness.design", "harness.identification", "harness.studies", "harness.exchange", "docs.studies")
@@ -30,17 +31,6 @@ def test_files_lie_in_rooms() -> None:
 def test_only_design_and_studies_know_the_models(module: str) -> None:
     if not module.startswith(KNOW_THE_MODELS):
         assert not [name for name in imports(module) if name.startswith("models")]
-
-
-def reached(module: str) -> set[str]:
-    """All modules of ours that are imported with a module, itself among them."""
-    found, left = set(), [module]
-    while left:
-        name = left.pop()
-        if name not in found and source(name).is_file():
-            found.add(name)
-            left += imports(name)
-    return found
 
 
 @pytest.mark.parametrize("name", ["cosimulation", "recordings", "manoeuvres", "metrics", "exchange.compliance"])

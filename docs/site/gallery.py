@@ -6,28 +6,10 @@ from fnmatch import fnmatch
 from typing import NamedTuple
 
 from docs.site import ROOT, links
+from docs.studies.pages import PAGES
 
 PAGE = "gallery.md"
 FIGURES = ROOT / "docs" / "figures"
-
-BY_HAND = ""
-
-MADE_BY = {
-    "drive.png": "driveline compare",
-    "tutorial_*.png": "python -m docs.studies.tutorial_figures",
-    "analysis_*.png": "driveline analyse",
-    "calibration_*.png": "python -m docs.studies.calibration_page",
-    "identification_simulation.png": "driveline identify results/record/ValidationVehicle_prbs_off.csv",
-    "robustness_*.png": "driveline robustness --cases 300",
-    "worst_*.png": "driveline robustness --cases 300",
-    "faults.png": "driveline faults --cases 10000",
-    "fault_pairs.png": "driveline faults --cases 10000",
-    "bound.png": "driveline study bound",
-    "front.png": "driveline design --search results/ours --evaluations 200",
-    "target.png": "driveline target record",
-    "*.svg": BY_HAND,
-}
-"""The command that makes figures with such names; the first that fits counts."""
 
 SHOWN = re.compile(r"!\[([^\]]*)\]\((?:docs/)?figures/([^)]+)\)")
 
@@ -41,14 +23,16 @@ class Figure(NamedTuple):
 
 
 def command(name: str) -> str:
-    """What makes a figure; BY_HAND where nothing does.
+    """What makes a figure; nothing for a drawing.
 
     Raises:
         LookupError: it is not known.
     """
-    for pattern, made_by in MADE_BY.items():
-        if fnmatch(name, pattern):
-            return made_by
+    for made in PAGES.values():
+        if any(fnmatch(f"figures/{name}", pattern) for pattern in made.writes):
+            return made.command
+    if name.endswith(".svg"):
+        return ""
     raise LookupError(f"docs/figures/{name}: no command makes it")
 
 
@@ -71,7 +55,7 @@ def page() -> str:
     by_command: dict[str, list[Figure]] = {}
     for figure in figures():
         by_command.setdefault(command(figure.name), []).append(figure)
-    for made_by, shown in sorted(by_command.items(), key=lambda each: each[0] == BY_HAND):
+    for made_by, shown in sorted(by_command.items(), key=lambda each: not each[0]):
         lines += ["", f"## {made_by or 'Drawn by hand'}", ""]
         if made_by:
             lines += ["```sh", made_by, "```", ""]

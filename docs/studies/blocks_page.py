@@ -1,4 +1,4 @@
-"""Writes docs/blocks.md, all blocks with their equations and variables: `python -m docs.studies.blocks_page`."""
+"""docs/blocks.md, all blocks with their equations and variables."""
 
 from pathlib import Path
 
@@ -6,13 +6,15 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.documentation import tables, timing
 from driveline.fmus.fmu import Fmu
 
-PATH = Path(__file__).parents[2] / "docs" / "blocks.md"
-
 HEAD = "# The blocks\n"
-END = "Made by `python -m docs.studies.blocks_page` from the declarations in `models/`; do not edit.\n"
+END = "Made by `python -m docs.studies blocks` from the declarations in `models/`; do not edit.\n"
 
 
-def blocks_page() -> str:
+def make(folder: Path) -> None:
+    (folder / "blocks.md").write_text(page(), encoding="utf-8")
+
+
+def page() -> str:
     """The page as Markdown."""
     return "\n".join([HEAD, *(_section(fmu) for fmu in FMUS.values()), END])
 
@@ -28,9 +30,3 @@ def _table(rows: list[tuple[str, ...]]) -> str:
     lines = [rows[0], ("---",) * len(rows[0]), *((f"`{name}`", *others) for name, *others in rows[1:])]
     escaped = ([cell.replace("|", r"\|") for cell in line] for line in lines)
     return "\n".join(f"| {' | '.join(line)} |" for line in escaped)
-
-
-if __name__ == "__main__":
-    PATH.parent.mkdir(exist_ok=True)
-    PATH.write_text(blocks_page(), encoding="utf-8")
-    print(PATH)

@@ -1,8 +1,6 @@
-"""Writes docs/calibration.md, how to calibrate the controller: `python -m docs.studies.calibration_page`."""
+"""docs/calibration.md, how to calibrate the controller."""
 
 from pathlib import Path
-from shutil import copyfile
-from tempfile import TemporaryDirectory
 
 from docs.studies.calibration import FACTOR, STANDSTILL, answered, cases, stiff_vehicle
 from docs.studies.calibration_figure import plot_calibration
@@ -21,15 +19,11 @@ from docs.studies.calibration_tables import (
     value,
     without_effect,
 )
-from driveline.harness.base.atomic_files import write_text
-from driveline.harness.base.interruption import script
 from driveline.harness.design.uncertainty_box import Deviation
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.views.markdown import markdown_table
 from driveline.harness.views.metrics_table import number
-
-DOCS = Path(__file__).parents[2] / "docs"
 
 PAGE = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
 
@@ -70,17 +64,9 @@ def figure_stem(plant: str) -> str:
     return f"calibration_{plant}"
 
 
-def main() -> None:
+def make(folder: Path) -> None:
     todo = cases()
     found = dict(zip(todo, run_many(answered, todo), strict=True))
-    with TemporaryDirectory() as folder:
-        for plant in PLANTS:
-            picture, _ = plot_calibration(found, plant, Path(folder) / figure_stem(plant))
-            copyfile(picture, DOCS / "figures" / picture.name)
-    path = DOCS / "calibration.md"
-    write_text(page(found), path)
-    print(path)
-
-
-if __name__ == "__main__":
-    script(main)
+    for plant in PLANTS:
+        plot_calibration(found, plant, folder / "figures" / figure_stem(plant))
+    (folder / "calibration.md").write_text(page(found), encoding="utf-8")

@@ -1,7 +1,4 @@
-"""Writes docs/comparison.md, every controller through the same manoeuvres.
-
-python -m docs.studies.comparison_page
-"""
+"""docs/comparison.md, every controller through the same manoeuvres."""
 
 from collections.abc import Collection, Iterator, Mapping
 from itertools import product
@@ -9,8 +6,6 @@ from math import inf, isnan
 from pathlib import Path
 from typing import NamedTuple
 
-from driveline.harness.base.atomic_files import write_text
-from driveline.harness.base.interruption import script
 from driveline.harness.design.design_trials import mean
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import COMPARATORS, PLACES, PLANTS
@@ -121,14 +116,8 @@ def _metrics(names: Collection[str]) -> list[Metric]:
     return [metric for metric in declared(Metrics) if metric.name in names]
 
 
-def main() -> None:
+def make(folder: Path) -> None:
     runs = [(key, seed) for key in KEYS for seed in HELD_OUT_SEEDS]
     metrics = dict(zip(runs, run_many(measured, runs), strict=True))
     found = {key: mean([metrics[key, seed] for seed in HELD_OUT_SEEDS]) for key in KEYS}
-    path = Path(__file__).parents[2] / "docs" / "comparison.md"
-    write_text(page(found), path)
-    print(path)
-
-
-if __name__ == "__main__":
-    script(main)
+    (folder / "comparison.md").write_text(page(found), encoding="utf-8")

@@ -1,12 +1,11 @@
-"""Writes docs/design.md, what the design is worth on several cars: `python -m docs.studies.design_page`."""
+"""docs/design.md, what the design is worth on several cars."""
 
 from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
 
+from docs.studies.imports import ROOT
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.base.atomic_files import write_text
-from driveline.harness.base.interruption import script
 from driveline.harness.design.design import design
 from driveline.harness.design.design_trials import Gains, Trial, measured, own_gains
 from driveline.harness.design.design_weights import records
@@ -18,7 +17,6 @@ from driveline.harness.studies.margins.modes import swing
 from driveline.harness.views.markdown import markdown_table
 from driveline.harness.views.metrics_table import number
 
-ROOT = Path(__file__).parents[2]
 CARS = (None, *sorted((ROOT / "examples" / "cars").glob("*.toml")))
 MANOEUVRES = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "drive", "creep")
 COLUMNS = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "response_delay", "withheld_time")
@@ -61,7 +59,7 @@ def _shown(vehicle: Path | None) -> list[Gains]:
     return [gains for gains in Gains if vehicle or gains is not Gains.OWN]
 
 
-def main() -> None:
+def make(folder: Path) -> None:
     trials = [
         Trial(vehicle, plant, manoeuvre, gains)
         for plant in PLANTS
@@ -70,10 +68,4 @@ def main() -> None:
         for gains in _shown(vehicle)
     ]
     found = dict(zip(trials, run_many(measured, trials), strict=True))
-    path = ROOT / "docs" / "design.md"
-    write_text(page(found), path)
-    print(path)
-
-
-if __name__ == "__main__":
-    script(main)
+    (folder / "design.md").write_text(page(found), encoding="utf-8")

@@ -1,12 +1,10 @@
-"""Writes docs/goals.md, what the controller is to reach and what it reaches: `python -m docs.studies.goals_page`."""
+"""docs/goals.md, what the controller is to reach and what it reaches."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
 from docs.studies.goals import GOALS, Goal, Reached, all_measured, all_reached, missed, most, title
 from docs.studies.one_at_a_time import FACTORS, Change, all_changed, closest, harmless
-from driveline.harness.base.atomic_files import write_text
-from driveline.harness.base.interruption import script
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.views.markdown import markdown_table
@@ -74,12 +72,6 @@ def _instead(others: list[tuple[Goal, str]], changed: Reached) -> str:
     )
 
 
-def main() -> None:
-    path = Path(__file__).parents[2] / "docs" / "goals.md"
+def make(folder: Path) -> None:
     found = all_measured({})
-    write_text(page(all_reached(found), all_changed(found)), path)
-    print(path)
-
-
-if __name__ == "__main__":
-    script(main)
+    (folder / "goals.md").write_text(page(all_reached(found), all_changed(found)), encoding="utf-8")

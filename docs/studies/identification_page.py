@@ -1,6 +1,5 @@
-"""Writes the tables of docs/identification.md: `python -m docs.studies.identification_page`, or some of them."""
+"""The tables of docs/identification.md, between their marks."""
 
-import argparse
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -23,15 +22,14 @@ from docs.studies.identification_accuracy import (
     redesigned,
     trapped,
 )
-from driveline.harness.base.atomic_files import write_text
-from driveline.harness.base.interruption import script
+from docs.studies.imports import ROOT
 from driveline.harness.design.design_weights import MOTOR
 from driveline.harness.identification.quality import Z_95
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.robustness.draws import draw
 from driveline.harness.views.markdown import markdown_table
 
-PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
+PAGE = ROOT / "docs" / "identification.md"
 
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
@@ -52,14 +50,9 @@ WORSE = 0.05
 """By which a redesigned controller may be worse at most."""
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"one of {', '.join(TABLES)} (default: all)")
-    names = parser.parse_args().tables or list(TABLES)
-    if unknown := set(names) - TABLES.keys():
-        parser.error(f"there is no table {', '.join(sorted(unknown))}; there are {', '.join(TABLES)}")
-    tables = {name: TABLES[name]() for name in names}
-    write_text(filled(PAGE.read_text(encoding="utf-8"), tables), PAGE)
+def make(folder: Path, table: str) -> None:
+    made = {table: TABLES[table]()}
+    (folder / PAGE.name).write_text(filled(PAGE.read_text(encoding="utf-8"), made), encoding="utf-8")
 
 
 def accuracy_table() -> str:
@@ -235,7 +228,3 @@ def _redesigned(every: Sequence[Redesigned]) -> str:
 
 def _means(of: Mapping[str, tuple[float, float]]) -> np.ndarray:
     return np.mean(list(of.values()), axis=0)
-
-
-if __name__ == "__main__":
-    script(main)

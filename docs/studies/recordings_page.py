@@ -1,19 +1,22 @@
-"""Puts the tables of docs/recordings.md between their marks: `python -m docs.studies.recordings_page`."""
+"""The tables of docs/recordings.md, between their marks."""
 
 from pathlib import Path
 
 from docs.studies.generated_sections import filled
-from driveline.harness.base.atomic_files import write_text
+from docs.studies.imports import ROOT
 from driveline.harness.recordings import relations, signal_checks
 from driveline.harness.recordings.quantities import QUANTITIES, aliases
 from driveline.harness.views.markdown import markdown_table
 
-CHECKS = Path(__file__).with_name("recordings_checks.md").read_text(encoding="utf-8")
-
-PATH = Path(__file__).parents[2] / "docs" / "recordings.md"
+CHECKS = Path(__file__).with_name("recordings_page_checks.md").read_text(encoding="utf-8")
 
 
-def recordings_page(text: str) -> str:
+def make(folder: Path) -> None:
+    text = (ROOT / "docs" / "recordings.md").read_text(encoding="utf-8")
+    (folder / "recordings.md").write_text(page(text), encoding="utf-8")
+
+
+def page(text: str) -> str:
     """The page with the tables that the declarations in `harness/recordings` make."""
     return filled(text, {"columns": _columns(), "checks": _checks()})
 
@@ -48,8 +51,3 @@ def _checks() -> str:
         signals=signal_checks,
         relations=relations,
     ).strip()
-
-
-if __name__ == "__main__":
-    write_text(recordings_page(PATH.read_text(encoding="utf-8")), PATH)
-    print(PATH)

@@ -1,12 +1,10 @@
-"""The rooms of the code in their order; `python -m docs.studies.rooms` draws it for docs/architecture.md."""
+"""The rooms of the code in their order; `python -m docs.studies rooms` draws it for docs/architecture.md."""
 
-import ast
 from collections import Counter
 from collections.abc import Iterator
-from importlib.util import resolve_name
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from docs.studies.imports import ROOT, imports, source
 
 ORDER = (
     "models.block",
@@ -60,23 +58,6 @@ def modules() -> Iterator[str]:
                 yield ".".join(path.relative_to(ROOT).with_suffix("").parts)
 
 
-def source(module: str) -> Path:
-    return ROOT.joinpath(*module.split(".")).with_suffix(".py")
-
-
-def imports(module: str) -> Iterator[str]:
-    """What a module imports, ours without the name of the package: of `from a import b` the module a.b, or a where b
-    is something in it."""
-    package = f"driveline.{module.rpartition('.')[0]}"
-    for node in ast.walk(ast.parse(source(module).read_bytes())):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = resolve_name("." * node.level + (node.module or ""), package).removeprefix("driveline.")
-            for alias in node.names:
-                yield f"{base}.{alias.name}" if source(f"{base}.{alias.name}").is_file() else base
-
-
 def room(module: str) -> str:
     """The room of a module; of something in a package's `__init__.py`, that package."""
     return module if source(module).with_suffix("").is_dir() else module.rpartition(".")[0]
@@ -103,7 +84,7 @@ def lines() -> Counter[str]:
     )
 
 
-def main() -> None:
+def make(folder: Path) -> None:
     from matplotlib import pyplot as plt
     from matplotlib import rc_context
 
@@ -125,11 +106,5 @@ def main() -> None:
         axes.set_ylabel("room that imports, with its lines of Python")
         axes.set_xlabel("room that it imports from")
         axes.grid(linewidth=0.3)
-        figure.savefig(ROOT / "docs" / "figures" / "rooms.png", dpi=150, metadata={"Software": None})
+        figure.savefig(folder / "rooms.png", dpi=150, metadata={"Software": None})
         plt.close(figure)
-
-
-if __name__ == "__main__":
-    from driveline.harness.base.interruption import script
-
-    script(main)

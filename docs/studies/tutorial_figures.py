@@ -1,4 +1,4 @@
-"""Makes the figures of docs/tutorial.md by its own commands: `python -m docs.studies.tutorial_figures`."""
+"""The figures of docs/tutorial.md, made by its own commands."""
 
 import re
 import shlex
@@ -8,10 +8,9 @@ from contextlib import chdir
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from driveline.harness.base.interruption import script
+from docs.studies.imports import ROOT
 from driveline.harness.commands.cli import main as driveline
 
-ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "tutorial.md"
 
 FIGURES = {
@@ -31,15 +30,12 @@ def commands() -> Iterator[list[str]]:
                 yield arguments
 
 
-def main() -> None:
-    with TemporaryDirectory() as folder, chdir(folder):
+def make(folder: Path) -> None:
+    (folder / "figures").mkdir(exist_ok=True)
+    with TemporaryDirectory(dir=folder) as own, chdir(own):
         Path("examples").symlink_to(ROOT / "examples")
         for arguments in commands():
             if driveline(arguments) != 0:
                 raise SystemExit(f"docs/tutorial.md: driveline {shlex.join(arguments)}")
         for figure, written in FIGURES.items():
-            shutil.copyfile(written, ROOT / "docs" / "figures" / figure)
-
-
-if __name__ == "__main__":
-    script(main)
+            shutil.copyfile(written, folder / "figures" / figure)

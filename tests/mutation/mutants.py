@@ -1,6 +1,7 @@
 """Mutants of the files of the project."""
 
 import re
+import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ import faults_in_c
 import faults_in_python
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT))  # for docs.studies
 
 OF_NUMBERS = "models/block/integrator.py", "fmus/protocol.py"
 """Of these only the numbers that C takes from them are changed."""

@@ -4,9 +4,10 @@ import json
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
-from hashlib import sha256
 
 from mutants import ROOT, Mutant, mutants_of
+
+from docs.studies import digests
 
 PATH = ROOT / "docs" / "mutation.md"
 KNOWN = ROOT / "tests" / "mutation" / "survivors.toml"
@@ -40,7 +41,7 @@ def gone(files: Collection[str]) -> set[tuple[str, str, str]]:
 
 
 def digest(file: str) -> str:
-    return sha256((ROOT / file).read_bytes()).hexdigest()[:16]
+    return digests.digest(ROOT / file) if (ROOT / file).exists() else "gone"
 
 
 def record(faults: Mapping[str, int], mutants: Iterable[Mutant], found: Iterable[Mutant]) -> None:

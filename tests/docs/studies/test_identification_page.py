@@ -96,4 +96,4 @@ def test_both_methods_are_told_with_their_scatter() -> None:
 def test_the_page_has_a_place_for_every_table() -> None:
     text = PAGE.read_text(encoding="utf-8")
     for name in TABLES:
-        assert f"<!-- {name}, made by python -m docs.studies.identification_page -->" in text
+        assert f"<!-- {name}, made by python -m docs.studies identification -->" in text
