@@ -27,6 +27,7 @@ MADE = Path(__file__).with_name("made.json")
 STALE = Path(__file__).with_name("stale.toml")
 
 NO_NUMBERS = (
+    "docs.studies.imports",
     "fmus.archive",
     "fmus.description.documentation",
     "fmus.description.picture",
@@ -49,9 +50,12 @@ NO_NUMBERS = (
     "harness.cosimulation.process_host",
     "harness.loop.stale_fmus",
     "harness.metrics.notebook_table",
+    "harness.simulation.case_archive",
     "harness.simulation.cluster",
     "harness.simulation.many_runs",
     "harness.simulation.provenance",
+    "harness.simulation.same_fmus",
+    "harness.simulation.workers",
     "harness.views",
 )
 """Rooms and modules that numbers do not pass through; a page that depends on one nevertheless names it."""

@@ -3,6 +3,7 @@
 import ast
 import importlib.util
 from collections.abc import Collection, Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -13,9 +14,14 @@ def source(module: str) -> Path:
     return ROOT.joinpath(*module.split(".")).with_suffix(".py")
 
 
-def imports(module: str) -> Iterator[str]:
+@cache
+def imports(module: str) -> frozenset[str]:
     """What a module imports, ours without the name of the package: of `from a import b` the module a.b, or a where b
     is something in it."""
+    return frozenset(_imports(module))
+
+
+def _imports(module: str) -> Iterator[str]:
     package = module.rpartition(".")[0]
     for node in ast.walk(ast.parse(source(module).read_bytes())):
         if isinstance(node, ast.Import):

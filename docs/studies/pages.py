@@ -39,10 +39,10 @@ class Page(NamedTuple):
     @property
     def command(self) -> str:
         """What a reader calls to get it in the folder results."""
-        last = self.steps[-1] if self.steps else self.made_by
-        if not last.startswith("driveline "):
+        commands = [step for step in self.steps if step.startswith("driveline ")]
+        if not commands:
             return self.made_by or f"python -m docs.studies {self.name}"
-        return re.sub(r" --output \S+| --replace| --quiet", "", last).replace("OUT", "results")
+        return re.sub(r" --output \S+| --replace| --quiet", "", commands[-1]).replace("OUT", "results")
 
 
 def _same(*files: str) -> dict[str, str]:
@@ -147,7 +147,7 @@ _ROWS = (
     ),
     Page(
         "faults",
-        ("driveline faults --cases 10000 --output OUT --replace --quiet",),
+        ("driveline faults --cases 10000 --output OUT --quiet",),
         _same("faults.md", "figures/faults.png", "figures/fault_pairs.png"),
         tuple(f"harness.studies.faults.{name}" for name in ("fault_page", "fault_campaign")),
         (*LOOP, "fmus.signal_faults"),
