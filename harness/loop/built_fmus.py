@@ -83,13 +83,13 @@ def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Iterator[Path]:
             raise DrivelineError(str(reason)) from reason
 
 
-def build_missing(plant: NameOrFile | None = None, **changes: Unpack[Changes]) -> str:
+def build_missing(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> str:
     """Builds those of the project's FMUs that are missing or stale in the folder `build`, for a loop that is to run.
 
         driveline.build_missing("ValidationVehicle")  # half a minute the first time, next to nothing afterwards
 
     Args:
-        plant, changes: as of `simulate`. In another folder nothing is built; which FMUs there are stale is said by a
+        given, changes: settings or a plant, and what else `simulate` takes. In another folder nothing is built; which FMUs there are stale is said by a
             warning.
 
     Returns:
@@ -99,4 +99,4 @@ def build_missing(plant: NameOrFile | None = None, **changes: Unpack[Changes]) -
         WiringError: there is no such block.
         DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
     """
-    return built(plant, **changes).build or NATIVE
+    return built(given, **changes).build or NATIVE

@@ -27,11 +27,9 @@ from .places import (
 )
 
 
-class Changes(TypedDict, total=False):
-    """The fields of `Settings` as keyword arguments; None is what is usual."""
+class RunChanges(TypedDict, total=False):
+    """The fields of `Settings` but plant and controller as keyword arguments; None is what is usual."""
 
-    plant: NameOrFile | None
-    controller: NameOrFile | None
     motor: NameOrFile | None
     can: NameOrFile | None
     control: bool
@@ -43,6 +41,13 @@ class Changes(TypedDict, total=False):
     build: str | None
     mapping: Mapping[str, str] | None
     limits: Limits
+
+
+class Changes(RunChanges, total=False):
+    """All fields of `Settings` as keyword arguments; None is what is usual."""
+
+    plant: NameOrFile | None
+    controller: NameOrFile | None
 
 
 @dataclass(frozen=True)

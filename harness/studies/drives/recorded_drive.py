@@ -5,7 +5,7 @@ from typing import Unpack
 
 from ...base.errors import DrivelineError
 from ...loop.places import PLACES, PLANTS, NameOrFile
-from ...loop.settings import Changes, Settings
+from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.speed_following import require_held
 from ...recordings.drive import Drive
 from .replay import Ride, by_name, on_road
@@ -17,7 +17,7 @@ def replay(
     plant: NameOrFile = PLANTS[1],
     controllers: Sequence[NameOrFile] = PLACES["controller"][:1],
     held: float | None = None,
-    **settings: Unpack[Changes],
+    **settings: Unpack[RunChanges],
 ) -> list[Ride]:
     """Drives a vehicle with the torque demand of a recorded drive, once without damping and once with each controller.
 

@@ -5,7 +5,7 @@ from typing import Any, Unpack
 
 from ...design.design_trials import loop_parameters
 from ...loop.places import PLACES, PLANTS
-from ...loop.settings import Changes, Settings
+from ...loop.settings import RunChanges, Settings
 from .loop_analysis import Analysis
 from .loop_analysis import analyse as analysis
 
@@ -14,7 +14,7 @@ def analyse(
     plants: Sequence[str] = PLANTS,
     controller: str = PLACES["controller"][0],
     car: Mapping[str, Any] | None = None,
-    **settings: Unpack[Changes],
+    **settings: Unpack[RunChanges],
 ) -> Analysis:
     """How stable the loop is, what it depends on, and how good the estimate is, on all cores; see also
     `driveline analyse`. It takes minutes.

@@ -62,7 +62,7 @@ def test_fmus_that_run_python_hold_both(built):
 
 
 def test_a_loop_says_once_what_moves_and_what_is_held(built, caplog):
-    caplog.set_level(logging.INFO, "harness")
+    caplog.set_level(logging.INFO, "driveline")
     with loaded(loop(folder=built, build="python")) as running:
         for _ in range(2):
             running.run(Experiment(0.01))
