@@ -50,7 +50,7 @@ test-target: $(READY) ## the controller's C on an emulated processor; says what 
 	$(BIN)/python -m driveline.fmus.target
 	$(BIN)/python -m pytest tests/fmus/target tests/harness/exchange/target
 
-mutation: $(READY) ## small faults put into the controller and the C core, one by one: do the tests find them?
+mutation: $(READY) ## small faults put into all rooms, one by one: do the tests find them?
 	$(BIN)/python tests/mutation
 
 fuzz: $(READY) ## odd calls, files and options by the thousand

@@ -89,8 +89,8 @@ def build_missing(given: Settings | NameOrFile | None = None, **changes: Unpack[
         driveline.build_missing("ValidationVehicle")  # half a minute the first time, next to nothing afterwards
 
     Args:
-        given, changes: settings or a plant, and what else `simulate` takes. In another folder nothing is built; which FMUs there are stale is said by a
-            warning.
+        given, changes: settings or a plant, and what else `simulate` takes. In another folder nothing is built; a
+            warning says which FMUs there are stale.
 
     Returns:
         The build that runs, "native" or "python".

@@ -63,7 +63,9 @@ def replacements(node: ast.AST) -> Iterator[ast.AST | None]:
             yield with_(args=[condition, otherwise, value])
         case ast.Call(func=ast.Name(id=name), args=[value, *_]) if name in LEFT_OUT:
             yield value
-        case ast.AugAssign() | ast.Assign(targets=[ast.Attribute()]):
+        case ast.AugAssign() | ast.Assign(targets=[ast.Attribute()]) | ast.Expr(value=ast.Call()):
+            yield None
+        case ast.If(body=[ast.Raise()], orelse=[]):
             yield None
         case ast.Assign(targets=[ast.Name(id=name)], value=value):
             if any(isinstance(part, ast.Name) and part.id == name for part in ast.walk(value)):
@@ -81,6 +83,8 @@ def parts(node: ast.AST, has_state: bool = False) -> Iterator[tuple[ast.AST, ast
             children: list[ast.AST] = [*defaults, *body]
         case ast.AnnAssign(value=value):
             children = [value] if value else []
+        case ast.JoinedStr():  # Python 3.11 does not know where its parts stand
+            children = []
         case _:
             children = list(ast.iter_child_nodes(node))
     yield from ((node, fault) for fault in replacements(node))
@@ -95,11 +99,14 @@ def parts(node: ast.AST, has_state: bool = False) -> Iterator[tuple[ast.AST, ast
 
 def faults(source: str) -> Iterator[tuple[int, str, str]]:
     """Place in bytes, old and new text of every fault."""
-    starts = [0]
-    for line in source.encode().splitlines(keepends=True):
+    starts, code = [0], source.encode()
+    for line in code.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
     for node, fault in parts(ast.parse(source)):
-        place = starts[node.lineno - 1] + node.col_offset  # pyright: ignore[reportAttributeAccessIssue]
-        old = ast.get_source_segment(source, node)
-        assert old is not None
-        yield place, old, "pass" if fault is None else ast.unparse(fault)
+        place, end = (starts[line - 1] + column for line, column in _ends(node))
+        yield place, code[place:end].decode(), "pass" if fault is None else ast.unparse(fault)
+
+
+def _ends(node: Any) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Line, and column in bytes, of its beginning and of its end."""
+    return (node.lineno, node.col_offset), (node.end_lineno, node.end_col_offset)

@@ -5,22 +5,29 @@ import os
 import pickle
 import re
 import resource
+import select
 import shutil
+import signal
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from hashlib import md5
+from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 # slow to import and needed by every run of the tests, which inherits them
 import casadi  # noqa: F401
 import fmpy.fmi2  # noqa: F401
 import matplotlib.backends.backend_agg  # noqa: F401
+import pandas  # noqa: F401
 import pytest
+import scipy.signal  # noqa: F401
 from hypothesis import Phase, settings
 from mutants import ROOT, Mutant
 
@@ -31,10 +38,14 @@ OPTIONS = "-x", "-q", "-p", "no:cacheprovider", "--hypothesis-profile=mutation"
 MEMORY = Path("/dev/shm")
 """Faster than a disk, where there is one: each run unpacks hundreds of FMUs."""
 
-Tests = tuple[str, ...]
+SOUND: set[str] = set()
+"""Tests that are known by this worker to pass without a fault."""
 
-TIME_LIMIT = 10
+TIME_LIMIT = 20
 """Of computing in a test, in s: a mutant that needs more does not end, and is found."""
+
+WAITED = 900.0
+"""Time in s after which tests do not end, whatever they wait for."""
 
 COMPILER = """#!/bin/sh
 # cc that compiles a file again only when it, what it includes or an option has changed
@@ -58,7 +69,7 @@ exec cc $objects $options -o "$output"
 def prepare(folder: str) -> None:
     """Gives this worker a copy of the tree to work in."""
     copy = Path(folder, str(os.getpid()))
-    ours = shutil.ignore_patterns(".*", "build", "results", "__pycache__", "*.egg-info")
+    ours = shutil.ignore_patterns(".*", "build", "results", "*.egg-info")
     shutil.copytree(ROOT, copy, ignore=ours)
     objects, compiler = copy / "objects", copy / "cc"
     objects.mkdir()
@@ -70,7 +81,7 @@ def prepare(folder: str) -> None:
     compiler.chmod(stat.S_IRWXU)
     os.environ["CC"] = str(compiler)
     os.chdir(copy)
-    sys.path[0] = str(copy)
+    os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
 
 
 class TimeLimit:
@@ -83,17 +94,32 @@ class TimeLimit:
 
 
 class Remembered:
-    """What no fault in the C core changes is computed once by a worker: traced sources, pages, what is in the FMUs
-    that run Python."""
+    """What no fault outside of the code of the FMUs changes is computed once by a worker: traced sources, pages, what
+    is in the FMUs that run Python."""
 
     def pytest_configure(self) -> None:
-        from driveline.fmus.native import packaging as native
-        from driveline.fmus.python import packaging as python
-
+        fmus = next(name for name, module in sys.modules.items() if _is_at(module, Path("fmus", "__init__.py")))
+        packaging: list[Any] = [import_module(f"{fmus}.{build}.packaging") for build in ("native", "python")]
+        native, python = packaging
         native.block_sources = remembered(native.block_sources)
         native.documentation = remembered(native.documentation)
         python.documentation = remembered(python.documentation)
         python._resources_and_binaries = remembered(python._resources_and_binaries)
+
+
+def _is_at(module: ModuleType, path: Path) -> bool:
+    """Whether a module is the file at a path of the tree, whatever it is imported as."""
+    return getattr(module, "__file__", None) == str(path.resolve())
+
+
+class Running:
+    """Keeps which test is running, so that one is known that fails or that ends its process."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        self.path.write_text(nodeid, encoding="utf-8")
 
 
 def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -110,52 +136,70 @@ def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
     return result
 
 
-def passes(tests: Tests, in_c: bool = False) -> bool:
-    """Whether the tests pass here; in a process of its own, which has imported nothing of the tree.
+def failing(tests: Sequence[str], same_fmus: bool = False, limit: float = WAITED) -> str | None:
+    """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass. In a
+    process of its own, which has imported nothing of the tree.
 
     Args:
-        in_c: no Python file has changed.
+        same_fmus: the FMUs are those of the tree, but for their C core.
+        limit: time in s after which the tests do not end.
     """
+    running = (Path("temporary") / "running").resolve()
+    running.write_text("", encoding="utf-8")
     child = os.fork()
     if child == 0:
         result = 1
         try:
+            os.setsid()
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, 1)
             os.dup2(nowhere, 2)
-            plugins = [TimeLimit(), Remembered()] if in_c else [TimeLimit()]
-            sys.dont_write_bytecode = not in_c
+            plugins = [TimeLimit(), Running(running), *([Remembered()] if same_fmus else [])]
             result = pytest.main([*OPTIONS, *tests], plugins=plugins)
         finally:
             os._exit(result)
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    ended, _, _ = select.select([os.pidfd_open(child)], [], [], limit)
+    if not ended:
+        os.killpg(child, signal.SIGKILL)
+    passed = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    return None if passed else running.read_text(encoding="utf-8")
 
 
-def survives(mutant: Mutant, tests: Tests) -> bool:
-    sound = mutant.apply(Path())
-    try:
-        return passes(tests, in_c=not mutant.file.endswith(".py"))
-    finally:
-        Path(mutant.file).write_bytes(sound)
-
-
-def survivors(mutants: list[Mutant], tests_of: Mapping[str, Tests]) -> Iterator[Mutant]:
-    """Those that no test finds; tells how far it is.
+def finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
+    """The first test that finds a fault; None if none does. Tests that fail without it are left out.
 
     Args:
-        tests_of: by the file that is mutated, in the order in which they are run.
+        tests: in the order in which they are run.
     """
+    same_fmus = mutant.file.startswith("harness") or not mutant.file.endswith(".py")
+    left = list(tests)
+    while left:
+        with mutant.applied(Path()):
+            found = failing(left, same_fmus)
+        if found is None or found in SOUND:
+            return found
+        if failing([found] if found else left, same_fmus) is None:
+            SOUND.add(found)
+            return found
+        left = [test for test in left if found not in ("", test)]
+    return None
+
+
+def finders(mutants: Sequence[Mutant], tests: Sequence[Sequence[str]], number: int) -> Iterator[str | None]:
+    """What finds each of the faults, in order, by so many workers.
+
+    Args:
+        tests: for each fault, in the order in which they are run.
+    """
+    with working(number) as workers:
+        yield from workers.map(finder, mutants, tests)
+
+
+@contextmanager
+def working(number: int | None = None) -> Iterator[ProcessPoolExecutor]:
+    """So many workers, or one on each core, in copies of the tree."""
     with (
         tempfile.TemporaryDirectory(dir=MEMORY if MEMORY.exists() else None) as folder,
-        ProcessPoolExecutor(mp_context=get_context("fork"), initializer=prepare, initargs=(folder,)) as workers,
+        ProcessPoolExecutor(number, get_context("fork"), prepare, (folder,)) as workers,
     ):
-        used = list(dict.fromkeys(tests_of[mutant.file] for mutant in mutants))
-        for tests, good in zip(used, workers.map(passes, used), strict=True):
-            if not good:
-                sys.exit(f"without any fault the tests fail: {' '.join(tests)}")
-        results = workers.map(survives, mutants, [tests_of[mutant.file] for mutant in mutants])
-        for n, (mutant, alive) in enumerate(zip(mutants, results, strict=True), start=1):
-            print(f"{n} of {len(mutants)}", end="\r", flush=True)
-            if alive:
-                print(f"{mutant.file}:{mutant.line}: {mutant.fault}", flush=True)
-                yield mutant
+        yield workers

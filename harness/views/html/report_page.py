@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 EXTRA = "report"
 """Of the package, that installs what draws."""
 
-TEMPLATE = Path(__file__).with_name("page.html")
+TEMPLATE = Path(__file__).with_suffix(".html")
 
 CHOICE = "choice"
 """Name of the control that chooses what the figures show; a row of a table sets it."""

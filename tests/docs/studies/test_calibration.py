@@ -1,5 +1,6 @@
 """The calibration page: each parameter of the law both ways, cars that are told or not, and the same each time."""
 
+import re
 from math import nan
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from docs.studies.calibration import (
     DEVIATIONS,
     LAW,
+    SUSPECTS,
     Answer,
     Case,
     another_car,
@@ -19,7 +21,7 @@ from docs.studies.calibration import (
 from docs.studies.calibration_figure import plot_calibration
 from docs.studies.calibration_page import page
 from docs.studies.calibration_tables import COLUMNS, matters, signed
-from driveline.harness.design.design_weights import PARAMETERS
+from driveline.harness.design.design_weights import MOTOR, PARAMETERS
 from driveline.harness.design.uncertainty_box import Deviation
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import Settings
@@ -97,3 +99,13 @@ def test_the_figure_is_the_same_each_time(tmp_path: Path) -> None:
     found = {case: answer(1.0 + 0.01 * k) for k, case in enumerate(cases())}
     first, second = (plot_calibration(found, "TwoMassDriveline", tmp_path / name)[0] for name in ("a", "b"))
     assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_suspect_is_as_wrong_as_its_name_says() -> None:
+    usual = {"motor.tau": MOTOR.tau, "motor.g_T": 1.0, "can.g_w2": 1.0}
+    named = [(suspect, re.search(r" x([\d.]+)$", suspect.what)) for suspect in SUSPECTS]
+    assert sum(factor is not None for _, factor in named) >= 4
+    for suspect, factor in named:
+        if factor:
+            name, value = suspect.given[0]
+            assert value == pytest.approx(float(factor[1]) * usual[name])

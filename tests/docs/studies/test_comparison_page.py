@@ -5,7 +5,7 @@ from math import nan
 
 import pytest
 
-from docs.studies.comparison_page import KEYS, MARK, OURS, Key, page
+from docs.studies.comparison_page import DEARER, KEYS, MARK, OURS, Key, page
 from driveline.harness.loop.places import COMPARATORS, PLANTS
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
@@ -62,3 +62,14 @@ def test_the_mark_beats_nobody() -> None:
 def test_a_metric_that_ours_has_not_has_no_row(value: float) -> None:
     table = page(everywhere(metrics(overshoot=value))).partition("| overshoot")[2].partition("\n\n")[0]
     assert ("| tipin15 |" in table) == (value == 0.0)
+
+
+@pytest.mark.parametrize(("share", "is_dearer"), [(0.999, False), (1.001, True)])
+def test_a_price_is_what_is_dearer_by_a_share_of_ours(share: float, is_dearer: bool) -> None:
+    """However large ours is."""
+    for size in (0.5, 2.0):
+        ours = {"overshoot": 1.0, "withheld_time": size}
+        its = {"overshoot": 0.5, "withheld_time": share * DEARER * size}
+        text = side_by_side(**{OURS: ours, "SpeedWashout": its})
+        (line,) = (line for line in text.splitlines() if line.startswith("- tipin15, `SpeedWashout`"))
+        assert ("torque withheld" in line) == is_dearer

@@ -2,8 +2,20 @@
 
 from dataclasses import replace
 
+import pytest
+
 from docs.studies.identification_accuracy import TRAPS, Found, Judged, Method, Redesigned
-from docs.studies.identification_page import PAGE, TABLES, TRUE, _accuracy, _methods, _redesigned, _traps, _vehicle
+from docs.studies.identification_page import (
+    PAGE,
+    TABLES,
+    TRUE,
+    _accuracy,
+    _methods,
+    _redesigned,
+    _traps,
+    _vehicle,
+    accuracy_table,
+)
 from driveline.harness.identification.drive_train import Parameters
 from driveline.harness.loop.places import PLANTS
 
@@ -32,6 +44,17 @@ def test_accuracy_tells_rms_worst_and_the_share_within_the_interval() -> None:
     assert row(_accuracy(found, found), "J_2")[2:4] == ["0.138", "0.200"]
     assert row(_accuracy(found, found), "J_2")[5] == "75"
     assert row(_accuracy(found, found), "C")[5] == "100"
+
+
+@pytest.mark.parametrize(("name", "limit"), [("J_2", 0.004), ("C", 0.001), ("phi_B", 0.0035)])
+def test_a_wide_start_is_right_if_every_parameter_is_nearly_that_of_the_car(
+    name: str, limit: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    true = TRUE[name]
+    starts = [RIGHT, *(with_values(**{name: true * (1.0 + share * limit)}) for share in (0.99, -0.99, 1.01, -1.01))]
+    answers = iter([[RIGHT], [RIGHT], starts])
+    monkeypatch.setattr("docs.studies.identification_page.run_many", lambda *_args, **_named: next(answers))
+    assert "From 5 wide starts the right optimum was found 3 times." in accuracy_table()
 
 
 def test_a_trap_is_passed_by_the_right_answer_or_by_naming_the_cause() -> None:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from driveline.harness.manoeuvres.catalogue import COMPARED, MANOEUVRES
 from driveline.harness.manoeuvres.prbs import shift_register
-from driveline.harness.manoeuvres.signals import Held, lines
+from driveline.harness.manoeuvres.signals import FlatSine, Held, lines
 
 
 @pytest.mark.parametrize(
@@ -86,3 +86,13 @@ def test_signals_are_held_beyond_their_ends():
     ramp, held = lines((1.0, 2.0), (3.0, 4.0)), Held(0.5, np.array([1.0, 2.0]))
     assert ramp([-1.0, 9.0]).tolist() == [2.0, 4.0]
     assert held([-1.0, 0.49, 0.5, 9.0]).tolist() == [1.0, 1.0, 2.0, 2.0]
+
+
+@pytest.mark.parametrize("frequency", [0.5, 8.0])
+def test_a_flat_sine_has_its_period_its_flanks_and_its_amplitude(frequency: float) -> None:
+    signal = FlatSine(mean=3.0, amplitude=10.0, frequency=frequency, steepness=2.0)
+    t = np.linspace(0.0, 1.0 / frequency, 401)
+    np.testing.assert_allclose(signal(t + 1.0 / frequency), signal(t), atol=1e-9)
+    np.testing.assert_allclose(signal(t[:200] + 0.5 / frequency) - 3.0, 3.0 - signal(t[:200]), atol=1e-9)
+    assert (signal(t).min(), signal(t).max()) == (-7.0, 13.0)
+    assert signal(np.array([1.0 / 24.0 / frequency])) == pytest.approx(3.0 + 20.0 * np.sin(np.pi / 12.0))

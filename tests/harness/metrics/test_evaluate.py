@@ -18,6 +18,7 @@ from driveline.harness.metrics.evaluate import COLUMNS, evaluate, impact_speed
 from driveline.harness.metrics.oscillation import amplitude
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.metrics.spectrum import band_rms
+from driveline.harness.metrics.step_response import response
 from driveline.models.controller import supervision
 
 
@@ -227,6 +228,16 @@ def test_a_torque_that_does_not_follow_has_no_response():
     }  # fmt: skip
     follows = without_value(evaluate(run(T_gear=lambda t: 11.3 * after(t)[1]), MANOEUVRES["tipin15"]))
     assert set(follows) == {"plateau_swing"}
+
+
+@pytest.mark.parametrize("dT", [112.0, -112.0])
+def test_the_response_of_a_torque_that_goes_the_other_way_is_the_same(dT):
+    """Whichever way it goes, and whichever way was demanded."""
+    results = run(T_gear=decaying(0.1)[0])
+    up, down = (response(results["time"], side * results["plant.T_gear"], 1.0, dT) for side in (1.0, -1.0))
+    assert down.z == pytest.approx(up.z)
+    assert down.y == pytest.approx(up.y)
+    assert (down.overshoot, down.delay) == pytest.approx((up.overshoot, up.delay))
 
 
 def test_what_still_swings_at_the_end_has_not_settled():

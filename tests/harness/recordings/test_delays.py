@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.delays import estimated
+from driveline.harness.recordings.delays import EARLIEST, LATEST, _fitted, estimated
+from driveline.harness.recordings.filters import low
 from tests.harness.recordings.car import drive
 from tests.harness.recordings.conftest import Read
 
@@ -44,3 +45,23 @@ def test_what_fits_badly_has_no_delay() -> None:
 
 def test_delays_are_told_with_the_recording(read: Read) -> None:
     assert [(delay.of, delay.behind) for delay in read(drive()).delays] == [("omega_2", "omega_1"), ("T_load", "T_mot")]
+
+
+@pytest.mark.parametrize(("interval", "frequency"), [(0.005, 5.0), (0.002, 15.0)])
+def test_the_deviation_of_a_delay_is_the_scatter_of_what_is_found(interval: float, frequency: float) -> None:
+    """Over recordings with noise of their own, as slow as the signal: of its power over 2 f T independent values, and
+    the slope of the signal."""
+    random, n, fine, share = np.random.default_rng(8), 1000, 5, 0.2
+    compared = slice(round(LATEST / interval), n + round(EARLIEST / interval))
+    T = n * interval - LATEST + EARLIEST
+    off, ratios = [], []
+    for _ in range(50):
+        signal, noise = (low(random.standard_normal(fine * n), interval / fine, frequency) for _ in range(2))
+        slope = np.gradient(signal, interval / fine)[::fine][compared].std()
+        noise = (share * signal.std() / noise.std() * noise)[::fine]
+        late = np.roll(signal, 17)[::fine] + noise
+        found, deviation, _ = _fitted(interval, frequency, late, [signal[::fine]])
+        off.append((found - 3.4 * interval) / deviation)
+        ratios.append(deviation * slope * np.sqrt(2.0 * frequency * T) / noise[compared].std())
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.06)
+    assert np.std(off) < 1.1, "no smaller than the scatter"

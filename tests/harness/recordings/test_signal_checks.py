@@ -33,12 +33,29 @@ def test_the_shortest_recording(read: Read) -> None:
     assert len(read(cut(samples)).time) == samples
     with pytest.raises(RecordingError, match=r"omega_1 \[rad/s\] is 1\.998 s long; 2 s or more are needed"):
         read(cut(samples - 1))
+    with pytest.raises(RecordingError, match=r"1\.998 s long"):
+        read(cut(samples - 1) | {"time": 100.0 + cut(samples - 1)["time"]})
 
 
 def test_the_slowest_recording(read: Read) -> None:
     assert len(read(at_every(0.01)).time) == 1000
     with pytest.raises(RecordingError, match=r"omega_1 \[rad/s\] has a sample every 10\.1 ms; 10 ms or less"):
         read(at_every(0.0101))
+
+
+@pytest.mark.parametrize(
+    ("name", "slowest"), [("T_mot", 0.01), ("omega_1", 0.01), ("T_wheel", 0.01), ("T_ref", 0.1), ("omega_wheel", 0.1)]
+)
+def test_how_slow_each_channel_may_be(name: str, slowest: float) -> None:
+    for share in (1.0, 1.01):
+        time = np.arange(0.0, 10.0, share * slowest)
+        values = 100.0 * np.sin(time)
+        channel = Channel(name, name, QUANTITIES[name].unit, time, values, str, FileUnit("N.m"))
+        if share == 1.0:
+            check_signal(Path("measured.csv"), channel)
+        else:
+            with pytest.raises(RecordingError, match="or less are needed to identify anything"):
+                check_signal(Path("measured.csv"), channel)
 
 
 @pytest.mark.parametrize("name", ["T_mot", "T_ref", "omega_1", "T_load", "omega_2"])

@@ -127,9 +127,10 @@ def test_the_road_about_holds_the_speed(both_built: Path, plant: str) -> None:
 
 
 def test_a_demand_that_the_car_would_not_follow_is_refused() -> None:
-    require_demand(-10.0, 170.0, 0.002, 180.0)
-    with pytest.raises(WiringError, match=r"10 \+- 170\.1 N\.m is beyond the 180 N\.m"):
-        require_demand(10.0, 170.1, 0.04, 180.0)
+    for mean in (10.0, -10.0):
+        require_demand(mean, 170.0, 0.002, 180.0)
+        with pytest.raises(WiringError, match=rf"{mean:g} \+- 170\.1 N\.m is beyond the 180 N\.m"):
+            require_demand(mean, 170.1, 0.04, 180.0)
     with pytest.raises(WiringError, match=r"a clock of 0\.0019 s is shorter"):
         require_demand(10.0, 30.0, 0.0019, 180.0)
 

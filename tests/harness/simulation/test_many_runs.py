@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -81,6 +82,19 @@ def test_one_worker_is_this_process_and_others_share_the_cases():
     others = run_many(lambda case: (Path("/").exists(), process(case)), range(3), workers=2)
     assert os.getpid() not in [number for _, number in others]
     assert run_many(process, []) == []
+
+
+def test_progress_is_told_of_every_case(monkeypatch):
+    told = []
+
+    @contextmanager
+    def progress(total, label):
+        told.append((total, label))
+        yield told.append
+
+    monkeypatch.setattr("driveline.harness.simulation.many_runs.progress", progress)
+    run_many(abs, [-1, -2, -3], workers=1, label="counting")
+    assert told == [(3, "counting"), 1, 2, 3]
 
 
 def test_threads_do_not_share_what_is_kept_loaded(native, tmp_path):

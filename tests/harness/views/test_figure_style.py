@@ -23,11 +23,11 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.step_response import SETTLED, response
 from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.views.annotations import BAND, GAP
+from driveline.harness.views.annotations import BAND, GAP, gap
 from driveline.harness.views.drive_figure import AROUND, plot_drive, reversal
 from driveline.harness.views.figure_options import KINDS, FigureOptions
 from driveline.harness.views.figure_style import titled
-from driveline.harness.views.replay_figure import plot_replay
+from driveline.harness.views.replay_figure import PIECE, plot_replay, roughest
 from driveline.harness.views.run_figure import plot_run
 from driveline.harness.views.step_figure import plot_step
 from tests.slow import slow
@@ -152,6 +152,18 @@ def test_a_step_is_marked_as_the_metrics_find_it(drawn: Drawn, name: str, axes: 
     text = notes(found)
     assert f"overshoot {100.0 * metrics.overshoot:.0f} %, settling {1e3 * metrics.settling_time:.0f} ms" in text
     assert f"5-50 Hz rms {metrics.gear_torque_rms:.1f} N·m" in text
+
+
+def test_the_teeth_float_wherever_the_gear_torque_is_zero() -> None:
+    run = STEPS[0][:100].copy()
+    run["plant.T_gear"] = 1.0
+    t = run["time"]
+    for first, last in ((0, 3), (40, 40), (50, 70), (90, 99)):
+        run["plant.T_gear"][first : last + 1] = 0.0
+    spans = gap(run)  # at least one sample wide, so that it can be seen
+    assert list(zip(spans.x, spans.end, strict=True)) == [
+        (t[0], t[3]), (t[40], pytest.approx(t[41])), (t[50], t[70]), (t[90], t[99])
+    ]  # fmt: skip
 
 
 def test_the_gap_is_shaded_in_every_row_and_told_once(drawn: Drawn) -> None:
@@ -305,3 +317,14 @@ def test_titles_and_captions_are_not_cut(size: float) -> None:
         box = text.get_window_extent()
         assert 0.0 < box.x0 < box.x1 < figure.bbox.width
         assert 0.0 < box.y0 < box.y1 < figure.bbox.height
+
+
+@pytest.mark.parametrize("begin", [1.0, 9.0, 14.0])
+def test_the_close_up_of_a_replay_is_where_the_gear_torque_swings_most(begin: float) -> None:
+    run = DRIVES[0].copy()
+    run["plant.T_gear"] = run["controller.T_driver"]
+    at = (run["time"] > begin) & (run["time"] < begin + 3.0)
+    run["plant.T_gear"][at] += 20.0 * np.sin(50.0 * run["time"][at])
+    first, swing = roughest(run)[0]
+    assert first <= begin < begin + 3.0 <= first + PIECE
+    assert swing == pytest.approx(10.0, rel=0.1)  # half of the piece swings by 20 N.m

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from driveline.models.block.declaration import Enumeration, variables
 from driveline.models.block.types import SampledBlock
-from driveline.models.controller import supervision
+from driveline.models.controller import oscillation_monitor, supervision
+from driveline.models.controller.signal_trust import TrustState
 from driveline.models.controller.supervision import (
     FALLBACK,
     OFF,
@@ -434,3 +435,24 @@ def test_motor_signals_are_doubtful_from_the_first_bad_or_contradicted_sample_on
     x = OTHER.start(Input(), P)
     signals, wheel_state = x.monitor._replace(bad=bad), x.wheels._replace(mismatch_time=mismatch_time)
     assert supervision.is_suspect(signals, wheel_state) is suspect
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("reference_valid", "damping", "proves"),
+    [(True, 0.999, True), (True, 1.0, True), (True, 1.001, False), (False, 0.0, False)],
+)
+def test_who_was_caught_proves_himself_beside_a_witness_while_little_is_damped(
+    reference_valid: bool, damping: float, proves: bool, side: float
+) -> None:
+    """The wheel speed alone is not enough: in an oscillation that the damping feeds it swings along.
+
+    Args:
+        damping: torque over what counts as calm.
+    """
+    latched = TrustState(heal_time=P.t_proof, needed=2.0 * P.t_proof, latched=True)
+    x, _ = started()
+    x = x._replace(trust=latched, opposing=side * damping * oscillation_monitor.CALM * P.T_max)
+    wheel_state = x.wheels._replace(reference_valid=reference_valid, mismatch_time=0.0)
+    after = supervision.trust_after(x, x.monitor._replace(bad=0.0), wheel_state, x.launch_direction, False, P)
+    assert after == latched._replace(heal_time=P.t_proof + T_S if proves else 0.0)

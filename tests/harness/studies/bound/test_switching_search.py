@@ -1,6 +1,9 @@
 """Through the gap: what a programme promises is what the design model does, and better switching times are found."""
 
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +17,8 @@ from driveline.harness.studies.bound.contacts import Contacts
 from driveline.harness.studies.bound.linear_car import linear_car
 from driveline.harness.studies.bound.linear_prediction import value
 from driveline.harness.studies.bound.open_loop_run import open_loop_run
-from driveline.harness.studies.bound.switching_search import FINE, Search, holds
+from driveline.harness.studies.bound.programme import Solution
+from driveline.harness.studies.bound.switching_search import BORDER, COARSE, FINE, Holding, Search, holds
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 
 NATIVE = Settings(build="native", parameters={f"motor.{name}": value for name, value in NOISELESS.items()})
@@ -59,3 +63,40 @@ def test_around_contacts_are_those_in_order(search: Search) -> None:
 def test_a_torque_is_held_until_the_next_sample_that_has_one() -> None:
     assert holds(((3, 1), (9, 3), (100, 5)), 14).tolist() == [0, 1, 2, 3, 6, 9]
     assert holds(FINE, 1000)[-1] == 992
+
+
+class Known(Search):
+    """Ratios that are known for a switching time, and what is proven about them."""
+
+    def __init__(self, ratio: Callable[[int], float], bound: Callable[[int], float]) -> None:
+        task: Any = SimpleNamespace(horizon=SimpleNamespace(head=10))
+        self.task, self.ratio, self.bound = task, ratio, bound
+
+    def solve(self, contacts: Contacts, holding: Holding = COARSE) -> Solution:
+        (end,) = contacts.ends
+        assert holding is FINE, "a proof"
+        return Solution(np.zeros(1), self.ratio(end), self.ratio(end), self.bound(end))
+
+
+def looked_at(search: Search, end: int) -> list[int]:
+    return sorted(found.contacts.ends[0] for found in search.surround(Contacts((0, 1), (end,))))
+
+
+def test_neighbours_are_looked_at_until_all_around_are_proven_to_be_worse() -> None:
+    """By the factor 1.003; those that are proven to be are not gone beyond."""
+    for at_border, reach in ((1.0029, 4), (1.0031, 3)):
+        bounds = {10: 1.0, 11: 1.002, 12: 1.001, 13: at_border, 14: 2.0, 9: 1.2}
+        search = Known(lambda end: 1.0 if end == 10 else 1.5, lambda end: bounds.get(end, 0.0))  # noqa: B023
+        assert looked_at(search, 10) == list(range(9, 10 + reach + 1))
+
+
+def test_a_neighbour_that_is_better_becomes_the_best() -> None:
+    """What was not proven to be worse before is, beside it."""
+    bounds = {10: 0.9, 11: 1.5, 9: 0.49, 8: 0.5, 7: 0.9}
+    search = Known(lambda end: 0.5 if end == 9 else 1.0, lambda end: bounds.get(end, 0.0))
+    assert looked_at(search, 10) == [7, 8, 9, 10, 11]
+
+
+def test_switching_times_end_where_the_head_ends_and_the_bound_is_that_of_all() -> None:
+    assert looked_at(Known(lambda end: 1.0, lambda end: BORDER - 1e-6), 10) == list(range(1, 40))
+    assert looked_at(Known(lambda end: 1.0, lambda end: BORDER + 1e-6), 10) == [10]

@@ -107,6 +107,19 @@ def test_results_tell_what_made_them_and_nothing_else_is_written(native, tmp_pat
     assert "seed: 1 there, 2 here); choose another --output, or --replace it" in capsys.readouterr().err
 
 
+def test_so_many_cases_are_run_from_the_first_on(native, tmp_path, monkeypatch):
+    numbers = []
+
+    def campaign(cases, *_):
+        numbers.extend(cases)
+        raise DrivelineError("that is enough")
+
+    monkeypatch.setattr("driveline.harness.studies.faults.fault_campaign.campaign", campaign)
+    given = ["--plant", "TwoMassDriveline", "--fmus", str(native.parent), "--output", str(tmp_path)]
+    assert main(["faults", "--cases", "3", *given]) == 2
+    assert numbers == [1, 2, 3]
+
+
 @pytest.mark.parametrize("number", ["0", "-1", "1.5", "ten", "99999999", "١"])
 def test_a_number_of_cases_that_is_none_is_refused(number, capsys):
     with pytest.raises(SystemExit) as refused:

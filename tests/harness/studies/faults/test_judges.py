@@ -81,6 +81,13 @@ def test_a_wheel_speed_that_becomes_known_is_heard_before_it_shows_that_the_moto
     assert clean("noticed", run) == verdict
 
 
+@pytest.mark.parametrize(("torque", "verdict"), [(359.9, True), (-359.9, True), (360.1, False), (-360.1, False)])
+def test_a_torque_estimate_of_more_than_twice_the_largest_torque_is_noticed(torque, verdict):
+    run = quiet()
+    run["faults.T_mot_est"][between(BEGIN, END)] = torque
+    assert clean("noticed", run) == verdict
+
+
 def test_without_a_good_message_a_wrong_motor_speed_need_not_be_noticed_but_no_number_must():
     run = quiet()
     run["faults.valid"] = False

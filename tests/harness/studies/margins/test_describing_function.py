@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
+from driveline.harness.studies.margins import describing_function as backlash
 from driveline.harness.studies.margins.describing_function import (
     AMPLITUDES,
     Swinging,
+    _mixed_controller,
     describing_function,
     limit_cycles,
     swings,
 )
+from driveline.harness.studies.margins.linear_controller import LinearController, Sample
 from driveline.harness.studies.margins.linear_loop import linear_loop
 from driveline.harness.studies.margins.margins import margins
 from driveline.harness.studies.margins.modes import drive_train_mode
@@ -28,6 +31,27 @@ def test_the_describing_function_is_the_first_harmonic_of_the_dead_zone(amplitud
     angle = np.linspace(0.0, 2.0 * pi, 20001)[:-1]
     torques = [dead_zone(amplitude * sine, 1.0) for sine in np.sin(angle).tolist()]
     assert describing_function(amplitude) == pytest.approx(2.0 * np.mean(torques * np.sin(angle)) / amplitude, abs=1e-6)
+
+
+def test_what_is_mixed_of_contact_and_gap_goes_by_the_share_of_contact() -> None:
+    random = np.random.default_rng(2)
+
+    def of_its_own() -> LinearController:
+        quiet, message = (Sample(random.standard_normal((3, 3)), random.standard_normal((3, 2))) for _ in range(2))
+        return LinearController(quiet, message, np.ones(3), ("omega_1_meas",), ("x",))
+
+    contact, gap = of_its_own(), of_its_own()
+    mixed = _mixed_controller(0.25, contact, gap)
+    for name in ("quiet", "message"):
+        for found, one, other in zip(*(getattr(each, name) for each in (mixed, contact, gap)), strict=True):
+            np.testing.assert_allclose(found, 0.25 * one + 0.75 * other)
+
+
+def test_further_dead_time_comes_to_that_of_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("in_contact_and_gap", "controller_in_contact_and_gap", "_mixed_drive", "_mixed_controller"):
+        monkeypatch.setattr(backlash, name, lambda *_: (None, None))
+    monkeypatch.setattr(backlash, "assembled", lambda _drive, _controller, _bus, late: late)
+    assert Swinging(Point(late=0.003)).loop(0.5, late=0.002) == pytest.approx(0.005)  # type: ignore[comparison-overlap]
 
 
 def test_without_control_the_drive_train_swings_slower_by_the_root_of_it() -> None:

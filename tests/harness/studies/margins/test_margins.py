@@ -1,7 +1,9 @@
 """The margins are those of the true loop: just below them its swing dies away in contact, just above it grows."""
 
+from collections.abc import Callable
 from dataclasses import replace
-from math import ceil, floor, inf, isnan, pi
+from math import ceil, floor, inf, isnan, pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,6 +31,34 @@ POINTS["PaperObserver"] = POINTS["PaperObserver"].with_parameters(controller={"k
 POINTS["on the vehicle"] = Point(plant=validation_vehicle.BLOCK)
 
 every_loop = pytest.mark.parametrize("point", POINTS.values(), ids=POINTS)
+
+
+class Known:
+    """A loop of which L is known at each frequency in Hz."""
+
+    def __init__(self, L: Callable[[np.ndarray], np.ndarray]) -> None:
+        self.gain = L
+
+
+def test_the_margins_of_a_dead_time_are_those_of_the_textbook() -> None:
+    """L = exp(-2 pi i f 0.02 s)/2 is -1/2 at 25 Hz, and nearest to -1 there; it is never as large as 1."""
+    loop: Any = Known(lambda f: 0.5 * np.exp(-2j * pi * 0.02 * f))
+    found = margins(loop)
+    assert (found.gain_margin, found.gain_frequency) == pytest.approx((2.0, 25.0))
+    assert found.M_s == pytest.approx(2.0, rel=1e-3)
+    assert found.phase_margin == found.delay_margin == inf
+    assert isnan(found.phase_frequency)
+
+
+def test_the_margins_of_a_lag_are_those_of_the_textbook() -> None:
+    """L = 2/(1 + i f/10 Hz) has the magnitude 1 at sqrt(3) 10 Hz, 120 degrees from -1, and is nowhere negative."""
+    loop: Any = Known(lambda f: 2.0 / (1.0 + 0.1j * f))
+    found = margins(loop)
+    f = 10.0 * sqrt(3.0)
+    assert (found.phase_margin, found.phase_frequency) == pytest.approx((2.0 * pi / 3.0, f))
+    assert (found.delay_margin, found.delay_frequency) == pytest.approx((1.0 / (3.0 * f), f))
+    assert found.gain_margin == inf
+    assert found.M_s == pytest.approx(1.0, abs=0.01)
 
 
 @every_loop

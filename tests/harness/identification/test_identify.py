@@ -1,0 +1,95 @@
+"""How surely parameters are known where innovations are not white, and which of them the data do not ask for."""
+
+import numpy as np
+import pytest
+
+from driveline.harness.identification import identify
+from driveline.harness.identification.diagnostics import LIKELY
+from driveline.harness.identification.drive_train import Parameters
+from driveline.harness.identification.identify import backward_elimination, sandwich_covariance
+from driveline.harness.identification.maximum_likelihood import Found
+from driveline.harness.identification.model_inputs import Drive
+from driveline.harness.identification.prediction import Innovations, Noise, Predictor
+from tests.harness.identification.simulated import NOISE, P, simulated
+
+BLOCK = 50
+
+
+def white(n: int) -> np.ndarray:
+    """By two parameters, for n samples."""
+    return np.random.default_rng(5).standard_normal((n, 2))
+
+
+def found(d_size: np.ndarray, free: tuple[str, ...] = ("J_2", "C"), p: tuple[float, ...] = (1.0, 1.0)) -> Found:
+    """With innovations of size 1 that depend on the free parameters so."""
+    ones, nothing = np.ones(len(d_size)), np.zeros_like(d_size)
+    innovations = Innovations(size=ones, log_S=0.0 * ones, settled=0, d_size=d_size, d_log_S=nothing)
+    return Found(P._replace(**dict(zip(free, p, strict=True))), free, innovations, passes=1)
+
+
+def test_a_sandwich_is_the_scatter_of_the_blocks_about_their_mean() -> None:
+    """At the end of a search the gradient need not be nothing; what all blocks share is no scatter."""
+    scores = white(20 * BLOCK) + np.array([0.5, -0.2])
+    given = found(scores)
+    sums = scores.reshape(20, BLOCK, 2).sum(axis=1)
+    scatter = 20 * np.cov(sums.T, bias=True)
+    inverse = given.inverse_information
+    np.testing.assert_allclose(sandwich_covariance(given, BLOCK), inverse @ scatter @ inverse, rtol=1e-9)
+
+
+def test_blocks_that_all_say_the_same_leave_no_doubt() -> None:
+    same = np.tile(white(BLOCK), (20, 1))
+    given = found(same)
+    assert np.abs(sandwich_covariance(given, BLOCK)).max() < 1e-12 * np.abs(given.inverse_information).max()
+
+
+def test_a_sandwich_of_white_innovations_is_the_covariance() -> None:
+    """However long the blocks are; a recording shorter than two of them is parted in two."""
+    given = found(white(40_000))
+    for block in (1, 20):
+        np.testing.assert_allclose(np.diag(sandwich_covariance(given, block)), np.diag(given.covariance), rtol=0.15)
+    assert np.linalg.matrix_rank(sandwich_covariance(given, 30_000)) == 1
+
+
+def standing(name: str, likelihood: float) -> tuple[float, float]:
+    """Value of a parameter, and what one innovation must depend on it, to be asked for with this likelihood."""
+    return identify.NEUTRAL[name] + 0.1, np.sqrt(likelihood) / 0.1
+
+
+@pytest.mark.parametrize(
+    ("d", "g_T", "free"),
+    [
+        (0.999, 2.0, {"g_T"}),
+        (2.0, 0.999, {"d"}),
+        (0.5, 0.999, set()),
+        (0.999, 0.5, set()),
+        (1.001, 2.0, {"d", "g_T"}),
+        (1.001, 0.999, {"d"}),
+    ],
+)
+def test_what_the_data_ask_for_least_goes_first(
+    d: float, g_T: float, free: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where one is asked for and the other is not, the one goes and the other stays.
+
+    Args:
+        d, g_T: twice what each gains in likelihood, over the least that counts.
+    """
+    values = {"d": standing("d", d * LIKELY), "g_T": standing("g_T", g_T * LIKELY)}
+    dropped: list[str] = []
+
+    def with_(names: tuple[str, ...]) -> Found:
+        """Each parameter seen by two innovations of its own, whose mean square is 1."""
+        slopes = np.diag([values[name][1] for name in names]) / np.sqrt(2.0)
+        return found(np.repeat(slopes, 2, axis=0), names, tuple(values[name][0] for name in names))
+
+    def maximise(predictor: Predictor, drive: Drive, start: Parameters, noise: Noise, most: int) -> Found:
+        (gone,) = {"d", "g_T"} - {*dropped} - {*predictor.free}
+        assert getattr(start, gone) == identify.NEUTRAL[gone]
+        dropped.append(gone)
+        return with_(predictor.free)
+
+    monkeypatch.setattr(identify, "maximise", maximise)
+    best = backward_elimination(simulated(seed=1, n=10), with_(("d", "g_T")), NOISE, (), lambda _: None)
+    assert {*best.free} == free
+    assert dropped == sorted({"d", "g_T"} - free, key=lambda name: {"d": d, "g_T": g_T}[name])

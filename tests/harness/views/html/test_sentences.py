@@ -1,0 +1,80 @@
+"""What the pages say and order, without a browser."""
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from driveline.harness.metrics.evaluate import T_S
+from driveline.harness.studies.compare.compare_report import verdict
+from driveline.harness.studies.drives.replay_report import PIECE, _worst, roughest
+from driveline.harness.studies.faults.fault_page import _classes
+from driveline.harness.studies.faults.fault_report_html import _ratio
+from driveline.harness.studies.faults.judges import JUDGES
+from driveline.harness.views.html.report_page import Section, write_report
+from tests.harness.views.html.test_report_page import PROVENANCE
+
+
+def test_the_verdict_of_a_comparison_names_the_run_in_which_damping_helps_least() -> None:
+    pairs: Any = [SimpleNamespace(name=f"run {k}", ratio=ratio) for k, ratio in enumerate((0.3, 1.2, 0.5, np.nan))]
+    assert "in 2 of 3 runs, to 50 % in the median and to 120 % where it helps least (run 1)" in verdict(pairs)
+    assert verdict(pairs[3:]) == "No run has an oscillation that can be compared."
+
+
+def ride(rough: float, size: float) -> np.ndarray:
+    """60 s in which the gear torque swings for a piece from an instant on."""
+    t = T_S * np.arange(round(60.0 / T_S))
+    run = np.zeros(len(t), [(name, float) for name in ("time", "plant.T_gear", "controller.T_driver")])
+    run["time"], run["controller.T_driver"] = t, 20.0
+    at = (t >= rough) & (t < rough + PIECE)
+    run["plant.T_gear"] = 20.0 + at * size * np.sin(50.0 * t)
+    return run
+
+
+def test_the_worst_pieces_of_a_replay_stand_with_their_swing_and_that_without_damping() -> None:
+    damped, undamped = ride(2.0 * PIECE, 3.0), ride(2.0 * PIECE, 12.0)
+    rides: Any = {"without damping": (None, undamped), "with": (None, damped)}
+    found = roughest(damped)
+    rows = _worst(found, rides).rows
+    assert len(rows) == len(found) >= 1
+    name, swing, without = rows[0].cells
+    assert name == f"{2.0 * PIECE:g} to {3.0 * PIECE:g} s" == rows[0].choice
+    assert float(swing) == pytest.approx(3.0, rel=0.1)
+    assert float(without) == pytest.approx(12.0, rel=0.1)
+
+
+def test_figures_stand_below_the_heading_of_their_section(tmp_path: Path) -> None:
+    from bokeh.models import Div
+
+    path = tmp_path / "report.html"
+    sections = [Section(name, figures=[Div(text=name, name=name)]) for name in ("first", "second", "third")]
+    write_report("title", "verdict", sections, PROVENANCE, path)
+    body = path.read_text(encoding="utf-8").partition("<body")[2]
+    order = re.findall(r"<h2[^>]*>\s*(\w+)|<div id=\"([\w-]+)\" data-root-id", body)
+    headings = [bool(heading) for heading, root in order if heading in ("first", "second", "third") or root]
+    assert headings == [True, False] * 3
+
+
+@pytest.mark.parametrize("judge", JUDGES, ids=lambda judge: judge.name)
+def test_what_a_case_is_ordered_by_is_over_the_limit_or_for_what_must_not_be_twice(judge: Any) -> None:
+    def ratio(value: float) -> float:
+        outcome: Any = SimpleNamespace(measured={judge.name: value})
+        return _ratio(outcome, judge.name)
+
+    if judge.limit < 1e-6:
+        assert (ratio(0.0), ratio(0.1)) == (0.0, 2.0)
+    else:
+        assert (ratio(-1.0), ratio(0.5 * judge.limit), ratio(3.0 * judge.limit)) == pytest.approx((0.0, 0.5, 3.0))
+
+
+@pytest.mark.parametrize(("judge", "shown"), [("kick", "12.3 N.m"), ("rms", "12.3"), ("back", "12.3 s")])
+def test_the_worst_of_a_kind_stands_with_its_unit_and_its_number(judge: str, shown: str) -> None:
+    def outcome(number: int, value: float) -> Any:
+        case = SimpleNamespace(number=number, situation="drive")
+        return SimpleNamespace(kinds=("late",), case=case, plant="Car", failed=(judge,), measured={judge: value})
+
+    table = _classes([outcome(3, 1.0), outcome(7, 12.34), outcome(9, 2.0)])
+    assert f"| late | drive | Car | {judge} | 3 | {shown} | 7 |" in re.sub(" +", " ", table)

@@ -1,0 +1,315 @@
+"""Which tests touch which line: one run of the tests under coverage, kept until the tests or the code change.
+
+    python tests/mutation/touched.py [SHARD SHARDS]  # of so many runs side by side, counted from 0
+
+What a test does is told apart from what is made once for many of them: the lines of a fixture of a module or of the
+session are touched by all tests that use it. A test that computes for longer than LONGEST is left out: with a thousand
+others at hand it would find hardly anything that they do not, and late.
+"""
+
+import ast
+import json
+import os
+import re
+import shutil
+import signal
+import sys
+from collections.abc import Collection, Generator, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cached_property
+from hashlib import sha256
+from pathlib import Path
+from time import process_time
+from typing import Any, NamedTuple
+
+import pytest
+from coverage import Coverage, CoverageData
+from hypothesis import Phase, settings
+from mutants import CODE, ROOT, Mutant, code_files
+
+KEPT = ROOT / "build" / "mutation"
+"""Folder of what a run has shown of this machine's checkout; not under version control."""
+
+LONGEST = 1.5
+"""Time in s that a test may compute while it is watched."""
+
+WAITED = 20.0
+"""Time in s that a test may take with the programs that it waits for."""
+
+OPTIONS = "-q", "-p", "no:cacheprovider", "--hypothesis-profile=watched"
+
+CONFIGURATION = """\
+[run]
+parallel = true
+patch = subprocess
+context = ${MUTATION_TEST-}
+"""
+"""Programs that a test starts are watched too, and know for whom they run."""
+
+
+class Test(NamedTuple):
+    """A test as it was watched.
+
+    Attributes:
+        name: as pytest selects it.
+        time: that it computed, in s.
+        fixtures: what it uses that is made once for many tests.
+    """
+
+    name: str
+    time: float
+    fixtures: tuple[str, ...]
+
+    @property
+    def file(self) -> str:
+        return self.name.partition("::")[0]
+
+
+class TooLong(BaseException):
+    """A test takes longer than it may."""
+
+
+class Watch:
+    """Plugin of pytest that says to coverage what is running, and keeps to the time."""
+
+    def __init__(self, coverage: Coverage, record: Path, digests: Mapping[str, str]) -> None:
+        self.coverage, self.record, self.digests = coverage, record, digests
+        self.running = [""]
+        self.tests: list[Test] = []
+        self.passed: set[str] = set()
+
+    @contextmanager
+    def of(self, name: str) -> Iterator[None]:
+        """What runs within belongs to a test or to a fixture."""
+        self.running.append(name)
+        self._now()
+        try:
+            yield
+        finally:
+            self.running.pop()
+            self._now()
+
+    def _now(self) -> None:
+        os.environ["MUTATION_TEST"] = self.running[-1]
+        self.coverage.switch_context(self.running[-1])
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_pyfunc_call(self) -> Generator[None, Any, Any]:
+        """Within a time limit, that is said again and again to a test that goes on trying."""
+        try:
+            signal.setitimer(signal.ITIMER_PROF, LONGEST, LONGEST)
+            signal.setitimer(signal.ITIMER_REAL, WAITED, WAITED)
+            return (yield)
+        except TooLong:
+            pytest.fail("takes too long to be watched")
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+    def pytest_sessionstart(self) -> None:
+        def too_long(*_: object) -> None:
+            raise TooLong
+
+        signal.signal(signal.SIGPROF, too_long)
+        signal.signal(signal.SIGALRM, too_long)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: Any) -> Generator[None, Any, Any]:
+        if fixturedef.scope == "function":
+            return (yield)
+        with self.of(_wide(fixturedef)):
+            return (yield)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: Any, nextitem: Any) -> Generator[None, Any, Any]:
+        began = process_time()
+        definitions = [each[-1] for each in item._fixtureinfo.name2fixturedefs.values()]
+        wide = tuple(_wide(each) for each in definitions if each.scope != "function")
+        with self.of(item.nodeid):
+            result = yield
+        self.tests.append(Test(item.nodeid, process_time() - began, wide))
+        if nextitem is None or nextitem.path != item.path:
+            self.keep()
+        return result
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "call" and report.passed:
+            self.passed.add(report.nodeid)
+
+    def keep(self) -> None:
+        """What was seen until now."""
+        self.coverage.save()
+        passed = [test for test in self.tests if test.name in self.passed]
+        others = [test.name for test in self.tests if test.name not in self.passed]
+        record = {"tests": passed, "left_out": others, "digests": self.digests}
+        self.record.write_text(json.dumps(record), encoding="utf-8")
+
+
+def _wide(definition: Any) -> str:
+    """Name of a fixture that is made for more than one test."""
+    return f"{definition.baseid or '.'} {definition.argname}"
+
+
+def bytes_of(path: Path) -> str:
+    return sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def watch(shard: int = 0, shards: int = 1) -> None:
+    """Runs every so manieth file of the tests, and keeps what was seen; ends the process."""
+    folder = KEPT / str(shard)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    os.chdir(ROOT)
+    sys.path[0] = str(ROOT)
+    settings.register_profile("watched", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
+    configuration = folder / "coverage.ini"
+    configuration.write_text(CONFIGURATION + f"source = {','.join(str(ROOT / each) for each in CODE)}\n")
+    seen = Coverage(data_file=str(folder / "lines"), config_file=str(configuration))
+    files = test_files()[shard::shards]
+    plugin = Watch(seen, folder / "tests.json", {file: bytes_of(ROOT / file) for file in (*files, *code_files())})
+    seen.start()
+    pytest.main([*OPTIONS, *files], plugins=[plugin])
+    plugin.keep()
+    os._exit(0)  # whatever the tests have left running
+
+
+def test_files() -> list[str]:
+    """Those that need no FMUs first."""
+    paths = sorted((ROOT / "tests").rglob("test_*.py"))
+    needs = {
+        path: bool(re.search(r"\b(native|built|both_built)\b", path.read_text(encoding="utf-8"))) for path in paths
+    }
+    return [str(path.relative_to(ROOT)) for path in sorted(paths, key=lambda path: (needs[path], path))]
+
+
+class Touched:
+    """What the runs under coverage have shown, as far as it still holds."""
+
+    def __init__(self) -> None:
+        """Of no test if there was no run."""
+        self.tests: dict[str, Test] = {}
+        self.left_out: list[str] = []
+        self.seen: list[CoverageData] = []
+        self.digests: dict[str, str] = {}
+        for folder in sorted(each.parent for each in KEPT.glob("*/tests.json")):
+            record = json.loads((folder / "tests.json").read_text(encoding="utf-8"))
+            self.digests |= record["digests"]
+            self.left_out += record["left_out"]
+            found = [Test(name, time, tuple(fixtures)) for name, time, fixtures in record["tests"]]
+            self.tests |= {test.name: test for test in found}
+            combined = Coverage(data_file=str(folder / "combined"), config_file=str(folder / "coverage.ini"))
+            combined.combine([str(each) for each in folder.glob("lines*")], keep=True)
+            self.seen.append(combined.get_data())
+
+    @cached_property
+    def users(self) -> dict[str, list[Test]]:
+        """Tests by the fixture that they use."""
+        found: dict[str, list[Test]] = {}
+        for test in self.tests.values():
+            for fixture in test.fixtures:
+                found.setdefault(fixture, []).append(test)
+        return found
+
+    @cached_property
+    def unseen(self) -> list[str]:
+        """Files of tests that are new, have changed since, or were not watched."""
+        seen = {test.file for test in self.tests.values()}
+        return [file for file in test_files() if file not in seen or self.digests[file] != bytes_of(ROOT / file)]
+
+    def naming(self, file: str) -> list[str]:
+        """Those of them that name a module, its own first, and tests that take too long in others that do."""
+        stem = Path(file).stem
+        name = re.compile(rf"[./]{stem}\b|import .*\b{stem}\b")
+        own = [each for each in test_files() if Path(each).stem == f"test_{stem}"]
+        others = [e for e in test_files() if e not in own and name.search((ROOT / e).read_text(encoding="utf-8"))]
+        left_out = [test for test in self.left_out if test.partition("::")[0] in {*own, *others} - {*self.unseen}]
+        return [each for each in (*own, *others) if each in self.unseen] + left_out
+
+    def by(self, mutant: Mutant) -> list[Test]:
+        """The tests that touch the place of a fault, the cheapest first and those of one function apart.
+
+        What is computed while a module is imported is touched by whoever touches a function that names it, else by who
+        touches the file; so is what stands in a file that has changed since.
+        """
+        path = str(ROOT / mutant.file)
+        places = {path: None}
+        if self.digests.get(mutant.file) == bytes_of(ROOT / mutant.file):
+            lines, names = _place(ast.parse((ROOT / mutant.file).read_bytes()), mutant.line)
+            places = {path: lines} if lines else _where(names) or places
+        contexts = {context for file, lines in places.items() for context in self._contexts(file, lines)}
+        found = {test for name in contexts for test in (self.users.get(name) or [self.tests.get(name)]) if test}
+        return _spread(found)
+
+    def _contexts(self, file: str, lines: set[int] | None) -> Iterator[str]:
+        for data in self.seen:
+            for line, contexts in data.contexts_by_lineno(file).items():
+                if lines is None or line in lines:
+                    yield from contexts
+
+
+def _spread(tests: Collection[Test]) -> list[Test]:
+    """Cheap ones first, but of many cases of the same test one after the other."""
+    cases: dict[str, int] = {}
+    ranked = []
+    for test in sorted(tests, key=_cost):
+        function = test.name.partition("[")[0]
+        cases[function] = cases.get(function, 0) + 1
+        ranked.append((cases[function] * (_cost(test) + 0.02), test.name, test))
+    return [test for *_, test in sorted(ranked)]
+
+
+def _cost(test: Test) -> float:
+    """In s, with what is made for many tests and may have to be made again."""
+    return test.time + sum(10.0 if fixture.startswith(("tests ", ". ")) else 1.0 for fixture in test.fixtures)
+
+
+def _place(tree: ast.AST, line: int) -> tuple[set[int], set[str]]:
+    """The lines of the statement of a function in which a line stands; outside of functions none, but the names under
+    which others find what is computed there."""
+    lines: set[int] = set()
+    names: set[str] = set()
+    inside = False
+    for node in ast.walk(tree):  # from the outside to the inside
+        if not isinstance(node, ast.stmt) or not node.lineno <= line <= (node.end_lineno or 0):
+            continue
+        body = getattr(node, "body", None)
+        end = body[0].lineno - 1 if body and line < body[0].lineno else node.end_lineno or 0
+        is_definition = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        if inside and (end < (node.end_lineno or 0) or not body):
+            lines = set(range(node.lineno, end + 1))
+        if is_definition or not inside:
+            names |= _names_of(node)
+        inside = inside or (isinstance(node, ast.FunctionDef) and body is not None and line >= body[0].lineno)
+    return lines, names
+
+
+def _names_of(node: ast.stmt) -> set[str]:
+    match node:
+        case ast.FunctionDef(name=name) | ast.ClassDef(name=name) if not name.startswith("__"):
+            return {name}
+        case ast.Assign(targets=targets):
+            return {part.id for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)}
+        case ast.AnnAssign(target=ast.Name(id=name)):
+            return {name}
+    return set()
+
+
+def _where(names: Collection[str]) -> dict[str, set[int] | None]:
+    """The lines of the code at which one of these names stands, by file."""
+    found: dict[str, set[int] | None] = {}
+    for path in (ROOT / file for file in code_files()):
+        text = path.read_text(encoding="utf-8")
+        if any(name in text for name in names):
+            nodes = ast.walk(ast.parse(text))
+            at = {n.lineno for n in nodes if isinstance(n, ast.Name | ast.Attribute) and _name(n) in names}
+            if at:
+                found[str(path)] = at
+    return found
+
+
+def _name(node: ast.Name | ast.Attribute) -> str:
+    return node.id if isinstance(node, ast.Name) else node.attr
+
+
+if __name__ == "__main__":
+    watch(*map(int, sys.argv[1:]))
