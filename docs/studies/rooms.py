@@ -86,13 +86,13 @@ def lines() -> Counter[str]:
 
 def make(folder: Path) -> None:
     from matplotlib import pyplot as plt
-    from matplotlib import rc_context
+    from matplotlib import style
 
     from driveline.harness.views.colours import BLUE
     from driveline.harness.views.figure_style import STYLE
 
     counted, long = arrows(), lines()
-    with rc_context(STYLE), rc_context({"font.size": 7.0}):
+    with style.context([STYLE, {"font.size": 7.0}]):
         figure, axes = plt.subplots(figsize=(7.6, 7.2), layout="constrained")
         for (above, below), count in counted.items():
             x, y = ORDER.index(below), ORDER.index(above)
