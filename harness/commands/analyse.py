@@ -1,4 +1,18 @@
-"""`driveline analyse`: how stable the loop is, what it depends on, and how good the estimate is."""
+"""Analyses the loop with a controller of the catalogue: gain, phase and delay margins and M_s with the true delays,
+Bode and Nyquist figures, the poles over speed, stiffness, inertia and dead time, the describing function of the
+backlash and the limit cycles that it excludes, the error of the estimate and its time in the wrong contact mode, and
+the sensitivity of the metrics to each parameter of car and controller.
+
+The linear model comes from the functions of the blocks themselves, differentiated with the teeth in contact. The table
+of margins is printed; the output folder gets the page analysis.md, sensitivity.csv, analysis.json (what made them) and,
+in its folder figures, the figures.
+
+examples:
+  driveline analyse
+  driveline analyse --controller SpeedWashout --output results/washout
+  driveline analyse --vehicle examples/cars/van.toml --parameters van_gains.toml --output results/van
+  driveline analyse --plant TwoMassDriveline --json > analysis.json
+"""
 
 import argparse
 from math import isfinite
@@ -8,25 +22,6 @@ from ..loop.places import PLANTS
 from .course import job
 from .options import add_controller, add_fmus, add_output, add_printing
 from .settings import as_given, distinguishing, settings_of_ours
-
-DESCRIPTION = """\
-Analyses the loop with a controller of the catalogue: gain, phase and delay margins and M_s with the true delays, Bode
-and Nyquist figures, the poles over speed, stiffness, inertia and dead time, the describing function of the backlash and
-the limit cycles that it excludes, the error of the estimate and its time in the wrong contact mode, and the sensitivity
-of the metrics to each parameter of car and controller.
-
-The linear model comes from the functions of the blocks themselves, differentiated with the teeth in contact. The table
-of margins is printed; the output folder gets the page analysis.md, sensitivity.csv, analysis.json (what made them) and,
-in its folder figures, the figures.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline analyse
-  driveline analyse --controller SpeedWashout --output results/washout
-  driveline analyse --vehicle examples/cars/van.toml --parameters van_gains.toml --output results/van
-  driveline analyse --plant TwoMassDriveline --json > analysis.json
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

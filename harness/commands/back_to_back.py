@@ -1,4 +1,11 @@
-"""`driveline study back-to-back`: the builds of each block against each other and against its functions."""
+"""Feeds random inputs and those of all manoeuvres to the Python functions of each block and to both builds of
+its FMU, and exchanges the builds in the loop one by one. The result is a page of Markdown with the
+differences, back_to_back.md in the output folder; the exit code is 1 if one is larger than allowed.
+
+examples:
+  driveline study back-to-back                 writes results/back_to_back.md
+  driveline study back-to-back                 --output docs               writes docs/back_to_back.md
+"""
 
 import argparse
 import sys
@@ -8,18 +15,6 @@ from ..loop.built_fmus import built
 from ..loop.places import BUILDS, PLANTS
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
-
-DESCRIPTION = """\
-Feeds random inputs and those of all manoeuvres to the Python functions of each block and to both builds of
-its FMU, and exchanges the builds in the loop one by one. The result is a page of Markdown with the
-differences, back_to_back.md in the output folder; the exit code is 1 if one is larger than allowed.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline study back-to-back                 writes results/back_to_back.md
-  driveline study back-to-back                 --output docs               writes docs/back_to_back.md
-"""
 
 RANDOM_STEPS = 20_000
 

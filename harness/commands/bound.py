@@ -1,4 +1,19 @@
-"""`driveline study bound`: what no controller can beat, beside what ours reaches."""
+"""Computes the best torque that is possible on the design model, with full knowledge of car, state and demand, at the
+same response to the driver as the controller has: 90 % of the way at the same sample, no more torque withheld, settled
+no later, within the same limits. By convex programmes for given contacts of the teeth, over the switching times on a
+grid; a lower bound follows by duality, and the nonlinear design model verifies every optimum. docs/bound.md says what
+is proven.
+
+The table has how much worse the controller is than the smallest possible worst ratio of overshoot, gear torque rms,
+jerk and impact speed. The output folder gets the page bound.md, bound.json (what made it) and, in its folder figures,
+the torques. Needs the extra `bound`.
+
+examples:
+  driveline study bound                    all manoeuvres, in some minutes
+  driveline study bound                    --manoeuvre tipin15 --output results/bound15
+  driveline study bound                    --parameters my_gains.toml --output results/mine
+  driveline study bound                    --controller SpeedWashout --json > bound.json
+"""
 
 import argparse
 
@@ -6,26 +21,6 @@ from ..loop.places import PLANTS
 from .course import job
 from .options import add_controller, add_fmus, add_output, add_printing
 from .settings import as_given, distinguishing, settings_of_ours
-
-DESCRIPTION = """\
-Computes the best torque that is possible on the design model, with full knowledge of car, state and demand, at the same
-response to the driver as the controller has: 90 % of the way at the same sample, no more torque withheld, settled no
-later, within the same limits. By convex programmes for given contacts of the teeth, over the switching times on a grid;
-a lower bound follows by duality, and the nonlinear design model verifies every optimum. docs/bound.md says what is
-proven.
-
-The table has how much worse the controller is than the smallest possible worst ratio of overshoot, gear torque rms,
-jerk and impact speed. The output folder gets the page bound.md, bound.json (what made it) and, in its folder figures,
-the torques. Needs the extra `bound`.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline study bound                    all manoeuvres, in some minutes
-  driveline study bound                    --manoeuvre tipin15 --output results/bound15
-  driveline study bound                    --parameters my_gains.toml --output results/mine
-  driveline study bound                    --controller SpeedWashout --json > bound.json
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,12 +1,9 @@
-"""`driveline build`: makes the FMUs of the project, or one of a file of the user's own."""
-
 import argparse
 
 from ...fmus.building import build_command
 from ..loop.places import BUILD
 
-DESCRIPTION = build_command.DESCRIPTION
-EXAMPLES = build_command.examples("driveline build")
+__doc__ = f"{build_command.DESCRIPTION}\n{build_command.examples('driveline build')}"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,24 +1,19 @@
-"""`driveline bus`: the database of the bus."""
+"""Writes the database of the bus, driveline.dbc, from what the blocks declare of their frames: the wheel speed as the
+ABS unit sends it (identifier, cycle, resolution, range), and what motor control says of the motor and is asked to make.
+With it other tools, and `driveline replay --dbc`, read logs of that bus; `driveline simulate --frames blf` writes some.
+
+The cycle and the resolution are those of the car of a vehicle file (T_cyc, q_v). Needs the extra `recordings`.
+
+examples:
+  driveline bus
+  driveline bus --vehicle examples/cars/van.toml --output results/van_bus
+"""
 
 import argparse
 
 from ..loop.places import PLACES
 from .options import add_output, add_printing
 from .printing import Printer
-
-DESCRIPTION = """\
-Writes the database of the bus, driveline.dbc, from what the blocks declare of their frames: the wheel speed as the
-ABS unit sends it (identifier, cycle, resolution, range), and what motor control says of the motor and is asked to make.
-With it other tools, and `driveline replay --dbc`, read logs of that bus; `driveline simulate --frames blf` writes some.
-
-The cycle and the resolution are those of the car of a vehicle file (T_cyc, q_v). Needs the extra `recordings`.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline bus
-  driveline bus --vehicle examples/cars/van.toml --output results/van_bus
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

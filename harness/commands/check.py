@@ -1,4 +1,16 @@
-"""`driveline check`: compliance of FMUs, for people and for CI."""
+"""Checks any FMI 2.0 Co-Simulation FMU: its archive, its model description (with fmpy, and what fmpy does
+not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
+reset, several instances, saved states), the latter in a process of its own.
+
+A finding is an error (hosts fail), a warning (tools complain) or a note (people miss something).
+Exit code 0: no errors; 1: errors, with --strict any finding; 2: no such file. docs/check.md lists the rules.
+
+examples:
+  driveline check build/TwoMassDriveline.fmu
+  driveline check --strict build/*.fmu
+  driveline check --quick --ignore archive-pages --ignore origin their_car.fmu
+  driveline check --format junit build/*.fmu > findings.xml
+"""
 
 import argparse
 import json
@@ -7,23 +19,6 @@ from pathlib import Path
 from ..base.plain_text import quoted
 from .options import add_json, add_limits, add_printing
 from .settings import limits
-
-DESCRIPTION = """\
-Checks any FMI 2.0 Co-Simulation FMU: its archive, its model description (with fmpy, and what fmpy does
-not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
-reset, several instances, saved states), the latter in a process of its own.
-
-A finding is an error (hosts fail), a warning (tools complain) or a note (people miss something).
-Exit code 0: no errors; 1: errors, with --strict any finding; 2: no such file. docs/check.md lists the rules.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline check build/TwoMassDriveline.fmu
-  driveline check --strict build/*.fmu
-  driveline check --quick --ignore archive-pages --ignore origin their_car.fmu
-  driveline check --format junit build/*.fmu > findings.xml
-"""
 
 FORMATS = ("text", "json", "junit")
 

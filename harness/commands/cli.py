@@ -1,8 +1,8 @@
 """The command line `driveline`: finds the command and answers mistakes in one sentence.
 
-A command is a module of `harness.commands` with DESCRIPTION, EXAMPLES, add_arguments(parser) and run(args) -> int, or
-with ACTIONS that are such modules. It is imported only when it is asked for, and itself imports what it needs when it
-runs, so that help and mistakes are answered at once.
+A command is a module of `harness.commands` with add_arguments(parser) and run(args) -> int, or with ACTIONS that are
+such modules. Its docstring is its help, to which its IN_HELP may give what stands there in braces. It is imported only
+when it is asked for, and itself imports what it needs when it runs, so that help and mistakes are answered at once.
 """
 
 import argparse
@@ -82,7 +82,9 @@ class Parser(argparse.ArgumentParser):
             return
         name, self.command = self.command, None
         module = command(name)
-        self.description, self.epilog = module.DESCRIPTION, module.EXAMPLES
+        text = (module.__doc__ or "").format(**getattr(module, "IN_HELP", {}))
+        self.description, *examples = text.partition("examples:\n")
+        self.epilog = "".join(examples)
         if hasattr(module, "ACTIONS"):
             self.add_commands(module.ACTIONS, "action")
         else:

@@ -1,4 +1,23 @@
-"""`driveline compare`: what active damping does, on both plants and on all manoeuvres."""
+"""Runs every manoeuvre on every plant twice, with the damping off and on, and prints one table:
+
+{metrics}
+
+--manoeuvre also takes {own};
+metrics that make no sense for it, such as the settling of a pulse, are a dash.
+
+The table goes to table.md in the output folder, all metrics to metrics.csv, the figures beside them and the
+signals of every run to runs/.
+
+examples:
+  driveline compare
+  driveline compare --plant ValidationVehicle --manoeuvre tipin15 --manoeuvre drive
+  driveline compare --plant my_vehicle.fmu --seed 7 --output results/mine
+  driveline compare --set controller.k_d=1.5 --output results/softer
+  driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --output results/overtaking
+  driveline compare --manoeuvre tipin15 --window 0.95,1.3 --figures pdf --figures svg
+  driveline compare --json > comparison.json
+  driveline compare --report comparison.html
+"""
 
 import argparse
 from typing import Any
@@ -12,29 +31,7 @@ from .manoeuvres import OWN, add_manoeuvre, chosen
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, figure_options
 from .settings import caption, distinguishing, other_format, settings_of_plants
 
-DESCRIPTION = f"""\
-Runs every manoeuvre on every plant twice, with the damping off and on, and prints one table:
-
-{legend(Metrics)}
-
---manoeuvre also takes {OWN};
-metrics that make no sense for it, such as the settling of a pulse, are a dash.
-
-The table goes to table.md in the output folder, all metrics to metrics.csv, the figures beside them and the
-signals of every run to runs/.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline compare
-  driveline compare --plant ValidationVehicle --manoeuvre tipin15 --manoeuvre drive
-  driveline compare --plant my_vehicle.fmu --seed 7 --output results/mine
-  driveline compare --set controller.k_d=1.5 --output results/softer
-  driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --output results/overtaking
-  driveline compare --manoeuvre tipin15 --window 0.95,1.3 --figures pdf --figures svg
-  driveline compare --json > comparison.json
-  driveline compare --report comparison.html
-"""
+IN_HELP = {"metrics": legend(Metrics), "own": OWN}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

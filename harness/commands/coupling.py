@@ -1,4 +1,13 @@
-"""`driveline study coupling`: what co-simulation does to the loop, measured."""
+"""Runs the loop under every scheme and several communication steps and compares it with its monolithic
+solution: the coupling error of each signal, the order with which it falls, and the dead time that a
+scheme adds to each connection and around the loop; and how far the metrics of every manoeuvre depend on the
+communication step. The result is a page of Markdown, coupling.md in the
+output folder.
+
+examples:
+  driveline study coupling            writes results/coupling.md
+  driveline study coupling            --output docs               writes docs/coupling.md
+"""
 
 import argparse
 from itertools import product
@@ -9,20 +18,6 @@ from ..loop.places import PLANTS, STEP_SIZE
 from ..loop.settings import loop
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
-
-DESCRIPTION = """\
-Runs the loop under every scheme and several communication steps and compares it with its monolithic
-solution: the coupling error of each signal, the order with which it falls, and the dead time that a
-scheme adds to each connection and around the loop; and how far the metrics of every manoeuvre depend on the
-communication step. The result is a page of Markdown, coupling.md in the
-output folder.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline study coupling            writes results/coupling.md
-  driveline study coupling            --output docs               writes docs/coupling.md
-"""
 
 DEAD_TIME_STEPS = (STEP_SIZE, 0.5 * STEP_SIZE)
 

@@ -1,4 +1,16 @@
-"""`driveline explore`: knobs to turn in a browser."""
+"""Serves a page on this machine alone, for a browser: plant, manoeuvre, backlash, stiffness, mass, delay, gains, sport
+to comfort, control on and off, and the other controllers beside ours. Curves and metrics follow; the run without
+control stands behind in grey.
+
+A click saves the car and the gains as files for --vehicle and --parameters of the other commands, another one a report
+(docs/explorer.md). Ctrl-C ends it.
+
+examples:
+  driveline explore
+  driveline explore --vehicle examples/cars/van.toml --parameters van_gains.toml
+  driveline explore --plant my_vehicle.fmu --controller my_controller.fmu
+  driveline explore --port 8000
+"""
 
 import argparse
 from argparse import ArgumentTypeError
@@ -9,23 +21,6 @@ from ..views.html.report_page import require_drawing
 from .options import add_loop, add_output, add_plant, add_printing, assignment, count
 from .printing import Printer
 from .settings import settings_of_pairs
-
-DESCRIPTION = """\
-Serves a page on this machine alone, for a browser: plant, manoeuvre, backlash, stiffness, mass, delay, gains, sport to
-comfort, control on and off, and the other controllers beside ours. Curves and metrics follow; the run without control
-stands behind in grey.
-
-A click saves the car and the gains as files for --vehicle and --parameters of the other commands, another one a report
-(docs/explorer.md). Ctrl-C ends it.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline explore
-  driveline explore --vehicle examples/cars/van.toml --parameters van_gains.toml
-  driveline explore --plant my_vehicle.fmu --controller my_controller.fmu
-  driveline explore --port 8000
-"""
 
 PORT = 5006
 

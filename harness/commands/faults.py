@@ -1,4 +1,26 @@
-"""`driveline faults`: the controller under faults of its signals and on ice, case after case."""
+"""Drives the loop through manoeuvres in which a signal of the controller fails, or the wheels lock or spin on ice, and
+judges each run: is the torque reference finite and limited, does the status say what is true, is everything as before
+0.5 s after the fault, is no oscillation left, does the drive train swing no more than without control?
+
+What fails, when, how much and for how long follows from the seed and the number of a case; half of the cases have two
+faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. One matrix
+of kinds of faults and judges is printed, for single faults and pairs together; cells count the runs that are not clean.
+
+The output folder gets faults.csv (all cases with what was measured), the page faults.md, faults.json (what made them)
+and, in its folder figures, the matrices as figures. The same command goes on where it was stopped. --case runs one case
+again, and writes its signals and draws them.
+
+examples:
+  driveline faults                                        1000 cases, both plants
+  driveline faults --cases 10000 --seed 2
+  driveline faults --plant ValidationVehicle --cases 300
+  driveline faults --case 806                             one of them, drawn
+  driveline faults --controller my_controller.fmu         how good is mine?
+  driveline faults --json > faults.json
+  driveline faults --scheduler tcp://10.0.0.1:8786        on a Dask cluster
+
+exit code: 1 if a case is not clean
+"""
 
 import argparse
 from collections.abc import Sequence
@@ -16,33 +38,6 @@ if TYPE_CHECKING:
     from ..cosimulation.system import System
     from ..studies.faults.fault_campaign import Outcome
     from ..studies.faults.fault_injection import FaultRunner
-
-DESCRIPTION = """\
-Drives the loop through manoeuvres in which a signal of the controller fails, or the wheels lock or spin on ice, and
-judges each run: is the torque reference finite and limited, does the status say what is true, is everything as before
-0.5 s after the fault, is no oscillation left, does the drive train swing no more than without control?
-
-What fails, when, how much and for how long follows from the seed and the number of a case; half of the cases have two
-faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. One matrix
-of kinds of faults and judges is printed, for single faults and pairs together; cells count the runs that are not clean.
-
-The output folder gets faults.csv (all cases with what was measured), the page faults.md, faults.json (what made them)
-and, in its folder figures, the matrices as figures. The same command goes on where it was stopped. --case runs one case
-again, and writes its signals and draws them.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline faults                                        1000 cases, both plants
-  driveline faults --cases 10000 --seed 2
-  driveline faults --plant ValidationVehicle --cases 300
-  driveline faults --case 806                             one of them, drawn
-  driveline faults --controller my_controller.fmu         how good is mine?
-  driveline faults --json > faults.json
-  driveline faults --scheduler tcp://10.0.0.1:8786        on a Dask cluster
-
-exit code: 1 if a case is not clean
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

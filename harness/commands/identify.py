@@ -1,4 +1,28 @@
-"""`driveline identify`: from a recording of a test drive to the parameters of the car."""
+"""Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and
+half the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded,
+and structural damping where the data ask for it. Two results have different names, as they mean different
+things:
+
+  with load torque                  measurement wheels were recorded: J_2 is that of the wheels
+  effective, without load torque    J_2 carries the vehicle
+
+g_T and g_L are the gains of the recorded motor and load torque, 1 if they are right; d is structural damping.
+
+Where the model explains the recording, prediction error is used (the likelihood of an extended Kalman filter); where it
+does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
+What is likely to be wrong with the recording, or is not determined by it, is said.
+
+Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it all that was
+found (NAME_identified.json), what made it (NAME.json) and four figures: measured and simulated signals, the
+innovations, the cost over each pair of parameters, the frequency response; signals in the units of the recording.
+
+examples:
+  driveline record && driveline identify results/record/TwoMassDriveline_prbs_off.csv --output car.toml
+  driveline identify drive.mf4 --vehicle examples/cars/van.toml --output my_van.toml
+  driveline identify drive.csv --free J_1 --column T_mot='M_em [Nm]'
+  driveline identify drive.blf --dbc drive_train.dbc
+  driveline identify drive.csv --design
+"""
 
 import argparse
 import json
@@ -25,35 +49,6 @@ if TYPE_CHECKING:
     from ..views.figure_options import FigureOptions
 
 FREE = ("J_1", "d", "g_T")
-
-DESCRIPTION = """\
-Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and
-half the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded,
-and structural damping where the data ask for it. Two results have different names, as they mean different
-things:
-
-  with load torque                  measurement wheels were recorded: J_2 is that of the wheels
-  effective, without load torque    J_2 carries the vehicle
-
-g_T and g_L are the gains of the recorded motor and load torque, 1 if they are right; d is structural damping.
-
-Where the model explains the recording, prediction error is used (the likelihood of an extended Kalman filter); where it
-does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
-What is likely to be wrong with the recording, or is not determined by it, is said.
-
-Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it all that was
-found (NAME_identified.json), what made it (NAME.json) and four figures: measured and simulated signals, the
-innovations, the cost over each pair of parameters, the frequency response; signals in the units of the recording.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline record && driveline identify results/record/TwoMassDriveline_prbs_off.csv --output car.toml
-  driveline identify drive.mf4 --vehicle examples/cars/van.toml --output my_van.toml
-  driveline identify drive.csv --free J_1 --column T_mot='M_em [Nm]'
-  driveline identify drive.blf --dbc drive_train.dbc
-  driveline identify drive.csv --design
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,17 +1,4 @@
-"""`driveline record`: a test drive under pseudo-random torque, recorded as a real car would."""
-
-import argparse
-from dataclasses import asdict
-
-from ..loop.settings import loop
-from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
-from .course import job
-from .frames import add_frames, require_frames, write_frames
-from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
-from .settings import distinguishing, other_format, settings
-
-DESCRIPTION = """\
-Drives the car with a pseudo-random binary torque demand, on a road on which it about keeps its speed, and
+"""Drives the car with a pseudo-random binary torque demand, on a road on which it about keeps its speed, and
 writes what its sensors record every 2 ms to PLANT_prbs_CONTROL.csv in the output folder:
 
   motor speed      of the resolver, with its noise and resolution
@@ -24,9 +11,7 @@ writes what its sensors record every 2 ms to PLANT_prbs_CONTROL.csv in the outpu
 
 Columns have their units in brackets, so that other commands read the file (docs/recordings.md). Errors of
 the other sensors are parameters of motor and can.
-"""
 
-EXAMPLES = f"""\
 examples:
   driveline record
   driveline record --plant ValidationVehicle --seed 7
@@ -36,8 +21,20 @@ examples:
   driveline record --vehicle examples/cars/van.toml
   driveline record --format mf4
 
-orders: {", ".join(map(str, FEEDBACK))}; the demand repeats after 2^order - 1 clocks
+orders: {orders}; the demand repeats after 2^order - 1 clocks
 """
+
+import argparse
+from dataclasses import asdict
+
+from ..loop.settings import loop
+from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
+from .course import job
+from .frames import add_frames, require_frames, write_frames
+from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
+from .settings import distinguishing, other_format, settings
+
+IN_HELP = {"orders": ", ".join(map(str, FEEDBACK))}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

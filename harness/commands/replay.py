@@ -1,4 +1,28 @@
-"""`driveline replay`: a recorded drive through the simulated vehicle, without damping and with controllers."""
+"""Reads a recorded drive, a file with the columns
+
+  {columns}
+
+in any order and under any name that docs/recordings.md lists (others are ignored; without elevation the
+road is level), and drives the vehicle with its torque demand, once without damping
+and once with each controller. Brake and grade keep the simulated car at the recorded speed. They are
+found by driving without damping and are then the same for all; nothing in them is as fast as 1 Hz
+(docs/replay.md). The table shows
+
+{metrics}
+
+in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
+folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
+RECORDING.pdf (or --figures), in the units of the recording.
+
+examples:
+  driveline replay harness/manoeuvres/data/town_drive.csv
+  driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
+  driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
+  driveline replay my_trip.blf --dbc drive_train.dbc
+  driveline replay my_trip.csv --held 0.5 --output results/rough_foot
+  driveline replay my_trip.csv --window 310,325 --figures svg
+  driveline replay my_trip.csv --set plant.m=1900
+"""
 
 import argparse
 from hashlib import sha256
@@ -24,36 +48,10 @@ from .recording_options import add_recording, of_databases
 from .settings import caption, distinguishing, other_format, settings_of_each
 
 NAMES = aliases()
-COLUMNS = ", ".join(example(quantity, NAMES) for quantity in ("time", "v", "elevation", "T_mot"))
-
-DESCRIPTION = f"""\
-Reads a recorded drive, a file with the columns
-
-  {COLUMNS}
-
-in any order and under any name that docs/recordings.md lists (others are ignored; without elevation the
-road is level), and drives the vehicle with its torque demand, once without damping
-and once with each controller. Brake and grade keep the simulated car at the recorded speed. They are
-found by driving without damping and are then the same for all; nothing in them is as fast as 1 Hz
-(docs/replay.md). The table shows
-
-{legend(RideMetrics)}
-
-in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
-folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
-RECORDING.pdf (or --figures), in the units of the recording.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline replay harness/manoeuvres/data/town_drive.csv
-  driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
-  driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
-  driveline replay my_trip.blf --dbc drive_train.dbc
-  driveline replay my_trip.csv --held 0.5 --output results/rough_foot
-  driveline replay my_trip.csv --window 310,325 --figures svg
-  driveline replay my_trip.csv --set plant.m=1900
-"""
+IN_HELP = {
+    "columns": ", ".join(example(quantity, NAMES) for quantity in ("time", "v", "elevation", "T_mot")),
+    "metrics": legend(RideMetrics),
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,19 @@
-"""`driveline robustness`: the Monte-Carlo of cars and sensors, the same draws for every controller."""
+"""Draws cars with their sensors from the box of parameters (docs/robustness.md), of which no controller is told, and
+drives each through a tip-in, a tip-out and a launch with every controller, with the same noise. A table for each plant
+tells which share of the runs is bounded and quiet, which is good, and what half and 95 % of the runs do not exceed.
+
+The output folder gets runs.csv (every run with all metrics), draws.csv, summary.csv, the page robustness.md,
+robustness.json (what made them) and, in its folder figures, the distributions and the worst draws of the first
+controller. The same command goes on where it was stopped. --case runs one draw again, and writes its signals and draws
+them.
+
+examples:
+  driveline robustness                                       300 draws, both plants, all controllers
+  driveline robustness --cases 1000 --plant ValidationVehicle
+  driveline robustness --controller DampingController --parameters my_gains.toml --output results/mine
+  driveline robustness --case 17                             one of them, drawn
+  driveline robustness --scheduler tcp://10.0.0.1:8786       on a Dask cluster
+"""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -15,26 +30,6 @@ from .settings import as_given, caption, distinguishing, settings_of_pairs
 if TYPE_CHECKING:
     from ..studies.robustness.case_runs import CaseRunner
     from ..studies.robustness.outcome import Outcome
-
-DESCRIPTION = """\
-Draws cars with their sensors from the box of parameters (docs/robustness.md), of which no controller is told, and
-drives each through a tip-in, a tip-out and a launch with every controller, with the same noise. A table for each plant
-tells which share of the runs is bounded and quiet, which is good, and what half and 95 % of the runs do not exceed.
-
-The output folder gets runs.csv (every run with all metrics), draws.csv, summary.csv, the page robustness.md,
-robustness.json (what made them) and, in its folder figures, the distributions and the worst draws of the first
-controller. The same command goes on where it was stopped. --case runs one draw again, and writes its signals and draws
-them.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline robustness                                       300 draws, both plants, all controllers
-  driveline robustness --cases 1000 --plant ValidationVehicle
-  driveline robustness --controller DampingController --parameters my_gains.toml --output results/mine
-  driveline robustness --case 17                             one of them, drawn
-  driveline robustness --scheduler tcp://10.0.0.1:8786       on a Dask cluster
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

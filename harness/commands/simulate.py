@@ -1,4 +1,24 @@
-"""`driveline simulate`: one manoeuvre, one plant, damping on or off."""
+"""Drives one manoeuvre with the loop of controller, motor, plant and CAN bus, prints the metrics of the run and
+writes every signal, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the output folder, or
+to Parquet or ASAM MDF 4 (--format).
+
+An FMU of your own takes the place of controller, motor, plant or can by one word, its path; what it calls
+otherwise than ours, --map renames.
+
+--manoeuvre also takes {own}.
+
+examples:
+  driveline simulate --manoeuvre tipin15
+  driveline simulate --list
+  driveline simulate --plant ValidationVehicle --control off --manoeuvre launch --plot
+  driveline simulate --plant my_vehicle.fmu --output results/mine
+  driveline simulate --plant theirs.fmu --map plant.T_gear=Shaft.tau --map plant.omega_1=Motor.n
+  driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
+  driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
+  driveline simulate --manoeuvre drive --plot --window 4,6 --figures svg
+  driveline simulate --manoeuvre drive --format mf4 --frames blf
+  driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot
+"""
 
 import argparse
 from pathlib import Path
@@ -29,30 +49,7 @@ from .settings import caption, distinguishing, other_format, settings
 if TYPE_CHECKING:
     from ..cosimulation.results import Results
 
-DESCRIPTION = f"""\
-Drives one manoeuvre with the loop of controller, motor, plant and CAN bus, prints the metrics of the run and
-writes every signal, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the output folder, or
-to Parquet or ASAM MDF 4 (--format).
-
-An FMU of your own takes the place of controller, motor, plant or can by one word, its path; what it calls
-otherwise than ours, --map renames.
-
---manoeuvre also takes {OWN}.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline simulate --manoeuvre tipin15
-  driveline simulate --list
-  driveline simulate --plant ValidationVehicle --control off --manoeuvre launch --plot
-  driveline simulate --plant my_vehicle.fmu --output results/mine
-  driveline simulate --plant theirs.fmu --map plant.T_gear=Shaft.tau --map plant.omega_1=Motor.n
-  driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
-  driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
-  driveline simulate --manoeuvre drive --plot --window 4,6 --figures svg
-  driveline simulate --manoeuvre drive --format mf4 --frames blf
-  driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot
-"""
+IN_HELP = {"own": OWN}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

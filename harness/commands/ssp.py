@@ -1,4 +1,21 @@
-"""`driveline ssp`: the loop as a System Structure Package."""
+"""Writes the closed loop as a System Structure Package (SSP 1.0), one file driveline.ssp in which everything is
+that another tool needs to run it: the FMUs, how they are connected and drawn, their parameters with units,
+and a source FMU that drives one manoeuvre. Open it in FMPy, libcosim, ecos or OMSimulator and press Run, or
+unpack it and open the project that it holds in MasterSim; docs/ssp.md has the steps for each.
+
+Its variants are the plants: the first one is what a tool opens that knows none (SystemStructure.ssd). The
+numbers of --vehicle, --parameters and --set, the start and the points of the manoeuvre are parameter sets (SSV),
+which can be edited there. The manoeuvre is one made of straight lines: of the catalogue all but creep and prbs, or a
+file of your own with steps, ramps, pulses or points (docs/manoeuvres.md).
+
+examples:
+  driveline ssp
+  driveline ssp --manoeuvre launch --output results/launch
+  driveline ssp --plant ValidationVehicle                  only this plant, for tools that know no variants
+  driveline ssp --vehicle examples/cars/van.toml --parameters van_gains.toml
+  driveline ssp --controller NoDamping --output results/undamped
+  driveline ssp --build python                             FMUs that run Python, for hosts that are Python
+"""
 
 import argparse
 from typing import TYPE_CHECKING, Any
@@ -15,28 +32,6 @@ from .settings import distinguishing, settings_of_plants
 if TYPE_CHECKING:
     from ..cosimulation.wiring import Fit
     from ..exchange.ssp.package import Variant
-
-DESCRIPTION = """\
-Writes the closed loop as a System Structure Package (SSP 1.0), one file driveline.ssp in which everything is
-that another tool needs to run it: the FMUs, how they are connected and drawn, their parameters with units,
-and a source FMU that drives one manoeuvre. Open it in FMPy, libcosim, ecos or OMSimulator and press Run, or
-unpack it and open the project that it holds in MasterSim; docs/ssp.md has the steps for each.
-
-Its variants are the plants: the first one is what a tool opens that knows none (SystemStructure.ssd). The
-numbers of --vehicle, --parameters and --set, the start and the points of the manoeuvre are parameter sets (SSV),
-which can be edited there. The manoeuvre is one made of straight lines: of the catalogue all but creep and prbs, or a
-file of your own with steps, ramps, pulses or points (docs/manoeuvres.md).
-"""
-
-EXAMPLES = """\
-examples:
-  driveline ssp
-  driveline ssp --manoeuvre launch --output results/launch
-  driveline ssp --plant ValidationVehicle                  only this plant, for tools that know no variants
-  driveline ssp --vehicle examples/cars/van.toml --parameters van_gains.toml
-  driveline ssp --controller NoDamping --output results/undamped
-  driveline ssp --build python                             FMUs that run Python, for hosts that are Python
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

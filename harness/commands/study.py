@@ -1,11 +1,6 @@
-"""`driveline study`: what is measured of the project itself; each action is a module of its own."""
-
-DESCRIPTION = """\
-What is measured of the project itself, rather than of a car: how far its controller is from what is possible, what
+"""What is measured of the project itself, rather than of a car: how far its controller is from what is possible, what
 the coupling of the FMUs does to the loop, and whether all builds of a block are the same.
-"""
 
-EXAMPLES = """\
 examples:
   driveline study bound --manoeuvre tipin15
   driveline study coupling

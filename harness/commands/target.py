@@ -1,10 +1,5 @@
-"""`driveline target`: the controller's C for a processor; each action is a module of its own, target_ACTION."""
+"""The controller on the processor that it is meant for, in C (docs/target.md).
 
-DESCRIPTION = """\
-The controller on the processor that it is meant for, in C (docs/target.md).
-"""
-
-EXAMPLES = """\
 examples:
   driveline target export --vehicle car.toml --parameters gains.toml   its C, in single precision
   driveline target build                                               its FMU, whose step runs on the target

@@ -1,27 +1,22 @@
-"""`driveline target export`: the C of a controller."""
-
-import argparse
-
-from ..base.errors import DrivelineError
-from .options import add_controller, add_output, add_printing
-from .printing import Printer
-
-DESCRIPTION = """\
-Writes the C of a controller: NAME.h and NAME.c, the structs and the arithmetic of its FMU in C99 without
+"""Writes the C of a controller: NAME.h and NAME.c, the structs and the arithmetic of its FMU in C99 without
 any FMI, and controller.h, the same under names that do not tell which controller it is.
 
 The values of the vehicle file and of the gains become its parameters. In single precision it needs
 fabsf and sqrtf, for which a processor with a floating-point unit has instructions. docs/target.md says how a
 project calls it.
-"""
 
-EXAMPLES = """\
 examples:
   driveline target export
   driveline target export --vehicle car.toml --parameters gains.toml --output car/controller
   driveline target export --controller SpeedWashout
   driveline target export --precision double --output build/double
 """
+
+import argparse
+
+from ..base.errors import DrivelineError
+from .options import add_controller, add_output, add_printing
+from .printing import Printer
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

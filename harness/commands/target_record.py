@@ -1,4 +1,20 @@
-"""`driveline target record`: the controller's C on the emulated target, off-line, beside the same on this machine."""
+"""Runs the C of a controller on an emulated Cortex-M4F (QEMU, machine mps2-an386) and compares every sample with the
+same C on this machine: in single precision bit by bit, and in double precision. It is fed with what the
+controller gets in the loop in every manoeuvre and on a recorded drive, with random inputs, absurd ones (NaN,
+infinities, denormal numbers) and random states. Instructions are counted by the emulator. Then it drives every
+manoeuvre in the loop, see `driveline target build`.
+
+The output folder gets the page target.md, the figure and, for every case, inputs and torques as CSV. It needs
+`apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
+
+examples:
+  driveline target record
+  driveline target record --controller SpeedWashout --output results/washout
+  driveline target record --vehicle car.toml --parameters gains.toml --plant ValidationVehicle
+  driveline target record --set controller.k_d=2 --replace
+
+exit code: 1 if a bit differs, or the torque of a manoeuvre is further from double precision than allowed
+"""
 
 import argparse
 
@@ -8,27 +24,6 @@ from ..loop.places import PLACES
 from .course import job
 from .options import add_loop, add_output, add_plant, add_printing
 from .settings import distinguishing, settings
-
-DESCRIPTION = """\
-Runs the C of a controller on an emulated Cortex-M4F (QEMU, machine mps2-an386) and compares every sample with the
-same C on this machine: in single precision bit by bit, and in double precision. It is fed with what the
-controller gets in the loop in every manoeuvre and on a recorded drive, with random inputs, absurd ones (NaN,
-infinities, denormal numbers) and random states. Instructions are counted by the emulator. Then it drives every
-manoeuvre in the loop, see `driveline target build`.
-
-The output folder gets the page target.md, the figure and, for every case, inputs and torques as CSV. It needs
-`apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
-"""
-
-EXAMPLES = """\
-examples:
-  driveline target record
-  driveline target record --controller SpeedWashout --output results/washout
-  driveline target record --vehicle car.toml --parameters gains.toml --plant ValidationVehicle
-  driveline target record --set controller.k_d=2 --replace
-
-exit code: 1 if a bit differs, or the torque of a manoeuvre is further from double precision than allowed
-"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
