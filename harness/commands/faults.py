@@ -64,8 +64,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
-    from ..studies.faults.fault_archive import table
-    from ..studies.faults.fault_campaign import campaign
+    from ..studies.faults.fault_campaign import campaign, table
     from ..studies.faults.fault_campaign import distinguishing as of_the_cases
     from ..studies.faults.fault_report import write
 

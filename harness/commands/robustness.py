@@ -54,8 +54,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _all(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
-    from ..studies.robustness.campaign_archive import RUNS
-    from ..studies.robustness.robustness_campaign import campaign, order
+    from ..studies.robustness.robustness_campaign import RUNS, campaign, order
     from ..studies.robustness.robustness_report import announce, write
     from ..studies.robustness.summary import summaries
 

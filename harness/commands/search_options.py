@@ -79,8 +79,7 @@ def run_search(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ...fmus.building.parameter_files import read_vehicle
     from ..design.search.cost_evaluation import CostEvaluation
-    from ..design.search.pareto_figure import plot_front
-    from ..design.search.search_report import choices_table
+    from ..design.search.pareto_figure import choices_table, plot_front
     from ..design.search.search_space import space
     from ..design.search.tune import EVALUATIONS, RECORD, tune
     from ..views.terminal import print_table

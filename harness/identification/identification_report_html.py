@@ -9,8 +9,7 @@ import numpy as np
 from ..recordings.measurement import Measurement
 from ..views.html.figure_selector import chosen
 from ..views.html.linked_figures import linked, shown, stacked
-from ..views.html.report_page import Section, write_report
-from ..views.html.report_tables import Heading, Row, Table
+from ..views.html.report_page import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within
 from .car_file import MEANS, UNITS, found
 from .fit_figures import autocorrelations, distribution, innovations, simulated

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
+from scipy.signal import csd, welch
 from scipy.stats import chi2
 
 from ..metrics.spectrum import decibels
@@ -14,10 +15,9 @@ from ..views.figure_options import PLAIN, FigureOptions
 from ..views.figure_style import plot, sheet
 from ..views.panels import DASHED, DOTTED, SOLID, Axis, Band, Curve, Level, Panel, Part, Points
 from .cost_surface import POINTS, cost_over, curvature, ellipse, exact
-from .drive_train_response import FREQUENCIES, response
+from .drive_train_response import FREQUENCIES, WINDOW, Tyre, response
 from .fit_figures import headline
 from .identify import Identified
-from .response_band import PERCENTILES, drawn_responses, recorded_response
 
 LABELS = {"J_2": r"$J_2$ in kg·m²", "C": r"$C$ in N·m/rad", "phi_B": r"$\varphi_B$ in rad"}
 """The parameters whose pairs are drawn."""
@@ -142,3 +142,34 @@ def responses(identified: Identified, seed: int = 1) -> list[Panel]:
         Panel("motor speed over\ntorque in dB", amplitude, bounds=(own.min() + BEYOND[0], own.max() + BEYOND[1])),
         Panel("phase in degrees", phase, ticks={k: str(k) for k in range(-90, 91, 45)}, height=0.67),
     ]
+
+
+DRAWS = 500
+
+PERCENTILES = (2.5, 97.5)
+"""Between which the band lies."""
+
+
+def drawn_responses(identified: Identified, frequencies: np.ndarray, behind: Tyre | None, seed: int) -> np.ndarray:
+    """omega_1/T_mot of parameters drawn from the covariance, the tyre as it is, shape (DRAWS, frequencies).
+
+    Args:
+        frequencies: in Hz.
+        behind: what hangs on the wheels.
+    """
+    p, free = identified.p, identified.free
+    drawn = np.random.default_rng(seed).multivariate_normal([getattr(p, x) for x in free], identified.covariance, DRAWS)
+    others = [p._replace(**dict(zip(free, map(float, values), strict=True))) for values in drawn]
+    return np.array([response(other, frequencies, behind) for other in others])
+
+
+def recorded_response(identified: Identified) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies in Hz and omega_1/T_mot there, by the spectra of both (Welch), of which the means of the samples are
+    taken. Of a recording that crosses the gap it is not that of teeth in contact."""
+    drive = identified.drive
+    T_mot = drive.T_mot.mean(axis=1) / identified.p.g_T
+    omega_1 = 0.5 * (drive.omega_1[1:] + drive.omega_1[:-1])
+    rate, length = 1.0 / drive.T_s, min(WINDOW, len(drive))
+    f, cross = csd(T_mot, omega_1, rate, nperseg=length, detrend="linear")
+    _, power = welch(T_mot, rate, nperseg=length, detrend="linear")
+    return f, cross / power

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,6 @@ from .file_units import FileUnit
 from .format_detection import opened
 from .quantities import QUANTITIES, aliases
 from .source import RecordingError, Samples
-from .time_checks import check_time
 
 LEAST = 2
 """Samples that every recording has."""
@@ -133,4 +132,31 @@ def check_limit(path: Path, channel: Channel) -> None:
         raise RecordingError(
             f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; "
             f"at most {limit:g} {channel.unit} in magnitude can be"
+        )
+
+
+def check_time(path: Path, time: np.ndarray, where: Callable[[int], str], gap: float, jumps: bool = False) -> None:
+    """
+    Args:
+        path: of the recording, for messages.
+        time: in s.
+        where: of a sample in the file.
+        gap: longest step that is still no gap, in median steps.
+        jumps: whether two samples may have one time.
+
+    Raises:
+        RecordingError: it does not increase, or has a gap.
+    """
+    steps = np.diff(time)
+    backward = np.flatnonzero((steps < 0.0) | ((steps == 0.0) & (not jumps)))
+    if len(backward):
+        k = int(backward[0])
+        raise RecordingError(f"{path}, {where(k + 1)}: time {time[k + 1]:g} s does not come after {time[k]:g} s")
+    median = float(np.median(steps))
+    gaps = np.flatnonzero(steps > gap * median) if isfinite(gap) else []
+    if len(gaps):
+        k = int(gaps[0])
+        raise RecordingError(
+            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {time[k]:g} s; at most {gap * median:g} s "
+            f"({gap:g} times the median step) is allowed, so cut the file there"
         )

@@ -1,7 +1,9 @@
 """Text files of numbers, parsed by pandas: it reads what spreadsheets and loggers quote and leave out, and the readers
 of the other formats are made for it too."""
 
+import codecs
 import csv
+import json
 from collections.abc import Callable, Sequence
 from io import StringIO
 from math import isfinite
@@ -12,9 +14,7 @@ import numpy as np
 from ..base.plain_text import plain
 from ..base.written_numbers import real
 from .dialect import Dialect, dialect_of
-from .encoding import decoded
 from .headings import split
-from .result_units import units_beside
 from .source import Column, RecordingError, Samples, not_finite
 
 LONGEST_CELL = 60
@@ -129,3 +129,51 @@ def _columns(dialect: Dialect, beside: dict[str, str]) -> list[Column]:
         below = dialect.units[k].strip(" []()") if k < len(dialect.units) else ""
         columns.append(Column(plain(cell, LONGEST_CELL), plain(name, LONGEST_CELL), unit or below or beside.get(name)))
     return columns
+
+
+MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+
+LOOKED_AT = 1000
+"""Bytes at the beginning that tell UTF-16 without a mark from the others: every other one of them is zero."""
+
+
+def encoding_of(content: bytes) -> str:
+    """UTF-8 or UTF-16, with or without the mark of either; Latin-1, in which every byte is a character, if neither."""
+    for mark, name in MARKS:
+        if content.startswith(mark):
+            return name
+    head = content[:LOOKED_AT]
+    if len(head) > 1 and head.count(0) > len(head) // 3:
+        return "utf-16-le" if head[1::2].count(0) > head[::2].count(0) else "utf-16-be"
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8"
+
+
+def decoded(content: bytes) -> str:
+    """The text, its lines ended by one line feed each.
+
+    Raises:
+        UnicodeDecodeError: it is damaged UTF-16.
+    """
+    return content.decode(encoding_of(content)).replace("\r\n", "\n").replace("\r", "\n")
+
+
+def units_beside(path: Path) -> dict[str, str]:
+    """Unit by column of a file of results; nothing if no record beside it tells of this file.
+
+    The record of several files has the beginning of their names, as trip.json has of trip_off.csv.
+    """
+    stem = path.stem
+    while stem:
+        record = path.with_name(f"{stem}.json")
+        try:
+            content = json.loads(record.read_text(encoding="utf-8"))
+            if path.name in content["files"]:
+                return {str(name): str(unit) for name, unit in content["units"].items()}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            pass  # there is none, or it is something else
+        stem = stem.rpartition("_")[0]
+    return {}

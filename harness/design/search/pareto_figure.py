@@ -1,4 +1,4 @@
-"""Figure of a search: comfort against response, and what the driver's choice makes of the parameters."""
+"""What a search found, as a figure, comfort against response, and as a table of what the driver may choose."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,6 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import FuncFormatter, NullFormatter
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
 
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
 from ...views.figure_options import FigureOptions
@@ -94,3 +96,22 @@ def _symbol(name: str) -> str:
     elif len(letter) > 1:
         return name
     return f"${letter}_{{{index}}}$" if index else f"${letter}$"
+
+
+COSTS = ("cost", "swing", "comfort", "response")
+
+
+def choices_table(visited: Sequence[Evaluated], space: Space, characters: Sequence[float]) -> Table:
+    """The start and the choices for these characters: what they cost, and their parameters."""
+    table = Table(title="costs over those of the computed gains", title_justify="left", box=SIMPLE_HEAD, padding=0)
+    for heading in ("character", *COSTS, *(each.name for each in space.searched)):
+        table.add_column(heading, justify="right", min_width=8)
+    _row(table, "start", 0.5, visited[0])
+    for character in characters:
+        _row(table, f"{character:g}", character, best(visited, character))
+    return table
+
+
+def _row(table: Table, name: str, character: float, each: Evaluated) -> None:
+    costs = (f"{cost:.3f}" for cost in (each.costs.total(character), *each.costs))
+    table.add_row(name, *costs, *(f"{value:.4g}" for value in each.values))

@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 from hashlib import sha256
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from ...base.optional_packages import required
 from ...base.progress import progress
 from ...loop.places import PLANTS
-from ...simulation.case_archive import resumable
-from .controller_cost import LOST, POWER, TERMS
+from ...simulation.case_archive import Table, resumable
+from .controller_cost import LOST, POWER, TERMS, Costs
 from .cost_evaluation import CostEvaluation
-from .parameter_search import Evaluated, Search
-from .search_archive import table
+from .parameter_search import Evaluated, Search, Values
 from .search_space import Space, rounded
 
 RECORD, EVALUATIONS = "search.json", "evaluations.csv"
@@ -69,3 +69,16 @@ def distinguishing(evaluation: CostEvaluation, space: Space, seed: int) -> dict[
         "cma": required("cma", "searching", "design").__version__,
         "seed": seed,
     }
+
+
+def table(names: Sequence[str]) -> Table[Values, Costs]:
+    """Of a search for the parameters of these names."""
+    columns = [*names, *Costs._fields]
+
+    def parsed(cells: Sequence[str]) -> tuple[Values, Costs]:
+        numbers = [float(cell) for cell in cells]
+        if not all(map(isfinite, numbers)):
+            raise ValueError
+        return tuple(numbers[: len(names)]), Costs(*numbers[len(names) :])
+
+    return Table(columns, lambda values, costs: [*values, *costs], parsed, f"{len(columns)} finite numbers")

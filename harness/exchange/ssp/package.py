@@ -1,17 +1,17 @@
-"""The files of the archive."""
+"""The files of the archive: the structure, parameter sets (SSV), the signal dictionary (SSB), the FMUs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import NamedTuple
 
 from ...base.errors import DrivelineError
+from ...cosimulation.interface import unit_of
 from ...cosimulation.wiring import Fit
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim
-from .parameter_sets import parameter_set
-from .signal_dictionary import dictionary
 from .structure import DICTIONARY, structure
-from .variables import require_no_conversion, values
+from .variables import Value, outputs, require_no_conversion, typed, units, values
+from .xml import VERSION, Element, document, element
 
 
 class Variant(NamedTuple):
@@ -61,3 +61,51 @@ def _files(name: str, variant: Variant, manoeuvre: Manoeuvre, ssd: str) -> dict[
         **{f"resources/{one.path.name}": one.path.read_bytes() for one in fitted.interfaces.values()},
         f"{mastersim.FOLDER}/{name}.msim": mastersim.project(fitted, found, manoeuvre.duration),
     }
+
+
+NAME = "start"
+"""Of the parameter sets; ecos is told which are to be taken by it."""
+
+
+def parameter_set(fitted: Fit, tool: str, values: Mapping[str, Sequence[Value]]) -> bytes:
+    """The file of a parameter set.
+
+    Args:
+        tool: that made it.
+        values: what stands before the names, such as "" or "plant.", -> parameters.
+    """
+    rows = [_parameter(prefix, value) for prefix, every in values.items() for value in every]
+    names = [value.unit for every in values.values() for value in every]
+    return document(
+        element(
+            "ssv:ParameterSet",
+            {"version": VERSION, "name": NAME, "generationTool": tool},
+            [element("ssv:Parameters", children=rows), *units("ssv", fitted, names)],
+        )
+    )
+
+
+def _parameter(prefix: str, value: Value) -> Element:
+    described = {"description": value.description} if value.description else {}
+    content = typed("ssv", value.type, value.unit, value.value)
+    return element("ssv:Parameter", {"name": f"{prefix}{value.name}", **described}, [content])
+
+
+def dictionary(fitted: Fit, tool: str) -> bytes:
+    """The file of the dictionary, by names `instance.variable`; of Reals alone, as others stop FMPy."""
+    signals = {name: variable for name, variable in outputs(fitted).items() if variable.type == "Real"}
+    entries = [
+        element(
+            "ssb:DictionaryEntry",
+            {"name": name, "description": variable.description or name},
+            [typed("ssc", "Real", unit_of(variable))],
+        )
+        for name, variable in signals.items()
+    ]
+    return document(
+        element(
+            "ssb:SignalDictionary",
+            {"version": VERSION, "generationTool": tool},
+            [*entries, *units("ssb", fitted, map(unit_of, signals.values()))],
+        )
+    )

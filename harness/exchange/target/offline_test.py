@@ -17,8 +17,7 @@ from .c_export import with_values
 from .comparison import Comparison, compare, responses
 from .in_loop import in_loop
 from .offline_cases import Case, cases_in_loop, random_inputs, random_states
-from .offline_figure import plot_comparison
-from .offline_results import TYPICAL, Part, Record
+from .offline_results import TYPICAL, Part, Record, plot_comparison
 from .programs import programs
 from .sample_timing import schedule
 from .size import size_of

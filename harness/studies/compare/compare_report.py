@@ -9,9 +9,8 @@ import numpy as np
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...views.html.metric_dots import metric_dots
 from ...views.html.paired_runs import Pair, pair_sections
-from ...views.html.report_page import Section, write_report
-from ...views.html.report_tables import Heading, Table, of_metrics
-from ...views.html.report_tables import Row as Line
+from ...views.html.report_page import Heading, Section, Table, of_metrics, write_report
+from ...views.html.report_page import Row as Line
 from ...views.metrics_table import SHOWN, Row, cells, number, reasons
 
 RATIO = "gear_torque_rms"

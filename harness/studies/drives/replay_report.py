@@ -13,8 +13,7 @@ from ...metrics.run_metrics import RideMetrics
 from ...metrics.spectrum import TO_50_HZ
 from ...views.html.figure_selector import chosen
 from ...views.html.linked_figures import Columns, linked, shown, stacked, tables
-from ...views.html.report_page import Section, write_report
-from ...views.html.report_tables import Heading, Row, Table, of_metrics
+from ...views.html.report_page import Heading, Row, Section, Table, of_metrics, write_report
 from ...views.html.thinning import extremes
 from ...views.metrics_table import RIDES_SHOWN, ride_rows
 from ...views.panels import Axis, Curve, Panel, within

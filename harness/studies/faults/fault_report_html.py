@@ -9,8 +9,7 @@ import numpy as np
 from ...views.colours import COLOURS
 from ...views.html.figure_selector import chosen
 from ...views.html.linked_figures import axes, linked, shown, stacked, tables
-from ...views.html.report_page import Section, write_report
-from ...views.html.report_tables import Heading, Row, Table
+from ...views.html.report_page import Heading, Row, Section, Table, write_report
 from ...views.html.thinning import thinned
 from ...views.panels import Axis, Curve, Panel
 from .fault_campaign import Outcome, count
@@ -18,7 +17,7 @@ from .fault_cases import DURATION
 from .fault_catalogue import KINDS
 from .fault_figures import case_panels
 from .fault_injection import FaultRunner
-from .fault_page import HEADINGS, NOT_CLEAN, matrix_rows
+from .fault_report import HEADINGS, NOT_CLEAN, matrix_rows
 from .judges import JUDGES
 
 WORST = 6

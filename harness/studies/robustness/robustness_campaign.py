@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable, MutableMapping, Sequence
 from hashlib import sha256
+from math import nan
 from typing import Any
 
 from ...design.uncertainty_box import BOX, DOUBLINGS, LOSS
+from ...simulation.case_archive import Table
 from ...simulation.many_runs import run_many
 from .case_runs import CaseRunner
-from .outcome import MANOEUVRES, Case, Outcome
+from .outcome import MANOEUVRES, METRICS, Case, Outcome
 
 
 def cases(loops: Iterable[tuple[str, str]], numbers: Sequence[int]) -> list[Case]:
@@ -47,3 +49,18 @@ def distinguishing(runner: CaseRunner) -> dict[str, Any]:
     drawn = repr((dict(BOX), DOUBLINGS, LOSS, MANOEUVRES))
     files = {path.stem: digest for loop in runner.loops.values() for path, digest in loop.digests.items()}
     return {"draws": f"sha256:{sha256(drawn.encode()).hexdigest()}", "fmus": files, "seed": runner.seed}
+
+
+def _cells(case: Case, outcome: Outcome) -> list[object]:
+    values = (outcome.measured[metric.name] for metric in METRICS)
+    return [*case, *("" if value != value else repr(value) for value in values), outcome.reason]
+
+
+def _parsed(cells: Sequence[str]) -> tuple[Case, Outcome]:
+    plant, controller, number, manoeuvre, *values, reason = cells
+    case = Case(plant, controller, int(number), manoeuvre)
+    measured = {m.name: float(value) if value else nan for m, value in zip(METRICS, values, strict=True)}
+    return case, Outcome(case, measured, reason)
+
+
+RUNS = Table([*Case._fields, *(metric.key for metric in METRICS), "reason"], _cells, _parsed)

@@ -12,8 +12,7 @@ from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from ...views.html.figure_selector import chosen
 from ...views.html.linked_figures import linked, stacked, tables
 from ...views.html.paired_runs import Pair, pair_sections
-from ...views.html.report_page import Section, write_report
-from ...views.html.report_tables import Heading, Row, Table
+from ...views.html.report_page import Heading, Row, Section, Table, write_report
 from ...views.html.thinning import thinned
 from ...views.panels import Axis
 from .case_runs import CaseRunner

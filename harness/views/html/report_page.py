@@ -1,15 +1,14 @@
-"""The page of a report: one file that needs nothing else, written when it is complete."""
+"""The page of a report: one file that needs nothing else, written when it is complete; its sections and tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...base.atomic_files import complete
 from ...base.errors import DrivelineError
 from ...base.optional_packages import required
-from .provenance_section import facts
-from .report_tables import Table
+from ...metrics.declaration import Column, Metric
 
 if TYPE_CHECKING:
     from bokeh.models import UIElement
@@ -90,3 +89,69 @@ def write_report(
     )
     with complete(path) as unfinished:
         unfinished.write_text(page, encoding="utf-8")
+
+
+def facts(content: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Names and values.
+
+    Args:
+        content: as `harness.simulation.provenance.content` gives it.
+    """
+    return [
+        ("program", str(content["program"])),
+        ("commit", str(content["commit"] or "not of a checkout")),
+        ("command line", str(content["command_line"])),
+        *_fmus(content["fmus"]),
+        *((f"input {path}", digest) for path, digest in content["inputs"].items()),
+        *_flat(content["run"], ()),
+    ]
+
+
+def _fmus(plants: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    for plant, fmus in plants.items():
+        for name, fmu in fmus.items():
+            yield f"FMU {name} ({plant})", f"{fmu['file']} {fmu['digest']}"
+
+
+def _flat(value: Any, names: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """What was set, a line for each value; what was not is left out."""
+    if isinstance(value, Mapping):
+        for name, each in value.items():
+            if name not in ("fmus", "start_values"):
+                yield from _flat(each, (*names, str(name)))
+    elif value not in (None, "", [], ()):
+        yield " ".join(names), ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+class Heading(NamedTuple):
+    """Of a column of words, or of numbers, which stand to the right; with what it means."""
+
+    text: str
+    meaning: str = ""
+    number: bool = False
+
+
+class Row(NamedTuple):
+    """Cells, and what the figures show when the row is clicked, if anything."""
+
+    cells: Sequence[str]
+    choice: str = ""
+    muted: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    headings: Sequence[Heading]
+    rows: Sequence[Row]
+    notes: Sequence[str] = ()
+
+    @property
+    def explained(self) -> list[Heading]:
+        """The headings that have a meaning."""
+        return [heading for heading in self.headings if heading.meaning]
+
+
+def of_metrics(shown: Iterable[tuple[Metric, Column]]) -> Iterator[Heading]:
+    """The headings of metrics as the tables show them."""
+    for metric, column in shown:
+        yield Heading(f"{column.plain_heading}, {column.unit}", f"{metric.description} ({metric.key} in files)", True)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from driveline.harness.identification import cost_surface, response_band
+from driveline.harness.identification import cost_surface, uncertainty_figures
 from driveline.harness.identification.drive_train import STEPS, Parameters
 from driveline.harness.identification.drive_train_response import Tyre, response
 from driveline.harness.identification.fit_figures import plot_innovations, plot_simulation
@@ -120,7 +120,7 @@ def test_the_cost_of_output_error_is_that_of_the_covariance() -> None:
 
 def test_the_band_is_that_of_small_deviations() -> None:
     one, f = replace(answer(), free=("C",), covariance=np.array([[0.25]])), np.array([4.0, 8.0, 12.0])
-    found = np.abs(response_band.drawn_responses(one, f, one.tyre, 1)).std(axis=0)
+    found = np.abs(uncertainty_figures.drawn_responses(one, f, one.tyre, 1)).std(axis=0)
     up, down = (np.abs(response(one.p._replace(C=one.p.C + by), f, one.tyre)) for by in (0.1, -0.1))
     assert found == pytest.approx(0.5 * abs(up - down) / 0.2, rel=0.1)
 
@@ -128,7 +128,7 @@ def test_the_band_is_that_of_small_deviations() -> None:
 def test_without_a_gap_the_recording_answers_as_the_model() -> None:
     p = CAR._replace(phi_B=1e-6, d=2.0)
     one = replace(answer(), p=p, drive=truth(p, 20000)[0])
-    f, found = response_band.recorded_response(one)
+    f, found = uncertainty_figures.recorded_response(one)
     at = (f > 4.0) & (f < 15.0)
     off = found[at] / response(p, f[at])
     assert 20.0 * np.log10(abs(off)) == pytest.approx(np.zeros(at.sum()), abs=0.5)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from driveline.harness.recordings import channels
-from driveline.harness.recordings.channels import Channels
+from driveline.harness.recordings.channels import Channels, check_time
 from driveline.harness.recordings.quantities import QUANTITIES
 from driveline.harness.recordings.source import Column, RecordingError, Samples
-from driveline.harness.recordings.time_checks import check_time
 
 JUST = 1e-6
 """How far from the longest step, as a share of it."""

@@ -9,9 +9,8 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.parameter_search import Evaluated, Search
-from driveline.harness.design.search.search_archive import table
 from driveline.harness.design.search.search_space import space
-from driveline.harness.design.search.tune import EVALUATIONS, RECORD, tune
+from driveline.harness.design.search.tune import EVALUATIONS, RECORD, table, tune
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.settings import Settings

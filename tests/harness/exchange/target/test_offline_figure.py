@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.harness.exchange.target.offline_figure import SHOWN, plot_comparison
+from driveline.harness.exchange.target.offline_results import SHOWN, plot_comparison
 
 
 @pytest.mark.parametrize("count", [1, len(SHOWN)])

@@ -19,7 +19,7 @@ from driveline.harness.studies.faults.fault_campaign import campaign
 from driveline.harness.studies.faults.fault_cases import SITUATIONS, Case, Fault, case
 from driveline.harness.studies.faults.fault_catalogue import KINDS, LOCK, SPIN
 from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
-from driveline.harness.studies.faults.fault_page import page
+from driveline.harness.studies.faults.fault_report import page
 from driveline.models import signal_faults
 from driveline.models.controller import supervision, wheel_monitor
 from tests.foreign import tampered

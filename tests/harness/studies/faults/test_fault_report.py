@@ -16,11 +16,9 @@ from driveline.harness.commands.settings import as_given
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
-from driveline.harness.studies.faults.fault_archive import table
-from driveline.harness.studies.faults.fault_campaign import campaign
+from driveline.harness.studies.faults.fault_campaign import campaign, table
 from driveline.harness.studies.faults.fault_catalogue import KINDS
-from driveline.harness.studies.faults.fault_page import page
-from driveline.harness.studies.faults.fault_report import announce, write, write_case
+from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 

@@ -7,7 +7,7 @@ import pytest
 
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.simulation.case_archive import CaseArchive
-from driveline.harness.studies.robustness.campaign_archive import RUNS
+from driveline.harness.studies.robustness.robustness_campaign import RUNS
 from tests.harness.studies.robustness.outcomes import outcome
 
 FIRST = ",".join(RUNS.columns)

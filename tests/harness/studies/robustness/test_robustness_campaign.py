@@ -13,11 +13,10 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.studies.robustness.campaign_archive import RUNS
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.draws import draw
 from driveline.harness.studies.robustness.outcome import MANOEUVRES, Case
-from driveline.harness.studies.robustness.robustness_campaign import campaign, cases
+from driveline.harness.studies.robustness.robustness_campaign import RUNS, campaign, cases
 from tests.harness.studies.robustness.outcomes import outcome
 
 LOOPS = [("TwoMassDriveline", "DampingController"), ("TwoMassDriveline", "NoDamping")]

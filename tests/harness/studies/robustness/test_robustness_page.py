@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from driveline.harness.design.uncertainty_box import LOSS, SHORTEST, SPREAD
-from driveline.harness.studies.robustness import robustness_page as pages
+from driveline.harness.studies.robustness import robustness_report as pages
 
 
 def test_the_page_says_how_much_is_lost_and_late_in_the_units_of_its_words(monkeypatch: pytest.MonkeyPatch) -> None:

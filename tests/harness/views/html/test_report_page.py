@@ -8,8 +8,7 @@ import pytest
 
 from driveline.harness.commands.cli import main
 from driveline.harness.views.html.linked_figures import linked
-from driveline.harness.views.html.report_page import Section, require_report, write_report
-from driveline.harness.views.html.report_tables import Heading, Row, Table
+from driveline.harness.views.html.report_page import Heading, Row, Section, Table, require_report, write_report
 from driveline.harness.views.html.thinning import MOST_ROWS, VALUES, extremes, stride, thinned
 from driveline.harness.views.panels import Axis, Curve, Panel
 

@@ -11,7 +11,7 @@ import pytest
 from driveline.harness.metrics.evaluate import T_S
 from driveline.harness.studies.compare.compare_report import verdict
 from driveline.harness.studies.drives.replay_report import PIECE, _worst, roughest
-from driveline.harness.studies.faults.fault_page import _classes
+from driveline.harness.studies.faults.fault_report import _classes
 from driveline.harness.studies.faults.fault_report_html import _ratio
 from driveline.harness.studies.faults.judges import JUDGES
 from driveline.harness.views.html.report_page import Section, write_report
