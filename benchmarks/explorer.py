@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
@@ -54,7 +55,7 @@ def computing(plant: str, name: str, start: float, step: float, moves: int) -> f
         runner.answer(request)
         for k in range(moves):
             began = process_time()
-            runner.answer(request.replaced(**{KINDS[name]: {name: start + step * k}}))
+            runner.answer(replace(request, **{KINDS[name]: {name: start + step * k}}))
             took.append(1e3 * (process_time() - began))
     return median(took)
 

@@ -17,13 +17,12 @@ examples:
 
 import argparse
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..loop.places import PLACES
 from ..loop.settings import Settings
 from ..views.html.report_page import require_report
-from .course import campaign_job, job
+from .course import Job, campaign_job, job
 from .options import add_cases, add_loop, add_output, add_plant, add_printing, add_report
 from .settings import as_given, caption, distinguishing, settings_of_pairs
 
@@ -55,17 +54,14 @@ def run(args: argparse.Namespace) -> int:
 
 def _all(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
     from ..studies.robustness.robustness_campaign import RUNS, campaign, order
-    from ..studies.robustness.robustness_report import announce, write
-    from ..studies.robustness.summary import summaries
+    from ..studies.robustness.robustness_report import write
 
     record, runs = args.output / "robustness.json", args.output / "runs.csv"
     with campaign_job(args, record, runs, RUNS, same, loops) as (made, archive):
         outcomes = campaign(runner, range(1, args.cases + 1), archive, scheduler=args.scheduler)
         archive.sort(order(runner))
         made.wrote(*write(outcomes, runner, _as_given(args), caption(args), args.output))
-        for provenance, path in made.reports():
-            _report(outcomes, runner, provenance, path)
-        made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
+        _tell(made, outcomes, runner)
     return 0
 
 
@@ -73,24 +69,25 @@ def _one(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], l
     """One draw again."""
     from ..studies.robustness.draws import draw
     from ..studies.robustness.robustness_campaign import campaign
-    from ..studies.robustness.robustness_report import announce, write_draw
-    from ..studies.robustness.summary import summaries
+    from ..studies.robustness.robustness_report import write_draw
 
     with job(args, args.output / f"draw_{args.case}.json", same | {"case": args.case}, loops) as made:
         made.out.say(f"draw {draw(args.case, args.seed)}")
         outcomes = campaign(runner, [args.case], scheduler=args.scheduler)
         made.begin()
         made.wrote(*write_draw(outcomes, runner, caption(args), args.output))
-        for provenance, path in made.reports():
-            _report(outcomes, runner, provenance, path)
-        made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
+        _tell(made, outcomes, runner)
     return 0
 
 
-def _report(outcomes: Sequence["Outcome"], runner: "CaseRunner", provenance: Mapping[str, Any], path: Path) -> None:
+def _tell(made: Job, outcomes: Sequence["Outcome"], runner: "CaseRunner") -> None:
     from ..studies.robustness import robustness_report_html
+    from ..studies.robustness.robustness_report import announce
+    from ..studies.robustness.summary import summaries
 
-    robustness_report_html.report(outcomes, runner, provenance, path)
+    for provenance, path in made.reports():
+        robustness_report_html.report(outcomes, runner, provenance, path)
+    made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
 
 
 def _as_given(args: argparse.Namespace) -> str:

@@ -31,10 +31,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..base.atomic_files import write_text
-    from ..exchange.target.c_export import exported
+    from ..exchange.target.c_export import values_of, with_values
     from ..simulation.provenance import require_same_text
 
-    sources = exported(args.controller, args.precision, args.vehicle, args.parameters)
+    values = values_of(args.controller, args.vehicle, args.parameters)
+    sources = with_values(args.controller, args.precision, values)
     files = {args.output / name: text for name, text in sources.items()}
     if folder := next((path for path in files if path.is_dir()), None):
         raise DrivelineError(f"{folder} is a folder; a file is needed")

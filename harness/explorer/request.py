@@ -1,8 +1,7 @@
 """The request of a tab, as data, and the parameters that a loop gets for it."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
 
 SPORT: Mapping[str, float] = {"k_d": 0.88, "omega_w": 1.4, "T_gap": 1.7, "t_return": 0.5}
 COMFORT: Mapping[str, float] = {"k_d": 1.2, "omega_w": 0.75, "T_gap": 0.6, "t_return": 2.0}
@@ -33,10 +32,6 @@ class Request:
     character: float = 0.5
     informed: bool = True
     typed: Mapping[str, float] = field(default_factory=dict)
-
-    def replaced(self, **changes: Any) -> "Request":
-        """The same with other values."""
-        return replace(self, **changes)
 
 
 def characterised(gains: Mapping[str, float], character: float) -> dict[str, float]:

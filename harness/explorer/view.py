@@ -181,7 +181,7 @@ class View:
 
     def _ask(self, **changes: Any) -> None:
         """Changes the request and asks for its runs."""
-        request = self._request.replaced(**changes)
+        request = replace(self._request, **changes)
         if request.plant not in self._runner.plants or request.manoeuvre not in MANOEUVRES:
             self._refuse(f"there is no {request.plant} or {request.manoeuvre}")
             return

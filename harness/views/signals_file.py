@@ -32,10 +32,6 @@ HISTORY = """\
 <tool_version>{}</tool_version></FHcomment>"""
 
 
-def _csv(results: np.ndarray, path: Path) -> None:
-    write_csv(results, path)
-
-
 def _csv_with_units(results: np.ndarray, path: Path) -> None:
     """Units in brackets behind the names."""
     write_csv(results, path, [f"{name} [{unit}]" if unit else name for _, name, unit in _columns(results)])
@@ -102,7 +98,7 @@ class Format(NamedTuple):
 
 
 FORMATS: Mapping[str, Format] = {
-    "csv": Format(".csv", _csv, "names alone in the headings, units in the JSON file beside it"),
+    "csv": Format(".csv", write_csv, "names alone in the headings, units in the JSON file beside it"),
     "csv-units": Format(".csv", _csv_with_units, "units in the headings"),
     "parquet": Format(".parquet", _parquet, "units in the metadata of the columns", "pyarrow"),
     "mf4": Format(".mf4", _mdf, "ASAM MDF 4.10", "asammdf"),

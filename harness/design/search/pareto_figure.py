@@ -11,7 +11,6 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
-from ...views.figure_options import FigureOptions
 from ...views.figure_style import sheet
 from .parameter_search import Evaluated, best, front
 from .search_space import Space
@@ -25,9 +24,7 @@ MARGIN = 0.25
 """What the axes show beyond the choices, on each side, over their extent."""
 
 
-def plot_front(
-    visited: Sequence[Evaluated], space: Space, character: float, title: str, stem: Path, caption: str = ""
-) -> list[Path]:
+def plot_front(visited: Sequence[Evaluated], space: Space, character: float, title: str, stem: Path) -> list[Path]:
     """Draws the candidates of a search with their front, and the choices from sport to comfort.
 
     Args:
@@ -37,7 +34,7 @@ def plot_front(
     Returns:
         The files written.
     """
-    with sheet((8.0, 3.2), title, stem, FigureOptions(caption), pads=(0.04, 0.08)) as (figure, files):
+    with sheet((8.0, 3.2), title, stem, pads=(0.04, 0.08)) as (figure, files):
         left, right = figure.subplots(1, 2, width_ratios=(1.1, 1.0))
         _costs(left, visited, character)
         _parameters(right, visited, space, character)

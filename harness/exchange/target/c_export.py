@@ -10,22 +10,6 @@ from ...base.errors import DrivelineError
 from ...base.optional_packages import required
 
 
-def exported(
-    controller: str, precision: str, vehicle: Path | None = None, parameters: Path | None = None
-) -> dict[str, str]:
-    """Its files by name.
-
-    Args:
-        controller: a name in `fmus.target.sources.CONTROLLERS`.
-        precision: float or double.
-        vehicle, parameters: files with values of its parameters.
-
-    Raises:
-        DrivelineError: a file is refused, or the extra `native` is not installed.
-    """
-    return with_values(controller, precision, values_of(controller, vehicle, parameters))
-
-
 def values_of(controller: str, vehicle: Path | None, parameters: Path | None) -> dict[str, Any]:
     """What two files say of the parameters of a controller, by name.
 
@@ -42,7 +26,12 @@ def values_of(controller: str, vehicle: Path | None, parameters: Path | None) ->
 
 
 def with_values(controller: str, precision: str, values: Mapping[str, Any]) -> dict[str, str]:
-    """The same with these values of its parameters, by name; others are declared.
+    """The files of its C by their names.
+
+    Args:
+        controller: a name in `fmus.target.sources.CONTROLLERS`.
+        precision: float or double.
+        values: of its parameters, by name; others are declared.
 
     Raises:
         MissingExtra: the extra `native` is not installed.

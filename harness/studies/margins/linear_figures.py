@@ -9,7 +9,6 @@ from matplotlib.colors import LogNorm, Normalize
 
 from ...metrics.spectrum import decibels
 from ...views.colours import BLACK, BLUE, GREEN, GREY, VERMILION
-from ...views.figure_options import FigureOptions
 from ...views.figure_style import plot, sheet
 from ...views.panels import Axis, Curve, Level, Panel, Part, Points
 from .describing_function import Swing
@@ -29,7 +28,7 @@ DAMPING_RATIOS = (0.1, 0.3, 0.5)
 """Lines in the plane of the poles."""
 
 
-def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path, caption: str = "") -> list[Path]:
+def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path) -> list[Path]:
     """Magnitude and phase of the loop gain, with the crossings at which the margins are; returns the files."""
     f = FREQUENCIES[(FREQUENCIES >= SHOWN[0]) & (FREQUENCIES <= SHOWN[1])]
     magnitude: list[Part] = [Level(0.0)]
@@ -51,16 +50,14 @@ def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem:
         Panel("phase of L in degrees", phase, bounds=(-450.0, 135.0), ticks={k: str(k) for k in range(-450, 136, 90)}),
     ]
     x = Axis("frequency in Hz", SHOWN, "log")
-    return plot([[panel] for panel in panels], x, title, stem, FigureOptions(caption), size=(7.2, 2.3))
+    return plot([[panel] for panel in panels], x, title, stem, size=(7.2, 2.3))
 
 
-def plot_nyquist(
-    loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path, caption: str = ""
-) -> list[Path]:
+def plot_nyquist(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path) -> list[Path]:
     """The loop gain in the complex plane, all of it and near -1, with the circle that M_s keeps free."""
     f = np.geomspace(SHOWN[0], SHOWN[1], 6000)
     turn = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 361))
-    with sheet((7.2, 4.2), title, stem, FigureOptions(caption), pads=(0.04, 0.1)) as (figure, files):
+    with sheet((7.2, 4.2), title, stem, pads=(0.04, 0.1)) as (figure, files):
         whole, near = figure.subplots(1, 2)
         for (name, (loop, margin)), colour in zip(loops.items(), COLOURS, strict=False):
             L, free = loop.gain(f), -1.0 + turn / margin.M_s
@@ -77,12 +74,10 @@ def plot_nyquist(
     return files
 
 
-def plot_poles(
-    found: Mapping[str, Mapping[str, Sequence[Swept]]], title: str, stem: Path, caption: str = ""
-) -> list[Path]:
+def plot_poles(found: Mapping[str, Mapping[str, Sequence[Swept]]], title: str, stem: Path) -> list[Path]:
     """The poles of the closed loop by plant and sweep, coloured by the value; returns the files."""
     size = 10.2, 3.3 * len(found) + 0.4
-    with sheet(size, title, stem, FigureOptions(caption), pads=(0.04, 0.04)) as (figure, files):
+    with sheet(size, title, stem, pads=(0.04, 0.04)) as (figure, files):
         grid = figure.subplots(len(found), len(SWEEPS), sharex=True, sharey=True, squeeze=False)
         for k, (plant, by_sweep) in enumerate(found.items()):
             for axes, sweep in zip(grid[k], SWEEPS, strict=True):
@@ -120,7 +115,7 @@ def _rays(axes: Axes) -> None:
         axes.annotate(f"{ratio:g}", (-x, y), color="0.4", fontsize=7, ha="left", va="bottom")
 
 
-def plot_backlash(found: Mapping[str, Sequence[Swing]], title: str, stem: Path, caption: str = "") -> list[Path]:
+def plot_backlash(found: Mapping[str, Sequence[Swing]], title: str, stem: Path) -> list[Path]:
     """Gain and delay margin while the teeth swing, over the amplitude of the swing; returns the files."""
     margins: tuple[list[Part], list[Part]] = [], []
     for (name, swings), color in zip(found.items(), COLOURS, strict=False):
@@ -131,4 +126,4 @@ def plot_backlash(found: Mapping[str, Sequence[Swing]], title: str, stem: Path, 
     label = r"amplitude of the twist beyond the flanks over $\varphi_B$ (half the gap); arrows: in contact"
     labels = ("gain margin", "delay margin in ms")
     rows = [[Panel(label, parts, bounds=(0.0, None))] for label, parts in zip(labels, margins, strict=True)]
-    return plot(rows, Axis(label, (0.01, IN_CONTACT), "log"), title, stem, FigureOptions(caption), size=(7.2, 2.0))
+    return plot(rows, Axis(label, (0.01, IN_CONTACT), "log"), title, stem, size=(7.2, 2.0))

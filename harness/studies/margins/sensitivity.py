@@ -13,7 +13,6 @@ from ....models.block.declaration import Real, variables
 from ...design.design_trials import loop_records
 from ...metrics.declaration import declared
 from ...metrics.run_metrics import Metrics
-from ...views.figure_options import FigureOptions
 from ...views.figure_style import matrix_axes, sheet
 
 CHANGE = 0.1
@@ -92,13 +91,13 @@ def most_important(found: Sequence[Sensitivity], most: int = MOST) -> list[str]:
     return sorted(largest, key=lambda name: -largest[name])[:most]
 
 
-def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path, caption: str = "") -> list[Path]:
+def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path) -> list[Path]:
     """Parameters as rows, the metrics of each plant and manoeuvre as columns; returns the files."""
     rows = most_important(found)
     panels = list(dict.fromkeys((each.plant, each.manoeuvre) for each in found))
     columns = [metric.column.plain_heading for metric in declared(Metrics) if metric.name in SHOWN and metric.column]
     size = 10.2, 0.21 * len(rows) + 2.6
-    with sheet(size, title, stem, FigureOptions(caption), pads=(0.04, 0.04)) as (figure, files):
+    with sheet(size, title, stem, pads=(0.04, 0.04)) as (figure, files):
         grid = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
         for axes, (plant, manoeuvre) in zip(grid, panels, strict=True):
             here = {each.parameter: each for each in found if (each.plant, each.manoeuvre) == (plant, manoeuvre)}

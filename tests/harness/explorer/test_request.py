@@ -1,5 +1,6 @@
 """What a tab asks for, and what the loops get for it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,19 +30,19 @@ def runner(with_washout: Path) -> RequestRunner:
 
 
 def test_the_controllers_know_the_car_only_if_they_are_informed() -> None:
-    request = REQUEST.replaced(car={"phi_B": 0.3, "m": 2000.0})
+    request = replace(REQUEST, car={"phi_B": 0.3, "m": 2000.0})
     assert parameters(request, NAMES, {}, {}) == {"plant.phi_B": 0.3, "plant.m": 2000.0, "controller.phi_B": 0.3}
-    assert parameters(request.replaced(informed=False), NAMES, {}, {}) == {"plant.phi_B": 0.3, "plant.m": 2000.0}
+    assert parameters(replace(request, informed=False), NAMES, {}, {}) == {"plant.phi_B": 0.3, "plant.m": 2000.0}
 
 
 def test_what_is_typed_stands_above_the_slider_and_that_above_the_files() -> None:
     given = {"plant.m": 1000.0, "plant.phi_B": 0.1, "motor.tau": 0.01}
-    request = REQUEST.replaced(car={"m": 2000.0, "phi_B": 0.2}, informed=False, typed={"plant.phi_B": 0.3})
+    request = replace(REQUEST, car={"m": 2000.0, "phi_B": 0.2}, informed=False, typed={"plant.phi_B": 0.3})
     assert parameters(request, NAMES, given, {}) == {"plant.m": 2000.0, "plant.phi_B": 0.3, "motor.tau": 0.01}
 
 
 def test_what_is_typed_for_another_plant_is_of_no_account() -> None:
-    assert parameters(REQUEST.replaced(typed={"plant.k_s": 1.0}), NAMES, {}, {}) == {}
+    assert parameters(replace(REQUEST, typed={"plant.k_s": 1.0}), NAMES, {}, {}) == {}
 
 
 def test_in_the_middle_the_character_changes_nothing_and_at_its_ends_it_makes_the_factors() -> None:
@@ -76,23 +77,23 @@ def test_the_run_without_control_is_made_again_only_where_the_car_or_the_manoeuv
 ) -> None:
     with kept_loaded():
         first = runner.answer(REQUEST).without
-        assert runner.answer(REQUEST.replaced(gains={"k_d": 1.0}, others=("SpeedWashout",))).without is first
-        assert runner.answer(REQUEST.replaced(control=False)).without is first
-        assert runner.answer(REQUEST.replaced(car={"phi_B": 0.3})).without is not first
+        assert runner.answer(replace(REQUEST, gains={"k_d": 1.0}, others=("SpeedWashout",))).without is first
+        assert runner.answer(replace(REQUEST, control=False)).without is first
+        assert runner.answer(replace(REQUEST, car={"phi_B": 0.3})).without is not first
 
 
 def test_controllers_stand_beside_ours_and_ours_can_be_off(runner: RequestRunner) -> None:
     with kept_loaded():
-        assert list(runner.answer(REQUEST.replaced(others=("SpeedWashout",))).runs) == [
+        assert list(runner.answer(replace(REQUEST, others=("SpeedWashout",))).runs) == [
             "DampingController",
             "SpeedWashout",
         ]
-        assert list(runner.answer(REQUEST.replaced(control=False, others=("SpeedWashout",))).runs) == ["SpeedWashout"]
+        assert list(runner.answer(replace(REQUEST, control=False, others=("SpeedWashout",))).runs) == ["SpeedWashout"]
 
 
 def test_a_value_beyond_what_an_fmu_takes_is_refused_by_name(runner: RequestRunner) -> None:
     with pytest.raises(DrivelineError, match=r"^plant\.m = 10: TwoMassDriveline\.fmu takes 300 to 10000 kg$"):
-        runner.answer(REQUEST.replaced(typed={"plant.m": 10.0}))
+        runner.answer(replace(REQUEST, typed={"plant.m": 10.0}))
 
 
 def test_an_unknown_parameter_is_answered_with_the_nearest(runner: RequestRunner) -> None:
@@ -109,4 +110,4 @@ def test_sliders_end_within_what_every_fmu_takes(runner: RequestRunner) -> None:
             for end in (knob.low, knob.high):
                 kind = "car" if knob in runner.car else "gains"
                 for plant in runner.plants:
-                    runner.answer(Request(plant, "tipin15").replaced(**{kind: {knob.name: end}}))
+                    runner.answer(Request(plant, "tipin15", **{kind: {knob.name: end}}))

@@ -1,5 +1,6 @@
 """Files that a click saves."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -33,7 +34,7 @@ def test_other_commands_read_the_files_and_what_was_given_at_the_start_is_in_the
 
 
 def test_the_gains_of_a_character_are_those_that_ran(runner: RequestRunner, tmp_path: Path) -> None:
-    request = REQUEST.replaced(character=1.0)
+    request = replace(REQUEST, character=1.0)
     _, gains = save_files(runner, request, {}, {}, tmp_path)
     ran = runner.parameters(request, "DampingController")
     assert read_parameters(gains)["k_d"] == pytest.approx(ran["controller.k_d"], rel=1e-5)
