@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from tests import ROOT
+from tests import copied_sources
 from tests.fmus.host import opened
 
 HOST = Path(__file__).parents[1] / "host.py"
@@ -37,10 +37,7 @@ def ends_in_order(done):
 @pytest.fixture
 def other_build(tmp_path):
     """The motor torque loop built from sources in which the motor gives twice the torque."""
-    project = tmp_path / "changed"
-    for package in ("models", "fmus"):
-        shutil.copytree(ROOT / package, project / package, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "build_fmus.py", project)
+    project = copied_sources(tmp_path / "changed", "models", "fmus")
     model = project / "models" / "motor_torque_loop.py"
     text = model.read_text(encoding="utf-8")
     changed = text.replace(

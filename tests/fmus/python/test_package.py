@@ -1,7 +1,6 @@
 """What is in an FMU: the same bytes for the same content, and names that nobody else has."""
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -13,7 +12,7 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.python.bundle import imported, source_path
 from driveline.fmus.python.packaging import build
 from driveline.fmus.release import DATE
-from tests import ROOT
+from tests import ROOT, copied_sources
 from tests.fmus.host import opened
 
 
@@ -32,13 +31,7 @@ def run(arguments, folder, **environment):
 @pytest.fixture
 def copied_project(tmp_path):
     """A copy of the sources that build the FMUs, somewhere else."""
-    project = tmp_path / "elsewhere"
-    for package in ("models", "fmus"):
-        shutil.copytree(ROOT / package, project / package, ignore=shutil.ignore_patterns("__pycache__"))
-    for file in ("build_fmus.py", "LICENSE"):
-        if (ROOT / file).exists():
-            shutil.copy(ROOT / file, project / file)
-    return project
+    return copied_sources(tmp_path / "elsewhere", "models", "fmus")
 
 
 def test_a_rebuild_elsewhere_gives_the_same_bytes(built, copied_project):
@@ -125,13 +118,13 @@ def test_top_level_modules_carry_the_name_of_the_build(built, name):
     assert all(n == "slavemodule.txt" or n.startswith(f"driveline_{short}_") for n in resources)
 
 
-@pytest.mark.parametrize("module", ["driveline.fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
+@pytest.mark.parametrize("module", ["fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
 def test_what_runs_inside_an_fmu_imports_the_standard_library_alone(module):
     ours, waiting = set(), {module}
     while waiting:
         ours.add(current := waiting.pop())
         waiting |= set(imported(current)) - ours
-    text = "; ".join(f"import {name}" for name in sorted(ours))
+    text = "; ".join(f"import driveline.{name}" for name in sorted(ours))
     code, message = run(["-S", "-c", f"import sys; sys.path.insert(0, {str(ROOT)!r}); {text}"], ROOT)
     assert code == 0, message
     assert all(source_path(name).is_file() for name in ours)

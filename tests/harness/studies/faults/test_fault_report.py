@@ -108,7 +108,7 @@ def test_results_tell_what_made_them_and_nothing_else_is_written(native, tmp_pat
 def test_so_many_cases_are_run_from_the_first_on(native, tmp_path, monkeypatch):
     numbers = []
 
-    def campaign(cases, *_):
+    def campaign(_, cases, *__, **___):
         numbers.extend(cases)
         raise DrivelineError("that is enough")
 
