@@ -14,11 +14,15 @@ import ast
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 _CHECKOUT = Path(__file__).resolve().parents[1]
 if (_CHECKOUT / "build_fmus.py").is_file():  # its folders models, fmus and harness are packages of this one
     __path__.insert(0, str(_CHECKOUT))
+
+_IMPORTING = RLock()
+"""Threads that import modules that import each other would get them half imported."""
 
 
 @cache
@@ -39,11 +43,12 @@ def __getattr__(name: str) -> Any:
     if name not in _public():
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_nearest(name)}")
     place, attribute = _public()[name]
-    module = import_module(place, __name__)
-    if not hasattr(module, attribute):  # a module in a package
-        return import_module(f"{place}.{attribute}", __name__)
-    globals()[name] = found = getattr(module, attribute)
-    return found
+    with _IMPORTING:
+        module = import_module(place, __name__)
+        if not hasattr(module, attribute):  # a module in a package
+            return import_module(f"{place}.{attribute}", __name__)
+        globals()[name] = found = getattr(module, attribute)
+        return found
 
 
 def _nearest(name: str) -> str:

@@ -7,9 +7,11 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
+from time import sleep
 from types import ModuleType
 
 import pytest
@@ -120,6 +122,22 @@ def test_the_import_waits_for_nothing(tmp_path: Path) -> None:
     assert "driveline" in loaded
     assert not {"numpy", "scipy", "casadi", "matplotlib", "fmpy", "pandas"} & set(loaded)
     assert not [name for name in loaded if name.startswith("driveline.")]
+
+
+def test_one_thread_at_a_time_imports_a_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Modules that import each other are half imported for the others."""
+    importing: list[str] = []
+
+    def alone(module: str, package: str) -> ModuleType:
+        assert not importing
+        importing.append(module)
+        sleep(0.01)
+        importing.remove(module)
+        return import_module(module, package)
+
+    monkeypatch.setattr(driveline, "import_module", alone)
+    with ThreadPoolExecutor() as threads:
+        assert list(threads.map(driveline.__getattr__, ["Ride", "Loop", "many", "Ride"]))
 
 
 def test_a_package_that_is_missing_is_named_with_its_extra(tmp_path: Path) -> None:
