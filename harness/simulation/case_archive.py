@@ -87,7 +87,7 @@ class CaseArchive(dict[Case, Answer]):
         text = self._path.read_bytes().decode("utf-8", errors="replace")
         whole = text[: text.rfind("\n") + 1]  # a process that was killed may have left a part of a line
         columns = [*self._table.columns]
-        rows = csv.reader(StringIO(whole, newline=""))
+        rows = _rows(whole)
         if next(rows, None) != columns:
             raise DrivelineError(f"{self._path}: its first line must be {','.join(columns)}")
         for number, row in enumerate(rows, 2):
@@ -97,6 +97,14 @@ class CaseArchive(dict[Case, Answer]):
                 yield self._table.parsed(row)
             except ValueError as error:
                 raise DrivelineError(f"{self._path}, line {number}: it must have {self._table.needed}") from error
+
+
+def _rows(text: str) -> Iterator[list[str]]:
+    """The cells of each line; at one that is no CSV they end with an empty row."""
+    try:
+        yield from csv.reader(StringIO(text, newline=""))
+    except csv.Error:
+        yield []
 
 
 @dataclass

@@ -64,6 +64,8 @@ def test_lines_can_be_ordered_by_their_cases(path: Path) -> None:
         ("other,answer\n", "its first line must be case,answer"),
         ("case,answer\na,1\nb\n", "line 3: it must have a case and a number"),
         ("case,answer\na,x\n", "line 2: it must have a case and a number"),
+        (f"case,answer\n{'a' * 200_000},1\n", "line 2: it must have a case and a number"),
+        (f"{'a' * 200_000}\n", "its first line must be case,answer"),
     ],
 )
 def test_a_file_of_something_else_is_refused_and_kept(path: Path, text: str, message: str) -> None:
