@@ -11,6 +11,9 @@ from contextlib import ExitStack
 from multiprocessing import resource_tracker
 from pathlib import Path
 from pickle import loads
+from shutil import rmtree
+from threading import Thread
+from time import sleep
 from typing import Any
 
 from cloudpickle import dumps
@@ -41,7 +44,7 @@ class Workers:
     def __init__(self, function: Callable[[Any], Any], count: int, folder: Path) -> None:
         self._count = count
         self._folder = folder
-        self._given = folder, function
+        self._given = folder, function, os.getpid()
         for tracker in (resource_tracker, lokys_tracker):  # beginning the first lets interruptions through again
             with uninterrupted_children():
                 tracker.ensure_running()
@@ -101,10 +104,11 @@ _function: Callable[[Any], Any]
 _collected = CollectedWarnings()
 
 
-def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
+def _begin(folder: Path, function: Callable[[Any], Any], waiting: int) -> None:
     """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
     global _function
     _function = function
+    Thread(target=_end_with, args=(waiting, folder), daemon=True).start()
     note_unfinished(folder)
     collect_warnings().propagate = False
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
@@ -112,6 +116,14 @@ def _begin(folder: Path, function: Callable[[Any], Any]) -> None:
     kept.enter_context(kept_loaded(folder))
     atexit.register(kept.close)
     gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
+
+
+def _end_with(waiting: int, folder: Path) -> None:
+    """In a worker: ends it when the process that waits is gone, killed before it could end its workers."""
+    while sys.platform == "win32" or os.getppid() == waiting:
+        sleep(1.0)
+    rmtree(folder, ignore_errors=True)
+    os._exit(1)
 
 
 def collect_warnings() -> logging.Logger:

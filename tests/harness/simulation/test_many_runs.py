@@ -260,3 +260,30 @@ def test_what_a_killed_worker_was_writing_goes_and_nothing_else(tmp_path):
     with pytest.raises(ValueError, match="this case fails"):
         run_many(write, range(2), workers=2)
     assert list(tmp_path.iterdir()) == [others]
+
+
+ORPHANED = """
+import os
+import signal
+from time import sleep
+
+from driveline.harness.simulation.many_runs import run_many
+
+
+def case(number):
+    if number == 1:
+        os.kill(os.getppid(), signal.SIGKILL)
+    sleep(0.1)
+
+
+run_many(case, range(4), workers=2)
+"""
+
+
+def test_workers_end_when_the_process_that_waits_is_killed(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
+    command = [sys.executable, "-c", ORPHANED]
+    # waits for the end of what the workers have too, and so for theirs
+    done = subprocess.run(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, timeout=30, check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert not list(tmp_path.glob("driveline-*"))
