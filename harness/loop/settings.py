@@ -10,7 +10,7 @@ from ..base.errors import WiringError
 from ..base.known_names import nearest
 from ..cosimulation.limits import USUAL, Limits
 from ..cosimulation.system import Scheme, System
-from .arguments import require_arguments
+from .arguments import ARGUMENTS, require_arguments
 from .places import (
     BUILD,
     BUILDS,
@@ -104,7 +104,14 @@ class Settings:
         return Path(self.plant).stem
 
     def replace(self, **changes: Unpack[Changes]) -> "Settings":
-        """The same with other values of these fields."""
+        """The same with other values of these fields.
+
+        Raises:
+            WiringError: names a value that no run can take.
+            TypeError: there is no such field.
+        """
+        if unknown := next((name for name in changes if name not in ARGUMENTS), None):
+            raise TypeError(f"there is no setting {unknown}; {nearest(unknown, ARGUMENTS)}")
         return dataclasses.replace(self, **changes)  # type: ignore[arg-type]  # None and names become values above
 
     def with_parameters(self, parameters: Mapping[str, float]) -> "Settings":

@@ -61,3 +61,8 @@ def test_what_no_run_has_is_refused() -> None:
         settings("ValidationVehicle", plant="TwoMassDriveline")
     with pytest.raises(WiringError, match="seed = 'two': it must be a whole number"):
         settings(seed="two")  # type: ignore[arg-type]
+
+
+def test_a_field_that_is_none_is_refused_with_the_nearest() -> None:
+    with pytest.raises(TypeError, match=r"^there is no setting sed; did you mean seed\?$"):
+        settings(sed=2)
