@@ -5,7 +5,7 @@ comes later gets what those before it put out at the end of the step. Jacobi giv
 outputs of the beginning of the step.
 
 The propagated scheme gives all of them the values of the beginning, too, but lets continuous signals
-move over the step: along a straight line that fits what the source did (lines.py) where that has been
+move over the step: along a straight line that fits what the source did (input_lines.py) where that has been
 stepped before, else along the derivative of the source. At the end, outputs go on to inputs along the declared
 dependencies, so that every output is that of its instant, with the inputs of that instant.
 """

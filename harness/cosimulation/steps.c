@@ -1,5 +1,5 @@
 /* The steps of the master: the same calls in the same order as in steps.py. The library is loaded
- * and given the addresses of the FMI functions and of their arguments by compiled.py. */
+ * and given the addresses of the FMI functions and of their arguments by compiled_steps.py. */
 
 #include <math.h>
 #include <stddef.h>
@@ -27,7 +27,7 @@ struct call_record {
 
 EXPORT struct call_record *call_record;
 
-/* struct CompiledLine in compiled.py: Line in lines.py */
+/* CompiledLine in compiled_steps.py: Line in input_lines.py */
 typedef struct {
     double *sent;
     double factor;
@@ -36,7 +36,7 @@ typedef struct {
     const double *after;
 } Line;
 
-/* struct CompiledCall in compiled.py */
+/* CompiledCall in compiled_steps.py */
 typedef struct {
     int32_t (*access)(void *component, const uint32_t *references, size_t count, void *values);
     int32_t (*do_step)(void *component, double time, double step_size, int32_t no_set_before);
@@ -90,7 +90,7 @@ static void convert(const Call *call)
     }
 }
 
-/* The slope and the start of a line for a step of h s, as in lines.py. */
+/* The slope and the start of a line for a step of h s, as in input_lines.py. */
 static double slope(const Line *line, double h)
 {
     if (!line->end) {

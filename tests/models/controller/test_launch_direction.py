@@ -1,4 +1,4 @@
-"""The departure: which way the motor sets off out of rest, under the torque that it should have."""
+"""The launch direction: which way the motor sets off out of rest, under the torque that it should have."""
 
 import math
 
@@ -12,7 +12,7 @@ P = Parameters(J_1=0.25, T_still=0.25)
 T_S = 0.25
 PUSHED = launch_direction.start()._replace(pushed=True)
 FREE = 4.5
-"""Of the departure, by its number: a test has to fail when it changes."""
+"""Of the launch direction, by its number: a test has to fail when it changes."""
 
 each_side = pytest.mark.parametrize("side", [1.0, -1.0])
 

@@ -1,4 +1,4 @@
-"""The wheel monitor: messages just good enough and just not, to correct the estimate and as a witness."""
+"""The wheel monitor: messages just good enough and just not, to correct the estimate and as a reference."""
 
 import math
 from typing import Any
@@ -95,7 +95,7 @@ def test_the_wheel_speed_is_in_use_while_usable_messages_keep_coming() -> None:
     assert not wheels.wheel_speed_in_use(wheels.start(U, 150.0, 0.0, P), U._replace(valid=False), P)
 
 
-def test_messages_are_a_witness_while_they_keep_coming() -> None:
+def test_messages_are_a_reference_while_they_keep_coming() -> None:
     """For less than t_stale without one, and while they are valid; be they near the estimate or not."""
     x, seen = updated(new(), omega_2_hat=0.0), []
     for _ in range(6):
@@ -282,7 +282,7 @@ def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
     assert updated(new(150.0, counter=20), x).mismatch_time == 0.0
 
 
-def test_only_a_witness_contradicts() -> None:
+def test_only_a_valid_reference_contradicts() -> None:
     assert updated(new(), omega_1=300.0).mismatch_time == T_S
     assert updated(new(valid=False), omega_1=300.0).mismatch_time == 0.0
     assert updated(new(250.0), omega_1=100.0).mismatch_time == 0.0, "it has leapt"
