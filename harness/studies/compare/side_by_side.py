@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Mapping
 from functools import partial
-from typing import Any
+from typing import Unpack
 
 from ...base.errors import DrivelineError
 from ...loop.places import PLANTS, NameOrFile
+from ...loop.settings import Changes, Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
@@ -18,7 +19,7 @@ from .compare import Case, cases
 def compare(
     manoeuvres: Iterable[Manoeuvre] = tuple(MANOEUVRES[name] for name in COMPARED),
     plants: Iterable[NameOrFile] = PLANTS,
-    **settings: Any,
+    **changes: Unpack[Changes],
 ) -> dict[Case, Metrics]:
     """Every manoeuvre on every plant, with the damping off and on, on all cores; see also `driveline compare`.
 
@@ -28,7 +29,8 @@ def compare(
     Args:
         manoeuvres: each of a name of its own.
         plants: names of plants of the project, or paths of FMUs.
-        settings: further arguments of `simulate`, for all runs.
+        changes: fields of the settings that are to be others, as of `simulate`, for all runs; plant and control are
+            those of each run.
 
     Returns:
         The metrics of each run, in SI units, by (plant, manoeuvre, control): the name or path of the plant, the name of
@@ -36,16 +38,19 @@ def compare(
 
     Raises:
         DrivelineError: two plants or two manoeuvres have the same name, and what `simulate` raises.
+        TypeError: there is no such field, or it is plant or control.
     """
+    if own := changes.keys() & {"plant", "control"}:
+        raise TypeError(f"compare sets {' and '.join(sorted(own))} itself, for each run")
     by_name: dict[str, Manoeuvre] = {}
     for manoeuvre in manoeuvres:
         if by_name.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
             raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename one")
     todo = cases([str(plant) for plant in plants], list(by_name))
-    one = partial(_metrics, manoeuvres=by_name, settings=settings)
+    one = partial(_metrics, manoeuvres=by_name, settings=Settings().replace(**changes))
     return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
 
 
-def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], settings: Mapping[str, Any]) -> Metrics:
+def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], settings: Settings) -> Metrics:
     manoeuvre = manoeuvres[case.manoeuvre]
-    return evaluate(simulate(manoeuvre, case.plant, control=case.control, **settings), manoeuvre)
+    return evaluate(simulate(manoeuvre, settings, plant=case.plant, control=case.control), manoeuvre)

@@ -17,7 +17,7 @@ def replay(
     plant: NameOrFile = PLANTS[1],
     controllers: Sequence[NameOrFile] = PLACES["controller"][:1],
     held: float | None = None,
-    **settings: Unpack[RunChanges],
+    **changes: Unpack[RunChanges],
 ) -> list[Ride]:
     """Drives a vehicle with the torque demand of a recorded drive, once without damping and once with each controller.
 
@@ -33,7 +33,7 @@ def replay(
         plant: name of a plant of the project, or path of an FMU.
         controllers: names of controllers of the project, or paths of FMUs; the first is the one that is switched off.
         held: seconds for which the demand is sampled and held, a rougher foot; None: straight lines.
-        settings: further arguments of `simulate`, for all rides.
+        changes: fields of the settings that are to be others, as of `simulate`, for all rides.
 
     Returns:
         The ride without damping, then one with each controller; signals in SI units, a row every 2 ms.
@@ -47,6 +47,6 @@ def replay(
     if not controllers:
         raise DrivelineError("there is no controller to drive with; NoDamping is one too")
     named = by_name([str(controller) for controller in controllers])
-    common = Settings(plant).replace(**settings)
+    common = Settings(plant).replace(**changes)
     given = {name: common.replace(controller=controller) for name, controller in named.items()}
     return rides(*on_road(drive, next(iter(given.values()))), given, held)

@@ -14,7 +14,7 @@ def analyse(
     plants: Sequence[str] = PLANTS,
     controller: str = PLACES["controller"][0],
     car: Mapping[str, Any] | None = None,
-    **settings: Unpack[RunChanges],
+    **changes: Unpack[RunChanges],
 ) -> Analysis:
     """How stable the loop is, what it depends on, and how good the estimate is, on all cores; see also
     `driveline analyse`. It takes minutes.
@@ -27,12 +27,12 @@ def analyse(
         plants, controller: names of blocks of the project.
         car: entries of a vehicle file and of gains, in SI units, as `read_files` gives them; what they do not name is
             that of the default car.
-        settings: further arguments of `simulate`, for all runs.
+        changes: fields of the settings that are to be others, as of `simulate`, for all runs.
 
     Raises:
         DrivelineError: the controller is not linear in contact, or the loop with it is not stable.
     """
-    common = Settings(controller=controller).replace(**settings)
+    common = Settings(controller=controller).replace(**changes)
     return analysis(
         {
             plant: common.replace(plant=plant).with_parameters(loop_parameters(car or {}, plant, controller))

@@ -46,6 +46,12 @@ def test_manoeuvres_of_the_same_name_are_refused():
         driveline.compare([slow, fast])
 
 
+@pytest.mark.parametrize("own", ["plant", "control", "gearbox"])
+def test_what_is_not_to_be_set_for_all_runs_is_refused_before_any_of_them(own):
+    with pytest.raises(TypeError, match=own):
+        driveline.compare([], **{own: "TwoMassDriveline"})
+
+
 @pytest.fixture(scope="module")
 def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
