@@ -40,7 +40,7 @@ from ..views.html.report_page import require_report
 from .course import job
 from .options import add_figures, add_printing, add_replace, add_report, figure_options
 from .printing import Printer
-from .recording_options import add_recording, of_databases
+from .recording_options import add_recording, of_files
 from .redesign import redesign, require_fmus
 
 if TYPE_CHECKING:
@@ -102,8 +102,7 @@ def run(args: argparse.Namespace) -> int:
 
     everything = output.with_name(f"{output.stem}_identified.json")
     same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "vehicle": vehicle}
-    same |= {"free": sorted(set(args.free)), "columns": dict(args.columns)}
-    same |= {"aliases": [sha256(path.read_bytes()).hexdigest() for path in args.aliases], **of_databases(args)}
+    same |= {"free": sorted(set(args.free)), "columns": dict(args.columns)} | of_files(args)
     read, first = [args.recording, *args.databases, *args.aliases], [output, everything]
     with job(args, output.with_suffix(".json"), same, {}, first, read) as made:
         identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)

@@ -42,10 +42,10 @@ def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
     )
 
 
-def of_databases(args: argparse.Namespace) -> dict[str, Any]:
-    """What distinguishes a run by the databases of the bus; nothing if there are none."""
-    digests = [sha256(path.read_bytes()).hexdigest() for path in args.databases]
-    return {"databases": digests} if digests else {}
+def of_files(args: argparse.Namespace) -> dict[str, Any]:
+    """What distinguishes a run by the databases of the bus and the files of names; nothing if there are none."""
+    given = {"databases": args.databases, "aliases": args.aliases}
+    return {name: [sha256(path.read_bytes()).hexdigest() for path in paths] for name, paths in given.items() if paths}
 
 
 def column(text: str) -> tuple[str, str]:

@@ -44,7 +44,7 @@ from .options import (
     figure_options,
     seconds,
 )
-from .recording_options import add_recording, of_databases
+from .recording_options import add_recording, of_files
 from .settings import caption, distinguishing, other_format, settings_of_each
 
 NAMES = aliases()
@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
     first = next(iter(given.values()))
     track, load = on_road(recording, first)
     shown = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
-    same = own | {"controllers": list(given), "columns": dict(args.columns)} | of_databases(args)
+    same = own | {"controllers": list(given), "columns": dict(args.columns)} | of_files(args)
     same |= {f"with {name}": distinguishing(each) for name, each in given.items()}
     read = [args.recording, *args.databases, *args.aliases]
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))

@@ -14,6 +14,7 @@ from driveline.fmus.building.parameter_files import seeds
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.options import assignment, figure_options, megabytes, seconds, seed, window
+from driveline.harness.commands.recording_options import of_files
 from driveline.harness.loop.places import BUILD
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.models.block.declaration import Integer, variables
@@ -168,3 +169,14 @@ def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
         check=True,
     )
     assert done.stdout.strip() == "build"
+
+
+def test_other_names_of_quantities_or_other_frames_make_another_run(tmp_path):
+    file = tmp_path / "names.toml"
+    args = Namespace(databases=[], aliases=[])
+    assert of_files(args) == {}
+    seen = []
+    for text in ("v = ['a']", "v = ['b']"):
+        file.write_text(text)
+        seen += [of_files(Namespace(databases=[file], aliases=[])), of_files(Namespace(databases=[], aliases=[file]))]
+    assert len({str(each) for each in seen}) == 4
