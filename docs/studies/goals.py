@@ -26,10 +26,9 @@ from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from driveline.harness.studies.robustness import summary
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.robustness_campaign import campaign
-from driveline.harness.studies.robustness.summary import goal as told
-from driveline.harness.studies.robustness.summary import summaries
 from driveline.harness.views.terminal import print_table
 
 
@@ -170,8 +169,8 @@ def monte_carlo(draws: int, parameters: Mapping[str, Any], settings: Settings | 
         for plant in PLANTS
     }
     runner = CaseRunner(loops, seed=1)
-    found = summaries(campaign(runner, range(1, draws + 1)))
-    return [told(found, plant, controller) for plant in PLANTS]
+    found = summary.summaries(campaign(runner, range(1, draws + 1)))
+    return [summary.goal(found, plant, controller) for plant in PLANTS]
 
 
 def title(goal: Goal) -> str:

@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
 
     requested, by_name = chosen(args.manoeuvre or COMPARED), {each.plant_name: each for each in given.values()}
     manoeuvres, read = requested.manoeuvres, list(requested.files.values())
-    shown = figure_options(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
+    options = figure_options(args, caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
     same: dict[str, Any] = {name: distinguishing(each) for name, each in by_name.items()}
     same |= {"manoeuvres": list(manoeuvres)} | requested.digests | other_format(args)
     runs = {case: args.output / "runs" / case.file_name for case in cases(list(given), list(manoeuvres))}
@@ -67,15 +67,15 @@ def run(args: argparse.Namespace) -> int:
         requested.require_drivable(made.fits, by_name)
         made.begin(*(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
-        made.wrote(*write_tables(outcomes, args.output), *write_figures(outcomes, args.output, shown, manoeuvres))
+        made.wrote(*write_tables(outcomes, args.output), *write_figures(outcomes, args.output, options, manoeuvres))
         for case, path in signals.items():
             own = distinguishing(given[case.plant], manoeuvres[case.manoeuvre])
             one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
             write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
         for provenance, path in made.reports():
-            from ..studies.compare import compare_report as page
+            from ..studies.compare import compare_report
 
-            page.report([(each.row, each.results) for each in outcomes], manoeuvres, provenance, path)
+            compare_report.report([(each.row, each.results) for each in outcomes], manoeuvres, provenance, path)
         builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
         made.out.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {args.output / 'runs'}")
         made.tell(print_runs, [each.row for each in outcomes], runs=[each.record for each in outcomes])

@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     require_possible(args.free, output)
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
-    shown = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
+    options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "native")
     if args.design:
         require_fmus()
@@ -108,7 +108,7 @@ def run(args: argparse.Namespace) -> int:
         identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
         say(identified, recording, made.out)
         made.begin()
-        figures = draw(identified, recording, output.with_suffix(""), shown)
+        figures = draw(identified, recording, output.with_suffix(""), options)
         program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
         write_text(
             car_file.vehicle_file(identified, f"The car of {args.recording.name}, by {program}.", vehicle), output
@@ -147,7 +147,7 @@ def say(identified: "Identified", recording: "Measurement", out: Printer) -> Non
         out.say(line)
 
 
-def draw(identified: "Identified", recording: "Measurement", stem: Path, shown: "FigureOptions") -> list[Path]:
+def draw(identified: "Identified", recording: "Measurement", stem: Path, options: "FigureOptions") -> list[Path]:
     """The figures, STEM_simulation.png and so on."""
     from ..identification.fit_figures import plot_innovations, plot_simulation
     from ..identification.uncertainty_figures import plot_cost, plot_response
@@ -155,7 +155,7 @@ def draw(identified: "Identified", recording: "Measurement", stem: Path, shown: 
     def named(what: str) -> Path:
         return stem.with_name(f"{stem.name}_{what}")
 
-    one = shown._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
+    one = options._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
     return [
         *plot_simulation(identified, recording, named("simulation"), one),
         *plot_innovations(identified, named("innovations"), one),

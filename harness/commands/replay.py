@@ -85,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
     given = settings_of_each(args, args.plant, by_name(args.controller or PLACES["controller"][:1]))
     first = next(iter(given.values()))
     track, load = on_road(recording, first)
-    shown = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
+    options = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
     same = own | {"controllers": list(given), "columns": dict(args.columns)} | of_files(args)
     same |= {f"with {name}": distinguishing(each) for name, each in given.items()}
     read = [args.recording, *args.databases, *args.aliases]
@@ -96,12 +96,12 @@ def run(args: argparse.Namespace) -> int:
         made.out.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {first.build} FMUs, {', '.join(given)}{level}")
         rides = replay(track, load, given, args.held)
         made.begin()
-        made.wrote(*write(rides, track, plant, args.output, shown, args.format, recording.file_units))
+        made.wrote(*write(rides, track, plant, args.output, options, args.format, recording.file_units))
         metrics_of = {ride.controller: ride.metrics for ride in rides}
         for provenance, path in made.reports():
-            from ..studies.drives import replay_report as page
+            from ..studies.drives import replay_report
 
             drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
-            page.report(drawn, (track.t, track.v), title, rides_reasons(metrics_of), provenance, path)
+            replay_report.report(drawn, (track.t, track.v), title, rides_reasons(metrics_of), provenance, path)
         made.tell(print_rides, metrics_of, f"{plant} on {recording.name}", runs=records(rides, track, plant))
     return 0

@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
 
     asked = chosen([args.manoeuvre])
     (manoeuvre,) = asked.manoeuvres.values()
-    shown = _look(args, manoeuvre)
+    options = _options_of_figure(args, manoeuvre)
     require_steps(manoeuvre.duration, args.step)
     require_frames(args, loop(given).own)
     plant, stem = given.plant_name, args.output / f"{given.plant_name}_{manoeuvre.name}_{args.control}"
@@ -98,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
         made.out.say(f"{manoeuvre.name} on {plant}, {given.build} FMUs, damping {args.control}")
         results = simulate(manoeuvre, given)
         made.begin()
-        _write(args, made, given, manoeuvre, results, stem, shown)
+        _write(args, made, given, manoeuvre, results, stem, options)
         _tell(made, given, manoeuvre, results)
     return 0
 
@@ -110,7 +110,7 @@ def _write(
     manoeuvre: Manoeuvre,
     results: "Results",
     stem: Path,
-    shown: FigureOptions,
+    options: FigureOptions,
 ) -> None:
     """Writes what was asked for: signals, frames and the figure."""
     from ..views.signals_file import write_signals
@@ -121,10 +121,10 @@ def _write(
         from ..views.run_figure import plot_run
 
         title = f"{given.plant_name}, {manoeuvre.description}, damping {args.control}"
-        made.wrote(*plot_run(results, manoeuvre, title, stem, shown))
+        made.wrote(*plot_run(results, manoeuvre, title, stem, options))
 
 
-def _look(args: argparse.Namespace, manoeuvre: Manoeuvre) -> FigureOptions:
+def _options_of_figure(args: argparse.Namespace, manoeuvre: Manoeuvre) -> FigureOptions:
     """What was asked of the figure.
 
     Raises:

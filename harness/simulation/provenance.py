@@ -44,8 +44,8 @@ class Made:
 
     @cached_property
     def fits(self) -> dict[str, Fit]:
-        """The systems that run, by their plants."""
-        return {plant: fit(system) for plant, system in self._systems.items()}
+        """The systems that run, by their names."""
+        return {name: fit(system) for name, system in self._systems.items()}
 
     def begin(self, *others: Path) -> None:
         """From now on files are replaced, so their records go: a run that stops leaves none that is not theirs.
@@ -80,7 +80,7 @@ def recorded(
     Args:
         record: the JSON file beside the results.
         run: all that distinguishes it.
-        systems: that run, by their plants.
+        systems: that run, by their names.
         inputs: files beside the FMUs that it reads.
         results: files that it will write, as far as their names are known.
         replace: whether results of another run may be replaced.
@@ -176,7 +176,7 @@ def content(
 
     Args:
         run: all that distinguishes it.
-        fits: the systems that ran, by their plants.
+        fits: the systems that ran, by their names.
         files: that it has written.
         inputs: files beside the FMUs that it has read.
     """
@@ -186,8 +186,8 @@ def content(
         "command_line": shlex.join(sys.argv),
         "run": run,
         "fmus": {
-            plant: {name: {"file": path, "digest": digest(path)} for name, path in fit.system.instances.items()}
-            for plant, fit in fits.items()
+            system: {name: {"file": path, "digest": digest(path)} for name, path in fit.system.instances.items()}
+            for system, fit in fits.items()
         },
         "inputs": {str(path): digest(path) for path in inputs if path is not None},
         "files": [path.name for path in files],

@@ -27,13 +27,13 @@ def digests(systems: Iterable[System]) -> dict[Path, str]:
     return {path: digest(path) for path in paths}
 
 
-def require_same_fmus(wanted: Mapping[Path, str]) -> None:
+def require_same_fmus(expected: Mapping[Path, str]) -> None:
     """Refuses other FMUs than those with these digests.
 
     Raises:
         DrivelineError: one is absent here or has another content.
     """
-    for path, its in wanted.items():
+    for path, its in expected.items():
         if not path.is_file():
             raise DrivelineError(f"there is no FMU {path}; all that run cases need it at this path")
         status = path.stat()

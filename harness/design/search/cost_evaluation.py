@@ -94,10 +94,10 @@ class CostEvaluation:
         Args:
             workers, scheduler: see `run_many`.
         """
-        wanted, evaluation = self.digests(), replace(self, settings=anywhere(self.settings))
+        expected, evaluation = self.digests(), replace(self, settings=anywhere(self.settings))
 
         def measured(trial: Trial) -> Metrics:
-            require_same_fmus(wanted)
+            require_same_fmus(expected)
             return evaluation.measured(trial)
 
         with many(measured, workers, scheduler) as answers:

@@ -130,11 +130,11 @@ def messages(sent: Iterable[Telegram]) -> list[Message]:
 
 
 def _on_bus(signal: Signal, first: int, receiver: str) -> Any:
-    from cantools.database.can import Signal as Written
+    from cantools.database.can import Signal as DbcSignal
     from cantools.database.conversion import BaseConversion
 
     real = signal.resolution is None
-    return Written(
+    return DbcSignal(
         signal.content.name,
         first,
         signal.bits,

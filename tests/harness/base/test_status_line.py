@@ -8,7 +8,7 @@ from threading import Event
 
 import pytest
 
-from driveline.harness.base import status_line as subject
+from driveline.harness.base import status_line
 from driveline.harness.base.status_line import Line, no_longer_waiting, waiting
 
 
@@ -35,8 +35,8 @@ class Terminal(io.StringIO):
 
 @pytest.fixture(autouse=True)
 def time_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(subject, "QUIET", -1.0)
-    monkeypatch.setattr(subject, "INTERVAL", 0.001)
+    monkeypatch.setattr(status_line, "QUIET", -1.0)
+    monkeypatch.setattr(status_line, "INTERVAL", 0.001)
     monkeypatch.setenv("TERM", "xterm")
 
 
@@ -62,7 +62,7 @@ def test_what_is_printed_takes_the_place_of_the_line() -> None:
 
 
 def test_output_that_has_just_come_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(subject, "QUIET", 1e6)
+    monkeypatch.setattr(status_line, "QUIET", 1e6)
     line = Line(shown := Terminal(), "driveline compare")
     line.beat()
     assert shown.getvalue() == ""

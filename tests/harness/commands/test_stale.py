@@ -9,8 +9,7 @@ import pytest
 from driveline.fmus import origin
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
-from driveline.harness.loop import built_fmus
-from driveline.harness.loop import stale_fmus as judging
+from driveline.harness.loop import built_fmus, stale_fmus
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
@@ -44,7 +43,7 @@ def test_a_stale_file_is_named(
 ) -> None:
     monkeypatch.undo()
     plant = tmp_path / "stale" / "TwoMassDriveline.fmu"
-    monkeypatch.setattr(judging, "is_stale", lambda path: path == plant)
+    monkeypatch.setattr(stale_fmus, "is_stale", lambda path: path == plant)
     assert main([*RUN, "--fmus", str(both_built), "--plant", str(plant), "--output", str(tmp_path / "results")]) == 0
     assert f"stale, not made from the sources that are installed: {plant}" in caplog.text
 

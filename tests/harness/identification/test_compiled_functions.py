@@ -7,7 +7,7 @@ import numpy as np
 import platformdirs
 import pytest
 
-from driveline.harness.identification import compiled_functions as room
+from driveline.harness.identification import compiled_functions
 from driveline.harness.identification.compiled_functions import compiled
 
 X = ca.SX.sym("x", 3)
@@ -36,7 +36,7 @@ def test_it_gives_the_same_bits(kept: Path) -> None:
 
 def test_it_is_compiled_once(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compiled(FUNCTION)
-    monkeypatch.setattr(room, "_compile", None)
+    monkeypatch.setattr(compiled_functions, "_compile", None)
     assert same(compiled(FUNCTION))
 
 

@@ -16,8 +16,7 @@ from driveline.fmus.comparators import COMPARATORS
 from driveline.fmus.python.packaging import build
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
-from driveline.harness.loop import built_fmus as building
-from driveline.harness.loop import places
+from driveline.harness.loop import built_fmus, places
 from driveline.harness.loop.places import NATIVE
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -94,7 +93,7 @@ def test_all_fmus_are_those_of_the_product_and_a_comparator_is_built_by_its_name
 def test_one_that_is_missing_is_built_when_it_runs(
     folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(building, "BUILD", folder)
+    monkeypatch.setattr(built_fmus, "BUILD", folder)
     monkeypatch.setitem(MANOEUVRES, "tipin15", replace(TIPIN, duration=0.1))
     warn_once.cache_clear()
     with caplog.at_level(logging.WARNING):
