@@ -40,9 +40,12 @@ def replay(
 
     Raises:
         DrivelineError: there is no controller, or two have the same name; and what `simulate` raises.
+        TypeError: a single controller is given.
         WiringError: `held` is less than a communication step, or the motor or plant lacks what the road load needs.
         MissingExtra: the extra `replay` is not installed.
     """
+    if "controller" in changes:  # for scripts that no type checker reads
+        raise TypeError("replay takes controllers, and no single controller")
     require_held(held)
     if not controllers:
         raise DrivelineError("there is no controller to drive with; NoDamping is one too")

@@ -31,7 +31,10 @@ def analyse(
 
     Raises:
         DrivelineError: the controller is not linear in contact, or the loop with it is not stable.
+        TypeError: a single plant is given.
     """
+    if "plant" in changes:  # for scripts that no type checker reads
+        raise TypeError("analyse takes plants, and no single plant")
     common = Settings(controller=controller).replace(**changes)
     return analysis(
         {

@@ -1,6 +1,7 @@
 """The main job on a part of its cases."""
 
 import csv
+from typing import Any
 
 import pytest
 
@@ -48,8 +49,9 @@ def test_manoeuvres_of_the_same_name_are_refused():
 
 @pytest.mark.parametrize("own", ["plant", "control", "gearbox"])
 def test_what_is_not_to_be_set_for_all_runs_is_refused_before_any_of_them(own):
+    changes: Any = {own: "TwoMassDriveline"}
     with pytest.raises(TypeError, match=own):
-        driveline.compare([], **{own: "TwoMassDriveline"})
+        driveline.compare([], **changes)
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import islice
 from shutil import copyfile
+from typing import Any
 
 import numpy as np
 import pytest
@@ -84,6 +85,12 @@ def test_a_program_gets_the_same_rides(replayed, short_drive, settings):
 def test_what_a_program_cannot_replay_is_refused(short_drive, given, message):
     with pytest.raises(driveline.DrivelineError, match=message):
         driveline.replay(driveline.read_drive(short_drive), **given)
+
+
+def test_a_single_controller_is_refused_and_not_ignored(short_drive):
+    changes: Any = {"controller": "SpeedWashout"}
+    with pytest.raises(TypeError, match="replay takes controllers"):
+        driveline.replay(driveline.read_drive(short_drive), **changes)
 
 
 def town():

@@ -1,6 +1,7 @@
 """The whole analysis as a program asks for it."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,3 +17,9 @@ def test_car_controller_and_settings_reach_every_plant(monkeypatch: pytest.Monke
     assert plant == given.plant == "ValidationVehicle"
     assert (given.folder, given.controller) == (Path("here"), "SpeedWashout")
     assert given.parameters == {"plant.m": 1900.0, "controller.k_v": 2.0}
+
+
+def test_a_single_plant_is_refused_and_not_ignored() -> None:
+    changes: Any = {"plant": "ValidationVehicle"}
+    with pytest.raises(TypeError, match="analyse takes plants"):
+        driveline.analyse(**changes)
