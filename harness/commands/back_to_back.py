@@ -4,7 +4,7 @@ differences, back_to_back.md in the output folder; the exit code is 1 if one is 
 
 examples:
   driveline study back-to-back                 writes results/back_to_back.md
-  driveline study back-to-back                 --output docs               writes docs/back_to_back.md
+  driveline study back-to-back --output docs   writes docs/back_to_back.md
 """
 
 import argparse

@@ -5,8 +5,8 @@ communication step. The result is a page of Markdown, coupling.md in the
 output folder.
 
 examples:
-  driveline study coupling            writes results/coupling.md
-  driveline study coupling            --output docs               writes docs/coupling.md
+  driveline study coupling                 writes results/coupling.md
+  driveline study coupling --output docs   writes docs/coupling.md
 """
 
 import argparse
