@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from ctypes import byref, c_int, c_void_p
 from itertools import count
 from math import isfinite
+from threading import Lock
 from typing import Any, cast
 
 import fmpy
@@ -54,6 +55,10 @@ def _callbacks(key: int) -> fmi2CallbackFunctions:
     return callbacks
 
 
+_loading = Lock()
+"""fmpy changes the working directory of the process while it loads a binary, so one thread does at a time."""
+
+
 class FMU2Traced(FMU2Slave):
     """What fmpy makes of an FMU; notes each call, and takes a status that FMI does not know for a refusal.
 
@@ -63,7 +68,8 @@ class FMU2Traced(FMU2Slave):
     def __init__(self, number: int, **arguments: Any) -> None:
         note(number, "loading its binary")
         self.number = number
-        super().__init__(**arguments)
+        with _loading:
+            super().__init__(**arguments)
 
     def _call(self, fname: str, *args: Any) -> Any:
         note(self.number, fname, args[1] if fname == "fmi2DoStep" else AT_START)

@@ -13,10 +13,7 @@ from typing import Annotated, Any, Generic, NamedTuple, TypeVar
 
 from ..block.declaration import Enumeration, Real
 from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, maximum, where
-from . import launch_direction as departure
-from . import oscillation_monitor as swings
-from . import signal_trust as trust
-from . import standstill
+from . import launch_direction, oscillation_monitor, signal_trust, standstill
 from .interfaces import Addition, Motion
 from .launch_direction import LaunchState
 from .oscillation_monitor import SwingState
@@ -118,11 +115,13 @@ def trust_after(
     x: AnyState, signals: MonitorState, wheel_state: WheelState, launch: LaunchState, resting: bool, p: Parameters
 ) -> TrustState:
     """The trust in the motor signals with those of this sample; `resting`: the car is at rest."""
-    wrong_direction = logical_and(departure.is_against(launch), logical_not(departure.is_against(x.launch_direction)))
-    confirmed = logical_and(wheel_state.reference_valid, swings.is_calm(x.opposing, p))
-    implausible = logical_or(swings.feeds(x.swings), wrong_direction)
+    wrong_direction = logical_and(
+        launch_direction.is_against(launch), logical_not(launch_direction.is_against(x.launch_direction))
+    )
+    confirmed = logical_and(wheel_state.reference_valid, oscillation_monitor.is_calm(x.opposing, p))
+    implausible = logical_or(oscillation_monitor.feeds(x.swings), wrong_direction)
     mismatch_time = maximum(wheel_state.mismatch_time, where(launch.wrong_sign, T_S, 0.0))
-    return trust.update(x.trust, signals.bad, mismatch_time, implausible, confirmed, resting, T_S, p)
+    return signal_trust.update(x.trust, signals.bad, mismatch_time, implausible, confirmed, resting, T_S, p)
 
 
 def damping_limited(added: Addition, p: Parameters) -> Addition:
