@@ -108,6 +108,9 @@ def test_sliders_end_within_what_every_fmu_takes(runner: RequestRunner) -> None:
         assert knob.low <= knob.value <= knob.high, knob.name
         with kept_loaded():
             for end in (knob.low, knob.high):
-                kind = "car" if knob in runner.car else "gains"
+                turned = {knob.name: end}
                 for plant in runner.plants:
-                    runner.answer(Request(plant, "tipin15", **{kind: {knob.name: end}}))
+                    request = Request(plant, "tipin15")
+                    runner.answer(
+                        replace(request, car=turned) if knob in runner.car else replace(request, gains=turned)
+                    )

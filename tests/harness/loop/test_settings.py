@@ -65,4 +65,4 @@ def test_what_no_run_has_is_refused() -> None:
 
 def test_a_field_that_is_none_is_refused_with_the_nearest() -> None:
     with pytest.raises(TypeError, match=r"^there is no setting sed; did you mean seed\?$"):
-        settings(sed=2)
+        settings(sed=2)  # type: ignore[call-arg]
