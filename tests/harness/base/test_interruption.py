@@ -110,7 +110,8 @@ class Ended(Exception):
 def end_in_a_step(number: signal.Signals, over: threading.Event) -> None:
     """Sends the signal to this process while its main thread runs the Python of an FMU in a step.
 
-    An exception while PythonFMU makes an instance would leave the process unable to make another.
+    An exception while PythonFMU makes an instance would leave the process unable to make another. Threads take turns so
+    often here that this one also gets a turn within a step, and not only between two, where PythonFMU gives it one.
     """
     while not over.wait(0.001):
         frame = sys._current_frames().get(threading.main_thread().ident or 0)
@@ -133,6 +134,8 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
     before = signal.signal(number, end)
     over = threading.Event()
     sender = threading.Thread(target=end_in_a_step, args=(number, over))
+    turn = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)
     sender.start()
     try:
         with pytest.raises(Ended):
@@ -141,6 +144,7 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
     finally:
         over.set()
         sender.join()
+        sys.setswitchinterval(turn)
         signal.signal(number, before)
 
 
