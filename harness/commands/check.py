@@ -14,11 +14,16 @@ examples:
 
 import argparse
 import json
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..base.plain_text import quoted
 from .options import add_json, add_limits, add_printing
 from .settings import limits
+
+if TYPE_CHECKING:
+    from ..exchange.compliance.rule import Verdict
 
 FORMATS = ("text", "json", "junit")
 
@@ -50,34 +55,46 @@ def rule(text: str) -> str:
 
 def run(args: argparse.Namespace) -> int:
     from ..exchange.compliance.check import check
-    from ..exchange.compliance.junit import junit
     from ..exchange.compliance.rule import Severity
-    from ..views.terminal import print_verdict
 
     style = "json" if args.json else args.format or FORMATS[0]
-    failing = {severity.value for severity in Severity} if args.strict else {Severity.ERROR.value}
-    checks = {path: check(path, limits(args), args.quick, args.ignore) for path in args.fmus}
-    found = {}
-    for path, answers in checks.items():
-        if style == "text" and not args.quiet:
-            print(path)
-        found[str(path)] = verdicts = []
-        for verdict in answers:
-            verdicts.append(verdict)
-            if style == "text" and not args.quiet:
-                print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule, verdict.tried)
-            elif style == "text":
-                print("".join(f"{path}: {verdict.severity}: {problem}\n" for problem in verdict.problems), end="")
-    every = [verdict for verdicts in found.values() for verdict in verdicts]
-    counts = {
-        severity.value: sum(len(v.problems) for v in every if v.severity == severity.value) for severity in Severity
-    }
+    checks = {path: check(path, limits(args), args.quick, args.ignore) for path in args.fmus}  # all files are there
+    found = {str(path): printed(path, answers, style == "text", args.quiet) for path, answers in checks.items()}
+    counts = dict.fromkeys((severity.value for severity in Severity), 0)
+    for verdict in (verdict for verdicts in found.values() for verdict in verdicts):
+        counts[verdict.severity] += len(verdict.problems)
+    failing = set(counts) if args.strict else {Severity.ERROR.value}
+    print_summary(style, found, counts, failing, args.quiet)
+    return 1 if any(counts[severity] for severity in failing) else 0
+
+
+def printed(path: Path, answers: "Iterable[Verdict]", text: bool, quiet: bool) -> "list[Verdict]":
+    """The verdicts on an FMU; as text each is printed as it comes, or only its problems."""
+    from ..views.terminal import print_verdict
+
+    if text and not quiet:
+        print(path)
+    verdicts = []
+    for verdict in answers:
+        verdicts.append(verdict)
+        if text and quiet:
+            print("".join(f"{path}: {verdict.severity}: {problem}\n" for problem in verdict.problems), end="")
+        elif text:
+            print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule, verdict.tried)
+    return verdicts
+
+
+def print_summary(
+    style: str, found: "Mapping[str, list[Verdict]]", counts: Mapping[str, int], failing: set[str], quiet: bool
+) -> None:
+    """Prints the numbers of findings; in the styles for tools the one document."""
     if style == "json":
         fmus = [{"fmu": name, "verdicts": [v._asdict() for v in verdicts]} for name, verdicts in found.items()]
         print(json.dumps({"findings": sum(counts.values()), **counts, "fmus": fmus}, indent=2))
     elif style == "junit":
+        from ..exchange.compliance.junit import junit
+
         print(junit(found, failing))
-    elif not args.quiet:
+    elif not quiet:
         summary = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items() if count)
         print(f"{summary or 'no findings'} in {len(found)} FMU(s)")
-    return 1 if any(counts[severity] for severity in failing) else 0

@@ -10,16 +10,12 @@ examples:
 """
 
 import argparse
-from itertools import product
 
-from ..cosimulation.system import Scheme
 from ..loop.built_fmus import built
 from ..loop.places import PLANTS, STEP_SIZE
 from ..loop.settings import loop
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
-
-DEAD_TIME_STEPS = (STEP_SIZE, 0.5 * STEP_SIZE)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,26 +31,14 @@ def run(args: argparse.Namespace) -> int:
     from ..base.atomic_files import write_text
     from ..cosimulation.schedule import transfers
     from ..cosimulation.wiring import fit
-    from ..studies.coupling.coupling import MANOEUVRES, compare
+    from ..studies.coupling.coupling import compare_all
     from ..studies.coupling.coupling_page import page
-    from ..studies.coupling.dead_time import dead_times
-    from ..studies.coupling.step_dependence import compare_all
+    from ..studies.coupling.dead_time import all_dead_times
+    from ..studies.coupling.step_dependence import compare_all as compare_steps
 
-    path = args.output / "coupling.md"
-    fitted = fit(loop(folder=args.fmus))
-    text = page(
-        [
-            compare(plant, each, scheme, folder=args.fmus)
-            for plant in PLANTS
-            for each in MANOEUVRES
-            for scheme in Scheme
-        ],
-        {(s, h): dead_times(s, h, args.fmus) for s, h in product(Scheme, DEAD_TIME_STEPS)},
-        transfers(fitted.system, fitted.interfaces),
-        list(fitted.interfaces),
-        STEP_SIZE,
-        compare_all(args.fmus),
-    )
-    write_text(text, path)
+    path, fitted = args.output / "coupling.md", fit(loop(folder=args.fmus))
+    moving, order = transfers(fitted.system, fitted.interfaces), list(fitted.interfaces)
+    comparisons, late, metrics = compare_all(args.fmus), all_dead_times(args.fmus), compare_steps(args.fmus)
+    write_text(page(comparisons, late, moving, order, STEP_SIZE, metrics), path)
     Printer(args).files([path])
     return 0

@@ -5,6 +5,7 @@ The demand changes only at these instants, so that all runs are given the same.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -117,6 +118,12 @@ def compare(
         results = cosimulated(plant, manoeuvre, NOISELESS, step, scheme, folder)
         deviations[step] = {name: deviation(results[name], exact[name]) for name in SIGNALS}
     return Comparison(plant, manoeuvre, scheme, deviations)
+
+
+def compare_all(folder: Path = BUILD) -> list[Comparison]:
+    """The comparisons of both plants, all manoeuvres and all schemes, with the FMUs in `folder`."""
+    cases = product(PLANTS, MANOEUVRES, Scheme)
+    return [compare(plant, manoeuvre, scheme, folder=folder) for plant, manoeuvre, scheme in cases]
 
 
 def deviation(signal: np.ndarray, exact: np.ndarray) -> Deviation:

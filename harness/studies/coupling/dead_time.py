@@ -6,6 +6,7 @@ dead time of a connection is how much later the signal behind it is than the sig
 """
 
 from collections.abc import Mapping
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from ....models.controller.torque_estimator import Estimate
 from ...cosimulation.system import Scheme
-from ...loop.places import BUILD
+from ...loop.places import BUILD, STEP_SIZE
 from ...manoeuvres.signals import Signal
 from .coupling import NOISELESS, T_S, cosimulated, reference, short
 
@@ -100,6 +101,12 @@ def dead_times(scheme: Scheme, step_size: float, folder: Path = BUILD) -> dict[s
             after, before = (lateness(results[s], exact[s], late[s]) for s in (section.sink, section.source))
             found[section.name] = after - before
     return found
+
+
+def all_dead_times(folder: Path = BUILD) -> dict[tuple[Scheme, float], dict[str, float]]:
+    """Those of all schemes at the communication step of the loop and at half of it, with the FMUs in `folder`."""
+    cases = product(Scheme, (STEP_SIZE, 0.5 * STEP_SIZE))
+    return {(scheme, step): dead_times(scheme, step, folder) for scheme, step in cases}
 
 
 def lateness(signal: np.ndarray, exact: np.ndarray, late: np.ndarray) -> float:
