@@ -64,7 +64,8 @@ lint: $(READY) ## format, lint and types
 
 check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline build
-	$(BIN)/driveline check build/*.fmu build/native/*.fmu
+	$(BIN)/driveline check --ignore symbols build/*.fmu # the host lends them Python
+	$(BIN)/driveline check build/native/*.fmu
 
 cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
 	$(INSTALL) '.[cross]'

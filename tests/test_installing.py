@@ -87,7 +87,7 @@ def test_an_installed_wheel_builds_the_same_fmus_as_the_checkout(away: Path, bui
     [
         ["simulate", "--manoeuvre", "tipin15"],
         pytest.param(["compare", "--manoeuvre", "tipin15", "--plant", "TwoMassDriveline"], marks=pytest.mark.slow),
-        ["check", "--quick", "build/native/DampingController.fmu", "build/MotorTorqueLoop.fmu"],
+        ["check", "--quick", "build/native/DampingController.fmu", "build/native/MotorTorqueLoop.fmu"],
     ],
     ids=lambda words: words[0],
 )

@@ -6,10 +6,10 @@ A finding is an error (hosts fail), a warning (tools complain) or a note (people
 Exit code 0: no errors; 1: errors, with --strict any finding; 2: no such file. docs/check.md lists the rules.
 
 examples:
-  driveline check build/TwoMassDriveline.fmu
-  driveline check --strict build/*.fmu
+  driveline check build/native/TwoMassDriveline.fmu
+  driveline check --strict build/native/*.fmu
   driveline check --quick --ignore archive-pages --ignore origin their_car.fmu
-  driveline check --format junit build/*.fmu > findings.xml
+  driveline check --format junit build/native/*.fmu > findings.xml
 """
 
 import argparse

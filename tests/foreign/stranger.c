@@ -18,6 +18,9 @@
 #ifndef IN_RESET
 #define IN_RESET
 #endif
+#ifndef IN_GET_BOOLEAN_STATUS
+#define IN_GET_BOOLEAN_STATUS
+#endif
 #ifndef IN_FREE
 #define IN_FREE
 #endif
@@ -110,5 +113,5 @@ int fmi2CancelStep(Component c) { return 3; }
 int fmi2GetStatus(Component c, int kind, int *value) { return 3; }
 int fmi2GetRealStatus(Component c, int kind, double *value) { return 3; }
 int fmi2GetIntegerStatus(Component c, int kind, int *value) { return 3; }
-int fmi2GetBooleanStatus(Component c, int kind, int *value) { return 3; }
+int fmi2GetBooleanStatus(Component c, int kind, int *value) { IN_GET_BOOLEAN_STATUS; return 3; }
 int fmi2GetStringStatus(Component c, int kind, const char **value) { return 3; }

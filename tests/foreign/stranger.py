@@ -1,6 +1,7 @@
 """Plants in C that misbehave: they stand still, and do what a test puts into their calls."""
 
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -17,15 +18,15 @@ PARAMETERS = {"v_0": 0.0, "T_0": 0.0, "i": 9.0, "r": 0.3, "m": 1500.0, "g": 9.81
 OUTPUTS = ("omega_1", "omega_2", "omega_wheel_L", "omega_wheel_R", "T_gear", "v", "a_body")
 
 
-def build_stranger(folder: Path, name: str = "stranger", **does: str) -> Path:
-    """Builds NAME.fmu; `does` is C by the macro of stranger.c whose place it takes."""
+def build_stranger(folder: Path, name: str = "stranger", libraries: Sequence[str] = ("-lm",), **does: str) -> Path:
+    """Builds NAME.fmu with these libraries; `does` is C by the macro of stranger.c whose place it takes."""
     try:
         compiler = host_compiler()
     except CompilerError as reason:
         pytest.skip(str(reason))
     library = folder / f"{name}{fmpy.sharedLibraryExtension}"
     macros = [f"-D{macro}={code}" for macro, code in does.items()]
-    subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, SOURCE, "-o", library, "-lm"], check=True)
+    subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, SOURCE, "-o", library, *libraries], check=True)
     path = folder / f"{name}.fmu"
     with ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", description())

@@ -13,12 +13,13 @@ from ...cosimulation.limits import USUAL, Limits
 from ...cosimulation.unpacked_fmu import Unpacked, unpacked
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
+from .binary_rules import BINARY_RULES
 from .description_rules import DESCRIPTION_RULES
 from .rule import Rule, Severity, Verdict
 
 READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU")
 
-RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BEHAVIOUR_RULES)
+RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BINARY_RULES, *BEHAVIOUR_RULES)
 
 
 def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Collection[str] = ()) -> Iterator[Verdict]:
@@ -60,14 +61,14 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
         return
     yield READABLE.verdict([])
     yield from (rule.judge(interface) for rule in kept(DESCRIPTION_RULES))
-    yield from _behaviour(interface, list(kept(QUICK_RULES if quick else BEHAVIOUR_RULES)), limits)
+    yield from _behaviour(interface, list(kept((*BINARY_RULES, *(QUICK_RULES if quick else BEHAVIOUR_RULES)))), limits)
 
 
 def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> Iterator[Verdict]:
     """Tries the FMU in a process, and in another one after it has ended that."""
     isolated = None
     try:
-        for rule in rules:
+        for tried, rule in enumerate(rules, 1):
             try:
                 if isolated is None:
                     isolated = IsolatedProcess([interface.path.name] * 2, limits.call)
@@ -79,7 +80,7 @@ def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> I
                 isolated = None
                 yield rule.verdict([str(error)])
                 if rule.name == BEHAVIOUR_RULES[0].name:
-                    yield from (other.verdict([], tried=False) for other in rules if other is not rule)
+                    yield from (other.verdict([], tried=False) for other in rules[tried:])
                     return
     finally:
         if isolated:

@@ -2,11 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from ctypes import byref, c_int
 from math import inf, sin
 from typing import Any
 
+from fmpy.fmi2 import fmi2Discard, fmi2OK, fmi2Terminated
 from fmpy.model_description import ModelVariable
 
+from ...base.errors import SimulationError
 from ...cosimulation.instance import Instance, instantiated
 from ...cosimulation.interface import type_of
 from ...cosimulation.unpacked_fmu import Unpacked
@@ -17,7 +20,11 @@ READABLE = ("Real", "Integer", "Boolean", "String")
 
 
 class Host:
-    """An instance that is fed with small oscillations around the start values of its Real inputs."""
+    """An instance that is fed with small oscillations around the start values of its Real inputs.
+
+    Attributes:
+        ended: whether the FMU has ended the simulation, as FMI lets it (section 4.2.1, fmi2Terminated).
+    """
 
     def __init__(self, instance: Instance) -> None:
         self.instance = instance
@@ -26,22 +33,33 @@ class Host:
         self.step_size = float(default.stepSize or 1e-3) if default else 1e-3
         self.stop = float(default.stopTime or 1.0) if default else 1.0
         self.inputs = [v for v in interface.of_causality("input") if v.type == "Real"]
-        self.step, self.time = 0, 0.0
+        self.step, self.time, self.ended = 0, 0.0, False
 
     def start(self) -> None:
         """From instantiation or reset to the first step."""
-        self.step, self.time = 0, 0.0
+        self.step, self.time, self.ended = 0, 0.0, False
         self.instance.call("setupExperiment", startTime=0.0)
         self.instance.call("enterInitializationMode")
         self._feed()
         self.instance.call("exitInitializationMode")
 
     def advance(self, size: float) -> Outputs:
-        """Makes a communication step; the outputs after it."""
-        self._feed()
-        self.instance.call("doStep", self.time, size)
+        """Makes a communication step, unless the simulation has ended; the outputs after it."""
+        if not self.ended:
+            self._feed()
+            self._step(size)
         self.step, self.time = self.step + 1, self.time + size
         return self.outputs()
+
+    def _step(self, size: float) -> None:
+        try:
+            self.instance.call("doStep", self.time, size)
+        except SimulationError:
+            terminated, component = c_int(0), self.instance.component
+            asked = self.instance.function("fmi2GetBooleanStatus")(component, c_int(fmi2Terminated), byref(terminated))
+            if self.instance.status != fmi2Discard or asked != fmi2OK or not terminated:
+                raise
+            self.ended = True
 
     def run(self, steps: int) -> list[Outputs]:
         """Outputs at the beginning and after each step of the default size."""

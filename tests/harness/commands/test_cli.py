@@ -347,8 +347,8 @@ def test_check_looks_at_no_fmu_where_one_is_missing(capsys, tmp_path):
     assert answer(capsys, "check", str(faulty), "nothing.fmu")[:2] == (2, "")
 
 
-def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
-    assert answer(capsys, "check", str(built / "MotorTorqueLoop.fmu"))[0] == 0
+def test_check_tells_findings_by_its_exit_code(capsys, native, tmp_path):
+    assert answer(capsys, "check", str(native / "MotorTorqueLoop.fmu"))[0] == 0
     faulty = tmp_path / "faulty.fmu"
     faulty.write_text("no archive")
     code, out, _ = answer(capsys, "check", str(faulty))
@@ -362,8 +362,8 @@ def test_check_tells_findings_by_its_exit_code(capsys, built, tmp_path):
     assert (code, document["findings"], document["fmus"][0]["fmu"]) == (1, 1, str(faulty))
 
 
-def test_check_fails_for_errors_alone_unless_it_is_strict(capsys, built, tmp_path):
-    path = tampered(built / "MotorTorqueLoop.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(' unit="s"', ""))
+def test_check_fails_for_errors_alone_unless_it_is_strict(capsys, native, tmp_path):
+    path = tampered(native / "MotorTorqueLoop.fmu", tmp_path / "theirs.fmu", lambda xml: xml.replace(' unit="s"', ""))
     code, out, _ = answer(capsys, "check", "--quick", str(path))
     assert code == 0
     assert "has no unit" in out

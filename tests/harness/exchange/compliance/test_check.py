@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 import tempfile
 from xml.etree import ElementTree
 from zipfile import ZipFile
@@ -33,12 +34,21 @@ def file_findings(path):
     return "\n".join(problem for verdict in verdicts for problem in verdict.problems)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [PLANT, "ValidationVehicle.fmu", "MotorTorqueLoop.fmu", "WheelSpeedCan.fmu", "DampingController.fmu"],
-)
-def test_our_fmus_have_no_findings(built, name):
-    assert findings(built / name) == []
+OURS = [PLANT, "ValidationVehicle.fmu", "MotorTorqueLoop.fmu", "WheelSpeedCan.fmu", "DampingController.fmu"]
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_our_native_fmus_have_no_findings(native, name):
+    assert findings(native / name) == []
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_our_python_fmus_need_only_that_the_host_lends_them_python(built, name):
+    found = broken(built / name)
+    assert found.keys() <= {"symbols"}
+    if sys.platform == "linux":
+        severity, text = found["symbols"]
+        assert (severity, text.partition(" and ")[0].partition(" needs ")[2][:3]) == ("error", "_Py")
 
 
 @pytest.mark.parametrize(
@@ -184,6 +194,28 @@ def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, un
     assert errors.keys() == rules
     assert all(re.search(finding, text) for text in errors.values())
     assert list(unpacked.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the rule is for binaries of Linux")
+def test_a_symbol_of_a_library_that_is_not_named_is_found(tmp_path):
+    """Python has loaded libm: the FMU runs here, and in no host in C."""
+    wants = {"IN_INSTANTIATE": "now = 0.0 * acos(now)"}
+    assert "symbols" not in broken(build_stranger(tmp_path, "linked", **wants))
+    found = broken(build_stranger(tmp_path, libraries=[], **wants))
+    assert found["symbols"] == ("error", "stranger.so needs acos, which no library has that it names")
+    assert "runs" not in found
+
+
+ENDS = {"IN_DO_STEP": "if (time > 0.0105) return 2"}
+
+
+def test_an_end_that_the_fmu_wants_is_no_error(tmp_path):
+    """It discards a step and says that it has terminated; without that it is a refusal."""
+    ending = build_stranger(
+        tmp_path, "ending", IN_GET_BOOLEAN_STATUS="if (kind == 3) { *value = 1; return 0; }", **ENDS
+    )
+    assert not {"runs", "steps", "reset", "instances"} & broken(ending).keys()
+    assert "answered fmi2DoStep with discard" in broken(build_stranger(tmp_path, **ENDS))["runs"][1]
 
 
 def test_many_short_calls_are_not_one_that_hangs(tmp_path):

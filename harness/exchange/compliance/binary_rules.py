@@ -1,0 +1,50 @@
+"""Rules for the binary of an FMU. Each function is given it unpacked and yields what a host in C would miss."""
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import fmpy
+
+from ...cosimulation.unpacked_fmu import Unpacked
+from .rule import Rules, Severity
+
+MOST_NAMED = 3
+"""Symbols that are named of those that are missing."""
+
+LONGEST = 30.0
+"""How long in s the linker may look for symbols."""
+
+MISSING = re.compile(r"undefined symbol: ([^\s,]+)|(\S+) => not found|symbol (\S+), version \S+ not defined")
+
+BINARY_RULES = Rules()
+
+
+@BINARY_RULES.rule("symbols", Severity.ERROR, "its binary names the libraries that it needs (Linux)")
+def missing_symbols(fmu: Unpacked) -> Iterator[str]:
+    """Symbols that no library defines that the binary names as needed.
+
+    A host that happens to have loaded such a library lends it, as Python lends libm and itself; others cannot load the
+    binary. The dynamic linker is asked (`ldd -r`), in a process that has neither; what is not Linux is not looked at.
+    """
+    binary = Path(fmu.folder) / "binaries" / fmpy.platform / f"{fmu.interface.identifier}.so"
+    linker = shutil.which("ldd")
+    if not linker or not binary.is_file():
+        return
+    asked = [linker, "-r", str(binary)]
+    done = subprocess.run(
+        asked,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+        timeout=LONGEST,
+        env=os.environ | {"LC_ALL": "C"},
+    )
+    found = [next(filter(None, match.groups())) for match in MISSING.finditer(done.stdout + done.stderr)]
+    if found := list(dict.fromkeys(found)):
+        more = f" and {len(found) - MOST_NAMED} more" if found[MOST_NAMED:] else ""
+        yield f"{binary.name} needs {', '.join(found[:MOST_NAMED])}{more}, which no library has that it names"
