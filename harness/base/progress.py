@@ -8,6 +8,8 @@ from html import escape
 from time import monotonic
 from typing import Any
 
+from .interruption import end_if_abandoned
+
 QUIET = 1.0
 """Seconds that a run may take in silence."""
 
@@ -36,6 +38,7 @@ def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
 
         def done(count: int) -> None:
             nonlocal show
+            end_if_abandoned()
             if show is None and not silent and monotonic() - began > QUIET:
                 bar = _line_of_notebook if _in_notebook() else _bar
                 show = stack.enter_context(bar(total, label))

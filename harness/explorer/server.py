@@ -12,6 +12,7 @@ from bokeh.server.server import Server
 from bokeh.settings import settings
 
 from ..base.errors import DrivelineError
+from .admission import Admission
 from .request_runs import RequestRunner
 from .view import Save, Typed, View
 from .worker import Worker
@@ -36,20 +37,22 @@ def serve(
         DrivelineError: the port is taken.
     """
     settings.log_level = "fatal"  # of the page
-    for name in ("bokeh", "tornado"):  # of a tab that has gone, and what a page of somebody's own sends
+    for name in ("asyncio", "bokeh", "tornado"):  # of a tab that has gone, and what a page of somebody's own sends
         logging.getLogger(name).setLevel(logging.CRITICAL)
 
     def open_view(document: Any) -> None:
         View(document, runner, worker, saves, typed)
 
     port = free(port)
+    hosts = [f"{host}:{port}" for host in (ADDRESS, "localhost")]
     worker = Worker()
     try:
         server = Server(
             {"/": Application(FunctionHandler(open_view))},
             address=ADDRESS,
             port=port,
-            allow_websocket_origin=[f"{host}:{port}" for host in (ADDRESS, "localhost")],
+            allow_websocket_origin=hosts,
+            auth_provider=Admission(hosts),
             check_unused_sessions_milliseconds=VANISHED // 2,
             unused_session_lifetime_milliseconds=VANISHED,
         )

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from bokeh.document import Document
-from bokeh.events import ButtonClick
+from bokeh.events import ButtonClick, DocumentReady
 from bokeh.layouts import column, row
 from bokeh.models import Button, CheckboxGroup, Div, Select, Slider, Switch, TextInput
 
@@ -69,7 +69,7 @@ class View:
         document.title = "driveline explore"
         document.add_root(row(self._controls(saves), self._figures(), name="view", sizing_mode="stretch_width"))
         document.on_session_destroyed(self._leave)
-        self._ask()
+        document.on_event(DocumentReady, lambda _: self._ask())  # nothing runs for who never shows the page
 
     def _drawn(self, empty: np.ndarray, runs: Mapping[str, np.ndarray]) -> list[Panel]:
         """The panels of results by the names of the controllers, beside those without control; NaN where there are

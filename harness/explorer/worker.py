@@ -1,9 +1,11 @@
 """A thread that runs what tabs ask for, each time the latest, so that none waits for an outdated request."""
 
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from threading import Condition, Thread
 from typing import Any
 
+from ..base.interruption import Abandoned, abandonable
 from ..base.progress import hidden
 from ..cosimulation.runs import KeptLoops, kept_by
 
@@ -16,6 +18,8 @@ class Worker:
 
     def __init__(self) -> None:
         self._asked: dict[Hashable, Job] = {}
+        self._asker: Hashable = None  # whose job is under way
+        self._abandoned = False  # that job
         self._changed = Condition()
         self._open = True
         self._thread = Thread(target=self._work, name="worker", daemon=True)
@@ -28,14 +32,16 @@ class Worker:
             self._changed.notify()
 
     def forget(self, asker: Hashable) -> None:
-        """Nothing more is done for someone who has gone."""
+        """Nothing more is done for someone who has gone; a run that is under way ends."""
         with self._changed:
             self._asked.pop(asker, None)
+            self._abandoned |= self._asker == asker
 
     def close(self) -> None:
-        """Ends the thread after the job that it does."""
+        """Ends the thread; a run that is under way ends at once, and a file that is being written is finished."""
         with self._changed:
             self._open = False
+            self._abandoned = True
             self._asked.clear()
             self._changed.notify()
         self._thread.join()
@@ -43,15 +49,18 @@ class Worker:
     def _work(self) -> None:
         loops = KeptLoops(None)
         try:
-            with kept_by(loops), hidden():
+            with kept_by(loops), hidden(), abandonable(lambda: self._abandoned):
                 while (job := self._next()) is not None:
-                    job()
+                    with suppress(Abandoned):
+                        job()
         finally:
             loops.close()
 
     def _next(self) -> Job | None:
         with self._changed:
+            self._asker = None
             self._changed.wait_for(lambda: self._asked or not self._open)
             if not self._open:
                 return None
-            return self._asked.pop(next(iter(self._asked)))
+            self._asker, self._abandoned = next(iter(self._asked)), False
+            return self._asked.pop(self._asker)

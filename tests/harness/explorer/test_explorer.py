@@ -1,15 +1,10 @@
 """`driveline explore` in a browser: a process of its own, as a user has it."""
 
 import json
-import os
 import re
-import signal
 import socket
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from http.client import HTTPConnection
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,56 +13,8 @@ import pytest
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands.cli import main
 from driveline.harness.views.colours import BLUE, GREY, VERMILION
-from tests import ROOT
 from tests.browser import Browser
-from tests.signals import heed_signals
-
-PATIENCE = 60.0
-"""In s, for what takes milliseconds on a machine that has nothing else to do."""
-
-
-class Served:
-    """An explorer that runs."""
-
-    def __init__(self, fmus: Path, folder: Path) -> None:
-        self.folder = folder
-        blocks = ["--controller", "DampingController", "--controller", "SpeedWashout"]
-        command = ["explore", *blocks, "--fmus", str(fmus), "--output", str(folder), "--port", "0", "--build", "native"]
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "driveline", *command],
-            cwd=ROOT,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-            preexec_fn=heed_signals,
-        )
-        assert self.process.stdout is not None
-        line = self.process.stdout.readline()
-        found = re.match(r"http://127\.0\.0\.1:(\d+)/ ", line)
-        assert found, line
-        self.port = int(found[1])
-
-    @property
-    def address(self) -> str:
-        return f"http://127.0.0.1:{self.port}/"
-
-    def stop(self, number: int = signal.SIGINT) -> tuple[int, str]:
-        """Its exit code and what it wrote to stderr."""
-        self.process.send_signal(number)
-        _, errors = self.process.communicate(timeout=PATIENCE)
-        return self.process.returncode, errors
-
-
-@pytest.fixture(scope="module")
-def running(with_washout: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    served = Served(with_washout, tmp_path_factory.mktemp("explored"))
-    try:
-        yield served
-        code, errors = served.stop()
-        assert (code, errors) == (130, "driveline explore: stopped\n")
-    finally:
-        served.process.kill()
+from tests.harness.explorer.served import PATIENCE, Served
 
 
 @pytest.fixture
@@ -209,32 +156,6 @@ def press(view: Browser, name: str) -> None:
         name,
     )
     view.click(tuple(box))
-
-
-def test_only_this_machine_is_answered_and_no_page_of_another_origin(running: Served) -> None:
-    with socket.create_connection(("127.0.0.1", running.port), 10.0):
-        pass
-    with (
-        pytest.raises(OSError, match=r"refused|reachable"),
-        socket.create_connection(("127.0.0.2", running.port), 10.0),
-    ):
-        pass
-    connection = HTTPConnection("127.0.0.1", running.port, timeout=10.0)
-    upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
-    connection.request(
-        "GET", "/ws", headers={**upgrade, "Sec-WebSocket-Key": "a" * 24, "Origin": "http://evil.example"}
-    )
-    assert connection.getresponse().status == 403
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_stop_leaves_no_process_and_no_traceback(with_washout: Path, tmp_path: Path, number: int) -> None:
-    served = Served(with_washout, tmp_path)
-    group = os.getpgid(served.process.pid)
-    code, errors = served.stop(number)
-    assert (code, errors) == (128 + number, "driveline explore: stopped\n")
-    with pytest.raises(ProcessLookupError):
-        os.killpg(group, 0)
 
 
 def test_a_port_that_is_taken_is_told_in_one_line(both_built: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 from threading import Event
 from threading import enumerate as threads
 
+from driveline.harness.base.progress import progress
 from driveline.harness.explorer.worker import Worker
 
 
@@ -42,3 +43,39 @@ def test_nothing_is_done_for_a_tab_that_has_gone_and_no_thread_is_left() -> None
     worker.close()
     assert done == []
     assert "worker" not in [thread.name for thread in threads()]
+
+
+def endless(worker: Worker, asker: str) -> None:
+    """Has a run begun that never ends by itself."""
+    begun = Event()
+
+    def run() -> None:
+        with progress(1, "run") as done:
+            while True:
+                begun.set()
+                done(0)
+
+    worker.ask(asker, run)
+    assert begun.wait(10.0)
+
+
+def test_a_run_under_way_ends_with_the_server() -> None:
+    worker = Worker()
+    endless(worker, "a")
+    worker.close()
+    assert "worker" not in [thread.name for thread in threads()]
+
+
+def test_a_run_under_way_ends_with_its_tab_and_the_next_one_is_made() -> None:
+    worker, ended = Worker(), Event()
+
+    def run() -> None:
+        with progress(1, "run") as done:
+            done(1)
+        ended.set()
+
+    endless(worker, "a")
+    worker.forget("a")
+    worker.ask("b", run)
+    assert ended.wait(10.0)
+    worker.close()

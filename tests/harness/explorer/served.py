@@ -1,0 +1,46 @@
+"""An explorer that runs in a process of its own."""
+
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from tests import ROOT
+from tests.signals import heed_signals
+
+PATIENCE = 60.0
+"""In s, for what takes milliseconds on a machine that has nothing else to do."""
+
+
+class Served:
+    """An explorer that runs."""
+
+    def __init__(self, fmus: Path, folder: Path) -> None:
+        self.folder = folder
+        blocks = ["--controller", "DampingController", "--controller", "SpeedWashout"]
+        command = ["explore", *blocks, "--fmus", str(fmus), "--output", str(folder), "--port", "0", "--build", "native"]
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "driveline", *command],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            preexec_fn=heed_signals,
+        )
+        assert self.process.stdout is not None
+        line = self.process.stdout.readline()
+        found = re.match(r"http://127\.0\.0\.1:(\d+)/ ", line)
+        assert found, line
+        self.port = int(found[1])
+
+    @property
+    def address(self) -> str:
+        return f"http://127.0.0.1:{self.port}/"
+
+    def stop(self, number: int = signal.SIGINT) -> tuple[int, str]:
+        """Its exit code and what it wrote to stderr."""
+        self.process.send_signal(number)
+        _, errors = self.process.communicate(timeout=PATIENCE)
+        return self.process.returncode, errors
