@@ -116,10 +116,17 @@ def _with_rms(name: str, run: np.ndarray, unit: FileUnit) -> str:
 
 def roughest(run: np.ndarray) -> list[tuple[float, float]]:
     """Beginnings in s of the pieces with the largest mean swing of the gear torque about the demand, and that swing in
-    N.m; the pieces do not overlap."""
+    N.m."""
     T_s = interval(run)
     swing = amplitude(run["plant.T_gear"] - run["controller.T_driver"], T_s)
-    length = min(round(PIECE / T_s), len(swing))
-    means = swing[: len(swing) // length * length].reshape(-1, length).mean(axis=1)
+    length = min(round(PIECE / T_s), len(run) - 1)
+    starts = piece_starts(len(run) - 1, length)
+    means = np.array([swing[start : start + length].mean() for start in starts])
     order = np.argsort(-means, kind="stable")[:PIECES]
-    return [(float(run["time"][k * length]), float(means[k])) for k in order]
+    return [(float(run["time"][starts[k]]), float(means[k])) for k in order]
+
+
+def piece_starts(intervals: int, length: int) -> list[int]:
+    """Where pieces of equal length begin that cover so many intervals; the last one ends with them, and so may overlap
+    the one before."""
+    return [*range(0, intervals - length, length), intervals - length]

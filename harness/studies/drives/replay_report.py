@@ -12,9 +12,9 @@ from ...metrics.oscillation import amplitude
 from ...metrics.run_metrics import RideMetrics
 from ...metrics.spectrum import TO_50_HZ
 from ...views.html.figure_selector import chosen
-from ...views.html.linked_figures import Columns, linked, shown, stacked, tables
+from ...views.html.linked_figures import linked, shown, stacked, tables
 from ...views.html.report_page import Heading, Row, Section, Table, of_metrics, write_report
-from ...views.html.thinning import extremes
+from ...views.html.thinning import thinned
 from ...views.metrics_table import RIDES_SHOWN, ride_rows
 from ...views.panels import Axis, Curve, Panel, within
 from ...views.replay_figure import PIECE, SI, How, looks_of, roughest, speeds, swings, torques
@@ -94,7 +94,7 @@ def _figures(rides: Rides, recorded: tuple[np.ndarray, np.ndarray], starts: Sequ
     windows = {WHOLE: (float(time[0]), float(time[-1]))}
     windows |= {_name(start): (start, min(start + PIECE, float(time[-1]))) for start in starts}
     choices = {name: tables(within(panels, *window)) for name, window in windows.items()}
-    choices[WHOLE] = [_overview(table) for table in tables(panels)]
+    choices[WHOLE] = thinned(tables(panels))
     x = Axis("time in s", windows[WHOLE])
     x_range = shown(x)
     control, sources = chosen("Piece", choices, windows, x_range)
@@ -111,12 +111,6 @@ def _figures(rides: Rides, recorded: tuple[np.ndarray, np.ndarray], starts: Sequ
 
 def _acceleration(name: str, looks: Mapping[str, How]) -> Line:
     return Line(column("plant.a_body"), name, *looks[name])
-
-
-def _overview(table: Columns) -> Columns:
-    x, *others = table
-    t, values = extremes(table[x], np.column_stack([table[name] for name in others]), 1500)
-    return {x: t, **dict(zip(others, values.T, strict=True))}
 
 
 def _densities(runs: Mapping[str, np.ndarray], looks: Mapping[str, How]) -> Panel:

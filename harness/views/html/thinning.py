@@ -13,30 +13,35 @@ MOST_ROWS = 3000
 """Of one run: more than a screen has columns."""
 
 
-def stride(rows: int, of_how_many: int, columns: int) -> int:
-    """Every how many-th row of a run is kept, where a page has so many runs of so many columns."""
-    return max(1, -(-rows // max(100, min(MOST_ROWS, VALUES // (of_how_many * columns)))))
+def most_rows(runs: int, columns: int) -> int:
+    """That a run has on a page of so many runs with so many columns."""
+    return max(100, min(MOST_ROWS, VALUES // (runs * columns)))
 
 
-def thinned(tables: Sequence[Columns], runs: int) -> list[Columns]:
-    """The tables of a run with as many rows as a page of so many runs has."""
-    columns = sum(map(len, tables))
-    return [{name: column[:: stride(len(column), runs, columns)] for name, column in table.items()} for table in tables]
+def thinned(tables: Sequence[Columns], runs: int = 1) -> list[Columns]:
+    """The tables of a run with no more rows than on a page of so many runs."""
+    rows = most_rows(runs, sum(map(len, tables)))
+    return [extremes(table, rows) for table in tables]
 
 
-def extremes(t: np.ndarray, signals: np.ndarray, pieces: int) -> tuple[np.ndarray, np.ndarray]:
-    """Signals in so many pieces of equal length, each with its least and its largest value in turn.
+def extremes(table: Columns, rows: int) -> Columns:
+    """A table in no more than so many rows.
 
-    Args:
-        t: (N,).
-        signals: (N, columns).
-
-    Returns:
-        Times (2 pieces,) and values (2 pieces, columns); all of them where there are no more.
+    The first and the last row stay. Between them are pieces of equal length, of each of which every column has its
+    least and its largest value, in the order in which they come. Of the abscissa these are its ends, so that an extreme
+    is moved by less than the length of a piece. NaN are left out where a piece has anything else.
     """
-    length = len(t) // pieces
-    if length < 2:
-        return t, signals
-    cut = signals[: length * pieces].reshape(pieces, length, -1)
-    values = np.stack((cut.min(axis=1), cut.max(axis=1)), axis=1).reshape(2 * pieces, -1)
-    return t[: length * pieces : length].repeat(2) + np.tile((0.0, 0.5 * length * (t[1] - t[0])), pieces), values
+    length = len(next(iter(table.values())))
+    if length <= rows:
+        return table
+    return {name: np.concatenate(_pieces(column, (rows - 2) // 2)) for name, column in table.items()}
+
+
+def _pieces(column: np.ndarray, count: int) -> list[np.ndarray]:
+    found = [column[:1]]
+    for piece in np.array_split(column[1:-1], count):
+        known = np.flatnonzero(~np.isnan(piece))
+        known = known if len(known) else np.arange(len(piece))
+        ends = {known[piece[known].argmin()], known[piece[known].argmax()]}
+        found.append(piece[[min(ends), max(ends)]])
+    return [*found, column[-1:]]

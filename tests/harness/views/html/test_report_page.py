@@ -9,7 +9,6 @@ import pytest
 from driveline.harness.commands.cli import main
 from driveline.harness.views.html.linked_figures import linked
 from driveline.harness.views.html.report_page import Heading, Row, Section, Table, require_report, write_report
-from driveline.harness.views.html.thinning import MOST_ROWS, VALUES, extremes, stride, thinned
 from driveline.harness.views.panels import Axis, Curve, Panel
 
 PROVENANCE = {"program": "p", "commit": None, "command_line": "c", "fmus": {}, "inputs": {}, "run": {"seed": 1}}
@@ -63,23 +62,3 @@ def test_names_of_files_are_text_and_nothing_else(tmp_path: Path) -> None:
     assert evil not in text
     assert text.count("&lt;script&gt;alert(1)") >= 9
     assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
-
-
-def test_no_page_holds_more_values_than_it_may() -> None:
-    assert stride(MOST_ROWS, 2, 10) == 1
-    assert stride(MOST_ROWS + 1, 2, 10) == 2
-    many = 40
-    assert many * 10 * 10_000 / stride(10_000, many, 10) <= VALUES
-    run = [{"x": np.zeros(10_000), f"y {k}": np.zeros(10_000)} for k in range(5)]
-    assert many * sum(column.size for table in thinned(run, many) for column in table.values()) <= VALUES
-
-
-def test_no_peak_is_lost_where_a_drive_is_shown_as_a_whole() -> None:
-    t = 0.002 * np.arange(100_000)
-    signal = np.sin(t)
-    signal[54_321] = 7.0
-    times, values = extremes(t, signal[:, np.newaxis], 1500)
-    assert len(times) == len(values) == 3000
-    assert values.max() == 7.0
-    assert times[values.argmax()] == pytest.approx(t[54_321], abs=0.14)
-    assert (np.diff(times) > 0.0).all()
