@@ -93,17 +93,30 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
         NotPossible: there is something to build, and it is not possible here.
         BuildError: start values that one was built with are refused by what it is now.
     """
-    where = folder / NATIVE_FOLDER if build == "native" else folder
     made: list[Path] = []
     for name in names:
-        if is_stale(path := where / f"{name}.fmu"):
+        if is_stale(path := located(name, folder, build)):
             from ..catalogue import EVERY  # what is up to date is found to be so without
 
-            origin = origin_of(path)
-            platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
-            fmu = _as_built(EVERY[name], origin.start_values, path) if origin else EVERY[name]
-            made += [builder(fmu, folder) for builder in builders(build, platform)]
+            made += rebuilt(EVERY[name], path, folder, build)
     return made
+
+
+def located(name: str, folder: Path, build: str) -> Path:
+    """Where an FMU of the project stands in the folder of the files."""
+    return (folder / NATIVE_FOLDER if build == "native" else folder) / f"{name}.fmu"
+
+
+def rebuilt(fmu: Fmu, path: Path, folder: Path, build: str) -> list[Path]:
+    """Builds an FMU of the project into a folder as that at `path` was built, if there is one; returns the files.
+
+    Raises:
+        NotPossible, BuildError: as of `refreshed`.
+    """
+    origin = origin_of(path)
+    platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
+    made = _as_built(fmu, origin.start_values, path) if origin else fmu
+    return [builder(made, folder) for builder in builders(build, platform)]
 
 
 def _as_built(fmu: Fmu, start_values: Mapping[str, Any], path: Path) -> Fmu:

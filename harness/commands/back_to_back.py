@@ -11,7 +11,7 @@ import argparse
 import sys
 from itertools import product
 
-from ..loop.built_fmus import built
+from ..loop.built_fmus import build_missing
 from ..loop.places import BUILDS, PLANTS
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     for plant, build in product(PLANTS, BUILDS):
-        built(plant, folder=args.fmus, build=build)
+        build_missing(plant, folder=args.fmus, build=build)
     # here and not above: only this measurement needs the models
     from ..base.atomic_files import write_text
     from ..studies.back_to_back.back_to_back import compare_all

@@ -11,7 +11,7 @@ examples:
 
 import argparse
 
-from ..loop.built_fmus import built
+from ..loop.built_fmus import build_missing
 from ..loop.places import PLANTS, STEP_SIZE
 from ..loop.settings import loop
 from .options import add_fmus, add_output, add_printing
@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     for plant in PLANTS:
-        built(plant, folder=args.fmus)
+        build_missing(plant, folder=args.fmus)
     # here and not above: only this measurement needs the models
     from ..base.atomic_files import write_text
     from ..cosimulation.schedule import transfers

@@ -56,11 +56,11 @@ def run(args: argparse.Namespace) -> int:
     from ...fmus.signal_faults import FMU
     from ..studies.faults.fault_injection import FaultRunner, with_faults
 
-    with made_if_missing(FMU, args.fmus, NATIVE) as injector:
-        runner = FaultRunner(injector, given)
-        same: dict[str, Any] = {each.plant_name: distinguishing(each) for each in given.values()}
-        tried = {each.plant_name: with_faults(loop(each), injector) for each in given.values()}
-        return (_all if args.case is None else _one)(args, runner, same, tried)
+    injector = made_if_missing(FMU, args.fmus, NATIVE)
+    runner = FaultRunner(injector, given)
+    same: dict[str, Any] = {each.plant_name: distinguishing(each) for each in given.values()}
+    tried = {each.plant_name: with_faults(loop(each), injector) for each in given.values()}
+    return (_all if args.case is None else _one)(args, runner, same, tried)
 
 
 def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:

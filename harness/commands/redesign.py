@@ -7,7 +7,7 @@ from typing import Any
 
 from rich.table import Table
 
-from ..loop.built_fmus import built
+from ..loop.built_fmus import build_missing
 from ..loop.places import PLACES, PLANTS
 from .design import designed
 from .printing import Printer
@@ -21,7 +21,7 @@ def require_fmus() -> None:
         DrivelineError: they cannot be built.
     """
     for plant in PLANTS:
-        built(plant)
+        build_missing(plant)
 
 
 def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer) -> Iterator[Path]:

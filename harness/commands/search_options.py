@@ -10,7 +10,7 @@ from ...fmus.building.options import output_folder
 from ..base.errors import DrivelineError
 from ..base.plain_text import quoted
 from ..base.written_numbers import real
-from ..loop.built_fmus import built
+from ..loop.built_fmus import build_missing
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..loop.settings import Settings
 from .options import add_fmus, count, experts, seed
@@ -112,7 +112,7 @@ def _build(args: argparse.Namespace, controller: str) -> str:
     """The build that runs with both plants, for this controller and the one that it is measured by."""
     names = {DEFAULTS["controller"], controller}
     builds = {
-        built(plant, folder=args.fmus, build=args.build, controller=name).build
+        build_missing(plant, folder=args.fmus, build=args.build, controller=name)
         for plant in PLANTS
         for name in sorted(names)
     }

@@ -11,6 +11,7 @@ from ..base.known_names import require_different
 from ..cosimulation.limits import Limits
 from ..cosimulation.system import Scheme, System
 from ..loop.built_fmus import built
+from ..loop.fmu_cache import as_built
 from ..loop.places import BUILD, PLACES, PLANTS, STEP_SIZE
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -184,7 +185,7 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
     own = start(manoeuvre, made.seed) if manoeuvre else {}
     digests = {name: digest(path) for name, path in others.items() if path.is_file()}
     return {
-        "fmus": {name: str(path) for name, path in system.instances.items()},
+        "fmus": {name: str(as_built(path)) for name, path in system.instances.items()},
         "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
         **({"digests": digests} if digests else {}),
         "parameters": {**own, **made.parameters},

@@ -56,16 +56,16 @@ def run(args: argparse.Namespace) -> int:
     same: dict[str, Any] = {name: distinguishing(each, manoeuvre) for name, each in given.items()}
     same |= {"plants": list(dict.fromkeys(args.plant or PLANTS)), "manoeuvre": manoeuvre.name} | asked.digests
     build = next(iter(given.values())).build or BUILDS[0]
-    with made_if_missing(FMU, args.fmus, build) as source:
-        sourced = {name: with_source(loop(each), source) for name, each in given.items()}
-        with job(args, args.output / "driveline.json", same, sourced, [ssp], list(asked.files.values())) as made:
-            asked.require_drivable(made.fits, given)
-            variants = {name: _variant(fitted, manoeuvre, given[name]) for name, fitted in made.fits.items()}
-            content = package(variants, manoeuvre)
-            made.begin()
-            write_archive(content, ssp)
-            made.wrote(ssp)
-            made.out.say(f"{manoeuvre.name}, variants {', '.join(variants)}, {ssp.stat().st_size / 1024:.0f} kB")
+    source = made_if_missing(FMU, args.fmus, build)
+    sourced = {name: with_source(loop(each), source) for name, each in given.items()}
+    with job(args, args.output / "driveline.json", same, sourced, [ssp], list(asked.files.values())) as made:
+        asked.require_drivable(made.fits, given)
+        variants = {name: _variant(fitted, manoeuvre, given[name]) for name, fitted in made.fits.items()}
+        content = package(variants, manoeuvre)
+        made.begin()
+        write_archive(content, ssp)
+        made.wrote(ssp)
+        made.out.say(f"{manoeuvre.name}, variants {', '.join(variants)}, {ssp.stat().st_size / 1024:.0f} kB")
     return 0
 
 

@@ -18,8 +18,6 @@ MOST_TABS = 10
 class Admission(AuthProvider):
     """Refuses, in one line, a request before a session is made for it."""
 
-    login_url = "/"  # bokeh asks for one; nobody is ever sent there
-
     def __init__(self, hosts: Sequence[str]) -> None:
         """
         Args:
@@ -27,6 +25,11 @@ class Admission(AuthProvider):
         """
         self._hosts = hosts
         super().__init__()
+
+    @property
+    def login_url(self) -> str:
+        """Bokeh asks for one; nobody is ever sent there."""
+        return "/"
 
     @property
     def get_user_async(self) -> Callable[[Any], Awaitable[str]]:

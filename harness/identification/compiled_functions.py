@@ -10,7 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import casadi as ca
-import platformdirs
+
+from ..base.user_cache import user_cache
 
 FLAGS = ("-shared", "-fPIC", "-O1", "-ffp-contract=off")
 """Each operation rounds on its own, as in CasADi."""
@@ -28,7 +29,7 @@ def compiled(function: ca.Function) -> ca.Function:
     generator.add(function)
     source = generator.dump()
     key = sha256("\n".join([source, compiler, *FLAGS]).encode()).hexdigest()
-    library = platformdirs.user_cache_path("driveline-damping") / f"{function.name()}-{key[:32]}.so"
+    library = user_cache() / f"{function.name()}-{key[:32]}.so"
     try:
         if not _whole(library):
             _compile(source, compiler, library)

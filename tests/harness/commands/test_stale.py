@@ -9,7 +9,7 @@ import pytest
 from driveline.fmus import origin
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
-from driveline.harness.loop import built_fmus, stale_fmus
+from driveline.harness.loop import built_fmus, fmu_cache, stale_fmus
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
@@ -48,17 +48,42 @@ def test_a_stale_file_is_named(
     assert f"stale, not made from the sources that are installed: {plant}" in caplog.text
 
 
-def test_those_of_the_project_are_built_again_and_it_is_said_once(
-    stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's cache."""
+    folder = tmp_path / "cache"
+    monkeypatch.setattr(fmu_cache, "user_cache", lambda: folder)
+    return folder / "fmus"
+
+
+def test_those_of_the_project_are_built_again_in_the_cache_and_it_is_said_once(
+    stale: Path, cache: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(built_fmus, "BUILD", stale)
+    before = {path: path.read_bytes() for path in stale.rglob("*.fmu")}
     given = [*RUN, "--build", "python", "--fmus", str(stale), "--output", str(tmp_path / "results")]
     for _ in range(2):
         assert main(given) == 0
+    (kept,) = cache.iterdir()
     (message,) = [text for text in caplog.messages if text.startswith("built")]
-    assert message.startswith(f"built, as missing or stale: {stale / 'MotorTorqueLoop.fmu'}")
+    assert message.startswith("built, as missing or stale: MotorTorqueLoop, ")
+    assert message.endswith(f", in {kept}")
+    assert not origin.is_stale(kept / "TwoMassDriveline.fmu")
+    assert not (kept / "ValidationVehicle.fmu").exists(), "this run does not need it"
+    assert {path: path.read_bytes() for path in stale.rglob("*") if path.is_file()} == before
+
+
+def test_a_run_with_an_fmu_of_the_cache_is_the_same_run(
+    stale: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (built_fmus, fmu_cache):
+        monkeypatch.setattr(module, "BUILD", stale)
+    given = [*RUN, "--build", "python", "--fmus", str(stale), "--output", str(tmp_path / "results")]
+    assert main(given) == 0
+    built_fmus.build_missing(folder=stale, build="python")
     assert not origin.is_stale(stale / "TwoMassDriveline.fmu")
-    assert origin.is_stale(stale / "ValidationVehicle.fmu"), "this run does not need it"
+    assert main(given) == 0
+    assert len(list(cache.iterdir())) == 1
 
 
 def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,7 +93,7 @@ def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeyp
 
 
 def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
-    stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+    stale: Path, cache: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(built_fmus, "BUILD", stale)
     monkeypatch.setenv("CC", "no-such-compiler")

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import casadi as ca
 import numpy as np
-import platformdirs
 import pytest
 
 from driveline.harness.identification import compiled_functions
@@ -18,8 +17,8 @@ GIVEN = np.random.default_rng(1).normal(size=(3, 100))
 @pytest.fixture
 def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where libraries are kept."""
-    monkeypatch.setattr(platformdirs, "user_cache_path", lambda name: tmp_path / name)
-    return tmp_path / "driveline-damping"
+    monkeypatch.setattr(compiled_functions, "user_cache", lambda: tmp_path / "cache")
+    return tmp_path / "cache"
 
 
 def same(function: ca.Function) -> bool:

@@ -16,7 +16,7 @@ from driveline.fmus.comparators import COMPARATORS
 from driveline.fmus.python.packaging import build
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
-from driveline.harness.loop import built_fmus, places
+from driveline.harness.loop import built_fmus, fmu_cache, places
 from driveline.harness.loop.places import NATIVE
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -94,14 +94,17 @@ def test_one_that_is_missing_is_built_when_it_runs(
     folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(built_fmus, "BUILD", folder)
+    monkeypatch.setattr(fmu_cache, "user_cache", lambda: folder / "cache")
     monkeypatch.setitem(MANOEUVRES, "tipin15", replace(TIPIN, duration=0.1))
     warn_once.cache_clear()
     with caplog.at_level(logging.WARNING):
         given = ["--controller", "SpeedWashout", "--build", "python", "--fmus", str(folder), "--quiet"]
         assert main(["simulate", *given, "--output", str(folder / "results")]) == 0
+    (made,) = (folder / "cache").rglob("SpeedWashout.fmu")
     assert [text for text in caplog.messages if text.startswith("built")] == [
-        f"built, as missing or stale: {folder / 'SpeedWashout.fmu'}"
+        f"built, as missing or stale: SpeedWashout, in {made.parent}"
     ]
+    assert not (folder / "SpeedWashout.fmu").exists()
 
 
 def test_what_makes_a_missing_one_elsewhere_is_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,10 @@
+"""What is made once and kept for the next time, in the user's folder for that."""
+
+from pathlib import Path
+
+
+def user_cache() -> Path:
+    """`$XDG_CACHE_HOME/driveline-damping` or `~/.cache/driveline-damping`, or what other systems have for it."""
+    import platformdirs  # only what makes something asks for it
+
+    return platformdirs.user_cache_path("driveline-damping")

@@ -1,0 +1,79 @@
+"""FMUs that are made on the way to a run stand in the user's cache; the folder that the run is given is only read."""
+
+import json
+import os
+import platform
+from collections.abc import Sequence
+from hashlib import sha256
+from pathlib import Path
+from shutil import copyfile, rmtree
+from typing import TYPE_CHECKING
+
+from ...fmus.building.builds import located, rebuilt
+from ...fmus.origin import is_stale, origin_of, sources_digest
+from ..base.atomic_files import alone, complete
+from ..base.user_cache import user_cache
+from .places import BUILD
+
+if TYPE_CHECKING:
+    from ...fmus.fmu import Fmu
+
+MOST_FOLDERS = 20
+"""That are kept, those that were used last; one is for one state of the sources and one car."""
+
+
+def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Path, list[Path]]:
+    """A folder of the cache that has FMUs of the project, made from the sources that are installed, with the start
+    values of those in another folder, which is only read.
+
+    Args:
+        fmus: that are needed.
+        folder: whose FMUs are taken as they are where they are up to date.
+        build: "python" or "native".
+
+    Returns:
+        The folder of the cache, and the files that were built.
+
+    Raises:
+        NotPossible: there is something to build, and it is not possible here.
+        BuildError: start values that one was built with are refused by what it is now.
+        OSError: the cache cannot be written.
+    """
+    cache = _cache()
+    kept, new = cache / _key(folder, build), list[Path]()
+    with alone(kept):
+        for fmu in fmus:
+            there, here = (located(fmu.name, each, build) for each in (folder, kept))
+            if not is_stale(here):
+                continue
+            if is_stale(there):
+                new += rebuilt(fmu, there, kept, build)
+            else:
+                with complete(here) as unfinished:
+                    copyfile(there, unfinished)
+    os.utime(kept)
+    _forget(sorted(cache.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_FOLDERS])
+    return kept, new
+
+
+def as_built(path: Path) -> Path:
+    """Where an FMU stands that `driveline build` makes in BUILD, for one of the cache; others stand where they do."""
+    cache = _cache()
+    return BUILD.joinpath(*path.relative_to(cache).parts[1:]) if path.is_relative_to(cache) else path
+
+
+def _cache() -> Path:
+    return user_cache() / "fmus"
+
+
+def _key(folder: Path, build: str) -> str:
+    """Digest of what the FMUs are made from: sources, start values of those in the folder, and for which machine."""
+    found = {path.stem: origin_of(path) for path in sorted(located("*", folder, build).parent.glob("*.fmu"))}
+    cars = {name: origin.start_values for name, origin in found.items() if origin and origin.start_values}
+    made_from = [sources_digest(), cars, platform.system(), platform.machine()]
+    return sha256(json.dumps(made_from, sort_keys=True).encode()).hexdigest()[:32]
+
+
+def _forget(folders: Sequence[Path]) -> None:
+    for folder in folders:
+        rmtree(folder, ignore_errors=True)

@@ -1,0 +1,94 @@
+"""FMUs that a run lacks are made in the user's cache, and the folder that it was given stays as it is."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from driveline.fmus import origin
+from driveline.fmus.catalogue import EVERY
+from driveline.fmus.origin import is_stale, origin_of
+from driveline.fmus.python.packaging import build
+from driveline.harness.loop.fmu_cache import MOST_FOLDERS, as_built, refreshed_copy
+from driveline.harness.loop.places import BUILD
+from tests import ROOT
+
+CAN, LOOP = EVERY["WheelSpeedCan"], EVERY["MotorTorqueLoop"]
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "driveline-damping" / "fmus"
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Path:
+    folder = tmp_path / "given"
+    folder.mkdir()
+    return folder
+
+
+def test_what_is_missing_is_built_once_and_the_folder_is_only_read(given: Path, cache: Path) -> None:
+    given.chmod(0o555)
+    kept, new = refreshed_copy([CAN], given, "python")
+    assert kept.parent == cache
+    assert new == [kept / "WheelSpeedCan.fmu"]
+    assert not is_stale(new[0])
+    assert refreshed_copy([CAN], given, "python") == (kept, [])
+    assert list(given.iterdir()) == []
+
+
+def test_what_is_up_to_date_is_taken_as_it_is(given: Path) -> None:
+    path = build(CAN.started_with({"i": 12.0}), given)
+    kept, new = refreshed_copy([CAN, LOOP], given, "python")
+    assert new == [kept / "MotorTorqueLoop.fmu"]
+    assert (kept / path.name).read_bytes() == path.read_bytes()
+
+
+def test_what_is_stale_stays_the_car_that_it_was_built_as(given: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = build(CAN.started_with({"i": 12.0}), given)
+    before = path.read_bytes()
+    monkeypatch.setattr(origin, "sources_digest", lambda: "others")
+    kept, new = refreshed_copy([CAN], given, "python")
+    found = origin_of(new[0])
+    assert found is not None
+    assert found.start_values == {"i": 12.0}
+    assert path.read_bytes() == before
+    path.unlink()
+    assert refreshed_copy([CAN], given, "python")[0] != kept, "another car"
+
+
+def test_a_file_that_is_cut_off_is_built_again(given: Path) -> None:
+    _, (path,) = refreshed_copy([CAN], given, "python")
+    path.write_bytes(path.read_bytes()[:1000])
+    assert refreshed_copy([CAN], given, "python")[1] == [path]
+
+
+def test_two_processes_at_once_build_it_once_and_nothing_unfinished_is_left(given: Path, cache: Path) -> None:
+    code = (
+        "from pathlib import Path; from driveline.fmus.catalogue import EVERY;"
+        "from driveline.harness.loop.fmu_cache import refreshed_copy;"
+        f"print(len(refreshed_copy([EVERY['WheelSpeedCan']], Path({str(given)!r}), 'python')[1]))"
+    )
+    both = [subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE) for _ in range(2)]
+    made = [int(each.communicate(timeout=60.0)[0]) for each in both]
+    assert sorted(made) == [0, 1]
+    assert [path.name for path in cache.rglob("*") if path.is_file()] == ["WheelSpeedCan.fmu"]
+
+
+def test_folders_that_were_used_last_are_kept(given: Path, cache: Path) -> None:
+    for age in range(MOST_FOLDERS + 5):
+        folder = cache / str(age)
+        folder.mkdir(parents=True)
+        (folder / "an.fmu").write_bytes(b"")
+        os.utime(folder, (1e9 - age, 1e9 - age))
+    kept, _ = refreshed_copy([CAN], given, "python")
+    assert {path.name for path in cache.iterdir()} == {kept.name, *map(str, range(MOST_FOLDERS - 1))}
+
+
+def test_a_file_of_the_cache_stands_for_one_that_is_built(given: Path, cache: Path) -> None:
+    assert as_built(cache / "key" / "native" / "WheelSpeedCan.fmu") == BUILD / "native" / "WheelSpeedCan.fmu"
+    assert as_built(given / "WheelSpeedCan.fmu") == given / "WheelSpeedCan.fmu"
