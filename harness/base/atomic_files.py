@@ -4,6 +4,7 @@ import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from errno import ELOOP, ENOLCK, ENOTSUP
 from pathlib import Path
 
@@ -42,8 +43,28 @@ def complete(path: Path) -> Iterator[Path]:
         try:
             yield unfinished
             os.replace(unfinished, path)
+            if (written := _written.get()) is not None:
+                written.append(path)
         finally:
             unfinished.unlink(missing_ok=True)
+
+
+_written: ContextVar[list[Path] | None] = ContextVar("written", default=None)
+
+
+@contextmanager
+def none_if_stopped() -> Iterator[None]:
+    """Files that were completed within it are removed again when it is stopped."""
+    written: list[Path] = []
+    outer = _written.set(written)
+    try:
+        yield
+    except KeyboardInterrupt:
+        for path in written:
+            remove(path)
+        raise
+    finally:
+        _written.reset(outer)
 
 
 @contextmanager

@@ -1,23 +1,28 @@
-"""Progress of what takes long, on a terminal or in a notebook."""
+"""Progress of what takes long, on a terminal, in a notebook or in a log."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
+from datetime import timedelta
+from functools import partial
 from html import escape
+from math import inf
+from threading import Event, Thread
 from time import monotonic
 from typing import Any
 
-from .interruption import end_if_abandoned
+from .interruption import end_if_abandoned, uninterrupted_children
+from .status_line import is_terminal
 
 QUIET = 1.0
 """Seconds that a run may take in silence."""
 
 REFRESH = 0.1
-"""Seconds between two looks of a notebook."""
+"""Seconds between two looks."""
 
-_hidden = ContextVar("hidden", default=False)
-"""Each thread has its own."""
+LEAST_PAUSE, MOST_PAUSE = 5.0, 60.0
+"""Seconds between two lines where there is no terminal, the first and the later ones; each pause is twice the last."""
 
 
 def chunks(length: int, size: int = 200) -> Iterator[range]:
@@ -27,39 +32,60 @@ def chunks(length: int, size: int = 200) -> Iterator[range]:
 
 
 @contextmanager
-def progress(total: int, label: str) -> Iterator[Callable[[int], None]]:
-    """What is called with the number of pieces that are done shows them on stderr or in the notebook, from the first
-    second on.
+def progress(total: int, label: str) -> Iterator[Callable[[float], None]]:
+    """What is called with the number of pieces that are done shows the share and the time that is left, from the first
+    second on: as a bar on a terminal or in a notebook, else as a line on stderr now and then.
 
-    Within it nothing else shows progress.
+    Within it nothing else shows progress, but what is a part of it, see `part`.
     """
-    silent, began, show = _hidden.get() or not _visible(), monotonic(), None
+    outer = _outer.get()
     with hidden(), ExitStack() as stack:
+        if outer is not None:
+            show = partial(_pass_on, outer, total)
+        elif _in_notebook():
+            show = stack.enter_context(_of_notebook(total, label))
+        elif sys.stderr is not None:
+            show = stack.enter_context(_of_stderr(total, label))
+        else:
+            show = _nowhere
 
-        def done(count: int) -> None:
-            nonlocal show
+        def done(count: float) -> None:
             end_if_abandoned()
-            if show is None and not silent and monotonic() - began > QUIET:
-                bar = _line_of_notebook if _in_notebook() else _bar
-                show = stack.enter_context(bar(total, label))
-            if show:
-                show(count)
+            show(count)
 
         yield done
 
 
 @contextmanager
-def hidden(enabled: bool = True) -> Iterator[None]:
-    """Within it nothing shows progress, if that is enabled."""
-    outer = _hidden.set(_hidden.get() or enabled)
+def part(done: Callable[[float], None], first: float, pieces: float = 1.0) -> Iterator[None]:
+    """Within it what shows progress fills so many pieces of what `done` shows, from the first on."""
+    outer = _outer.set(lambda share: done(first + pieces * share))
     try:
         yield
     finally:
-        _hidden.reset(outer)
+        _outer.reset(outer)
 
 
-def _visible() -> bool:
-    return _in_notebook() or (sys.stderr is not None and sys.stderr.isatty())
+@contextmanager
+def hidden(enabled: bool = True) -> Iterator[None]:
+    """Within it nothing shows progress, if that is enabled."""
+    outer = _outer.set(_nowhere if enabled else _outer.get())
+    try:
+        yield
+    finally:
+        _outer.reset(outer)
+
+
+def _nowhere(_: float) -> None:
+    pass
+
+
+def _pass_on(outer: Callable[[float], None], total: int, count: float) -> None:
+    outer(count / max(total, 1))
+
+
+_outer: ContextVar[Callable[[float], None] | None] = ContextVar("outer", default=None)
+"""Where the share goes of what is part of something else; None: to people. Each thread has its own."""
 
 
 def _in_notebook() -> bool:
@@ -69,32 +95,62 @@ def _in_notebook() -> bool:
 
 
 @contextmanager
-def _bar(total: int, label: str) -> Iterator[Callable[[int], None]]:
+def _of_stderr(total: int, label: str) -> Iterator[Callable[[float], None]]:
+    counts, ended = [0.0], Event()
+    thread = Thread(target=_attend, args=(total, label, counts, ended), daemon=True)
+    with uninterrupted_children():
+        thread.start()
+    try:
+        yield partial(counts.__setitem__, 0)
+    finally:
+        ended.set()
+        thread.join()
+
+
+def _attend(total: int, label: str, counts: Sequence[float], ended: Event) -> None:
+    """Shows the count until it is ended, whether it changes or not."""
+    if ended.wait(QUIET):
+        return
     from rich.console import Console  # only a long run needs it
     from rich.progress import Progress
 
-    with Progress(console=Console(file=sys.stderr), transient=True) as bar:
-        task = bar.add_task(label, total=total)
-        yield lambda count: bar.update(task, completed=count)
+    animated = is_terminal(sys.stderr)
+    console = Console(file=sys.stderr)
+    with Progress(console=console, transient=True, speed_estimate_period=inf, disable=not animated) as bar:
+        bar.add_task(label, total=total)
+        (task,) = bar.tasks
+        pause, due = LEAST_PAUSE, monotonic() + LEAST_PAUSE
+        while True:
+            bar.update(task.id, completed=counts[0])
+            if not animated and monotonic() >= due:
+                left = "" if task.time_remaining is None else f", {timedelta(seconds=task.time_remaining)} left"
+                print(f"{label}: {task.percentage:.0f} %{left}", file=sys.stderr, flush=True)
+                pause = min(2.0 * pause, MOST_PAUSE)
+                due = monotonic() + pause
+            if ended.wait(REFRESH):
+                return
 
 
 @contextmanager
-def _line_of_notebook(total: int, label: str) -> Iterator[Callable[[int], None]]:
+def _of_notebook(total: int, label: str) -> Iterator[Callable[[float], None]]:
     """Below the cell, with no more than every notebook can show: the bar of rich needs widgets there."""
     from IPython.display import DisplayHandle
 
-    line, next_time = DisplayHandle(), 0.0
-    line.display({"text/plain": label}, raw=True)
+    line, next_time, there = DisplayHandle(), monotonic() + QUIET, False
 
-    def show(count: int) -> None:
-        nonlocal next_time
-        if monotonic() >= next_time or count == total:
-            text = f"{label}: {count} of {total}"
-            bar = f'{escape(label)} <progress value="{count}" max="{total}"></progress> {count} of {total}'
+    def show(count: float) -> None:
+        nonlocal next_time, there
+        if monotonic() >= next_time or (there and count == total):
+            if not there:
+                line.display({"text/plain": label}, raw=True)
+                there = True
+            text = f"{label}: {count:g} of {total}"
+            bar = f'{escape(label)} <progress value="{count:g}" max="{total}"></progress> {count:g} of {total}'
             line.update({"text/plain": text, "text/html": bar}, raw=True)
             next_time = monotonic() + REFRESH
 
     try:
         yield show
     finally:
-        line.update({"text/plain": ""}, raw=True)
+        if there:
+            line.update({"text/plain": ""}, raw=True)

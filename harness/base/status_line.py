@@ -84,7 +84,7 @@ class InterruptedStream:
 def waiting(name: str, enabled: bool = True) -> Iterator[None]:
     """Within it the terminal, if stderr is one, shows whenever nothing else does that `name` is at work."""
     streams = sys.stdout, sys.stderr
-    if not (enabled and sys.stderr is not None and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"):
+    if not (enabled and is_terminal(sys.stderr)):
         yield
         return
     line = Line(sys.stderr, name)
@@ -100,6 +100,11 @@ def waiting(name: str, enabled: bool = True) -> Iterator[None]:
         thread.join()
         line.end()
         sys.stdout, sys.stderr = streams
+
+
+def is_terminal(stream: TextIO | None) -> bool:
+    """Whether what is written to it can be taken back."""
+    return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
 def no_longer_waiting() -> None:

@@ -14,6 +14,7 @@ from threading import Thread
 from time import sleep
 from typing import Any, BinaryIO
 
+from ..base.progress import hidden
 from . import call_trace
 from .process_answers import Answer, Bytes, send
 
@@ -37,7 +38,8 @@ def main() -> None:
 
 def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Answer:
     try:
-        value = function(*arguments)
+        with hidden():
+            value = function(*arguments)
     except Exception as error:
         return Answer(error=error)
     return Answer(content=value) if isinstance(value, Bytes) else Answer(texts=value or ())

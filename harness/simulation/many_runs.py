@@ -58,6 +58,7 @@ def run_many(
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
     count = min(workers or _cores(), max(len(todo), 1))
     with many(function, count, scheduler if todo else None) as answered, progress(len(every), label) as done:
+        done(len(every) - len(todo))
         for case, answer in zip(todo, answered(todo), strict=True):
             if known is not None:
                 known[case] = answer

@@ -12,7 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..base.atomic_files import alone, remove, replaceable, write_text
+from ..base.atomic_files import alone, none_if_stopped, remove, replaceable, write_text
 from ..base.errors import DrivelineError
 from ..cosimulation import row_layout
 from ..cosimulation.system import System
@@ -20,12 +20,16 @@ from ..cosimulation.wiring import Fit, fit
 
 ROOT = Path(__file__).resolve().parents[2]
 
+BEGINS_ANEW = "nothing of it is left, and the same command begins anew"
+"""What is said of a run that was stopped."""
+
 
 class Made:
     """What a run writes, see `recorded`.
 
     Attributes:
         files: that it has written.
+        begun: whether files are being replaced.
     """
 
     def __init__(
@@ -40,7 +44,7 @@ class Made:
         self._systems = systems
         self._require = require
         self._kept = kept
-        self._begun = False
+        self.begun = False
 
     @cached_property
     def fits(self) -> dict[str, Fit]:
@@ -58,10 +62,10 @@ class Made:
         Raises:
             DrivelineError: another run has written its results in the meantime.
         """
-        if not self._begun:
+        if not self.begun:
             self._kept.enter_context(alone(self._record.parent))
             self._require()
-            self._begun = True
+            self.begun = True
         for record in (self._record, *others):
             remove(record)
 
@@ -75,7 +79,8 @@ def recorded(
     results: Sequence[Path] = (),
     replace: bool = False,
 ) -> Iterator[Made]:
-    """Within it a run is made and written; at its end the record tells what made the files.
+    """Within it a run is made and written; at its end the record tells what made the files. Of a run that is stopped no
+    file is left.
 
     Args:
         record: the JSON file beside the results.
@@ -97,8 +102,15 @@ def recorded(
     require()
     with ExitStack() as kept:
         made = Made(record, systems, require, kept)
-        yield made
-        write_record(record, run, made.fits, made.files, inputs)
+        try:
+            with none_if_stopped():
+                yield made
+                write_record(record, run, made.fits, made.files, inputs)
+        except KeyboardInterrupt as stop:
+            for path in results if made.begun else ():
+                remove(path)
+            stop.add_note(BEGINS_ANEW)
+            raise
 
 
 def require_files(paths: Sequence[Path]) -> None:

@@ -26,6 +26,7 @@ from ..base.collected_warnings import LOG, CollectedWarnings
 from ..base.errors import SimulationError
 from ..base.interruption import uninterrupted_children
 from ..base.plain_text import words
+from ..base.progress import hidden
 from ..cosimulation.runs import kept_loaded
 
 Lost = BrokenProcessPool
@@ -141,7 +142,8 @@ def answered_by(function: Callable[[Any], Any], case: Any) -> tuple[Any, list[st
     words."""
     _collected.texts.clear()
     try:
-        return function(case), list(_collected.texts)
+        with hidden():
+            return function(case), list(_collected.texts)
     except SystemExit:
         raise
     except BaseException as error:

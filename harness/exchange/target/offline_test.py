@@ -1,6 +1,8 @@
 """The off-line test of the controller on the target: all cases, and what it writes."""
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from ...base.progress import progress
 from ...cosimulation.wiring import fit
 from ...loop.places import T_S
 from ...loop.settings import Settings, loop
+from ...manoeuvres.catalogue import MANOEUVRES
 from .c_export import with_values
 from .comparison import Comparison, compare, responses
 from .in_loop import in_loop
@@ -23,8 +26,10 @@ from .sample_timing import schedule
 from .size import size_of
 from .target_page import page
 
-MANY = 31
-"""Cases, about: for the bar of the progress."""
+STEPS = 1 + (len(MANOEUVRES) + 1) + (len(MANOEUVRES) + 4) + len(MANOEUVRES)
+"""For the progress: the checks; what the loop gives; these cases and those that are drawn; the target in the loop."""
+
+Piece = TypeVar("Piece")
 
 PARTS = ("NoDamping", "LinearObserver", "PaperObserver")
 """Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
@@ -47,29 +52,35 @@ def record(settings: Settings) -> Record:
     values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
     values |= {name: settings.parameters.get(f"controller.{name}", value) for name, value in values.items()}
     sources = with_values(controller, "float", values)
-    try:
-        found = findings(sources)
-    except CompilerError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
-    with programs(controller, values) as made, progress(MANY, "target") as done:
-        comparisons: list[Comparison] = []
-        cases = list(cases_in_loop(system, interfaces, inputs, settings))
-        cases += random_inputs(cases, settings.seed)
-        for case in cases:
-            comparisons.append(compare(made, case, outputs))
-            done(len(comparisons))
-        states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
-        comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
-        loops = []
-        for each in in_loop(made, controller, system, inputs, settings):
-            loops.append(each)
-            done(len(comparisons) + len(loops))
-        with made.target() as link:
-            size = size_of(made.image, made.name, link)
-        typical = next(each for each in comparisons if each.case.name == TYPICAL)
-        parts = [_part(name, typical.case) for name in PARTS if name != controller]
-        parts.append(Part(controller, typical.instructions[1], size.flash))
-        return Record(comparisons, loops, schedule(sources), size, found, parts)
+    with progress(STEPS, "target") as done:
+        try:
+            found = findings(sources)
+        except CompilerError as refusal:
+            raise DrivelineError(str(refusal)) from refusal
+        with programs(controller, values) as made:
+            cases = _counted(cases_in_loop(system, interfaces, inputs, settings), done, 1)
+            first = 1 + len(cases)
+            cases += random_inputs(cases, settings.seed)
+            comparisons = _counted((compare(made, case, outputs) for case in cases), done, first)
+            states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
+            comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
+            loops = _counted(in_loop(made, controller, system, inputs, settings), done, first + len(comparisons))
+            with made.target() as link:
+                size = size_of(made.image, made.name, link)
+            typical = next(each for each in comparisons if each.case.name == TYPICAL)
+            parts = [_part(name, typical.case) for name in PARTS if name != controller]
+            parts.append(Part(controller, typical.instructions[1], size.flash))
+            return Record(comparisons, loops, schedule(sources), size, found, parts)
+
+
+def _counted(pieces: Iterable[Piece], done: Callable[[float], None], first: int) -> list[Piece]:
+    """All of them; the progress shows each, from so many on."""
+    found: list[Piece] = []
+    done(first)
+    for piece in pieces:
+        found.append(piece)
+        done(first + len(found))
+    return found
 
 
 def _part(controller: str, case: Case) -> Part:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
 from ...base.errors import DrivelineError
+from ...base.progress import part, progress
 from ...cosimulation.wiring import fit
 from ...loop.settings import Settings, loop
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -105,13 +106,15 @@ def followed(
 ) -> tuple[Manoeuvre, np.ndarray]:
     """The manoeuvre in which the car without control keeps the recorded speed, and the signals of that run."""
     F, lacking = needed_force(track, load), 0.0
-    for _ in range(MOST_DRIVES):
-        F = F + lacking
-        manoeuvre = drive(track, load, F, held)
-        signals = signals_of(manoeuvre, settings.replace(control=False))
-        if speed_error(signals, track) <= CLOSE:
-            break
-        lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
+    with progress(MOST_DRIVES, track.name) as done:
+        for k in range(MOST_DRIVES):
+            F = F + lacking
+            manoeuvre = drive(track, load, F, held)
+            with part(done, k):
+                signals = signals_of(manoeuvre, settings.replace(control=False))
+            if speed_error(signals, track) <= CLOSE:
+                break
+            lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
     return manoeuvre, signals
 
 
@@ -135,9 +138,12 @@ def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], he
     """
     require_counting()
     first = next(iter(controllers.values()))
-    manoeuvre, undamped = followed(track, load, first, held)
-    one = partial(_damped, manoeuvre, track, controllers)
-    damped = run_many(one, controllers, workers=2, label=track.name)
+    with progress(MOST_DRIVES + len(controllers), track.name) as done:
+        with part(done, 0.0, MOST_DRIVES):
+            manoeuvre, undamped = followed(track, load, first, held)
+        one = partial(_damped, manoeuvre, track, controllers)
+        with part(done, MOST_DRIVES, len(controllers)):
+            damped = run_many(one, controllers, workers=2)
     return [ride_of(UNDAMPED, undamped, manoeuvre, track), *damped]
 
 

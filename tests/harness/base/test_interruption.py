@@ -15,6 +15,7 @@ import pytest
 from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation.provenance import BEGINS_ANEW
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.signals import heed_signals
@@ -48,7 +49,7 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
         time.sleep(0.02)  # until a worker has unpacked an FMU
     os.killpg(process.pid, number) if whole_group else process.send_signal(number)
     out, err = process.communicate(timeout=60)
-    assert (process.returncode, out, err) == (code, "", "driveline compare: stopped\n")
+    assert (process.returncode, out, err) == (code, "", f"driveline compare: stopped; {BEGINS_ANEW}\n")
     assert list(temporary.iterdir()) == []
     assert [path for path in results.rglob("*") if path.is_file()] == []
 

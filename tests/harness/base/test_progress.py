@@ -2,13 +2,15 @@
 
 import io
 import sys
+import time
 from contextlib import redirect_stderr
 from threading import Event, Thread
+from threading import enumerate as threads
 from types import SimpleNamespace
 
 import pytest
 
-from driveline.harness.base.progress import chunks, hidden, progress
+from driveline.harness.base.progress import chunks, hidden, part, progress
 
 
 class Terminal(io.StringIO):
@@ -18,8 +20,17 @@ class Terminal(io.StringIO):
 
 @pytest.fixture(autouse=True)
 def time_does_not_matter(monkeypatch):
-    monkeypatch.setattr("driveline.harness.base.progress.QUIET", -1.0)
+    for name in ("QUIET", "LEAST_PAUSE", "MOST_PAUSE", "REFRESH"):
+        monkeypatch.setattr(f"driveline.harness.base.progress.{name}", 0.001)
     monkeypatch.setenv("TERM", "xterm")
+
+
+def eventually(shown, text):
+    """Waits until it is written."""
+    end = time.monotonic() + 30.0
+    while text not in shown.getvalue():
+        assert time.monotonic() < end, shown.getvalue()
+        time.sleep(0.001)
 
 
 def make(label, steps=2):
@@ -33,17 +44,31 @@ def test_pieces_cover_everything_once():
     assert list(chunks(0)) == []
 
 
-def test_a_long_run_is_shown_on_a_terminal():
-    with redirect_stderr(Terminal()) as shown:
-        make("tip-in")
-    assert "tip-in" in shown.getvalue()
+def test_a_long_run_shows_its_share_and_the_time_left_on_a_terminal_before_its_first_piece_is_done():
+    with redirect_stderr(Terminal()) as shown, progress(4, "tip-in") as done:
+        eventually(shown, "tip-in")
+        eventually(shown, "0%")
+        eventually(shown, "-:--:--")
+        done(1)
+        eventually(shown, "25%")
+        done(2)
+        eventually(shown, "0:00:0")
+
+
+def test_nothing_is_left_of_it():
+    before = set(threads())
+    with redirect_stderr(Terminal()) as shown, progress(2, "tip-in"):
+        eventually(shown, "tip-in")
+    assert "\x1b[2K" in shown.getvalue()[-20:]  # its line is erased
+    assert set(threads()) == before
 
 
 def test_a_short_run_is_not_shown(monkeypatch):
-    monkeypatch.setattr("driveline.harness.base.progress.QUIET", float("inf"))
-    with redirect_stderr(Terminal()) as shown:
-        make("tip-in")
-    assert shown.getvalue() == ""
+    monkeypatch.setattr("driveline.harness.base.progress.QUIET", 3600.0)
+    for stream in (Terminal(), io.StringIO()):
+        with redirect_stderr(stream) as shown:
+            make("tip-in")
+        assert shown.getvalue() == ""
 
 
 def test_who_has_no_stderr_gets_no_progress():
@@ -51,10 +76,46 @@ def test_who_has_no_stderr_gets_no_progress():
         make("tip-in")
 
 
-def test_a_file_gets_no_progress():
+@pytest.mark.parametrize("stream", [io.StringIO, Terminal])
+def test_a_log_gets_a_line_now_and_then(stream, monkeypatch):
+    monkeypatch.setenv("TERM", "dumb")
+    with redirect_stderr(stream()) as written, progress(4, "tip-in") as done:
+        eventually(written, "tip-in: 0 %\n")
+        done(1)
+        eventually(written, "tip-in: 25 %")
+        done(2)
+        eventually(written, "tip-in: 50 %, 0:00:0")  # hours, minutes, seconds
+        eventually(written, " left\n")
+    assert "\x1b" not in written.getvalue()
+    assert "\r" not in written.getvalue()
+
+
+def test_a_log_is_not_flooded(monkeypatch):
+    monkeypatch.setattr("driveline.harness.base.progress.LEAST_PAUSE", 3600.0)
     with redirect_stderr(io.StringIO()) as written:
-        make("tip-in")
+        make("tip-in", steps=10000)
     assert written.getvalue() == ""
+
+
+def test_a_part_fills_its_share():
+    shares = []
+    with part(shares.append, 2.0, 3.0):
+        make("rides")
+        make("none", steps=0)
+    assert shares == [3.5, 5.0]
+
+
+def test_parts_of_parts_add_up():
+    shares = []
+    with part(shares.append, 0.0, 8.0), progress(2, "drives") as done, part(done, 1.0):
+        make("drive", steps=4)
+    assert shares == [5.0, 6.0, 7.0, 8.0]
+
+
+def test_nothing_shows_the_parts_of_what_is_hidden():
+    with redirect_stderr(Terminal()) as shown, hidden(), progress(2, "drives") as done, part(done, 1.0):
+        make("drive")
+    assert shown.getvalue() == ""
 
 
 def test_only_the_outer_one_is_shown():
@@ -62,11 +123,10 @@ def test_only_the_outer_one_is_shown():
         for number in (1, 2):
             make("tip-in")
             done(number)
-    assert "cases" in shown.getvalue()
+        eventually(shown, "cases")
     assert "tip-in" not in shown.getvalue()
-    with redirect_stderr(Terminal()) as shown:
-        make("tip-in")
-    assert "tip-in" in shown.getvalue()
+    with redirect_stderr(Terminal()) as shown, progress(2, "tip-in"):
+        eventually(shown, "tip-in")
 
 
 def test_an_error_ends_the_display():
@@ -78,20 +138,19 @@ def test_an_error_ends_the_display():
     with redirect_stderr(Terminal()) as shown:
         with pytest.raises(KeyError) as _kept:
             fail()
-        make("second")
-    assert "second" in shown.getvalue()
+        with progress(2, "second"):
+            eventually(shown, "second")
 
 
 def test_what_is_hidden_is_not_shown():
     with redirect_stderr(Terminal()) as shown:
         with hidden():
             make("first")
-        with hidden(False):
-            make("second")
+        with hidden(False), progress(2, "second"):
+            eventually(shown, "second")
         with hidden(), hidden(False):
             make("third")
     assert "first" not in shown.getvalue()
-    assert "second" in shown.getvalue()
     assert "third" not in shown.getvalue()
 
 
@@ -107,17 +166,18 @@ def test_threads_do_not_hide_each_others_progress():
     thread.start()
     inside.wait(10.0)
     with redirect_stderr(Terminal()) as shown:
-        make("here")
+        with progress(2, "here"):
+            eventually(shown, "here")
         outside.set()
         thread.join()
-        make("later")
-    assert "here" in shown.getvalue()
-    assert "later" in shown.getvalue()
+        with progress(2, "later"):
+            eventually(shown, "later")
 
 
 @pytest.fixture
 def kernel(monkeypatch):
     """What the kernel of a notebook has displayed."""
+    monkeypatch.setattr("driveline.harness.base.progress.QUIET", -1.0)
     display = pytest.importorskip("IPython.display", reason="needs the extra `notebook`")
     displayed = []
 
@@ -148,7 +208,6 @@ def test_a_notebook_is_not_flooded(kernel):
 
 def test_a_shell_of_ipython_is_a_terminal(kernel, monkeypatch):
     monkeypatch.setattr(sys.modules["IPython"], "get_ipython", SimpleNamespace)
-    with redirect_stderr(Terminal()) as shown:
-        make("tip-in")
-    assert "tip-in" in shown.getvalue()
+    with redirect_stderr(Terminal()) as shown, progress(2, "tip-in"):
+        eventually(shown, "tip-in")
     assert kernel == []

@@ -94,7 +94,7 @@ def test_progress_is_told_of_every_case(monkeypatch):
 
     monkeypatch.setattr("driveline.harness.simulation.many_runs.progress", progress)
     run_many(abs, [-1, -2, -3], workers=1, label="counting")
-    assert told == [(3, "counting"), 1, 2, 3]
+    assert told == [(3, "counting"), 0, 1, 2, 3]
 
 
 def test_threads_do_not_share_what_is_kept_loaded(native, tmp_path):

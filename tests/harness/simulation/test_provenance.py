@@ -105,17 +105,25 @@ def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
         assert "does not tell of which run it is" in capsys.readouterr().err
 
 
-def test_a_run_that_stops_leaves_no_record_beside_what_it_did_not_make(
-    both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("replaced", [["--seed", "2", "--replace"], []])
+def test_a_run_that_stops_while_it_writes_leaves_nothing_and_the_same_command_begins_anew(
+    both_built: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    replaced: list[str],
 ) -> None:
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
     given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
     assert main(given) == 0
-    monkeypatch.setattr(provenance, "write_record", stopped)
-    assert main([*given, "--seed", "2", "--replace"]) != 0
-    assert {path.name for path in tmp_path.iterdir()} == {f"{NAME}.csv"}
+    with monkeypatch.context() as patched:
+        patched.setattr(provenance, "write_record", stopped)
+        assert main([*given, *replaced]) == 130
+    assert capsys.readouterr().err.endswith(f"stopped; {provenance.BEGINS_ANEW}\n")
+    assert list(tmp_path.iterdir()) == []
+    assert main([*given, "--seed", "2"]) == 0
 
 
 def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(
