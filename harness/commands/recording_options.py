@@ -10,9 +10,14 @@ from ..base.plain_text import quoted
 from ..recordings.quantities import QUANTITIES
 
 
-def add_recording(parser: argparse.ArgumentParser, what: str) -> None:
-    """RECORDING, --dbc, --column and --aliases; `what` says what is recorded."""
-    parser.add_argument("recording", type=Path, metavar="RECORDING", help=f"{what} (docs/recordings.md)")
+def add_recording(parser: argparse.ArgumentParser, what: str, **how: Any) -> None:
+    """RECORDING, --dbc, --column and --aliases.
+
+    Args:
+        what: is recorded, for help.
+        how: further arguments of `add_argument` for RECORDING.
+    """
+    parser.add_argument("recording", type=Path, metavar="RECORDING", help=f"{what} (docs/recordings.md)", **how)
     parser.add_argument(
         "--dbc",
         action="append",

@@ -5,15 +5,20 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.lib.recfunctions import repack_fields
 
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..cosimulation.wiring import Fit, fit, out_of_bounds, require
 from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
-from ..metrics.evaluate import evaluate
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..metrics.evaluate import at_samples, evaluate
 from ..metrics.run_metrics import Metrics
+from ..recordings.drive import Drive
 from ..simulation.simulate import simulate
+from ..studies.drives.replay import followed, on_road
+from ..views.html.paired_runs import NEEDED, shown_at_first
 from .knobs import CAR, GAINS, Knob, knobs
 from .request import Request, characterised, parameters
 
@@ -22,7 +27,7 @@ Given = Mapping[tuple[str, str], Settings]
 
 
 class Run(NamedTuple):
-    """One run, with what it is worth."""
+    """What is drawn of one run, at the samples of the controller, with what it is worth."""
 
     results: np.ndarray
     metrics: Metrics
@@ -42,13 +47,26 @@ class Answer(NamedTuple):
 class RequestRunner:
     """Runs requests with the loops that can be chosen.
 
+    Args:
+        manoeuvres: that can be chosen, by name.
+        recording: a recorded drive that can be chosen too.
+
     Attributes:
         controllers: by name; the first is the one whose gains can be turned.
         car, gains: what can be turned.
+
+    Raises:
+        DrivelineError: a manoeuvre has the name of the recording.
     """
 
-    def __init__(self, given: Given) -> None:
+    def __init__(
+        self, given: Given, manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES, recording: Drive | None = None
+    ) -> None:
+        if recording is not None and recording.name in manoeuvres:
+            raise DrivelineError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
         self._given = given
+        self._manoeuvres = manoeuvres
+        self._recording = recording
         self._undamped: tuple[Any, Run] | None = None
         self.controllers = list(dict.fromkeys(controller for _, controller in given))
         fits = [self.fit(plant, self.controllers[0]) for plant in self.plants]
@@ -68,29 +86,81 @@ class RequestRunner:
     def fit(self, plant: str, controller: str) -> Fit:
         return fit(loop(self._given[plant, controller]))
 
-    def require_parameter(self, key: str) -> None:
-        """Refuses the name of a parameter, `instance.name`, that no loop has.
+    @property
+    def manoeuvres(self) -> dict[str, str]:
+        """What can be chosen, with what it is; the recorded drive first."""
+        drive = self._recording
+        recorded = {} if drive is None else {drive.name: f"recorded drive of {np.ptp(drive.time):.0f} s"}
+        return recorded | {name: each.description for name, each in self._manoeuvres.items()}
+
+    def window(self, manoeuvre: str) -> tuple[float, float]:
+        """From and to when in s it is shown at first."""
+        if manoeuvre in self._manoeuvres:
+            return shown_at_first(self._manoeuvres[manoeuvre])
+        assert self._recording is not None
+        return 0.0, float(np.ptp(self._recording.time))
+
+    @cache  # noqa: B019
+    def manoeuvre(self, name: str, plant: str) -> Manoeuvre:
+        """That of a recorded drive keeps the car, as it is at the start and without control, at the recorded speed."""
+        if name in self._manoeuvres:
+            return self._manoeuvres[name]
+        assert self._recording is not None
+        track, load = on_road(self._recording, self.settings(plant))
+        return followed(track, load, self.settings(plant))[0]
+
+    def require(self, request: Request) -> None:
+        """Refuses what cannot run.
 
         Raises:
-            DrivelineError: no loop has it.
+            DrivelineError: there is no such plant, manoeuvre or parameter, or an FMU does not take a value.
         """
-        known = {name for key in self._given for name in self._known(*key)}
-        if key not in known:
-            raise DrivelineError(f"there is no parameter {key}; {nearest(key, sorted(known))}")
+        if request.plant not in self.plants or request.manoeuvre not in self.manoeuvres:
+            raise DrivelineError(f"there is no {request.plant} or {request.manoeuvre}")
+        shown = {self.controllers[0], *self._controllers(request)}
+        known = {
+            f"{place}.{name}"
+            for each in shown
+            for place, has in self._names(request.plant, each).items()
+            for name in has
+        }
+        if lacking := request.typed.keys() - self._known():
+            name = min(lacking)
+            raise DrivelineError(f"there is no parameter {name}; {nearest(name, sorted(known))}")
+        for controller in shown:
+            require(out_of_bounds(self.fit(request.plant, controller), self.parameters(request, controller)))
 
-    def _known(self, plant: str, controller: str) -> list[str]:
-        names = self._names(plant, controller)
-        return [f"{instance}.{name}" for instance, each in names.items() for name in each]
+    @cache  # noqa: B019
+    def _known(self) -> frozenset[str]:
+        """`instance.name` of the parameters of all loops."""
+        names = (self._names(*key) for key in self._given)
+        return frozenset(f"{place}.{name}" for each in names for place, has in each.items() for name in has)
+
+    def turnable(self, request: Request) -> set[str]:
+        """Names of the knobs that change something of what is shown."""
+        found: set[str] = set()
+        for controller in (None, *self._controllers(request)):
+            names = self._names(request.plant, controller or self.controllers[0])
+            places = names.keys() - ({"controller"} if controller is None or not request.informed else set())
+            found |= {knob.name for knob in self.car if any(knob.name in names[place] for place in places)}
+            if controller == self.controllers[0]:
+                found |= {knob.name for knob in self.gains if knob.name in names["controller"]}
+        return found
+
+    def _controllers(self, request: Request) -> list[str]:
+        """Those whose runs are shown."""
+        first = [self.controllers[0]] if request.control else []
+        return [*first, *(name for name in request.others if name in self.controllers)]
 
     def answer(self, request: Request) -> Answer:
         """Makes the runs.
 
         Raises:
-            DrivelineError: a value is refused, or an FMU has ended a run.
+            DrivelineError: as of `require`, or an FMU has ended a run.
         """
-        first = self.controllers[0]
-        shown = [*([first] if request.control else []), *(name for name in request.others if name in self.controllers)]
-        return Answer(request, self._without(request), {name: self._run(request, name, True) for name in shown})
+        self.require(request)
+        runs = {name: self._run(request, name, True) for name in self._controllers(request)}
+        return Answer(request, self._without(request), runs)
 
     def gains_of(self, request: Request) -> dict[str, float]:
         """The gains that our controller has, as they were changed and by the character."""
@@ -125,8 +195,7 @@ class RequestRunner:
         return self._undamped[1]
 
     def _run(self, request: Request, controller: str, control: bool) -> Run:
-        manoeuvre, given = MANOEUVRES[request.manoeuvre], self.parameters(request, controller)
-        require(out_of_bounds(self.fit(request.plant, controller), given))
+        manoeuvre, given = self.manoeuvre(request.manoeuvre, request.plant), self.parameters(request, controller)
         settings = self._given[request.plant, controller]
         results = simulate(manoeuvre, settings, control=control, parameters=given)
-        return Run(results, evaluate(results, manoeuvre))
+        return Run(repack_fields(at_samples(results)[NEEDED]), evaluate(results, manoeuvre))

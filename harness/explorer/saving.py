@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from ..base.atomic_files import write_text
-from ..manoeuvres.catalogue import MANOEUVRES
 from ..simulation.provenance import content
 from ..studies.compare.compare_report import report
 from ..views.metrics_table import Row
@@ -52,7 +51,8 @@ def save_report(runner: RequestRunner, answer: Answer, inputs: list[Path | None]
         ]
     fits = {name: runner.fit(request.plant, name) for name in answer.runs}
     same = {"request": vars(request), **{name: runner.parameters(request, name) for name in answer.runs}}
-    report(runs, MANOEUVRES, content(same, fits, [], inputs), page)
+    manoeuvres = {request.manoeuvre: runner.manoeuvre(request.manoeuvre, request.plant)}
+    report(runs, manoeuvres, content(same, fits, [], inputs), page)
     return page
 
 

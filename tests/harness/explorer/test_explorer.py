@@ -12,6 +12,7 @@ import pytest
 
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands.cli import main
+from driveline.harness.explorer.view import HELD_COLOR
 from driveline.harness.views.colours import BLUE, GREY, VERMILION
 from tests.browser import Browser
 from tests.harness.explorer.served import PATIENCE, Served
@@ -94,23 +95,94 @@ def test_plant_and_manoeuvre_are_chosen(view: Browser) -> None:
     eventually(lambda: view.figure("gear torque in N·m").x() == (0.0, 12.0))
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+def test_a_refused_value_goes_back_and_freezes_nothing(view: Browser) -> None:
+    for text, message in (
+        ("plant.J_1=-5", "plant.J_1 = -5: "),
         ("plant.m=10", "takes 300 to 10000 kg"),
         ("plant.mass=1000", "there is no parameter plant.mass"),
         ("heavy", "is not of the form"),
         ("plant.m=nan", "a parameter is a finite number"),
         ("<img src=x onerror=alert(1)>=1", "&lt;img"),
-    ],
-)
-def test_a_bad_value_is_told_and_the_next_good_one_runs(view: Browser, text: str, message: str) -> None:
-    put(view, "more", text)
-    eventually(lambda: message in status(view))
+    ):
+        put(view, "more", text)
+        eventually(lambda message=message: message in status(view))
+        assert status(view).endswith("; what was set before stays</span>")
+        eventually(lambda: view.js(f"{model('more')}.value") == "")
     before = metrics(view)
-    put(view, "more", "plant.m=3000")
+    put(view, "k_d", 1.0)
     eventually(lambda: metrics(view) != before)
     assert status(view) == ""
+    put(view, "more", "plant.m=3000, plant.c_slip=100000")
+    eventually(lambda: view.js(f"{model('more')}.value") == "plant.m=3000.0, plant.c_slip=100000.0")
+    put(view, "more", "plant.m=0")
+    eventually(lambda: view.js(f"{model('more')}.value") == "plant.m=3000.0, plant.c_slip=100000.0")
+
+
+def test_what_is_at_work_is_said(view: Browser) -> None:
+    view.js(
+        f"void (window.said = [], {model('status')}.properties.text.change.connect("
+        f"() => window.said.push({model('status')}.text)))"
+    )
+    put(view, "manoeuvre", "drive")
+    eventually(lambda: view.js("window.said.length") >= 2)
+    assert view.js("window.said") == ["running ...", ""]
+
+
+def test_a_knob_that_the_plant_does_not_have_cannot_be_turned(view: Browser) -> None:
+    assert view.js(f"[{model('k_s')}.disabled, {model('phi_B')}.disabled, {model('k_d')}.disabled]") == [
+        True,
+        False,
+        False,
+    ]
+    put(view, "plant", "ValidationVehicle")
+    eventually(lambda: not view.js(f"{model('k_s')}.disabled"))
+    put(view, "control", False, "active")
+    eventually(lambda: view.js(f"{model('k_d')}.disabled && {model('character')}.disabled"))
+
+
+def test_a_run_that_is_held_stays_beside_those_that_follow(view: Browser) -> None:
+    torque = view.figure("gear torque in N·m")
+    assert "held" not in metrics(view)
+    before = row(metrics(view), "DampingController")
+    put(view, "hold", True, "active")
+    eventually(lambda: "held" in metrics(view))
+    put(view, "k_d", 0.6)
+    eventually(lambda: row(metrics(view), "DampingController") != before)
+    assert row(metrics(view), "held") == before
+    eventually(lambda: torque.pixels(HELD_COLOR) > 100)
+    put(view, "manoeuvre", "creep")
+    eventually(lambda: "held" not in metrics(view))
+    put(view, "manoeuvre", "tipin15")
+    eventually(lambda: "held" in metrics(view))
+    put(view, "hold", False, "active")
+    eventually(lambda: "held" not in metrics(view))
+    eventually(lambda: torque.pixels(HELD_COLOR) == 0)
+
+
+def row(table: str, name: str) -> list[str]:
+    """The cells of a run."""
+    (line,) = [line for line in table.split("<tr>") if f">{name}<" in line]
+    return re.findall(r"<td[^>]*>([^<]*)</td>", line)[1:]
+
+
+def test_every_knob_is_in_view_beside_the_curves_on_a_small_screen(view: Browser) -> None:
+    size = {"width": 1440, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    view.chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        for scrolled in (0, 10_000):
+            view.js(f"window.scrollTo(0, {scrolled})")
+            view.painted()
+            for name in ("phi_B", "d_max", "k_d", "t_return", "more", "save report"):
+                found = view.js(
+                    "(() => { const view = [...Bokeh.index.query((view) => view.model.name === arguments[0])][0];"
+                    " const r = view.el.getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom] })()",
+                    name,
+                )
+                assert 0 <= found[0] < found[2] <= 480, (name, found)
+                assert 0 <= found[1] < found[3] <= 900, (name, found)
+        assert view.js("document.documentElement.scrollWidth") <= 1440
+    finally:
+        view.chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_what_a_page_of_ones_own_sends_is_kept_within_the_slider(view: Browser) -> None:

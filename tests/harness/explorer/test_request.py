@@ -1,6 +1,7 @@
 """What a tab asks for, and what the loops get for it."""
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from driveline.harness.cosimulation.runs import kept_loaded
 from driveline.harness.explorer.request import COMFORT, SPORT, Request, characterised, parameters
 from driveline.harness.explorer.request_runs import RequestRunner
 from driveline.harness.loop.settings import Settings
+from driveline.harness.recordings.drive import Drive
 
 NAMES = {"plant": ["phi_B", "m"], "controller": ["phi_B", "k_d"], "motor": ["tau"]}
 
@@ -97,9 +99,54 @@ def test_a_value_beyond_what_an_fmu_takes_is_refused_by_name(runner: RequestRunn
 
 
 def test_an_unknown_parameter_is_answered_with_the_nearest(runner: RequestRunner) -> None:
-    runner.require_parameter("plant.k_s")
+    runner.require(replace(REQUEST, plant="ValidationVehicle", typed={"plant.k_s": 3e4}))
     with pytest.raises(DrivelineError, match=r"no parameter plant\.ks; did you mean .*plant\.k_s"):
-        runner.require_parameter("plant.ks")
+        runner.require(replace(REQUEST, plant="ValidationVehicle", typed={"plant.ks": 3e4}))
+
+
+@pytest.mark.parametrize("change", [{"plant": "Lorry"}, {"manoeuvre": "jump"}])
+def test_a_plant_or_manoeuvre_that_is_none_is_refused(runner: RequestRunner, change: dict[str, str]) -> None:
+    with pytest.raises(DrivelineError, match=f"there is no .*{next(iter(change.values()))}"):
+        runner.require(replace(REQUEST, **change))
+
+
+def test_the_knobs_that_can_be_turned_are_those_that_change_a_run(runner: RequestRunner) -> None:
+    """Each is turned, and what the loops of the shown runs get is compared."""
+
+    def loops(request: Request) -> list[dict[str, float]]:
+        without = runner.parameters(request, "DampingController")
+        shown = [runner.parameters(request, name) for name in runner.answer(request).runs]
+        return [{k: v for k, v in without.items() if not k.startswith("controller.")}, *shown]
+
+    with kept_loaded():
+        for plant, control, informed in product(runner.plants, (True, False), (True, False)):
+            request = Request(plant, "prbs15", control=control, informed=informed)
+            before, turnable = loops(request), runner.turnable(request)
+            for kind, knobs in (("car", runner.car), ("gains", runner.gains)):
+                for knob in knobs:
+                    turned = replace(request, **{kind: {knob.name: 0.5 * (knob.value + knob.high)}})
+                    assert (loops(turned) != before) == (knob.name in turnable), (plant, knob.name)
+    assert "k_s" not in runner.turnable(REQUEST)
+    assert "k_s" in runner.turnable(replace(REQUEST, plant="ValidationVehicle"))
+
+
+def test_a_recorded_drive_keeps_its_speed_on_every_plant(with_washout: Path) -> None:
+    t = np.arange(0.0, 6.0, 0.05)
+    drive = Drive("mine", t, 5.0 + np.sin(t), None, 20.0 + 10.0 * np.sin(2.0 * t), {})
+    given = {
+        (plant, "DampingController"): Settings(plant=plant, folder=with_washout, build="native")
+        for plant in ("TwoMassDriveline", "ValidationVehicle")
+    }
+    runner = RequestRunner(given, recording=drive)
+    assert next(iter(runner.manoeuvres)) == "mine"
+    assert runner.window("mine") == pytest.approx((0.0, t[-1]))
+    with kept_loaded():
+        for plant in runner.plants:
+            run = runner.answer(Request(plant, "mine")).without.results
+            error = run["plant.omega_2"] / run["plant.omega_2"][0] - np.interp(run["time"], t, drive.v) / drive.v[0]
+            assert np.abs(error).max() < 0.1
+    with pytest.raises(DrivelineError, match="two manoeuvres are called creep"):
+        RequestRunner(given, recording=replace(drive, name="creep"))
 
 
 @pytest.mark.slow
