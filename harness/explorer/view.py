@@ -52,6 +52,9 @@ IN_VIEW = {
 }
 """Controls stay beside the curves, whatever is scrolled to, and scroll by themselves where they are too many."""
 
+ON_TOP: dict[str, str | None] = {"position": "sticky", "top": "0", "z-index": "9", "background": "white"}
+"""What is said stays above the curves."""
+
 Save = Callable[[Answer], Sequence[Path]]
 """Writes an answer; gives the files."""
 
@@ -87,7 +90,7 @@ class View:
         self._answer: Answer | None = None
         self._held: tuple[str, Run] | None = None
         self._gone = self._following = False
-        self._status = Div(name="status", text="", min_height=18)
+        self._status = Div(name="status", text="", min_height=18, sizing_mode="stretch_width", styles=ON_TOP)
         self._table = Div(name="metrics", text="", sizing_mode="stretch_width")
         nothing = np.zeros(2, dtype=[(name, float) for name in NEEDED])
         nothing["time"] = 0.0, T_S
