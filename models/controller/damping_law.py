@@ -33,7 +33,7 @@ class Parameters(NamedTuple):
     T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02, search=(0.0, 0.006))] = (
         GAINS["T_pred"]
     )
-    k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 20.0, search=(0.3, 10.0))] = (
+    k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 200.0, search=(0.3, 10.0))] = (
         GAINS["k_d"]
     )
     k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0, search=(0.001, 5.0))] = GAINS["k_T"]

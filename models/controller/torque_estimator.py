@@ -26,8 +26,8 @@ from .fading import toward
 from .gains import GAINS
 from .interfaces import Motion
 
-HISTORY = 32
-"""Past estimates of omega_2 that are kept, one a sample."""
+HISTORY = 50
+"""Past estimates of omega_2 that are kept, one a sample: the age of messages every 50 ms that are late by as much."""
 
 
 class Parameters(NamedTuple):
@@ -50,7 +50,7 @@ class Parameters(NamedTuple):
     L_can_omega_2: Annotated[float, Real("1", "gain of a message on omega_2_hat", -2.0, 2.0)] = GAINS["L_can_omega_2"]
     L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = GAINS["L_can_phi"]
     L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = GAINS["L_can_T_l"]
-    T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.064)] = GAINS["T_age"]
+    T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.1)] = GAINS["T_age"]
 
 
 class AllParameters(Parameters):

@@ -129,7 +129,7 @@ def test_a_message_corrects_as_far_as_the_wheel_speed_is_in_use(share: float) ->
     assert e == advanced(E_0, 4.0 * share, Estimate(0.0625, 0.75, -0.015625, 4.0))
 
 
-@pytest.mark.parametrize(("samples", "estimate"), [(1, 100.0), (2, 104.0), (2.5, 106.0), (HISTORY, 224.0)])
+@pytest.mark.parametrize(("samples", "estimate"), [(1, 100.0), (2, 104.0), (2.5, 106.0), (HISTORY, 296.0)])
 def test_a_message_is_compared_with_the_estimate_of_its_time(samples: float, estimate: float) -> None:
     x = estimating(E_0)._replace(past=tuple(100.0 + 4.0 * k for k in range(HISTORY)))
     p = GAINS._replace(T_age=samples * 0.25)
