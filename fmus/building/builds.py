@@ -54,6 +54,7 @@ def build_fmus(
             cannot be built.
     """
     from ..catalogue import EVERY, FMUS
+    from .one_car import of_one_car
     from .parameter_files import read_files, require_taken
 
     fmus = [name if isinstance(name, Fmu) else _named(name) for name in _each_once(names or list(FMUS))]
@@ -69,8 +70,9 @@ def build_fmus(
     start_values = read_files(vehicle, parameters, own)
     require_taken(parameters, {name for fmu in fmus for name in fmu.block.Parameters._fields}, " or ".join(built))
     for fmu in fmus:
+        of_car = of_one_car(start_values, fmu.block.Parameters._fields)
         for build in of_own if fmu in own else of_the_project:
-            yield build(fmu.started_with(start_values), folder)
+            yield build(fmu.started_with(of_car), folder)
 
 
 def _each_once(names: Sequence[str | Fmu]) -> list[str | Fmu]:

@@ -2,7 +2,7 @@
 
 Both are flat TOML, `J_1 = 0.09`, with the names and units that the blocks declare. An entry of a vehicle file
 is one for every block that declares the name: plant, motor, bus and the controller's model of them. What no
-file names keeps its start value.
+file names follows (one_car) or keeps its start value.
 """
 
 import re
@@ -18,6 +18,7 @@ from ..catalogue import EVERY, FMUS
 from ..description.variables import LARGEST, Variable, interface
 from ..errors import ParameterFileError
 from ..fmu import Fmu
+from .one_car import of_one_car
 
 OF_A_RUN = {
     "v_0": "the manoeuvre sets it",
@@ -50,18 +51,24 @@ def read_files(
 
 
 def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = ()) -> dict[str, Any]:
-    """The entries of a vehicle file by name.
+    """The entries of a vehicle file by name, without those that follow from them (`of_one_car`).
 
     Args:
         own: FMUs with blocks of the user's own, whose parameters may stand in it too.
         others: names of parameters that may stand in it too, of FMUs that someone else has made.
 
     Raises:
-        ParameterFileError: names the lines with what is not known, no number or out of range.
+        ParameterFileError: names the lines with what is not known, no number or out of range; or the entries that
+            disagree.
     """
     everything, of_car = _owners([*EVERY.values(), *own]), _of_car(own)
     of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
-    return _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
+    values = _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
+    try:
+        of_one_car(values, ())
+    except ParameterFileError as problem:
+        raise ParameterFileError(f"{path}: {problem}") from problem
+    return values
 
 
 def read_parameters(path: Path) -> dict[str, Any]:
@@ -90,11 +97,16 @@ def require_taken(parameters: Path | None, taken: Collection[str], by: str) -> N
 
 
 def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[str]]) -> dict[str, Any]:
-    """Entries of a file as parameters of a loop, `instance.name` -> value, for every instance that has the name.
+    """Entries of a file as parameters of a loop, `instance.name` -> value, for every instance that has the name, with
+    those that follow from them.
 
     Args:
         instances: the names of the parameters of each instance.
+
+    Raises:
+        ParameterFileError: see `of_one_car`.
     """
+    values = of_one_car(values, set().union(*instances.values()))
     return {
         f"{instance}.{name}": values[name] for instance, names in instances.items() for name in values if name in names
     }

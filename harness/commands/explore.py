@@ -70,15 +70,15 @@ def run(args: argparse.Namespace) -> int:
     recording = None
     if args.recording is not None:
         recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
-    runner, out = RequestRunner(given, {**asked.manoeuvres, **MANOEUVRES}, recording), Printer(args)
+    car = read_vehicle(args.vehicle) if args.vehicle else {}
+    runner, out = RequestRunner(given, car, {**asked.manoeuvres, **MANOEUVRES}, recording), Printer(args)
     fits = {plant: runner.fit(plant, runner.controllers[0]) for plant in runner.plants}
     asked.require_drivable(fits, {plant: runner.settings(plant) for plant in runner.plants})
     read = [args.vehicle, args.parameters, args.recording, *asked.files.values()]
-    car = read_vehicle(args.vehicle) if args.vehicle else {}
     gains = read_parameters(args.parameters) if args.parameters else {}
 
     def files(answer: Answer) -> list[Path]:
-        return save_files(runner, answer.request, gains, car, args.output)
+        return save_files(runner, answer.request, gains, args.output)
 
     def report(answer: Answer) -> list[Path]:
         return [save_report(runner, answer, read, args.output)]

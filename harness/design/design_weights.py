@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import Any, NamedTuple
 
+from ...fmus.building.one_car import of_one_car
 from ...fmus.description.variables import interface
 from ...models import motor_torque_loop, two_mass_driveline, wheel_speed_can
 from ...models.controller.supervision import T_S
@@ -22,10 +23,15 @@ PARAMETERS = {variable.name: variable for variable in interface(BLOCK) if variab
 
 
 def records(vehicle: Mapping[str, Any]) -> tuple[Plant, Motor, Can]:
-    """A car by the entries of its vehicle file; what these do not name is that of the default car."""
+    """A car by the entries of its vehicle file; what these do not name follows or is that of the default car.
+
+    Raises:
+        ParameterFileError: see `of_one_car`.
+    """
+    car = of_one_car(vehicle, Plant._fields)
 
     def of(record: Any) -> Any:
-        return record(**{name: vehicle[name] for name in record._fields if name in vehicle})
+        return record(**{name: car[name] for name in record._fields if name in car})
 
     return of(Plant), of(Motor), of(Can)
 

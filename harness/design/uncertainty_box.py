@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from ...fmus.building.one_car import SHAFTS, WHEELS
 from .design_trials import loop_parameters, loop_records
 
 
@@ -55,8 +56,8 @@ SPREAD, SHORTEST = 0.01, 0.001
 """Of the transport delay, up and down, and the shortest that the bus has, in s."""
 
 SCALED = {
-    "J_2": ("J_2", "J_w", "J_g"),
-    "C": ("C", "k_s", "k_g", "k_p"),
+    "J_2": ("J_2", *WHEELS),
+    "C": ("C", *SHAFTS),
     "phi_B": ("phi_B",),
     "tau": ("tau",),
     "m": ("m", "F_z0", "J_y"),
@@ -87,10 +88,12 @@ def deviating(values: Mapping[str, Any], plant: str, controller: str, deviation:
         values: entries of parameter files, which reach every block that has the name.
         deviation: of all blocks but the controller.
     """
-    blocks = {place: record()._asdict() for place, record in loop_records(plant, controller).items()}
-    for start in blocks.values():
-        start |= {name: value for name, value in values.items() if name in start}
-    return loop_parameters(values, plant, controller) | changed(blocks, deviation)
+    given = loop_parameters(values, plant, controller)
+    blocks = {
+        place: {name: given.get(f"{place}.{name}", value) for name, value in record()._asdict().items()}
+        for place, record in loop_records(plant, controller).items()
+    }
+    return given | changed(blocks, deviation)
 
 
 def changed(blocks: Mapping[str, Mapping[str, Any]], deviation: Deviation) -> dict[str, float]:

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from ..cosimulation.interface import unit_of
 from ..cosimulation.wiring import Fit
 
-CAR = ("phi_B", "C", "k_s", "m", "J_1", "J_2", "c_slip", "tau", "d_max")
-"""Of the car: each is one for all blocks that have it. C is the stiffness of the design model and of the controller's,
-k_s that of the validation vehicle's half shafts; d_max is the longest delay of the wheel speed on the bus."""
+CAR = ("phi_B", "C", "m", "J_1", "J_2", "c_slip", "tau", "d_max")
+"""Of the car: each is one for all blocks that have it, and others follow from it as from a vehicle file. d_max is the
+longest delay of the wheel speed on the bus."""
 
 GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "brake", "haste", "t_return")
 """Of the controller."""
@@ -16,6 +16,9 @@ GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "brake", "haste", "t_return"
 FAR = 5.0
 """A slider goes to so many times the value at the start, and down to this part of it, within what FMUs declare; further
 values can be typed."""
+
+NEAR = {"C": 2.0, "c_slip": 2.0}
+"""The same where half shafts would follow that are stiffer than any."""
 
 STEPS = 200
 """Of a slider."""
@@ -63,7 +66,8 @@ def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float])
         value = float(given.get(key, variable.start or 0.0))
         least = max(float(each.min) for _, each in owners if each.min is not None)
         most = min(float(each.max) for _, each in owners if each.max is not None)
-        low = max(least, value / FAR) if least > 0.0 else max(least, 0.0)
+        far = NEAR.get(name, FAR)
+        low = max(least, value / far) if least > 0.0 else max(least, 0.0)
         unit = unit_of(variable) or ""
-        high = min(most, FAR * value if value > 0.0 else most)
+        high = min(most, far * value if value > 0.0 else most)
         yield Knob(name, low, high, value, "" if unit == "1" else unit, str(variable.description))

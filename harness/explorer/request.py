@@ -3,6 +3,8 @@
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
+from ...fmus.building.one_car import differences, updated
+
 SPORT: Mapping[str, float] = {"k_d": 0.88, "omega_w": 1.4, "T_gap": 1.7, "t_return": 0.5}
 COMFORT: Mapping[str, float] = {"k_d": 1.2, "omega_w": 0.75, "T_gap": 0.6, "t_return": 2.0}
 """Factors on gains at both ends of the character; docs/explorer.md says what they do."""
@@ -41,19 +43,29 @@ def characterised(gains: Mapping[str, float], character: float) -> dict[str, flo
 
 
 def parameters(
-    request: Request, names: Mapping[str, Collection[str]], given: Mapping[str, float], gains: Mapping[str, float]
+    request: Request,
+    names: Mapping[str, Collection[str]],
+    given: Mapping[str, float],
+    gains: Mapping[str, float],
+    of_car: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
     """`instance.name` -> value for a loop.
 
     Args:
         names: of the parameters of each instance.
         given: what files and options say.
+        of_car: entries of the vehicle file that is in it.
         gains: of the controller; none for one that the gains are not of.
+
+    Raises:
+        ParameterFileError: there is no such car.
     """
+    known = of_car or {}
+    turned = differences(known, updated(known, request.car), set().union(*names.values()))
     car = {
         f"{instance}.{name}": value
         for instance, has in names.items()
-        for name, value in request.car.items()
+        for name, value in turned.items()
         if name in has and (request.informed or instance != "controller")
     }
     own = {f"controller.{name}": value for name, value in gains.items() if name in names["controller"]}

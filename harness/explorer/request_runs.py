@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
+from ...fmus.errors import ParameterFileError
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..cosimulation.wiring import Fit, fit, out_of_bounds, require
@@ -48,6 +49,7 @@ class RequestRunner:
     """Runs requests with the loops that can be chosen.
 
     Args:
+        of_car: entries of the vehicle file that the loops were given.
         manoeuvres: that can be chosen, by name.
         recording: a recorded drive that can be chosen too.
 
@@ -60,11 +62,16 @@ class RequestRunner:
     """
 
     def __init__(
-        self, given: Given, manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES, recording: Drive | None = None
+        self,
+        given: Given,
+        of_car: Mapping[str, float] | None = None,
+        manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES,
+        recording: Drive | None = None,
     ) -> None:
         if recording is not None and recording.name in manoeuvres:
             raise DrivelineError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
         self._given = given
+        self.of_car = of_car or {}
         self._manoeuvres = manoeuvres
         self._recording = recording
         self._undamped: tuple[Any, Run] | None = None
@@ -167,10 +174,17 @@ class RequestRunner:
         return characterised({knob.name: knob.value for knob in self.gains} | dict(request.gains), request.character)
 
     def parameters(self, request: Request, controller: str) -> dict[str, float]:
-        """Of the loop with a controller."""
+        """Of the loop with a controller.
+
+        Raises:
+            DrivelineError: there is no such car.
+        """
         names, settings = self._names(request.plant, controller), self.settings(request.plant, controller)
         gains = self._changed_gains(request) if controller == self.controllers[0] else {}
-        return parameters(request, names, settings.parameters, gains)
+        try:
+            return parameters(request, names, settings.parameters, gains, self.of_car)
+        except ParameterFileError as refusal:
+            raise DrivelineError(str(refusal)) from refusal
 
     def _changed_gains(self, request: Request) -> dict[str, float]:
         if request.character == 0.5:

@@ -6,6 +6,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from ...fmus.building.one_car import updated
 from ..base.atomic_files import write_text
 from ..simulation.provenance import content
 from ..studies.compare.compare_report import report
@@ -17,19 +18,16 @@ DIGITS = 6
 """Significant digits of a value in a file."""
 
 
-def save_files(
-    runner: RequestRunner, request: Request, known: Mapping[str, Any], of_car: Mapping[str, Any], folder: Path
-) -> list[Path]:
+def save_files(runner: RequestRunner, request: Request, known: Mapping[str, Any], folder: Path) -> list[Path]:
     """Writes car_N.toml and gains_N.toml with a number that is not taken; returns both.
 
     Args:
         known: entries of the file of parameters that was given.
-        of_car: those of the vehicle file.
     """
     car, gains = free(folder, "car_{}.toml", "gains_{}.toml")
     units = {knob.name: (knob.unit, knob.meaning) for knob in (*runner.car, *runner.gains)}
     by = f"by `driveline explore` (driveline-damping {version('driveline-damping')})"
-    write_text(_toml(f"A car, {by}.", {**of_car, **request.car}, units), car)
+    write_text(_toml(f"A car, {by}.", updated(runner.of_car, request.car), units), car)
     write_text(_toml(f"Gains of {runner.controllers[0]}, {by}.", {**known, **runner.gains_of(request)}, units), gains)
     return [car, gains]
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ...fmus.building.one_car import updated
 from .drive_train import Parameters
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
 from .quality import Z_95
@@ -59,7 +60,8 @@ def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = N
     """Entries of the vehicle file, in SI units: what the controller's model needs, as `design` takes it.
 
     Args:
-        vehicle: entries of the one that was given, which stay but for those that were identified.
+        vehicle: entries of the one that was given, which stay but for those that were identified and those of the
+            shafts, which follow from C.
     """
     p = identified.p
     entries: dict[str, Any] = {"C": equivalent(p, identified.tyre, identified.resonance).C, "phi_B": p.phi_B}
@@ -67,7 +69,7 @@ def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = N
         entries["J_1"] = p.J_1
     if identified.loop:
         entries["tau"] = identified.loop.loop.tau
-    return {**(vehicle or {}), **{name: float(f"{value:.6g}") for name, value in entries.items()}}
+    return updated(vehicle or {}, {name: float(f"{value:.6g}") for name, value in entries.items()})
 
 
 def vehicle_file(identified: Identified, comment: str, vehicle: Mapping[str, Any] | None = None) -> str:

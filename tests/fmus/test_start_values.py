@@ -9,6 +9,7 @@ import pytest
 from fmpy import read_model_description
 
 from driveline.fmus.building.builds import build_fmus
+from driveline.fmus.building.one_car import of_one_car
 from driveline.fmus.building.parameter_files import for_instances, read_files
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.errors import BuildError
@@ -63,8 +64,8 @@ def check_start_values(folder: Path, gains: Path) -> None:
     values = read_files(CAR, gains)
     for name, fmu in FMUS.items():
         declared = {v.name: v.start for v in variables(fmu.block.Parameters)}
-        found = start_values(folder / f"{name}.fmu")
-        assert found == {key: values.get(key, declared[key]) for key in found}, name
+        found, own = start_values(folder / f"{name}.fmu"), of_one_car(values, declared)
+        assert found == {key: own.get(key, declared[key]) for key in found}, name
         assert any(key in values for key in found), name
 
 

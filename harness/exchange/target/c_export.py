@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ....fmus.building.one_car import of_one_car
 from ....fmus.building.parameter_files import read_files, require_taken
 from ....fmus.errors import ParameterFileError
 from ...base.errors import DrivelineError
@@ -18,9 +19,10 @@ def values_of(controller: str, vehicle: Path | None, parameters: Path | None) ->
     """
     from ....fmus.catalogue import EVERY
 
+    names = EVERY[controller].block.Parameters._fields
     try:
-        require_taken(parameters, EVERY[controller].block.Parameters._fields, controller)
-        return read_files(vehicle, parameters)
+        require_taken(parameters, names, controller)
+        return of_one_car(read_files(vehicle, parameters), names)
     except ParameterFileError as refusal:
         raise DrivelineError(str(refusal)) from refusal
 

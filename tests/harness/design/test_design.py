@@ -52,7 +52,7 @@ def test_the_model_of_the_design_is_that_of_the_plant() -> None:
 
 
 def test_a_car_is_the_default_car_where_its_file_says_nothing() -> None:
-    plant, motor, can = records({"J_1": 0.09, "tau": 0.004, "d_max": 0.03, "k_s": 3e4})
+    plant, motor, can = records({"J_1": 0.09, "tau": 0.004, "d_max": 0.03, "d_s": 30.0})
     assert plant == PLANT._replace(J_1=0.09)
     assert motor == MOTOR._replace(tau=0.004)
     assert can == CAN._replace(d_max=0.03)
@@ -134,8 +134,8 @@ def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
     ("car", "message"),
     [
         ({"tau": 0.1}, r"T_pred would be 0\.0333\d; the controller takes 0 to 0\.02 s"),
-        ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.064 s"),
-        ({"J_1": 2.0}, r"k_d would be .*; the controller takes 0 to 20 N\.m\.s/rad"),
+        ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.1 s"),
+        ({"J_1": 10.0}, r"k_d would be .*; the controller takes 0 to 200 N\.m\.s/rad"),
         ({"sigma_omega": 0.0, "q_omega": 0.0}, "a motor speed without error leaves nothing to estimate"),
     ],
 )

@@ -47,6 +47,6 @@ def test_the_true_car_is_told_to_plant_and_controller_with_either_gains() -> Non
         assert given["plant.phi_B"] == given["controller.phi_B"] == 0.314
         assert given["plant.i"] == given["can.i"] == 12.0
         assert given["motor.T_max"] == given["controller.T_max"] == 250.0
-        assert given["plant.k_s"] == 58600.0
+        assert given["plant.k_s"] == pytest.approx(52333.7)
     assert "controller.k_d" not in default
     assert own["controller.k_d"] == pytest.approx(3.469, abs=0.001)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.fmus.building.one_car import FOLLOW
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.runs import kept_loaded
 from driveline.harness.explorer.request import COMFORT, SPORT, Request, characterised, parameters
@@ -35,6 +36,20 @@ def test_the_controllers_know_the_car_only_if_they_are_informed() -> None:
     request = replace(REQUEST, car={"phi_B": 0.3, "m": 2000.0})
     assert parameters(request, NAMES, {}, {}) == {"plant.phi_B": 0.3, "plant.m": 2000.0, "controller.phi_B": 0.3}
     assert parameters(replace(request, informed=False), NAMES, {}, {}) == {"plant.phi_B": 0.3, "plant.m": 2000.0}
+
+
+def test_what_follows_in_the_detailed_car_turns_with_the_stiffness_and_back(runner: RequestRunner) -> None:
+    stiffer = runner.parameters(replace(REQUEST, plant="ValidationVehicle", car={"C": 160.0}), "DampingController")
+    assert stiffer["controller.C"] == 160.0
+    assert stiffer["plant.k_s"] > 25800.0
+    names = {"plant": list(FOLLOW), "controller": ["C"]}
+    back = parameters(replace(REQUEST, car={"m": 1450.0}), names, {"plant.F_z0": 1.0}, {}, {"m": 2000.0})
+    assert back["plant.F_z0"] == 8500.0
+
+
+def test_a_car_that_cannot_be_is_refused(runner: RequestRunner) -> None:
+    with pytest.raises(DrivelineError, match=r"k_s does not follow"):
+        runner.parameters(replace(REQUEST, plant="ValidationVehicle", car={"C": 500.0}), "DampingController")
 
 
 def test_what_is_typed_stands_above_the_slider_and_that_above_the_files() -> None:
@@ -94,7 +109,7 @@ def test_controllers_stand_beside_ours_and_ours_can_be_off(runner: RequestRunner
 
 
 def test_a_value_beyond_what_an_fmu_takes_is_refused_by_name(runner: RequestRunner) -> None:
-    with pytest.raises(DrivelineError, match=r"^plant\.m = 10: TwoMassDriveline\.fmu takes 300 to 10000 kg$"):
+    with pytest.raises(DrivelineError, match=r"^plant\.m = 10: TwoMassDriveline\.fmu takes 300 to 40000 kg$"):
         runner.answer(replace(REQUEST, typed={"plant.m": 10.0}))
 
 

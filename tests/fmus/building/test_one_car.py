@@ -1,0 +1,150 @@
+"""One car for both plants and the design: what follows from what a vehicle file names."""
+
+import pytest
+
+from docs.studies.one_car import cars, frequencies
+from driveline.fmus.building.one_car import (
+    DECLARED,
+    DESIGN,
+    DETAILED,
+    FOLLOW,
+    SHAFTS,
+    USUAL,
+    differences,
+    of_one_car,
+    updated,
+)
+from driveline.fmus.errors import ParameterFileError
+
+APART = frequencies({}).apart
+"""Frequency of the validation vehicle over that of the design model, in the default car."""
+
+
+def followed(**entries: float) -> dict[str, float]:
+    """What follows for all that there is."""
+    return {name: value for name, value in of_one_car(entries, FOLLOW).items() if name not in entries}
+
+
+def refusal(**entries: float) -> str:
+    with pytest.raises(ParameterFileError) as found:
+        of_one_car(entries, FOLLOW)
+    assert "\n" not in str(found.value)
+    return str(found.value)
+
+
+@pytest.mark.parametrize(("name", "car"), cars().items(), ids=list(cars()))
+def test_both_plants_swing_as_far_apart_as_with_the_default_car(name: str, car: dict[str, float]) -> None:
+    """The examples and 20 drawn ones; the goal is 3 %."""
+    assert frequencies(car).apart == pytest.approx(APART, rel=1e-4), name
+
+
+def test_the_default_car_is_left_as_it_is() -> None:
+    every = {name: start for name, start in USUAL.items() if name in FOLLOW or name in DESIGN.Parameters._fields}
+    assert followed() == {}
+    assert followed(**every) == {}
+    for name in every.keys() - {*SHAFTS}:
+        assert followed(**{name: every[name]}) == {}, name
+    assert followed(phi_B=0.3) == {}
+
+
+def test_gains_and_other_blocks_pass() -> None:
+    assert of_one_car({"k_d": 3.0, "tau": 0.002, "T_cyc": 0.05}, FOLLOW) == {"k_d": 3.0, "tau": 0.002, "T_cyc": 0.05}
+
+
+def test_a_stiffer_drive_train_is_stiffer_in_detail_with_the_same_shares() -> None:
+    found = followed(C=160.0)
+    ratios = {name: found[name] / USUAL[name] for name in SHAFTS}
+    assert min(ratios.values()) > 160.0 / 117.4, "as the tyres stay as soft as they were"
+    assert ratios["k_g"] == pytest.approx(ratios["k_s"], rel=1e-5)
+    assert ratios["k_p"] == pytest.approx(ratios["k_s"], rel=1e-5)
+    assert "C" not in found
+
+
+@pytest.mark.parametrize("C", [60.0, 160.0])
+def test_shafts_alone_give_the_design_its_stiffness(C: float) -> None:
+    """The way back."""
+    shafts = {name: followed(C=C)[name] for name in SHAFTS}
+    assert followed(**shafts)["C"] == pytest.approx(C, rel=1e-4)
+    assert followed(k_s=shafts["k_s"])["C"] == pytest.approx(C, rel=1e-4), "gear and mounts keep their shares"
+
+
+def test_what_the_design_alone_takes_follows_without_the_details() -> None:
+    assert of_one_car({"k_s": 40000.0}, DESIGN.Parameters._fields).keys() == {"k_s", "C"}
+    assert of_one_car({"C": 500.0}, DESIGN.Parameters._fields) == {"C": 500.0}, "which no shafts can make"
+
+
+def test_one_of_gear_and_mounts_stands_and_the_others_make_up_for_it() -> None:
+    found = followed(C=117.4, k_g=4e5)
+    assert found.keys() >= {"k_s", "k_p"}
+    assert found["k_s"] < USUAL["k_s"]
+    assert frequencies({"C": 117.4, "k_g": 4e5}).apart == pytest.approx(APART, rel=1e-4)
+    assert followed(k_g=4e5)["C"] > USUAL["C"]
+
+
+def test_the_wheels_follow_from_the_inertia_at_the_wheels() -> None:
+    found = followed(J_2=0.6, i=4.5)
+    assert found["J_w"] == pytest.approx(1.8 * 0.5)
+    assert found["J_g"] == pytest.approx(0.1 * 0.5)
+    assert "J_w" not in followed(J_2=0.6, J_w=2.0)
+
+
+def test_a_heavier_car_keeps_the_frequency_and_damping_ratio_of_its_pitch() -> None:
+    found = followed(m=2900.0)
+    assert {found[name] / USUAL[name] for name in ("F_z0", "J_y", "k_th", "d_th")} == {2.0}
+
+
+def test_dampers_keep_the_damping_ratio() -> None:
+    found = followed(J_2=1.2, C=80.0)
+    k, J = found["k_s"] / USUAL["k_s"], found["J_w"] / USUAL["J_w"]
+    assert found["d_s"] / USUAL["d_s"] == pytest.approx((k * J) ** 0.5, rel=1e-5)
+
+
+@pytest.mark.parametrize(("k_s", "disagrees"), [(0.90, True), (0.92, False), (1.08, False), (1.12, True)])
+def test_shafts_that_make_another_frequency_by_three_per_cent_disagree(k_s: float, disagrees: bool) -> None:
+    entries = {"C": 117.4, **{name: k_s * USUAL[name] for name in SHAFTS}}
+    apart = frequencies({name: entries[name] for name in SHAFTS}).design / frequencies({}).design
+    if not disagrees:
+        assert 1.0 / 1.03 < apart < 1.03
+        assert of_one_car(entries, FOLLOW).items() >= entries.items()
+        return
+    assert not 1.0 / 1.03 < apart < 1.03
+    message = refusal(**entries)
+    assert message.startswith(f"C = 117.4 N.m/rad and k_s = {entries['k_s']:g} N.m/rad, k_g = ")
+    assert "with that C would be 1" in message
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"C": 300.0}, "C = 300 N.m/rad: k_s does not follow: the drive train would have to swing at 12.9 Hz"),
+        ({"J_w": 24.95}, "J_w + J_g = 25.05 kg.m2 and J_2 = 0.3 kg.m2 disagree: with i = 9 J_2 is 24.3 kg.m2 at the"),
+        ({"F_z0": 14700.0}, "F_z0 = 14700 N and m = 1450 kg disagree: 1.47e+04 N are more than"),
+        ({"m_h": 900.0}, "m_h = 900 kg and F_z0 = 8500 N disagree: 8829 N are more than"),
+        ({"J_2": 0.004}, "J_w = 0.024 as it follows from the other entries; give it: ValidationVehicle takes"),
+        ({"m": 1.0}, "m = 1: ValidationVehicle takes 300 to 40000 kg"),
+    ],
+)
+def test_a_car_that_cannot_be_is_refused_with_both_numbers(entries: dict[str, float], message: str) -> None:
+    assert refusal(**entries).startswith(message)
+
+
+@pytest.mark.parametrize("entries", [{"J_w": 24.9}, {"F_z0": 14600.0}, {"m_h": 890.0}, {"J_2": 0.0235, "J_w": 1.8}])
+def test_measured_numbers_need_not_agree_to_the_last_digit(entries: dict[str, float]) -> None:
+    assert of_one_car(entries, FOLLOW).items() >= entries.items()
+
+
+def test_a_stiffness_that_becomes_known_replaces_the_shafts() -> None:
+    car = {"m": 1900.0, "k_s": 3e4}
+    assert updated(car, {"C": 120.0}) == {"m": 1900.0, "C": 120.0}
+    assert updated(car, {"phi_B": 0.1}) == {**car, "phi_B": 0.1}
+
+
+def test_what_no_longer_follows_goes_back_to_the_default_car() -> None:
+    assert differences({"m": 2900.0}, {}, FOLLOW)["F_z0"] == USUAL["F_z0"]
+    assert differences({"m": 2900.0}, {"m": 2900.0}, FOLLOW) == {}
+    assert differences({}, {"C": 80.0}, ["C"]) == {"C": 80.0}
+
+
+def test_what_follows_is_what_the_validation_vehicle_alone_has() -> None:
+    assert set(FOLLOW) <= set(DETAILED.Parameters._fields) - set(DESIGN.Parameters._fields)
+    assert all(DECLARED[name][0] == DETAILED.name for name in FOLLOW)
