@@ -36,6 +36,7 @@ from .harness.studies.margins.loop_analysis import Analysis as Analysis
 from .fmus.building.parameter_files import read_vehicle as read_vehicle
 from .fmus.building.parameter_files import read_parameters as read_parameters
 from .fmus.building.parameter_files import read_files as read_files
+from .fmus.building.car_entries import car as car
 from .harness.design.design_trials import loop_parameters as loop_parameters
 from .harness.design.design_trials import controller_parameters as controller_parameters
 from .harness.design.design import design as design

@@ -34,6 +34,7 @@ PURPOSES = {
         "identify": "identify the drive train from a recorded test drive",
     },
     "car and controller": {
+        "car": "say what a vehicle file makes of a car, or write a template of one",
         "design": "compute the gains of the controller for a car",
         "analyse": "margins, poles and sensitivities of the loop",
         "target": "the controller's C on its processor",

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 from ...fmus.building.options import file
 from .options import add_printing, add_replace
 from .printing import Printer
-from .search_options import add_search, require_search, run_search, write_gains
+from .search_options import add_search, require_search, run_search, write_toml
 
 if TYPE_CHECKING:
     from ..design.design_weights import Weights
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     if args.output is None:
         out.say(text.rstrip())
     else:
-        write_gains(text, args.output, args.replace)
+        write_toml(text, args.output, args.replace)
         out.say(f"gains: {args.output}")
     return 0
 

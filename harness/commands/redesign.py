@@ -11,7 +11,7 @@ from ..loop.built_fmus import build_missing
 from ..loop.places import PLACES, PLANTS
 from .design import designed
 from .printing import Printer
-from .search_options import write_gains
+from .search_options import write_toml
 
 
 def require_fmus() -> None:
@@ -51,7 +51,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
             f"washout at {share:.2f} of its frequency, for less overshoot in the mean than before: "
             "torque is withheld longer"
         )
-    write_gains(designed(car, weights), gains, replace)
+    write_toml(designed(car, weights), gains, replace)
     yield gains
     yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
     out.say(f"to drive with them: driveline simulate --vehicle {quote(str(car))} --parameters {quote(str(gains))}")

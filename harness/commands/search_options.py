@@ -96,7 +96,7 @@ def run_search(args: argparse.Namespace) -> int:
     )
     name = args.vehicle.name if args.vehicle else "the default car"
     text = chosen(controller, where, visited, character, name, number)
-    write_gains(text, gains, args.replace or args.output is None)
+    write_toml(text, gains, args.replace or args.output is None)
     title = f"{controller}, {name}: {len(visited)} candidates"
     figures = plot_front(visited, where, character, title, args.search / "front")
     out = Printer(args)
@@ -146,8 +146,8 @@ def chosen(
     return gains_file(where.parameters(found.values), comment, declared_parameters(controller))
 
 
-def write_gains(text: str, path: Path, replace: bool) -> None:
-    """Writes a file of gains; one with another content only if it may be replaced."""
+def write_toml(text: str, path: Path, replace: bool) -> None:
+    """Writes a vehicle file or one of gains; one with another content only if it may be replaced."""
     from ..base.atomic_files import write_text
     from ..simulation.provenance import require_same_text
 

@@ -1,0 +1,135 @@
+"""A car entry by entry: what a vehicle file sets, what follows from it, and what stays as in the default car."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from ..catalogue import FMUS
+from ..description.variables import Variable, interface
+from .one_car import DAMPERS, FOLLOW, SHAFTS, WHEELS, WITH_MASS, of_one_car
+from .parameter_files import OF_A_RUN
+
+SET, FOLLOWS, DEFAULT = "set", "follows", "default"
+"""Where the value of an entry is from."""
+
+SECTIONS = {
+    "The drive train, referred to the motor": ("J_1", "J_2", "C", "phi_B", "i"),
+    "The vehicle": ("m", "r", "c_slip", "c_wa"),
+    "Motor and bus": ("tau", "T_max", "T_cyc", "d_min", "d_max"),
+}
+"""What a short vehicle file has."""
+
+TEMPLATE = """\
+A car: an entry is one for all blocks that have it, in the units that are given. What stands behind a # is not set.
+`driveline car FILE.toml` says what is set, what follows from it, and how the car swings."""
+
+SOURCES = {
+    "C": ", ".join(SHAFTS),
+    **dict.fromkeys(SHAFTS, "C"),
+    **dict.fromkeys(WHEELS, "J_2, i"),
+    **dict.fromkeys(WITH_MASS, "m"),
+    **{name: ", ".join(of) for name, of in DAMPERS.items()},
+}
+"""What an entry that follows mainly follows from."""
+
+
+class Entry(NamedTuple):
+    """An entry of a vehicle file.
+
+    Attributes:
+        unit: "" for none.
+        origin: SET, FOLLOWS or DEFAULT.
+        source: what it follows from, if it does.
+        blocks: the FMUs that take it.
+    """
+
+    name: str
+    value: Any
+    unit: str
+    meaning: str
+    origin: str
+    source: str
+    blocks: tuple[str, ...]
+
+
+def car(entries: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """All entries of a car by name, in SI units: those that are given, those that follow, those of the default car.
+
+        driveline.car({"C": 150.0, "m": 1900.0})["k_s"]  # N.m/rad, of half shafts that make this C
+
+    Args:
+        entries: of a vehicle file, as `read_vehicle` gives them.
+
+    Raises:
+        ParameterFileError: they disagree, or there is no such car.
+    """
+    return {entry.name: entry.value for entry in car_entries(entries or {})}
+
+
+def car_entries(entries: Mapping[str, Any]) -> list[Entry]:
+    """The entries of a car: first those that are set, then those that follow, then the others.
+
+    Raises:
+        ParameterFileError: see `car`.
+    """
+    full = of_one_car(entries, FOLLOW)
+    order = (SET, FOLLOWS, DEFAULT)
+    found = [_entry(name, variable, blocks, entries, full) for name, (variable, blocks) in _declared().items()]
+    return sorted(found, key=lambda entry: order.index(entry.origin))
+
+
+def template() -> str:
+    """A vehicle file with the default car: what a short one has, and behind # what else can be set."""
+    lines = [f"# {line}" for line in TEMPLATE.splitlines()]
+    declared = _declared()
+    shown = [name for names in SECTIONS.values() for name in names]
+    sections = {
+        **SECTIONS,
+        "In the validation vehicle alone; follows from the above where it is not set": FOLLOW,
+        "Beside": tuple(name for name in declared if name not in shown and name not in FOLLOW),
+    }
+    for title, names in sections.items():
+        lines += ["", f"# {title}", *_template_lines(names, declared, title in SECTIONS)]
+    return "\n".join(lines) + "\n"
+
+
+def _template_lines(names: tuple[str, ...], declared: "Declared", is_set: bool) -> Iterator[str]:
+    texts = [f"{'' if is_set else '# '}{name} = {_toml(declared[name][0].start)}" for name in names]
+    width = max(map(len, texts))
+    for name, text in zip(names, texts, strict=True):
+        variable, _ = declared[name]
+        yield f"{text:{width}}  # {_meaning(variable)}; {variable.allowed()}"
+
+
+def _meaning(variable: Variable) -> str:
+    return str(variable.declaration.description)
+
+
+def _toml(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+Declared = dict[str, tuple[Variable, tuple[str, ...]]]
+"""Of each entry how it is declared, and which FMUs take it."""
+
+
+def _declared() -> Declared:
+    """The entries of a car: the parameters of plants, motor and bus."""
+    names: dict[str, Variable] = {}
+    blocks: dict[str, list[str]] = {}
+    for fmu in FMUS.values():
+        for variable in interface(fmu.block):
+            if variable.causality == "parameter" and variable.name not in OF_A_RUN:
+                blocks.setdefault(variable.name, []).append(fmu.name)
+                if "T_driver" not in fmu.block.Input._fields:
+                    names.setdefault(variable.name, variable)
+    return {name: (variable, tuple(blocks[name])) for name, variable in names.items()}
+
+
+def _entry(
+    name: str, variable: Variable, blocks: tuple[str, ...], entries: Mapping[str, Any], full: Mapping[str, Any]
+) -> Entry:
+    origin = SET if name in entries else FOLLOWS if name in full else DEFAULT
+    source = ""
+    if origin == FOLLOWS:
+        source = "k_s" if name in SHAFTS and "k_s" in entries else SOURCES[name]
+    return Entry(name, full.get(name, variable.start), variable.unit, _meaning(variable), origin, source, blocks)

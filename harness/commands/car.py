@@ -1,0 +1,141 @@
+"""Says what a vehicle file makes of a car: each entry with its value and unit, whether the file sets it, it follows
+from others or stays as in the default car, and which blocks take it. Then what comes of them: at which frequency the
+drive train swings in either plant at 15 km/h, its damping ratio without and with control, the backlash at the wheel,
+and how much torque the control may take and add. docs/control.md says what follows from what.
+
+With control means with the gains of --parameters, or else with those that `driveline design` computes for this car.
+
+--template writes a commented vehicle file instead: the default car, to be changed.
+
+examples:
+  driveline car my.toml
+  driveline car examples/cars/van.toml --parameters van_gains.toml
+  driveline car                                             the default car
+  driveline car my.toml --json
+  driveline car --template --output my.toml
+"""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...fmus.building.options import file
+from ..base.errors import DrivelineError
+from .options import add_printing, add_replace
+from .printing import Printer
+from .search_options import write_toml
+
+if TYPE_CHECKING:
+    from ...fmus.building.car_entries import Entry
+    from ..studies.margins.car_properties import CarProperties, PlantProperties
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "vehicle", nargs="?", type=file, metavar="FILE.toml", help="the car (default: that of all blocks)"
+    )
+    parser.add_argument(
+        "--parameters",
+        type=file,
+        metavar="FILE.toml",
+        help="what is set in the controller (default: what `driveline design` computes for the car)",
+    )
+    parser.add_argument("--template", action="store_true", help="write a commented vehicle file")
+    parser.add_argument("--output", type=file, metavar="FILE.toml", help="of the template (default: it is printed)")
+    add_replace(parser)
+    add_printing(parser, table=True)
+
+
+def run(args: argparse.Namespace) -> int:
+    out = Printer(args)
+    if args.template:
+        return _template(args, out)
+    if args.output is not None:
+        raise DrivelineError("--output is for a template: give --template")
+    from ...fmus.building.car_entries import car_entries
+    from ...fmus.building.parameter_files import read_parameters, read_vehicle
+    from ..design.design import design
+    from ..design.kalman import DesignError
+    from ..studies.margins.car_properties import car_properties
+
+    values = read_vehicle(args.vehicle) if args.vehicle else {}
+    entries = car_entries(values)
+    gains, of = None, f"the gains of {args.parameters}"
+    try:
+        gains = read_parameters(args.parameters) if args.parameters else design(values)
+        of = of if args.parameters else "gains by `driveline design`"
+    except DesignError as reason:
+        of = f"no gains: {' '.join(str(reason).splitlines())}"
+    found = car_properties(values, gains)
+    if not out.silent:
+        _show(entries, found, args.vehicle, of)
+    out.document(
+        {
+            "entries": [entry._asdict() for entry in entries],
+            "gains": of,
+            "properties": {**found._asdict(), "plants": [_of_plant(plant) for plant in found.plants]},
+        }
+    )
+    return 0
+
+
+def _template(args: argparse.Namespace, out: Printer) -> int:
+    from ...fmus.building.car_entries import template
+
+    if args.vehicle is not None or args.parameters is not None or args.json:
+        raise DrivelineError("--template writes the default car: it goes with --output and --replace alone")
+    if args.output is None:
+        print(template(), end="")
+        return 0
+    write_toml(template(), args.output, args.replace)
+    out.files([args.output])
+    return 0
+
+
+def _of_plant(plant: "PlantProperties") -> dict[str, Any]:
+    return {**plant._asdict(), "damped": plant.damped and plant.damped._asdict()}
+
+
+def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, of: str) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    from ..views.terminal import plain_table, print_table
+
+    table = Table(title=str(vehicle or "the default car"), title_justify="left", box=SIMPLE_HEAD, padding=0)
+    for heading in ("entry", "value", "unit", "from", "taken by", "meaning"):
+        table.add_column(heading, justify="right" if heading == "value" else "left", no_wrap=heading != "meaning")
+    for k, entry in enumerate(entries):
+        if k and entry.origin != entries[k - 1].origin:
+            table.add_section()
+        origin = f"{entry.origin} ({entry.source})" if entry.source else entry.origin
+        value = str(entry.value).lower() if isinstance(entry.value, bool) else f"{entry.value:.6g}"
+        table.add_row(entry.name, value, entry.unit, origin, ", ".join(map(_short, entry.blocks)), entry.meaning)
+    print_table(table)
+
+    headings = ["drive train at 15 km/h", "frequency\nHz", "damping\nratio", "with control\nHz", "damping\nratio"]
+    rows = []
+    for plant in found.plants:
+        damped = [f"{plant.damped.frequency:.2f}", f"{plant.damped.damping_ratio:.2f}"] if plant.damped else ["-", "-"]
+        rows.append([plant.plant, f"{plant.frequency:.2f}", f"{plant.damping_ratio:.3f}", *damped])
+    print_table(plain_table(f"control: {of}; - where there is none, or the loop is not stable", headings, rows))
+    print(
+        f"backlash at the wheel: {found.gap:.2f} degrees from flank to flank\n"
+        f"authority: the control takes up to {found.taken:g} N.m from the demand and adds up to {found.added:g} N.m, "
+        f"of T_max = {found.T_max:g} N.m\n"
+        f"at the wheels: {found.wheel_torque:.4g} N.m by all of the motor, which is {found.acceleration:.2f} m/s2"
+    )
+
+
+SHORT = {
+    "TwoMassDriveline": "design plant",
+    "ValidationVehicle": "vehicle",
+    "MotorTorqueLoop": "motor",
+    "WheelSpeedCan": "bus",
+    "DampingController": "controller",
+}
+"""What stands in the table for the name of an FMU."""
+
+
+def _short(block: str) -> str:
+    return SHORT[block]

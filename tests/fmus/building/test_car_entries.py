@@ -1,0 +1,60 @@
+"""A car entry by entry, and the template of a vehicle file."""
+
+from pathlib import Path
+
+import pytest
+
+from driveline.fmus.building.car_entries import DEFAULT, FOLLOWS, SET, SOURCES, car, car_entries, template
+from driveline.fmus.building.one_car import FOLLOW, of_one_car
+from driveline.fmus.building.parameter_files import read_vehicle
+from driveline.fmus.errors import ParameterFileError
+
+
+def test_each_entry_says_where_it_is_from_and_who_takes_it() -> None:
+    entries = {entry.name: entry for entry in car_entries({"C": 150.0, "T_cyc": 0.05})}
+    assert (entries["C"].origin, entries["C"].value, entries["C"].unit) == (SET, 150.0, "N.m/rad")
+    assert entries["C"].blocks == ("TwoMassDriveline", "DampingController")
+    assert entries["T_cyc"].blocks == ("WheelSpeedCan",)
+    assert (entries["k_s"].origin, entries["k_s"].source) == (FOLLOWS, "C")
+    assert entries["k_s"].value == of_one_car({"C": 150.0}, FOLLOW)["k_s"]
+    assert (entries["J_w"].origin, entries["J_w"].source, entries["J_w"].value) == (DEFAULT, "", 1.8)
+
+
+def test_the_other_way_round_the_stiffness_follows() -> None:
+    entries = {entry.name: entry for entry in car_entries({"k_s": 40000.0})}
+    assert (entries["C"].origin, entries["C"].source) == (FOLLOWS, "k_s, k_g, k_p")
+    assert (entries["k_g"].origin, entries["k_g"].source) == (FOLLOWS, "k_s")
+
+
+def test_what_is_set_comes_first_and_all_of_a_car_is_there() -> None:
+    entries = car_entries({"m": 1900.0})
+    origins = [entry.origin for entry in entries]
+    assert origins == sorted(origins, key=[SET, FOLLOWS, DEFAULT].index)
+    names = {entry.name for entry in entries}
+    assert names >= {*FOLLOW, "J_1", "tau", "T_cyc", "mu"}
+    assert names.isdisjoint({"k_d", "v_0", "T_0", "seed", "recorded_load", "T_take_max"})
+
+
+def test_all_that_follows_tells_from_what() -> None:
+    assert set(SOURCES) == {"C", *FOLLOW}
+
+
+def test_a_car_has_all_its_entries() -> None:
+    assert car()["k_s"] == 25800.0
+    assert car({"m": 2900.0})["F_z0"] == 17000.0
+    with pytest.raises(ParameterFileError, match=r"C = 300 N\.m/rad: k_s does not follow"):
+        car({"C": 300.0})
+
+
+def test_the_template_is_the_default_car(tmp_path: Path) -> None:
+    path = tmp_path / "car.toml"
+    path.write_text(template(), encoding="utf-8")
+    assert car(read_vehicle(path)) == car()
+    assert of_one_car(read_vehicle(path), FOLLOW) == read_vehicle(path), "and nothing follows"
+
+
+def test_every_line_of_the_template_can_be_set(tmp_path: Path) -> None:
+    path = tmp_path / "car.toml"
+    set_ = (line.removeprefix("# ") if " = " in line.partition(";")[0] else line for line in template().splitlines())
+    path.write_text("\n".join(set_), encoding="utf-8")
+    assert read_vehicle(path) == car()
