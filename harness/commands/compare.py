@@ -20,6 +20,7 @@ examples:
 """
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 from ..manoeuvres.catalogue import COMPARED
@@ -75,7 +76,9 @@ def run(args: argparse.Namespace) -> int:
         for provenance, path in made.reports():
             from ..studies.compare import compare_report
 
-            compare_report.report([(each.row, each.results) for each in outcomes], manoeuvres, provenance, path)
+            runs_of = [(each.row, each.results) for each in outcomes]
+            controllers = [Path(each.controller).stem for each in given.values()]
+            compare_report.report(runs_of, manoeuvres, controllers, provenance, path)
         builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
         made.out.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {args.output / 'runs'}")
         made.tell(print_runs, [each.row for each in outcomes], runs=[each.record for each in outcomes])

@@ -50,7 +50,7 @@ def save_report(runner: RequestRunner, answer: Answer, inputs: list[Path | None]
     fits = {name: runner.fit(request.plant, name) for name in answer.runs}
     same = {"request": vars(request), **{name: runner.parameters(request, name) for name in answer.runs}}
     manoeuvres = {request.manoeuvre: runner.manoeuvre(request.manoeuvre, request.plant)}
-    report(runs, manoeuvres, content(same, fits, [], inputs), page)
+    report(runs, manoeuvres, answer.runs, content(same, fits, [], inputs), page)
     return page
 
 

@@ -3,8 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ...fmus.building.one_car import updated
 from .drive_train import Parameters
+from .drive_train_response import resonance
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
 from .quality import Z_95
 from .two_mass_equivalent import equivalent
@@ -20,8 +23,8 @@ UNITS = {
 """Of what has one."""
 
 MEANS = {
-    WITH_LOAD: "J_2 is that of the wheels alone",
-    WITHOUT_LOAD: "J_2 carries the vehicle",
+    WITH_LOAD: "J_2 is that of the wheels alone, C that between motor and wheels",
+    WITHOUT_LOAD: "J_2 carries the vehicle, C has its tyres in it",
 }
 
 
@@ -32,6 +35,34 @@ def found(identified: Identified) -> list[tuple[str, float, float]]:
     if identified.loop:
         rows.append(("tau", identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]))
     return [row for row in rows if row[2] > 0.0]
+
+
+def of_car(identified: Identified) -> tuple[float, float]:
+    """C of the vehicle file in N.m/rad, that of two masses which answer as the car does on its own, and half of its
+    95 % interval, by the covariance of what was identified and the tyre as it is."""
+    p, tyre = identified.p, identified.tyre
+
+    def C(p: Parameters) -> float:
+        return equivalent(p, tyre, resonance(p, tyre)).C
+
+    deviations = identified.deviations
+    moved = (
+        {side: p._replace(**{name: getattr(p, name) + side * by}) for side in (-1, 1)}
+        for name, by in deviations.items()
+    )
+    changes = np.array([0.5 * (C(each[1]) - C(each[-1])) for each in moved])
+    scale = np.array(list(deviations.values()))
+    variance = changes @ (identified.covariance / np.outer(scale, scale)) @ changes
+    return C(p), Z_95 * float(np.sqrt(variance))
+
+
+def of_car_line(identified: Identified) -> str:
+    """Which C is for what, where there are two."""
+    C, half = of_car(identified)
+    return (
+        f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): "
+        "that of two masses which answer as the car does, tyres in it"
+    )
 
 
 def identified_lines(identified: Identified) -> list[str]:
@@ -49,6 +80,7 @@ def identified_lines(identified: Identified) -> list[str]:
     return [
         f"identified {identified.name}, by {identified.method}: {MEANS[identified.name]}; 95 % intervals",
         *(f"  {line}" for line in parameters),
+        *([of_car_line(identified)] if identified.tyre else []),
         f"the car answers most at {identified.resonance:.2f} Hz",
         f"fit to the last quarter, which was not used: simulated 0.5 s {quality.simulated:.1f} %, "
         f"predicted 50 ms {quality.predicted:.1f} %, one step {quality.one_step:.1f} %",
@@ -83,8 +115,8 @@ def vehicle_file(identified: Identified, comment: str, vehicle: Mapping[str, Any
         *identified_lines(identified),
         *(f"warning: {warning}" for warning in identified.warnings),
         "",
-        "What follows is what the controller's model needs of this car: C is that of the two masses that answer as the",
-        "car does on its own, tyre and vehicle included. J_2 stays as it was.",
+        "What follows is for the design and both plants: C is that of the two masses that answer as the car does on",
+        "its own, tyre and vehicle included; the shafts of the validation vehicle follow from it. J_2 stays as it was.",
     ]
     head = "\n".join(f"# {line}".rstrip() for line in [*comment.splitlines(), "", *known])
     entries = identified_car(identified, vehicle)
@@ -106,7 +138,10 @@ def document(identified: Identified) -> dict[str, Any]:
         "covariance": identified.covariance.tolist(),
         "torque_loop": _loop(identified),
         "tyre": vars(identified.tyre) if identified.tyre else None,
+        "intervals_95": {name: {"value": value, "half": half} for name, value, half in found(identified)},
         "resonance_Hz": identified.resonance,
+        "vehicle_file": identified_car(identified),
+        "C_of_the_car": dict(zip(("value", "half"), of_car(identified), strict=True)),
         "equivalent": equivalent(p, identified.tyre, identified.resonance)._asdict(),
         "fit": vars(identified.quality),
         "warnings": list(identified.warnings),

@@ -11,6 +11,7 @@ from .drive_train_response import Tyre
 from .maximum_likelihood import Found, maximise
 from .model_inputs import Drive
 from .prediction import Filtered, Noise, Predictor
+from .quality import Z_95
 from .torque_loop import FittedLoop
 
 LIKELY = 15.1
@@ -178,14 +179,14 @@ def diagnose_excitation(
     wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
     if wide:
         warnings.append(
-            f"{', '.join(wide)}: standard deviation of more than {100.0 * CLOSE:g} %; excite more or longer"
+            f"{', '.join(wide)}: 95 % interval wider than +- {100.0 * Z_95 * CLOSE:.2g} %; excite more or longer"
         )
     if p.d < -SURELY * deviations.get("d", 0.0):
         warnings.append(f"d = {p.d:.3g} N.m.s/rad is negative, which no damper is: something else is wrong")
     if deviations.get("d", 0.0) > CLOSE * abs(p.d):
         warnings.append(
-            f"d is known to {100.0 * deviations['d'] / abs(p.d or 1.0):.0f} % only: without a measured wheel motion "
-            "damping is hardly seen"
+            f"d is known to +- {100.0 * Z_95 * deviations['d'] / abs(p.d or 1.0):.2g} % only: "
+            "without a measured wheel motion damping is hardly seen"
         )
     return warnings
 

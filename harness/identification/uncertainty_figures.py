@@ -14,6 +14,7 @@ from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.figure_options import PLAIN, FigureOptions
 from ..views.figure_style import plot, sheet
 from ..views.panels import DASHED, DOTTED, SOLID, Axis, Band, Curve, Level, Panel, Part, Points
+from .car_file import MEANS
 from .cost_surface import POINTS, cost_over, curvature, ellipse, exact
 from .drive_train_response import FREQUENCIES, WINDOW, Tyre, response
 from .fit_figures import headline
@@ -96,7 +97,7 @@ def _of(identified: Identified) -> str:
     """How the cost was found."""
     passes = f"a spline through {POINTS} x {POINTS} passes of the filter"
     how = passes if exact(identified) else "quadratic, by the covariance"
-    return f"cost: {how}; the other free parameters are the likeliest"
+    return f"cost: {how}; the other free parameters are the likeliest; {MEANS[identified.name]}"
 
 
 def plot_response(identified: Identified, stem: Path, options: FigureOptions = PLAIN, seed: int = 1) -> list[Path]:

@@ -17,6 +17,7 @@ PAGE = ROOT / "docs" / "troubleshooting.md"
 
 FILES = {
     "car.toml": "J_1 = 0.05\nmass = 1500\n",
+    "contradictory.toml": "C = 220.0\nk_s = 25800.0\n",
     "torque_alone.csv": "time [s],T_ref [N.m]\n0,10\n0.01,12\n",
     "no_unit.csv": "time [s],T_mot [N.m],speed\n0,10,20\n0.01,12,20\n0.02,12,20\n",
     "not_in_order.csv": "time [s],T_mot [N.m],v [km/h]\n0,10,20\n0.02,12,20\n0.01,12,20\n",

@@ -1,6 +1,6 @@
 """The report of `driveline compare`: every run without and with damping."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -36,6 +36,7 @@ class Both(NamedTuple):
 def report(
     runs: Sequence[tuple[Row, np.ndarray]],
     manoeuvres: Mapping[str, Manoeuvre],
+    controllers: Iterable[str],
     provenance: Mapping[str, Any],
     path: Path,
 ) -> None:
@@ -44,6 +45,7 @@ def report(
     Args:
         runs: without and with damping in turn, with their signals.
         manoeuvres: by name.
+        controllers: with which the runs with damping were made, by name.
         provenance: see `harness.simulation.provenance.content`.
     """
     rows = [row for row, _ in runs]
@@ -59,10 +61,11 @@ def report(
         *pair_sections(drawn),
         Section("Metrics of all runs", "Grey without, blue with damping.", figures=metric_dots(rows)),
     ]
-    write_report("Without and with active damping", verdict(pairs), sections, provenance, path)
+    names = " and ".join(dict.fromkeys(controllers))
+    write_report(f"Without and with {names}", verdict(pairs, names), sections, provenance, path)
 
 
-def verdict(pairs: Sequence[Both]) -> str:
+def verdict(pairs: Sequence[Both], controllers: str) -> str:
     """In one sentence."""
     known = [pair for pair in pairs if np.isfinite(pair.ratio)]
     if not known:
@@ -71,8 +74,9 @@ def verdict(pairs: Sequence[Both]) -> str:
     better = sum(pair.ratio < 1.0 for pair in known)
     median = float(np.median([pair.ratio for pair in known]))
     return (
-        f"Damping lowers the oscillation of the gear torque (5-50 Hz rms) in {better} of {len(known)} runs, to "
-        f"{100 * median:.0f} % in the median and to {100 * worst.ratio:.0f} % where it helps least ({worst.name})."
+        f"Damping by {controllers} lowers the oscillation of the gear torque (5-50 Hz rms) in {better} of {len(known)} "
+        f"runs, to {100 * median:.0f} % in the median and to {100 * worst.ratio:.0f} % where it helps least "
+        f"({worst.name})."
     )
 
 

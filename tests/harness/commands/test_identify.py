@@ -63,7 +63,7 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
         for name in FILES
         if not name.endswith(".pdf")
     }
-    assert "identified with load torque, by prediction error: J_2 is that of the wheels alone" in message
+    assert "identified with load torque, by prediction error: J_2 is that of the wheels alone, C that" in message
     assert "warning" not in message
     document = found(folder)
     for name, true, relative in (("J_2", PLANT.J_2, 4e-3), ("C", PLANT.C, 1e-3), ("phi_B", PLANT.phi_B, 3e-3)):

@@ -9,7 +9,7 @@ import pytest
 
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.identification import car_file
-from driveline.harness.identification.drive_train_response import Tyre
+from driveline.harness.identification.drive_train_response import Tyre, resonance
 from driveline.harness.identification.identify import WITH_LOAD, WITHOUT_LOAD, Identified
 from driveline.harness.identification.quality import Quality
 from driveline.harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop
@@ -69,7 +69,8 @@ def test_without_the_load_torque_the_stiffness_is_that_of_the_two_masses() -> No
 def test_people_are_told_each_parameter_with_its_interval_and_unit() -> None:
     lines = car_file.identified_lines(FOUND)
     assert lines[0] == (
-        "identified with load torque, by prediction error: J_2 is that of the wheels alone; 95 % intervals"
+        "identified with load torque, by prediction error: "
+        "J_2 is that of the wheels alone, C that between motor and wheels; 95 % intervals"
     )
     assert lines[1:6] == [
         "  J_2   = 0.3 +- 0.002 kg.m2 (0.65 %)",
@@ -78,7 +79,36 @@ def test_people_are_told_each_parameter_with_its_interval_and_unit() -> None:
         "  g_L   = 0.99 +- 0.0059 (0.59 %)",
         "  tau   = 0.0031235 +- 2e-05 s (0.63 %)",
     ]
-    assert lines[6] == f"the car answers most at {FOUND.resonance:.2f} Hz"
+    C, half = car_file.of_car(FOUND)
+    assert lines[6].startswith(f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad (")
+    assert lines[7] == f"the car answers most at {FOUND.resonance:.2f} Hz"
+
+
+def test_the_stiffness_in_the_file_is_the_one_that_is_told() -> None:
+    C, _ = car_file.of_car(FOUND)
+    assert car_file.identified_car(FOUND)["C"] == pytest.approx(C, rel=1e-5)
+    assert f"in the vehicle file C = {C:.5g}" in car_file.vehicle_file(FOUND, "A car.")
+    assert car_file.document(FOUND)["vehicle_file"]["C"] == car_file.identified_car(FOUND)["C"]
+    assert car_file.document(FOUND)["intervals_95"]["C"] == {"value": P.C, "half": pytest.approx(0.196, abs=1e-3)}
+
+
+def test_its_interval_is_that_of_what_it_is_made_of() -> None:
+    """Here by draws."""
+    _, half = car_file.of_car(FOUND)
+    draws = np.random.default_rng(1).multivariate_normal([getattr(P, name) for name in FREE], FOUND.covariance, 300)
+    drawn = [P._replace(**dict(zip(FREE, map(float, values), strict=True))) for values in draws]
+    found = [equivalent(p, FOUND.tyre, resonance(p, FOUND.tyre)).C for p in drawn]
+    assert half == pytest.approx(1.96 * np.std(found), rel=0.15)
+
+
+def test_where_there_is_one_stiffness_no_other_is_told() -> None:
+    lines = car_file.identified_lines(replace(FOUND, name=WITHOUT_LOAD, tyre=None))
+    assert not any(line.startswith("in the vehicle file") for line in lines)
+
+
+def test_shafts_that_were_known_give_way_to_the_stiffness_that_was_identified() -> None:
+    entries = car_file.identified_car(FOUND, {**GIVEN, "k_s": 3e4, "k_g": 2e5, "k_p": 9e4, "J_w": 2.0})
+    assert entries.keys() == {*GIVEN, "phi_B", "J_w"}
 
 
 def test_the_file_tells_in_comments_what_was_found_and_what_is_odd() -> None:

@@ -208,18 +208,18 @@ def message(deviations: dict[str, float], free: tuple[str, ...] = FREE) -> list[
 def test_a_wide_interval_is_named(name: str) -> None:
     close = CLOSE * getattr(P, name)
     assert message({name: 0.999 * close}) == []
-    assert message({name: 1.001 * close}) == [f"{name}: standard deviation of more than 5 %; excite more or longer"]
+    assert message({name: 1.001 * close}) == [f"{name}: 95 % interval wider than +- 9.8 %; excite more or longer"]
 
 
 def test_several_wide_intervals_are_named_together() -> None:
-    assert message({"J_2": 0.1, "C": 20.0})[0].startswith("J_2, C: standard deviation")
+    assert message({"J_2": 0.1, "C": 20.0})[0].startswith("J_2, C: 95 % interval")
 
 
 def test_damping_that_is_hardly_seen_is_named() -> None:
     close = CLOSE * P.d
     assert message({"d": 0.999 * close}) == []
     (text,) = message({"d": 1.001 * close})
-    assert text.startswith("d is known to 5 % only")
+    assert text.startswith("d is known to +- 9.8 % only")
 
 
 @pytest.mark.parametrize(

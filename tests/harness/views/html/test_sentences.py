@@ -18,10 +18,12 @@ from driveline.harness.views.html.report_page import Section, write_report
 from tests.harness.views.html.test_report_page import PROVENANCE
 
 
-def test_the_verdict_of_a_comparison_names_the_run_in_which_damping_helps_least() -> None:
+def test_the_verdict_of_a_comparison_names_the_controller_and_the_run_in_which_it_helps_least() -> None:
     pairs: Any = [SimpleNamespace(name=f"run {k}", ratio=ratio) for k, ratio in enumerate((0.3, 1.2, 0.5, np.nan))]
-    assert "in 2 of 3 runs, to 50 % in the median and to 120 % where it helps least (run 1)" in verdict(pairs)
-    assert verdict(pairs[3:]) == "No run has an oscillation that can be compared."
+    text = verdict(pairs, "SpeedWashout")
+    assert text.startswith("Damping by SpeedWashout lowers the oscillation of the gear torque (5-50 Hz rms) in 2 of 3")
+    assert text.endswith("runs, to 50 % in the median and to 120 % where it helps least (run 1).")
+    assert verdict(pairs[3:], "SpeedWashout") == "No run has an oscillation that can be compared."
 
 
 def ride(rough: float, size: float) -> np.ndarray:
