@@ -61,7 +61,7 @@ def of_car_line(identified: Identified) -> str:
     C, half = of_car(identified)
     return (
         f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): "
-        "that of two masses which answer as the car does, tyres in it"
+        "of two masses that answer as the car does, tyres in it"
     )
 
 
