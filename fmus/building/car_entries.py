@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from ..catalogue import FMUS
-from ..description.variables import Variable, interface
+from ..description.variables import Variable
 from .one_car import DAMPERS, FOLLOW, SHAFTS, WHEELS, WITH_MASS, of_one_car
-from .parameter_files import OF_A_RUN
+from .parameter_files import car_names, declarations
 
 SET, FOLLOWS, DEFAULT = "set", "follows", "default"
 """Where the value of an entry is from."""
@@ -114,15 +114,8 @@ Declared = dict[str, tuple[Variable, tuple[str, ...]]]
 
 def _declared() -> Declared:
     """The entries of a car: the parameters of plants, motor and bus."""
-    names: dict[str, Variable] = {}
-    blocks: dict[str, list[str]] = {}
-    for fmu in FMUS.values():
-        for variable in interface(fmu.block):
-            if variable.causality == "parameter" and variable.name not in OF_A_RUN:
-                blocks.setdefault(variable.name, []).append(fmu.name)
-                if "T_driver" not in fmu.block.Input._fields:
-                    names.setdefault(variable.name, variable)
-    return {name: (variable, tuple(blocks[name])) for name, variable in names.items()}
+    found = declarations(FMUS.values())
+    return {name: (found[name][0][1], tuple(fmu for fmu, _ in found[name])) for name in car_names()}
 
 
 def _entry(

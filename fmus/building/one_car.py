@@ -53,7 +53,7 @@ DECLARED = {
     variable.name: (block.name, variable)
     for block in (DESIGN, DETAILED)
     for variable in interface(block)
-    if variable.causality == "parameter" and variable.name not in ("v_0", "T_0", "recorded_load")
+    if variable.causality == "parameter"
 }
 """The parameters of a car in both plants: who has it, and how it is declared."""
 

@@ -14,7 +14,7 @@ SPEED = 15.0 / 3.6
 SHARE = 0.05
 """Of the load on the driven wheels, which their tyres pull there: far from sliding."""
 
-DRY_AND_SMOOTH = {"mu": 1.0, "r_6a": 0.0, "r_6b": 0.0, "r_12a": 0.0, "r_12b": 0.0}
+DRY_AND_SMOOTH = {"recorded_load": False, "mu": 1.0, "r_6a": 0.0, "r_6b": 0.0, "r_12a": 0.0, "r_12b": 0.0}
 """Road and motor there; the ripple is a disturbance, no stiffness over the angle of the rotor."""
 
 STEP = 1e-6

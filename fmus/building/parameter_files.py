@@ -61,7 +61,7 @@ def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = 
         ParameterFileError: names the lines with what is not known, no number or out of range; or the entries that
             disagree.
     """
-    everything, of_car = _owners([*EVERY.values(), *own]), _of_car(own)
+    everything, of_car = declarations([*EVERY.values(), *own]), car_names(own)
     of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
     values = _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
     try:
@@ -77,7 +77,7 @@ def read_parameters(path: Path) -> dict[str, Any]:
     Raises:
         ParameterFileError: as for `read_vehicle`.
     """
-    everything, of_car = _owners(EVERY.values()), dict.fromkeys(_of_car(), OF_CAR)
+    everything, of_car = declarations(EVERY.values()), dict.fromkeys(car_names(), OF_CAR)
     of_controller = {name: everything[name] for name in everything if name not in of_car}
     return _read(path, of_controller, (), of_car | OF_A_RUN)
 
@@ -114,13 +114,13 @@ def for_instances(values: Mapping[str, Any], instances: Mapping[str, Collection[
 
 def units() -> dict[str, str]:
     """The unit of every entry that our own blocks have and that is a Real; "1" for none."""
-    declared = {name: owners[0][1].declaration for name, owners in _owners(EVERY.values()).items()}
+    declared = {name: owners[0][1].declaration for name, owners in declarations(EVERY.values()).items()}
     return {name: declaration.unit for name, declaration in declared.items() if isinstance(declaration, Real)}
 
 
 def seeds() -> tuple[int, int]:
     """The least and the largest seed that all blocks with noise take."""
-    declared = [variable.declaration for _, variable in _owners(EVERY.values())["seed"]]
+    declared = [variable.declaration for _, variable in declarations(EVERY.values())["seed"]]
     bounds = [(of.minimum, of.maximum) for of in declared if isinstance(of, Integer)]
     return max(least for least, _ in bounds), min(most for _, most in bounds)
 
@@ -130,13 +130,14 @@ def of_plants() -> set[str]:
     return {quantity for quantity in two_mass_driveline.FMU.block.Parameters._fields if quantity not in OF_A_RUN}
 
 
-def _of_car(own: Iterable[Fmu] = ()) -> list[str]:
+def car_names(own: Iterable[Fmu] = ()) -> list[str]:
     """Names of the parameters of everything but the controllers, which are what takes the driver's demand."""
     fmus = [fmu for fmu in FMUS.values() if "T_driver" not in fmu.block.Input._fields]
-    return [name for name in _owners([*fmus, *own]) if name not in OF_A_RUN]
+    return [name for name in declarations([*fmus, *own]) if name not in OF_A_RUN]
 
 
-def _owners(fmus: Iterable[Fmu]) -> dict[str, list[tuple[str, Variable]]]:
+def declarations(fmus: Iterable[Fmu]) -> dict[str, list[tuple[str, Variable]]]:
+    """For each parameter the names of the FMUs that have it, and how each declares it."""
     found: dict[str, list[tuple[str, Variable]]] = {}
     for fmu in fmus:
         for variable in interface(fmu.block):

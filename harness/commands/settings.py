@@ -204,6 +204,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
     """
     if args.vehicle is None and args.parameters is None:
         return {}
+    from ...fmus.building.one_car import of_one_car
     from ...fmus.building.parameter_files import for_instances, of_plants, read_files, require_taken, units
     from ...fmus.errors import ParameterFileError
     from ..cosimulation.wiring import fit, require
@@ -214,7 +215,7 @@ def _from_files(args: argparse.Namespace, system: System) -> dict[str, float]:
         for instance, interface in interfaces.items()
     }
     every = set().union(*names.values())
-    values = read_files(args.vehicle, args.parameters, others=every)
+    values = of_one_car(read_files(args.vehicle, args.parameters, others=every), every)
     try:
         require_taken(args.parameters, every, system.instances["controller"].name)
     except ParameterFileError as refusal:

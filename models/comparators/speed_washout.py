@@ -14,7 +14,7 @@ from . import measured_speeds
 
 
 class WashoutParameters(NamedTuple):
-    k_v: Annotated[float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 20.0, search=(0.2, 10.0))] = 1.76
+    k_v: Annotated[float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 200.0, search=(0.2, 10.0))] = 1.76
     omega_v: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(1.0, 200.0))] = 53.3
 
 
