@@ -196,7 +196,7 @@ def _solved(frequency: Callable[[float], float], wanted: float, low: float, high
     Raises:
         ParameterFileError: there is none between low and high; begins with what is looked for.
     """
-    from scipy.optimize import brentq
+    from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
 
     least, most = frequency(low), frequency(high)
     if not least <= wanted <= most:
@@ -204,8 +204,12 @@ def _solved(frequency: Callable[[float], float], wanted: float, low: float, high
             f"{what} does not follow: the drive train would have to swing at {wanted:.3g} Hz, and can at "
             f"{least:.3g} to {most:.3g} Hz"
         )
-    found: Any = brentq(lambda x: frequency(exp(x)) - wanted, log(low), log(high), xtol=1e-9)
-    return exp(found)
+
+    def missed(x: float) -> float:
+        return frequency(exp(x)) - wanted
+
+    found = brentq(missed, log(low), log(high), xtol=1e-9)  # pyright: ignore[reportUnknownVariableType]
+    return exp(found)  # pyright: ignore[reportArgumentType, reportUnknownArgumentType]
 
 
 def _close(frequency: float, other: float) -> bool:

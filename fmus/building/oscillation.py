@@ -4,7 +4,6 @@ from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import eig
 
 from ...models.block.types import ContinuousBlock
 
@@ -47,9 +46,11 @@ def oscillation(plant: ContinuousBlock, p: Any) -> Oscillation:
     moves = STEP * np.eye(len(x))
     A = np.column_stack([(rates(x + dx) - rates(x - dx)) / (2.0 * STEP) for dx in moves])
     B = rates(x, T + 0.5) - rates(x, T - 0.5)
-    poles, left, right = eig(A, left=True)
-    shown = right[start._fields.index("omega_1")] * (left.conj().T @ B) / np.sum(left.conj() * right, axis=0)
-    s = poles[np.argmax(np.where(poles.imag > 0.0, abs(shown), -1.0))]
+    acts = A.any(axis=0)  # angles of the rotor and the like act on nothing
+    poles, vectors = np.linalg.eig(A[np.ix_(acts, acts)])
+    speed = list(np.flatnonzero(acts)).index(start._fields.index("omega_1"))
+    shown = vectors[speed] * np.linalg.solve(vectors, B[acts])
+    s = poles[np.argmax(np.where(np.imag(poles) > 0.0, abs(shown), -1.0))]
     return Oscillation(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s)))
 
 
