@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
+from ...fmus.building.one_car import FOLLOW
 from ...fmus.errors import ParameterFileError
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
@@ -150,6 +151,8 @@ class RequestRunner:
             names = self._names(request.plant, controller or self.controllers[0])
             places = names.keys() - ({"controller"} if controller is None or not request.informed else set())
             found |= {knob.name for knob in self.car if any(knob.name in names[place] for place in places)}
+            if set(names["plant"]) >= set(FOLLOW):
+                found |= {"C", "J_2"}  # which they follow from
             if controller == self.controllers[0]:
                 found |= {knob.name for knob in self.gains if knob.name in names["controller"]}
         return found

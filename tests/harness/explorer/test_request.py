@@ -141,8 +141,7 @@ def test_the_knobs_that_can_be_turned_are_those_that_change_a_run(runner: Reques
                 for knob in knobs:
                     turned = replace(request, **{kind: {knob.name: 0.5 * (knob.value + knob.high)}})
                     assert (loops(turned) != before) == (knob.name in turnable), (plant, knob.name)
-    assert "k_s" not in runner.turnable(REQUEST)
-    assert "k_s" in runner.turnable(replace(REQUEST, plant="ValidationVehicle"))
+    assert "k_d" not in runner.turnable(replace(REQUEST, control=False))
 
 
 def test_a_recorded_drive_keeps_its_speed_on_every_plant(with_washout: Path) -> None:
