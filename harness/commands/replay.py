@@ -14,7 +14,11 @@ in brackets over that without damping, and goes to RECORDING_metrics.csv and REC
 folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
 RECORDING.pdf (or --figures), in the units of the recording.
 
+What makes the recording implausible is said with column and time before it is driven and after, and stands with the
+results: signs, units, rates, codes for missing values, spikes, jumps (docs/recordings.md#plausibility).
+
 examples:
+  driveline replay my_trip.csv --look
   driveline replay harness/manoeuvres/data/town_drive.csv
   driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
   driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
@@ -25,8 +29,11 @@ examples:
 """
 
 import argparse
+from collections.abc import Sequence
 from hashlib import sha256
+from typing import TYPE_CHECKING
 
+from ..base.errors import DrivelineError
 from ..loop.places import PLACES, PLANTS
 from ..metrics.run_metrics import RideMetrics
 from ..recordings.quantities import aliases, example
@@ -44,8 +51,13 @@ from .options import (
     figure_options,
     seconds,
 )
+from .printing import Printer
 from .recording_options import add_recording, of_files
 from .settings import caption, distinguishing, other_format, settings_of_each
+
+if TYPE_CHECKING:
+    from ..recordings.drive import Drive
+    from ..recordings.plausibility import Finding
 
 NAMES = aliases()
 IN_HELP = {
@@ -63,6 +75,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
     )
+    parser.add_argument(
+        "--look",
+        action="store_true",
+        help="run nothing: print what was found in the recording, units, ranges, rate and what is odd, and draw it in "
+        "RECORDING_look.png",
+    )
+    parser.add_argument("--strict", action="store_true", help="refuse a recording in which something is odd")
     add_loop(parser, several={"controller": PLACES["controller"][0]})
     add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
     add_format(parser)
@@ -73,18 +92,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
+    from ..manoeuvres.road_load import Track
     from ..manoeuvres.speed_following import require_held
     from ..recordings.drive import read_drive
-    from ..studies.drives.replay import by_name, on_road, records, replay, write
+    from ..recordings.plausibility import of_drive
+    from ..studies.drives.replay import by_name, car_of, records, replay, write
+    from ..studies.drives.verdict import followed_speed, tell
     from ..views.terminal import print_rides, rides_reasons
 
+    if args.look and args.report:
+        raise DrivelineError("--look runs nothing, so that there is nothing to --report")
     require_report(args.report)
     require_held(args.held)
     own = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held} | other_format(args)
     recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
     given = settings_of_each(args, args.plant, by_name(args.controller or PLACES["controller"][:1]))
     first = next(iter(given.values()))
-    track, load = on_road(recording, first)
+    load, T_max = car_of(first)
+    odd = of_drive(recording, load, T_max)
+    if args.look:
+        return look(args, recording, odd)
+    tell(odd, args.recording, args.strict)
+    track = Track.of(recording, T_max)
     options = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
     same = own | {"controllers": list(given), "columns": dict(args.columns)} | of_files(args)
     same |= {f"with {name}": distinguishing(each) for name, each in given.items()}
@@ -95,13 +124,43 @@ def run(args: argparse.Namespace) -> int:
         plant, title = first.plant_name, f"{first.plant_name} on the recorded drive {track.name}"
         made.out.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {first.build} FMUs, {', '.join(given)}{level}")
         rides = replay(track, load, given, args.held)
+        unkept = followed_speed(recording, rides)
+        tell(unkept, args.recording, args.strict)
+        odd += unkept
+        texts = [str(finding) for finding in odd]
+        notes = [f"not plausible: {text}" for text in texts]
         made.begin()
-        made.wrote(*write(rides, track, plant, args.output, options, args.format, recording.file_units))
+        made.wrote(*write(rides, track, plant, args.output, options, args.format, recording.file_units, notes))
         metrics_of = {ride.controller: ride.metrics for ride in rides}
+        reasons = rides_reasons(metrics_of)
         for provenance, path in made.reports():
             from ..studies.drives import replay_report
 
             drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
-            replay_report.report(drawn, (track.t, track.v), title, rides_reasons(metrics_of), provenance, path)
-        made.tell(print_rides, metrics_of, f"{plant} on {recording.name}", runs=records(rides, track, plant))
+            replay_report.report(drawn, (track.t, track.v), title, reasons, texts, provenance, path)
+        found = {"runs": records(rides, track, plant), "findings": [finding.document() for finding in odd]}
+        made.tell(print_rides, metrics_of, f"{plant} on {recording.name}", [*reasons, *notes], **found)
+    return 0
+
+
+def look(args: argparse.Namespace, recording: "Drive", odd: "Sequence[Finding]") -> int:
+    """Shows a recording, without any run."""
+    from rich.markup import escape
+
+    from ..studies.drives.verdict import tell
+    from ..views.recording_view import HEADINGS, column_rows, columns, plot_recording
+    from ..views.terminal import plain_table, print_table
+
+    options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
+    out = Printer(args)
+    if not out.silent:
+        rows = (map(escape, row) for row in column_rows(recording))
+        print_table(plain_table(escape(str(args.recording)), HEADINGS, map(list, rows)))
+    tell(odd, args.recording, args.strict)
+    out.say("" if odd else "nothing is odd")
+    kinds = tuple(args.figures or ("png",))
+    figures = plot_recording(recording, odd, args.output / f"{recording.name}_look", options._replace(kinds=kinds))
+    out.files(figures)
+    findings = [finding.document() for finding in odd]
+    out.document({"columns": columns(recording), "findings": findings, "files": figures})
     return 0

@@ -11,6 +11,7 @@ from ..base.plain_text import plain
 from .column_choice import Choice, Chooser
 from .file_units import FileUnit
 from .format_detection import opened
+from .missing_values import is_code
 from .quantities import QUANTITIES, aliases
 from .source import RecordingError, Samples
 
@@ -30,6 +31,7 @@ class Channel:
         values: finite, one for each time.
         where: of a value in the file by its index, as in "line 12".
         file_unit: its unit in the file.
+        clock: heading of the column of its time; "time" where a channel has its own.
     """
 
     quantity: str
@@ -39,6 +41,7 @@ class Channel:
     values: np.ndarray
     where: Callable[[int], str]
     file_unit: FileUnit
+    clock: str = "time"
 
 
 class Channels:
@@ -90,7 +93,7 @@ class Channels:
         samples = self._source.read([choice.place for choice in choices])
         time = clock[0].factor * samples[0].values if clock else None
         channels = {
-            choice.quantity: _channel(choice, one, time)
+            choice.quantity: _channel(choice, one, time, *(each.column.heading for each in clock))
             for choice, one in zip(choices[len(clock) :], samples[len(clock) :], strict=True)
         }
         for together in _by_time(channels.values()):
@@ -104,12 +107,12 @@ class Channels:
         return channels
 
 
-def _channel(choice: Choice, samples: Samples, time: np.ndarray | None) -> Channel:
+def _channel(choice: Choice, samples: Samples, time: np.ndarray | None, *clock: str) -> Channel:
     own = samples.time if time is None else time
     assert own is not None, "a file has a column of time, or its channels have their own"
     values = choice.factor * samples.values
     file_unit = FileUnit(plain(choice.file_unit), abs(choice.factor))
-    return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where, file_unit)
+    return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where, file_unit, *clock)
 
 
 def _by_time(channels: Iterable[Channel]) -> Iterable[list[Channel]]:
@@ -128,10 +131,12 @@ def check_limit(path: Path, channel: Channel) -> None:
     limit = QUANTITIES[channel.quantity].limit
     beyond = np.flatnonzero(np.abs(channel.values) > limit)
     if len(beyond):
-        k = int(beyond[0])
+        k, unit = int(beyond[0]), channel.file_unit
+        written = channel.values[k] / unit.factor
+        missing = f", and {written:g} is what loggers write where there is no value" if is_code(written) else ""
         raise RecordingError(
             f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; "
-            f"at most {limit:g} {channel.unit} in magnitude can be"
+            f"at most {limit:g} {channel.unit} in magnitude can be{missing}"
         )
 
 

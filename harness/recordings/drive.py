@@ -1,13 +1,13 @@
 """A recorded drive, to be driven again by the simulated vehicle."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from .alignment import aligned, is_slower
-from .channels import Channels
+from .channels import Channel, Channels
 from .file_units import FileUnit
 from .source import RecordingError
 
@@ -26,6 +26,7 @@ class Drive:
         elevation: of the road in m; None if it was not recorded.
         T_mot: motor torque in N.m, motor side.
         file_units: of v and T_mot.
+        channels: by quantity, as they were sampled; `omega_wheel` in the place of `v` where that is the wheels'.
     """
 
     name: str
@@ -34,6 +35,17 @@ class Drive:
     elevation: np.ndarray | None
     T_mot: np.ndarray
     file_units: Mapping[str, FileUnit]
+    channels: Mapping[str, Channel] = field(default_factory=dict)
+
+    def heading(self, quantity: str) -> str:
+        """Of the column of a quantity."""
+        taken = WHEELS if quantity == "v" and WHEELS in self.channels else quantity
+        return self.channels[taken].heading if taken in self.channels else quantity
+
+    @property
+    def clock(self) -> str:
+        """Heading of the column of the time."""
+        return self.channels["T_mot"].clock if "T_mot" in self.channels else "time"
 
 
 def read_drive(
@@ -65,4 +77,4 @@ def read_drive(
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
     time, values = aligned(channels, "T_mot", received)
     file_units = {"v": channels[speed].file_unit, "T_mot": channels["T_mot"].file_unit}
-    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"], file_units)
+    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"], file_units, channels)

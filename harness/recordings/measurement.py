@@ -10,9 +10,10 @@ from .alignment import aligned, is_slower
 from .channels import Channel, Channels
 from .delays import Delay, estimated
 from .file_units import FileUnit
+from .plausibility import of_channels
 from .quantities import example
 from .relations import check_relations
-from .signal_checks import check_signal, clipping
+from .signal_checks import check_signal
 from .source import RecordingError
 
 BASE = "omega_1"
@@ -126,11 +127,7 @@ def read_measurement(
         signals.get("T_ref"),
         {quantity: heading for quantity, heading in headings.items() if heading},
         estimated(interval, signals),
-        [
-            f"{path}, {finding}"
-            for channel in judged
-            if channel.quantity in (BASE, *loads) and (finding := clipping(channel))
-        ],
+        [f"{path}, {finding}" for finding in of_channels(judged)],
         _written(channels, wheels, loads, i, r),
     )
 

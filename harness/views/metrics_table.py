@@ -102,10 +102,11 @@ def _compared(value: float, other: float) -> str:
     return f"{value:.3g} ({value / other:.3f})" if other and not isnan(other) else f"{value:.3g} (-)"
 
 
-def write_rides(rides: Mapping[str, RideMetrics], title: str, path: Path) -> None:
-    """Writes the table of the rides as Markdown."""
+def write_rides(rides: Mapping[str, RideMetrics], title: str, path: Path, notes: Sequence[str] = ()) -> None:
+    """Writes the table of the rides as Markdown, and below it what there is to know of it."""
     headings = [title, *(f"{column.plain_heading}, {column.unit}" for _, column in RIDES_SHOWN)]
-    write_text(f"{markdown_table(headings, ride_rows(rides), labels=1)}\n", path)
+    below = "".join(f"\n{note}\n" for note in notes)
+    write_text(f"{markdown_table(headings, ride_rows(rides), labels=1)}\n{below}", path)
 
 
 def values(metrics: Any) -> dict[str, Any]:

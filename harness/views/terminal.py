@@ -68,10 +68,10 @@ def print_runs(rows: Sequence[Row]) -> None:
     print("\n".join([*reasons(rows), legend(Metrics), ""]))
 
 
-def print_rides(rides: Mapping[str, RideMetrics], title: str) -> None:
-    """Prints the table of the rides, why it has dashes, and what its columns are."""
+def print_rides(rides: Mapping[str, RideMetrics], title: str, notes: Sequence[str]) -> None:
+    """Prints the table of the rides, what there is to know of it, and what its columns are."""
     print_table(rides_table(rides, title))
-    print("\n".join([*rides_reasons(rides), legend(RideMetrics), ""]))
+    print("\n".join([*notes, legend(RideMetrics), ""]))
 
 
 def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:

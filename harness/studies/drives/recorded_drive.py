@@ -6,10 +6,13 @@ from typing import Unpack
 from ...base.errors import DrivelineError
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.settings import RunChanges, Settings
+from ...manoeuvres.road_load import Track
 from ...manoeuvres.speed_following import require_held
 from ...recordings.drive import Drive
-from .replay import Ride, by_name, on_road
+from ...recordings.plausibility import of_drive
+from .replay import Ride, by_name, car_of
 from .replay import replay as rides
+from .verdict import followed_speed, tell
 
 
 def replay(
@@ -35,6 +38,8 @@ def replay(
         held: seconds for which the demand is sampled and held, a rougher foot; None: straight lines.
         changes: fields of the settings that are to be others, as of `simulate`, for all rides.
 
+    What makes the recording implausible is logged as warnings.
+
     Returns:
         The ride without damping, then one with each controller; signals in SI units, a row every 2 ms.
 
@@ -52,4 +57,8 @@ def replay(
     named = by_name([str(controller) for controller in controllers])
     common = Settings(plant).replace(**changes)
     given = {name: common.replace(controller=controller) for name, controller in named.items()}
-    return rides(*on_road(drive, next(iter(given.values()))), given, held)
+    load, T_max = car_of(next(iter(given.values())))
+    tell(of_drive(drive, load, T_max), drive.name)
+    found = rides(Track.of(drive, T_max), load, given, held)
+    tell(followed_speed(drive, found), drive.name)
+    return found

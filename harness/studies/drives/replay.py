@@ -20,7 +20,6 @@ from ...metrics.damage import damage, require_counting
 from ...metrics.declaration import given, measured
 from ...metrics.evaluate import at_samples, evaluate
 from ...metrics.run_metrics import RideMetrics
-from ...recordings.drive import Drive
 from ...recordings.file_units import FileUnit
 from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
@@ -118,11 +117,11 @@ def followed(
     return manoeuvre, signals
 
 
-def on_road(recording: Drive, settings: Settings) -> tuple[Track, RoadLoad]:
-    """What the loop is to do of a recorded drive, and the road load of its plant."""
+def car_of(settings: Settings) -> tuple[RoadLoad, float]:
+    """The road load of the plant of a loop, and the largest torque of its motor in N.m."""
     interfaces = fit(loop(settings)).interfaces
     limit = torque_limit(interfaces["motor"], settings.parameters)
-    return Track.of(recording, limit), RoadLoad.of_plant(interfaces["plant"], settings.parameters)
+    return RoadLoad.of_plant(interfaces["plant"], settings.parameters), limit
 
 
 def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], held: float | None = None) -> list[Ride]:
@@ -186,18 +185,20 @@ def write(
     options: FigureOptions = PLAIN,
     format: str = "csv",
     file_units: Mapping[str, FileUnit] | None = None,
+    notes: Sequence[str] = (),
 ) -> list[Path]:
     """Writes metrics, table, signals (every 10 ms) and the figure of a replay; returns the files.
 
     Args:
         format: of the signals, see `harness.views.signals_file`.
         file_units: see `harness.views.replay_figure.plot_replay`.
+        notes: below the table.
     """
     from ...views.replay_figure import plot_replay  # not for the workers, which draw nothing
 
     files = [folder / f"{track.name}{end}" for end in ("_metrics.csv", "_table.md")]
     write_metrics(records(rides, track, plant), files[0])
-    write_rides({ride.controller: ride.metrics for ride in rides}, f"{track.name} on {plant}", files[1])
+    write_rides({ride.controller: ride.metrics for ride in rides}, f"{track.name} on {plant}", files[1], notes)
     for ride in rides:
         stem = folder / f"{track.name}_{ride.suffix}"
         files.append(write_signals(ride.signals[::STRIDE], stem, format))

@@ -30,34 +30,46 @@ Rides = Mapping[str, tuple[RideMetrics, np.ndarray]]
 
 
 def report(
-    rides: Rides, recorded: tuple[np.ndarray, np.ndarray], title: str, notes: Sequence[str], provenance: Any, path: Path
+    rides: Rides,
+    recorded: tuple[np.ndarray, np.ndarray],
+    title: str,
+    notes: Sequence[str],
+    odd: Sequence[str],
+    provenance: Any,
+    path: Path,
 ) -> None:
     """Writes the page.
 
     Args:
         recorded: time in s and speed in m/s of the recording.
         notes: why the table has dashes.
+        odd: what makes the recording implausible.
         provenance: see `harness.simulation.provenance.content`.
     """
     pieces = roughest(next(iter(list(rides.values())[1:]))[1])
     metrics = {name: worth for name, (worth, _) in rides.items()}
     headings = [Heading("ride"), *of_metrics(RIDES_SHOWN)]
     table = Table(headings, [Row(cells) for cells in ride_rows(metrics)], notes)
+    doubt = [
+        Section("Is the recording plausible?", "", Table([Heading("what is odd in it")], [Row([text]) for text in odd]))
+    ]
     sections = [
+        *(doubt if odd else []),
         Section("All rides", "In brackets what it is over the ride without damping.", table),
         Section(
             "The worst pieces", f"The {PIECE:g} s in which {list(rides)[1]} leaves most swing.", _worst(pieces, rides)
         ),
         *_figures(rides, recorded, [start for start, _ in pieces]),
     ]
-    write_report(title, verdict(metrics), sections, provenance, path)
+    write_report(title, verdict(metrics, odd), sections, provenance, path)
 
 
-def verdict(rides: Mapping[str, RideMetrics]) -> str:
+def verdict(rides: Mapping[str, RideMetrics], odd: Sequence[str]) -> str:
     """In one sentence."""
     (_, undamped), (name, damped), *_ = rides.items()
+    doubt = f"The recording is not plausible ({len(odd)} {'finding' if len(odd) == 1 else 'findings'}); if it is true, "
     return (
-        f"{name} takes the 5-50 Hz rms of the gear torque from {undamped.gear_torque_rms:.3g} to "
+        f"{doubt if odd else ''}{name} takes the 5-50 Hz rms of the gear torque from {undamped.gear_torque_rms:.3g} to "
         f"{damped.gear_torque_rms:.3g} N·m and that of the body jerk from {undamped.jerk_rms:.3g} to "
         f"{damped.jerk_rms:.3g} m/s³."
     )

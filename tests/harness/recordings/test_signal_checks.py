@@ -7,8 +7,9 @@ import pytest
 
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.recordings.plausibility import CUT_OFF
 from driveline.harness.recordings.quantities import QUANTITIES
-from driveline.harness.recordings.signal_checks import CLIPPED, SHORTEST, check_signal
+from driveline.harness.recordings.signal_checks import SHORTEST, check_signal
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.car import drive
 from tests.harness.recordings.conftest import Read
@@ -83,11 +84,11 @@ def test_a_channel_that_was_cut_off_is_named(read: Read, name: str, sign: float)
     one = drive()
     values = sign * one[name]
     top = int(np.argmax(values[50:-50])) + 50
-    for length in (CLIPPED - 1, CLIPPED):
+    for length in (CUT_OFF - 1, CUT_OFF):
         flat = values.copy()
         flat[top : top + length] = values[top]
         warnings = read(one | {name: sign * flat}).warnings
-        if length < CLIPPED:
+        if length < CUT_OFF:
             assert warnings == []
         else:
             word = "largest" if sign > 0.0 else "smallest"

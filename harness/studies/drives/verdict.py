@@ -1,0 +1,31 @@
+"""Whether a recorded drive can be true, told before it is driven and after."""
+
+import logging
+from collections.abc import Sequence
+from os import PathLike
+
+from ...recordings.drive import Drive
+from ...recordings.plausibility import Finding, not_followed
+from ...recordings.source import RecordingError
+from .replay import Ride
+
+LOG = logging.getLogger(__name__)
+
+
+def followed_speed(drive: Drive, rides: Sequence[Ride]) -> list[Finding]:
+    """What the ride without damping, the first one, says against the recording."""
+    signals = rides[0].signals
+    return not_followed(drive, signals["time"], signals["plant.v"])
+
+
+def tell(findings: Sequence[Finding], recording: PathLike[str] | str, strict: bool = False) -> None:
+    """Logs what is odd in a recording, a warning each.
+
+    Raises:
+        RecordingError: something is, and it is strict.
+    """
+    for finding in findings:
+        LOG.warning("%s: %s", recording, finding)
+    if findings and strict:
+        names = ", ".join(dict.fromkeys(finding.rule.name for finding in findings))
+        raise RecordingError(f"{recording} is not plausible ({names}), which --strict refuses")
