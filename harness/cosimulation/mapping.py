@@ -10,6 +10,7 @@ from copy import copy
 
 from fmpy.model_description import ModelVariable
 
+from ..base.collected_warnings import warn_once
 from ..base.errors import WiringError
 from ..base.known_names import nearest
 from .interface import Interface, unit_of
@@ -83,6 +84,9 @@ def _convert(interface: Interface, name: str, target_unit: str | None) -> str | 
     try:
         if unit:
             interface.factors[name] = factor(unit, target_unit)
+        else:
+            taken = "that of the SI" if target_unit == SI else target_unit
+            warn_once(f"{interface.path.name}: what is mapped to {name} has no unit; it is taken to be in {taken}")
     except ValueError as reason:
         return str(reason)
     variable.unit = target_unit

@@ -133,7 +133,11 @@ def check_limit(path: Path, channel: Channel) -> None:
     if len(beyond):
         k, unit = int(beyond[0]), channel.file_unit
         written = channel.values[k] / unit.factor
-        missing = f", and {written:g} is what loggers write where there is no value" if is_code(written) else ""
+        missing = (
+            f", and {written:g} is what loggers write where there is no value"
+            if is_code(written)
+            else f"; --column {channel.quantity}='... [UNIT]' gives another unit"
+        )
         raise RecordingError(
             f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; "
             f"at most {limit:g} {channel.unit} in magnitude can be{missing}"

@@ -1,18 +1,21 @@
 """Which column of a file holds which quantity."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
 
 from ..base.known_names import nearest
 from ..base.plain_text import plain
-from .headings import after_underscores, key, split
-from .quantities import QUANTITIES, Aliases, example
+from .headings import key, split, without_brackets
+from .quantities import BY_UNIT, QUANTITIES, Aliases, example
 from .recording_units import factor_to, is_unit
 from .source import Column, RecordingError, Source
 
 NAMES_SHOWN = 3
 """Other names of a quantity that a message gives where none is found."""
+
+Place = tuple[int, str | None]
+"""Of a column in the file, and its unit."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ class Chooser:
         known = f" (other names are {others})" if others else ""
         raise RecordingError(
             f"{self.source.headings}: no column {example(quantity, self.names)}{known}; "
-            f"{self._nearest(self.names[quantity][0])}"
+            f"{self._nearest(self.names[quantity][0])}; --column {quantity}=HEADING says which one it is"
         )
 
     def _nearest(self, name: str) -> str:
@@ -70,23 +73,32 @@ class Chooser:
         """The column of a quantity, None if there is none; else as `needed`."""
         if quantity in self.given:
             return self._given(quantity, self.given[quantity])
-        names = {key(name) for name in self.names[quantity]}
-        found = [
+        sure, open_ = self._named(self.names[quantity]), self._named(BY_UNIT.get(quantity, ()))
+        unitless = [(place, unit) for place, unit in sure if unit is None]
+        meant = _fitting(quantity, sure) or unitless or _fitting(quantity, open_) or sure
+        return self._one(quantity, meant, 1.0) if meant else None
+
+    def _named(self, names: Sequence[str]) -> list[Place]:
+        """The columns that have one of the names."""
+        keys = {key(name) for name in names}
+        return [
             (place, unit)
             for place, column in enumerate(self.source.columns)
             for name, unit in _readings(column)
-            if key(name) in names and (unit == column.unit or is_unit(str(unit)))
+            if key(name) in keys
         ]
-        return self._one(quantity, found, 1.0) if found else None
 
     def _given(self, quantity: str, text: str) -> Choice:
         sign = -1.0 if text.startswith("-") else 1.0
         name_given = text.removeprefix("-").strip()
-        name, unit = split(name_given)
         columns = self.source.columns
-        found = [(place, column.unit) for place, column in enumerate(columns) if column.heading == name_given]
+        found = [(k, _readings(column)[-1][1]) for k, column in enumerate(columns) if column.heading == name_given]
+        name, unit = split(name_given)
         found = found or [
-            (place, unit or column.unit) for place, column in enumerate(columns) if key(column.name) == key(name)
+            (place, unit or own)
+            for place, column in enumerate(columns)
+            for name_read, own in _readings(column)
+            if key(name_read) == key(name)
         ]
         if not found:
             raise RecordingError(
@@ -95,7 +107,7 @@ class Chooser:
             )
         return self._one(quantity, found, sign)
 
-    def _one(self, quantity: str, found: Sequence[tuple[int, str | None]], sign: float) -> Choice:
+    def _one(self, quantity: str, found: Sequence[Place], sign: float) -> Choice:
         columns = self.source.columns
         if len(found) > 1:
             raise RecordingError(
@@ -108,31 +120,54 @@ class Chooser:
     def _factor(self, quantity: str, column: Column, unit: str | None) -> tuple[str, float]:
         """Unit of the SI and the factor to it."""
         declared = QUANTITIES[quantity]
+        mended = f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
         if unit is None and declared.unit != "1":
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
-                f"{example(quantity, self.names)}, or give it with "
-                f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
+                f"{example(quantity, self.names)}, or give it with {mended}"
             )
-        if declared.also:
-            try:
-                return declared.also, factor_to(declared.also, unit or "1")
-            except ValueError:
-                pass  # then it must be of the first
         try:
-            return declared.unit, factor_to(declared.unit, unit or "1")
+            return si_of(quantity, unit or "1")
         except ValueError as reason:
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} {plain(reason, 200)}, as in the heading "
-                f"{example(quantity, self.names)}"
+                f"{example(quantity, self.names)}; {mended} gives another unit, "
+                f"--column {quantity}=HEADING another column"
             ) from reason
 
 
-def _readings(column: Column) -> Iterator[tuple[str, str | None]]:
-    """Name and unit as the column can be understood."""
-    yield column.name, column.unit
-    if column.unit is None:
-        yield from after_underscores(column.name)
+def si_of(quantity: str, unit: str) -> tuple[str, float]:
+    """The unit of the SI that a quantity has where a file has it in a unit, and the factor to it.
+
+    Raises:
+        ValueError: it does not convert; the message is to stand after the name of the column.
+    """
+    declared = QUANTITIES[quantity]
+    if declared.also:
+        try:
+            return declared.also, factor_to(declared.also, unit)
+        except ValueError:
+            pass  # then it must be of the first
+    return declared.unit, factor_to(declared.unit, unit)
+
+
+def _fitting(quantity: str, found: Sequence[Place]) -> list[Place]:
+    """Those whose unit is one of the quantity."""
+    return [(place, unit) for place, unit in found if unit is not None and _converts(quantity, unit)]
+
+
+def _converts(quantity: str, unit: str) -> bool:
+    try:
+        si_of(quantity, unit)
+    except ValueError:
+        return False
+    return True
+
+
+def _readings(column: Column) -> list[tuple[str, str | None]]:
+    """Name and unit as the column can be understood, as they stand first."""
+    others = without_brackets(column.name) if column.unit is None else []
+    return [(column.name, column.unit), *((name, unit) for name, unit in others if is_unit(unit))]
 
 
 def _doubled(quantity: str, headings: Sequence[str]) -> str:

@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from statistics import median
 
+from .clock_times import is_clock_time
 from .recording_units import is_unit
 from .source import RecordingError
 
@@ -33,6 +34,7 @@ class Dialect:
         decimal: point or comma.
         names: the cells of the line of names.
         units: those of the line of units below it; none if there is no such line.
+        clocks: for each cell of the first row of numbers whether it is a time of day.
         names_line: number of the line of names.
         first_line: number of the line with which the numbers begin.
     """
@@ -41,6 +43,7 @@ class Dialect:
     decimal: str
     names: tuple[str, ...]
     units: tuple[str, ...]
+    clocks: tuple[bool, ...]
     names_line: int
     first_line: int
 
@@ -68,7 +71,10 @@ def dialect_of(text: str, path: Path) -> Dialect:
     units_line, units = names_line, ()
     if len(above) > 1 and _are_units(names, above[-2][1]):
         (names_line, names), (units_line, units) = above[-2], above[-1]
-    return Dialect(separator, _decimal(separator, below), tuple(names), tuple(units), names_line, units_line + 1)
+    clocks = tuple(is_clock_time(cell) for cell in below[0][1]) if below else ()
+    return Dialect(
+        separator, _decimal(separator, below), tuple(names), tuple(units), clocks, names_line, units_line + 1
+    )
 
 
 def _rows(text: str, separator: str, path: Path) -> list[Row]:

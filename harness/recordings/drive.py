@@ -72,7 +72,8 @@ def read_drive(
     channels = recording.read(speed, *elevation, "T_mot")
     if speed == WHEELS and channels[speed].unit != "m/s":
         raise RecordingError(
-            f"{path}: no speed of the vehicle, and {channels[speed].heading} is none over ground, in km/h for example"
+            f"{path}: no speed of the vehicle, and {channels[speed].heading} is none over ground, in km/h for example; "
+            "--column v=HEADING says which one it is"
         )
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
     time, values = aligned(channels, "T_mot", received)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from zipfile import BadZipFile, ZipFile
 
 from .arrow_file import FEATHER, PARQUET, ArrowFile
 from .bus_log import ASC, BLF, BusLog
@@ -12,6 +13,17 @@ from .text_file import TextFile
 KINDS = dict.fromkeys(MARKS, MdfFile) | {PARQUET: ArrowFile, FEATHER: ArrowFile}
 """By the bytes with which the file begins; what begins otherwise is text."""
 
+
+FOREIGN = {
+    b"\xd0\xcf\x11\xe0": "an Excel workbook or another document of Office",
+    b"\x89HDF": "an HDF5 file, such as one of MATLAB 7.3",
+    b"MATLAB": "a MATLAB file",
+    b"\x1f\x8b": "a gzip archive",
+    b"%PDF": "a PDF document",
+}
+"""What is not read, by the bytes with which it begins."""
+
+ZIP = b"PK\x03\x04"
 
 LOOKED_AT = 200
 """Bytes at the beginning that tell what a file is."""
@@ -36,5 +48,19 @@ def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
         return BusLog(path, databases)
     if databases:
         raise RecordingError(f"{path} is no log of a bus (BLF, ASC), which {databases[0]} is for")
+    if named := _foreign(path, begin):
+        raise RecordingError(f"{path} is {named}, which is not read; save the recording as a text file (CSV)")
     kind = next((kind for mark, kind in KINDS.items() if begin.startswith(mark)), TextFile)
     return kind(path)
+
+
+def _foreign(path: Path, begin: bytes) -> str | None:
+    """What the file is, if it is of a kind that is known and not read."""
+    if begin.startswith(ZIP):
+        try:
+            with ZipFile(path) as archive:
+                excel = any(name.startswith("xl/") for name in archive.namelist())
+        except (BadZipFile, OSError, ValueError, NotImplementedError):
+            excel = False
+        return "an Excel workbook" if excel else "a ZIP archive"
+    return next((name for mark, name in FOREIGN.items() if begin.startswith(mark)), None)

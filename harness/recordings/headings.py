@@ -1,7 +1,9 @@
-"""Headings of columns: name and unit, as in `Motor Speed [rpm]`, `Motor Speed (rpm)` and `motor_speed_rpm`."""
+"""Headings of columns: name and unit, as in `Motor Speed [rpm]`, `Motor Speed (rpm)`, `Motor Speed / rpm`, `Motor Speed
+in rpm` and `motor_speed_rpm`."""
 
 import re
 from collections.abc import Iterator
+from unicodedata import normalize
 
 IN_BRACKETS = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]?|\((?P<round>.*)\))\s*", re.DOTALL)
 
@@ -12,11 +14,22 @@ def split(heading: str) -> tuple[str, str | None]:
     if not found:
         return heading.strip(), None
     unit = found["square"] if found["square"] is not None else found["round"]
-    return found["name"].strip(), unit.strip() or None
+    return OPENING.sub("", found["name"]).strip(), unit.strip() or None
 
 
-def after_underscores(name: str) -> Iterator[tuple[str, str]]:
-    """Name and unit, if the last word or the last two are one: `v_kmh`, and `v_km_h` for km/h."""
+OPENING = re.compile(r"\s*/\s*$|\s+in\s*$")
+"""What may stand between a name and a unit in brackets: `v/(km/h)`, `T in [Nm]`."""
+
+BEHIND = (re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>.+)"), re.compile(r"(?P<name>.+)\s+in\s+(?P<unit>\S.*)"))
+"""A quantity over its unit (ISO 80000-1), and in words."""
+
+
+def without_brackets(name: str) -> Iterator[tuple[str, str]]:
+    """Name and unit as they may stand in a heading without brackets: `T / Nm`, `v/(km/h)`, `T in Nm`, `v_kmh`, and
+    `v_km_h` for km/h. Whether the unit is one is not asked."""
+    for form in BEHIND:
+        if found := form.fullmatch(name):
+            yield found["name"].strip(), found["unit"].strip(" ()")
     for words in (1, 2):
         first, *last = name.rsplit("_", words)
         if len(last) == words and first and all(last):
@@ -24,5 +37,5 @@ def after_underscores(name: str) -> Iterator[tuple[str, str]]:
 
 
 def key(name: str) -> str:
-    """The same for names that differ in case, spaces and underscores alone."""
-    return " ".join(name.replace("_", " ").split()).casefold()
+    """The same for names that differ in case, spaces and underscores alone, or in how an umlaut is written."""
+    return normalize("NFC", " ".join(name.replace("_", " ").split()).casefold())

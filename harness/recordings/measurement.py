@@ -93,7 +93,10 @@ def read_measurement(
     recording = Channels(path, columns, names, databases)
     wheels, loads = _present(recording, WHEEL_SPEEDS), _present(recording, LOADS)
     if not wheels:
-        raise RecordingError(f"{path}: no wheel speed, such as {example('omega_wheel', recording.names)}")
+        raise RecordingError(
+            f"{path}: no wheel speed, such as {example('omega_wheel', recording.names)}; "
+            "--column omega_wheel=HEADING says which one it is"
+        )
     held = [quantity for quantity in HELD if recording.has(quantity)]
     channels = recording.read(BASE, "T_mot", *wheels, *loads, *held)
     judged = [channel for quantity, channel in channels.items() if quantity not in MESSAGE]

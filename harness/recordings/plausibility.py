@@ -177,7 +177,7 @@ FOLLOWING = Rule(
     "following",
     "after the drive: a recorded speed that the simulated car does not keep",
     f"{FOLLOWED:g} m/s rms without damping",
-    "the force along the road is corrected until 0.1 m/s are reached; 0.16 m/s are left at most in 200 simulated drives",
+    "the force along the road is corrected until 0.1 m/s are reached; 0.16 m/s at most in 200 simulated drives",
 )
 
 RULES = (SENTINEL, CLIPPED, SPIKED, JUMP, RATE, CAPPED, SIGN, RATIO, FAST, SLOW_TIME, FOLLOWING)

@@ -20,6 +20,14 @@ SPELLED = {
 }
 """Spellings that pint does not know, or takes for something else."""
 
+WRITTEN = "km/h kmh kph m/s rpm U/min 1/min rad/s deg/s Nm kNm s ms min h m km ft"
+
+FOLDED = {unit.casefold(): unit for unit in WRITTEN.split()}
+"""Units whose case is known where a unit as it is written is none of the quantity: KM/H, NM, nm."""
+
+POUNDS = re.compile(r"(?P<force>lbs?f?)[ .-]?(?P<arm>ft|in)|(?P<first>ft|in)[ .-]?lbs?f?", re.IGNORECASE)
+"""Torque in pounds: lb-ft, ft-lb, lbf.in."""
+
 TORQUE = re.compile(r"(?P<prefix>[mkM]?)N[ .-]?m")
 
 STANDARD_GRAVITY = 9.80665
@@ -33,6 +41,9 @@ def spelled(unit: str) -> str:
     torque = TORQUE.fullmatch(text)
     if torque:
         return f"{torque['prefix']}N.m"
+    pounds = POUNDS.fullmatch(text)
+    if pounds:
+        return f"lbf.{(pounds['arm'] or pounds['first']).lower()}"
     return text.replace("°", "deg").replace(" ", ".")
 
 
@@ -49,9 +60,11 @@ def factor_to(target_unit: str, unit: str) -> float:
     try:
         return factor(spelled(unit), target_unit)
     except ValueError as reason:
+        if (folded := FOLDED.get(unit.strip().casefold(), unit)) != unit:
+            return factor_to(target_unit, folded)
         raise ValueError(f"{reason}; wanted is {target_unit} or what converts into it") from reason
 
 
 def is_unit(text: str) -> bool:
     """Whether it is a unit that can be read."""
-    return known(spelled(text))
+    return known(spelled(text)) or text.strip().casefold() in FOLDED

@@ -32,6 +32,9 @@ SLOW, OPPOSED, SIZE = 2.0, 0.5, 3.0
 """Frequency in Hz below which load and demand are compared with the motor torque, the correlation from which on it is
 certain that one goes with it or against it, and by which factor it may be larger or smaller."""
 
+TURNS = "--column QUANTITY='-HEADING' turns it"
+SAYS = "--column QUANTITY='HEADING [UNIT]' says what a column is"
+
 
 def check_relations(
     path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]
@@ -79,9 +82,9 @@ def _check_links(path: Path, headings: Mapping[str, str], interval: float, signa
             for of_motor, name in (("T_mot", T), ("omega_1", omega))
             if of_motor != name
         ]
-        raise RecordingError(f"{path}: {finding}: are {', and '.join(exchanged)} exchanged?")
+        raise RecordingError(f"{path}: {finding}: are {', and '.join(exchanged)} exchanged? {SAYS}")
     if link < 0.0:
-        raise RecordingError(f"{path}: {finding}: one of them has the wrong sign")
+        raise RecordingError(f"{path}: {finding}: one of them has the wrong sign; {TURNS}")
 
 
 def _check_speeds(path: Path, headings: Mapping[str, str], signals: Mapping[str, np.ndarray]) -> None:
@@ -91,13 +94,14 @@ def _check_speeds(path: Path, headings: Mapping[str, str], signals: Mapping[str,
     ratio = float(omega_1 @ omega_2 / (omega_2 @ omega_2))
     if ratio < 0.0:
         raise RecordingError(
-            f"{path}: {headings['omega_1']} and {headings['omega_2']} turn against each other: one has the wrong sign"
+            f"{path}: {headings['omega_1']} and {headings['omega_2']} turn against each other: one has the wrong sign; "
+            f"{TURNS}"
         )
     if abs(ratio - 1.0) > RATIO:
         raise RecordingError(
             f"{path}: {headings['omega_1']} is {ratio:.4g} times what {headings['omega_2']} says of the motor: "
             f"the unit of one, the gear ratio or the tyre radius is not what it is said to be "
-            f"(rpm for rad/s makes 9.549, km/h for m/s 3.6)"
+            f"(rpm for rad/s makes 9.549, km/h for m/s 3.6); {SAYS}"
         )
 
 
@@ -106,12 +110,14 @@ def _check_load(path: Path, headings: Mapping[str, str], interval: float, signal
     if correlation > OPPOSED:
         raise RecordingError(
             f"{path}: {headings['T_load']} acts with {headings['T_mot']} (correlation {correlation:.2f} below "
-            f"{SLOW:g} Hz): its sign is wrong; a load that brakes is negative, the torque of wheels that drive positive"
+            f"{SLOW:g} Hz): its sign is wrong; a load that brakes is negative, the torque of wheels that drive "
+            f"positive; {TURNS}"
         )
     if correlation < -OPPOSED and not 1.0 / SIZE <= size <= SIZE:
         raise RecordingError(
             f"{path}: {headings['T_load']} is {size:.3g} times as large as {headings['T_mot']}, motor side: the unit "
-            f"of one or the gear ratio is not what it is said to be, or it is not on the side that its name says"
+            f"of one or the gear ratio is not what it is said to be, or it is not on the side that its name says; "
+            f"{SAYS}"
         )
 
 
@@ -120,12 +126,12 @@ def _check_demand(path: Path, headings: Mapping[str, str], interval: float, sign
     if correlation < -OPPOSED:
         raise RecordingError(
             f"{path}: {headings['T_mot']} does the opposite of {headings['T_ref']} (correlation {correlation:.2f} "
-            f"below {SLOW:g} Hz): one of them has the wrong sign"
+            f"below {SLOW:g} Hz): one of them has the wrong sign; {TURNS}"
         )
     if correlation > OPPOSED and not 1.0 / SIZE <= size <= SIZE:
         raise RecordingError(
             f"{path}: {headings['T_ref']} is {size:.3g} times as large as {headings['T_mot']}: the unit of one is not "
-            f"what it is said to be, or it is not on the side that its name says"
+            f"what it is said to be, or it is not on the side that its name says; {SAYS}"
         )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.plain_text import plain
 from ..base.written_numbers import real
+from .clock_times import EXAMPLES, seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
 from .source import Column, RecordingError, Samples, not_finite
@@ -54,11 +55,26 @@ class TextFile:
             return f"line {first + kept[k]}"
 
         return [
-            Samples(
-                self._numbers(np.asarray(cells[place], dtype=object)[kept], self.columns[place], where), None, where
-            )
+            Samples(self._values(np.asarray(cells[place], dtype=object)[kept], place, where), None, where)
             for place in places
         ]
+
+    def _values(self, cells: np.ndarray, place: int, where: Callable[[int], str]) -> np.ndarray:
+        """
+        Raises:
+            RecordingError: one is no number; in a column of times of day, no such time.
+        """
+        column = self.columns[place]
+        if not _is_clock(self._dialect, place):
+            return self._numbers(cells, column, where)
+        values = seconds(cells)
+        if isinstance(values, int):
+            cell = plain(cells[values], LONGEST_CELL) or "nothing"
+            raise RecordingError(
+                f"{self.path}, {where(values)}, column {column.heading}: {cell} is no time as in the first row, "
+                f"such as {EXAMPLES}"
+            )
+        return values
 
     def _cells(self, lines: Sequence[str], places: Sequence[int]) -> dict[int, list[str]]:
         """Of some columns, one for every line."""
@@ -117,7 +133,8 @@ class TextFile:
         for k, cell in enumerate(cells):
             value = real(texts[k])
             if value is None or not isfinite(value) or (decimal == "," and "." in cell):
-                raise not_finite(self.path, where(k), column, plain(cell, LONGEST_CELL))
+                refusal = not_finite(self.path, where(k), column, plain(cell, LONGEST_CELL))
+                raise RecordingError(f"{refusal}, nor a time such as {EXAMPLES}") if ":" in cell else refusal
         return np.array(texts, dtype=float)
 
 
@@ -127,8 +144,13 @@ def _columns(dialect: Dialect, beside: dict[str, str]) -> list[Column]:
     for k, cell in enumerate(dialect.names):
         name, unit = split(cell)
         below = dialect.units[k].strip(" []()") if k < len(dialect.units) else ""
-        columns.append(Column(plain(cell, LONGEST_CELL), plain(name, LONGEST_CELL), unit or below or beside.get(name)))
+        own = "s" if _is_clock(dialect, k) else unit or below or beside.get(name)
+        columns.append(Column(plain(cell, LONGEST_CELL), plain(name, LONGEST_CELL), own))
     return columns
+
+
+def _is_clock(dialect: Dialect, place: int) -> bool:
+    return place < len(dialect.clocks) and dialect.clocks[place]
 
 
 MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -118,3 +119,28 @@ def test_points_among_decimal_commas_are_named(tmp_path: Path) -> None:
     (tmp_path / "drive.csv").write_text("\n".join(text), encoding="utf-8")
     with pytest.raises(RecordingError, match=r"line 21, column .* is not a finite number"):
         read_drive(tmp_path / "drive.csv")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (("xl/workbook.xml", "[Content_Types].xml"), "an Excel workbook"),
+        (("drive.csv",), "a ZIP archive"),
+        (b"PK\x03\x04 cut off", "a ZIP archive"),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "an Excel workbook or another document"),
+        (b"\x89HDF\r\n\x1a\n" + bytes(90), "an HDF5 file"),
+        (b"MATLAB 5.0 MAT-file, Platform", "a MATLAB file"),
+    ],
+)
+def test_what_is_no_recording_is_called_by_its_name(
+    tmp_path: Path, content: bytes | tuple[str, ...], message: str
+) -> None:
+    path = tmp_path / "drive.csv"
+    if isinstance(content, bytes):
+        path.write_bytes(content)
+    else:
+        with ZipFile(path, "w") as archive:
+            for name in content:
+                archive.writestr(name, "x")
+    with pytest.raises(RecordingError, match=rf"drive\.csv is {message}.*, which is not read; save .* as a text file"):
+        read_drive(path)

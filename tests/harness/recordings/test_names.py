@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.headings import after_underscores, split
+from driveline.harness.recordings.channels import Channels
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.headings import split, without_brackets
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.recordings.quantities import QUANTITIES, aliases
 from driveline.harness.recordings.recording_units import factor_to, is_unit
@@ -24,15 +26,27 @@ from tests.harness.recordings.conftest import Write
         ("omega_1", "omega_1", None),
         ("Speed []", "Speed", None),
         ("Speed [km/h", "Speed", "km/h"),
+        ("v/(km/h)", "v", "km/h"),
+        ("Drehmoment in [Nm]", "Drehmoment", "Nm"),
     ],
 )
 def test_a_unit_in_brackets_or_parentheses(heading: str, name: str, unit: str | None) -> None:
     assert split(heading) == (name, unit)
 
 
-def test_a_unit_after_underscores() -> None:
-    assert list(after_underscores("v_km_h")) == [("v_km", "h"), ("v", "km/h")]
-    assert list(after_underscores("speed")) == []
+@pytest.mark.parametrize(
+    ("heading", "readings"),
+    [
+        ("v_km_h", [("v_km", "h"), ("v", "km/h")]),
+        ("T / Nm", [("T", "Nm")]),
+        ("v/km/h", [("v", "km/h")]),
+        ("T in Nm", [("T", "Nm")]),
+        ("speed", []),
+        ("inside", []),
+    ],
+)
+def test_a_unit_without_brackets(heading: str, readings: list[tuple[str, str]]) -> None:
+    assert list(without_brackets(heading)) == readings
 
 
 @pytest.mark.parametrize(
@@ -59,6 +73,18 @@ def test_a_unit_after_underscores() -> None:
         ("µs", "s", 1e-6),
         ("\u03bcs", "s", 1e-6),
         ("Grad", "rad", np.pi / 180.0),
+        ("KM/H", "m/s", 1.0 / 3.6),
+        ("M/S", "m/s", 1.0),
+        ("NM", "N.m", 1.0),
+        ("nm", "N.m", 1.0),
+        ("nm", "m", 1e-9),
+        ("MS", "s", 1e-3),
+        ("Ms", "s", 1e6),
+        ("lb-ft", "N.m", 1.3558179483314),
+        ("LB-FT", "N.m", 1.3558179483314),
+        ("ft-lb", "N.m", 1.3558179483314),
+        ("lbf.ft", "N.m", 1.3558179483314),
+        ("in-lbs", "N.m", 0.112984829027617),
     ],
 )
 def test_units_as_files_write_them(unit: str, wanted: str, factor: float) -> None:
@@ -119,3 +145,89 @@ def test_a_file_of_names_that_is_refused(tmp_path: Path, content: str, message: 
 def test_a_column_that_is_said_to_be_there_and_is_not(write: Write) -> None:
     with pytest.raises(RecordingError, match=r"no column n_EM2, which --column gives for omega_1; did you mean n_EM1"):
         read_measurement(write(columns()), RATIO, RADIUS, {"omega_1": "n_EM2"})
+
+
+UNITS = ("Nm", "N·m", "kNm", "NM", "lb-ft")
+FORMS = ("{} [{}]", "{} ({})", "{}/{}", "{} / {}", "{} in {}", "{} in [{}]", "{}/({})")
+
+
+@pytest.mark.parametrize("name", ["Drehmoment", "Motor Torque", "T", "M", "motor_torque"])
+def test_every_name_takes_every_unit_in_every_form(tmp_path: Path, name: str) -> None:
+    for unit in UNITS:
+        for form in FORMS:
+            path = tmp_path / "drive.csv"
+            path.write_text(f"t [s];v [m/s];{form.format(name, unit)}\n0;10;1\n1;10;2\n", encoding="utf-8")
+            assert read_drive(path).T_mot.tolist() == [factor_to("N.m", unit), 2.0 * factor_to("N.m", unit)], form
+
+
+def test_names_in_german(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    for height in ("Höhe", "H\u006f\u0308he", "HÖHE", "Hoehe"):
+        path.write_text(f"Zeit in s;Geschwindigkeit in km/h;Drehmoment / Nm;{height} / m\n0;36;1;500\n1;36;2;501\n")
+        drive = read_drive(path)
+        assert drive.elevation is not None
+        assert (drive.v[0], drive.T_mot[1], drive.elevation[1]) == (10.0, 2.0, 501.0)
+
+
+def test_the_speed_of_a_motor_in_german(write: Write) -> None:
+    columns = {
+        name.replace("n_EM1 [rad/s]", "Drehzahl / (rad/s)"): values for name, values in columns_of_ours().items()
+    }
+    assert read_measurement(write(columns), RATIO, RADIUS).columns["omega_1"] == "Drehzahl / (rad/s)"
+
+
+def columns_of_ours() -> dict[str, np.ndarray]:
+    return {name.replace("M_EM1 [Nm]", "M [Nm]"): values for name, values in columns().items()}
+
+
+def test_a_unit_decides_what_a_name_leaves_open(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("T [degC],Speed [rpm],Speed [km/h],t [s],T [Nm]\n9,1,36,0,1\n9,2,36,1,2\n", encoding="utf-8")
+    channels = Channels(path).read("v", "omega_1", "T_mot")
+    assert {q: channel.heading for q, channel in channels.items()} == {
+        "v": "Speed [km/h]", "omega_1": "Speed [rpm]", "T_mot": "T [Nm]"
+    }  # fmt: skip
+    assert channels["T_mot"].time.tolist() == [0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    "header", ["Time [s],v [m/s],T,Motor Torque [Nm]", "Time [s],v [m/s],M [Nm],Motor Torque [Nm]"]
+)
+def test_an_open_name_does_not_stand_against_a_sure_one(tmp_path: Path, header: str) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text(f"{header}\n0,10,1,7\n1,10,2,8\n", encoding="utf-8")
+    assert read_drive(path).T_mot.tolist() == [7.0, 8.0]
+
+
+def test_an_open_name_without_a_unit_is_nobodys(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("Time [s],v [m/s],T\n0,10,1\n1,10,2\n", encoding="utf-8")
+    with pytest.raises(RecordingError, match=r"no column Motor Torque.*; --column T_mot=HEADING says which one it is"):
+        read_drive(path)
+
+
+@pytest.mark.parametrize("given", ["T / Nm", "T", "T [Nm]"])
+def test_a_heading_with_a_unit_behind_a_slash_can_be_given(tmp_path: Path, given: str) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("Time [s],v [m/s],T / Nm\n0,10,1\n1,10,2\n", encoding="utf-8")
+    assert read_drive(path, {"T_mot": f"-{given}"}).T_mot.tolist() == [-1.0, -2.0]
+
+
+@pytest.mark.parametrize(
+    ("header", "given"),
+    [
+        ("Time [s],v [m/s],x [Nm]", "T_mot=x [Nm]"),
+        ("Time [s],v,T [Nm]", "v=v [m/s]"),
+        ("Time [s],v [m],T [Nm]", "v=v [m/s]"),
+        ("Time [s],v [m/s],Speed [m/s],T [Nm]", "v=Speed [m/s]"),
+        ("Time [s],Wheel Speed [rad/s],x [m/s],T [Nm]", "v=x [m/s]"),
+    ],
+)
+def test_a_refusal_names_the_option_that_mends_it(tmp_path: Path, header: str, given: str) -> None:
+    path = tmp_path / "drive.csv"
+    rows = [",".join(["0", *["1"] * header.count(",")]), ",".join(["1", *["2"] * header.count(",")])]
+    path.write_text("\n".join([header, *rows, ""]), encoding="utf-8")
+    quantity, _, heading = given.partition("=")
+    with pytest.raises(RecordingError, match=rf"--column {quantity}="):
+        read_drive(path)
+    assert len(read_drive(path, {quantity: heading}).v) == 2

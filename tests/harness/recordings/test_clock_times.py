@@ -1,0 +1,79 @@
+"""Times of day in the column of time."""
+
+from collections.abc import Callable
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from driveline.harness.recordings.clock_times import is_clock_time, seconds
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.source import RecordingError
+
+FORMS: dict[str, Callable[[datetime], str]] = {
+    "ISO 8601": lambda at: at.isoformat(timespec="milliseconds"),
+    "ISO 8601, blank": lambda at: at.isoformat(" ", timespec="milliseconds"),
+    "ISO 8601, UTC": lambda at: at.isoformat(timespec="milliseconds") + "Z",
+    "ISO 8601, zone": lambda at: at.isoformat(timespec="milliseconds") + "+01:00",
+    "slashes": lambda at: f"{at:%Y/%m/%d %H:%M:%S}.{at.microsecond // 1000:03}",
+    "German": lambda at: f"{at:%d.%m.%Y %H:%M:%S},{at.microsecond // 1000:03}",
+    "time of day": lambda at: f"{at:%H:%M:%S}.{at.microsecond // 1000:03}",
+    "time of day, half": lambda at: f"{at:%I:%M:%S}.{at.microsecond // 1000:03} {at:%p}",
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+@given(
+    begin=st.datetimes(datetime(1970, 1, 1), datetime(2100, 1, 1)),
+    steps=st.lists(st.integers(1, 3_600_000), min_size=1, max_size=8),
+)
+def test_every_form_gives_the_time_since_the_first_row(form: str, begin: datetime, steps: list[int]) -> None:
+    start = begin.replace(microsecond=begin.microsecond // 1000 * 1000)
+    since = np.concatenate(([0], np.cumsum(steps))) * 1e-3
+    texts = [FORMS[form](start + timedelta(milliseconds=round(1e3 * t))) for t in since]
+    assert all(map(is_clock_time, texts))
+    np.testing.assert_allclose(seconds(texts), since, atol=1e-6)
+
+
+@pytest.mark.parametrize("text", ["", "10", "10:15", "10:61:00", "2026-02-30T10:00:00", "11/12/2026 10:00:00", "x"])
+def test_what_is_no_time(text: str) -> None:
+    assert not is_clock_time(text)
+    assert seconds(["10:15:30", text]) == 1
+
+
+def test_a_zone_that_changes_is_no_step() -> None:
+    assert seconds(["2026-10-25T02:59:59+02:00", "2026-10-25T02:00:00+01:00"]).tolist() == [0.0, 1.0]  # type: ignore[union-attr]
+
+
+def written(tmp_path: Path, *times: str, heading: str = "Time") -> Path:
+    path = tmp_path / "drive.csv"
+    rows = [f"{time};{k};{k}" for k, time in enumerate(times)]
+    path.write_text("\n".join([f"{heading};v [m/s];Torque [Nm]", *rows, ""]), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("heading", ["Time", "Time [s]", "Time [hh:mm:ss]", "Timestamp"])
+def test_a_column_of_times_needs_no_unit(tmp_path: Path, heading: str) -> None:
+    path = written(tmp_path, "23:59:59.5", "23:59:59.75", "00:00:00", heading=heading)
+    assert read_drive(path).time.tolist() == [0.0, 0.25, 0.5]
+    assert read_drive(path, {"time": heading}).time.tolist() == [0.0, 0.25, 0.5]
+
+
+def test_a_date_in_a_column_of_its_own_is_passed_over(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("Date,Time,v [m/s],Torque [Nm]\n2026-11-22,10:00:00,1,1\n2026-11-22,10:00:01,2,2\n")
+    assert read_drive(path).time.tolist() == [0.0, 1.0]
+
+
+def test_a_row_without_a_time_is_named(tmp_path: Path) -> None:
+    with pytest.raises(
+        RecordingError, match=r"line 3, column Time: soon is no time as in the first row, such as 10:15"
+    ):
+        read_drive(written(tmp_path, "10:00:00", "soon"))
+    with pytest.raises(RecordingError, match=r"line 3, column Time: 10:00:01 is no time as in the first row"):
+        read_drive(written(tmp_path, "2026-11-22T10:00:00", "10:00:01"))
+    with pytest.raises(RecordingError, match=r"line 2, column Time.*11/12/2026 10:00:00 is not .*, nor a time such as"):
+        read_drive(written(tmp_path, "11/12/2026 10:00:00", "11/12/2026 10:00:01", heading="Time [s]"))
