@@ -104,7 +104,8 @@ SIGNED, TOGETHER = 0.5, 0.7
 SMALLEST, LARGEST = 0.5, 2.5
 """What a motion takes over what the motor gives."""
 
-KMH, MS, KILO = 3.6, 1e-3, 1e3
+KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
+"""Factors on speed, time and torque that are tried. Those on a torque that never reaches FORCE leave no ratio out."""
 
 LEAST = 10
 """Samples that a balance needs."""
@@ -368,9 +369,10 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
             "or the side of the gear looks wrong, else the unit of the speed, or i, r, m of the car"
         )
         yield Finding(RATIO, torque, at, odd)
-    elif not found.judged and fits(T_mot=KILO):
+    elif not found.judged and (weak := next(filter(lambda factor: fits(T_mot=factor), WEAK), None)):
         given = _given("T_mot", f"{split(torque)[0]} [kNm]")
-        odd = f"gives a thousandth of what the motion takes, and fits if it is in kN.m; {given} gives that unit"
+        unit = f"kN.m called N.m ({given})" if weak == WEAK[-1] else "its unit or the side of the gear looks wrong"
+        odd = f"gives about 1/{weak:g} of what the motion takes, and follows it otherwise: {unit}"
         yield Finding(RATIO, torque, at, odd)
 
 
