@@ -5,7 +5,8 @@ from pathlib import Path
 from docs.studies.generated_sections import filled
 from docs.studies.imports import ROOT
 from driveline.harness.recordings import relations, signal_checks
-from driveline.harness.recordings.quantities import QUANTITIES, aliases
+from driveline.harness.recordings.plausibility import RULES
+from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
 from driveline.harness.views.markdown import markdown_table
 
 CHECKS = Path(__file__).with_name("recordings_page_checks.md").read_text(encoding="utf-8")
@@ -18,16 +19,26 @@ def make(folder: Path) -> None:
 
 def page(text: str) -> str:
     """The page with the tables that the declarations in `harness/recordings` make."""
-    return filled(text, {"columns": _columns(), "checks": _checks()})
+    return filled(text, {"columns": _columns(), "checks": _checks(), "plausibility": _plausibility()})
+
+
+def _plausibility() -> str:
+    rows = ((rule.name, rule.looks_for, rule.threshold, rule.reason) for rule in RULES)
+    return markdown_table(("rule", "what it looks for", "from when on", "why there"), rows, labels=4)
 
 
 def _columns() -> str:
     names = aliases()
     rows = (
-        (f"`{name}`", q.meaning, q.unit, q.file_unit, ", ".join(f"`{alias}`" for alias in names[name]))
+        (f"`{name}`", q.meaning, q.unit, q.file_unit, ", ".join(f"`{each}`" for each in names[name]) + _by_unit(name))
         for name, q in QUANTITIES.items()
     )
     return markdown_table(("quantity", "what it is", "SI", "for example in", "names"), rows, labels=5)
+
+
+def _by_unit(quantity: str) -> str:
+    names = ", ".join(f"`{name}`" for name in BY_UNIT.get(quantity, ()))
+    return names and f"; with such a unit {names}"
 
 
 def _each(

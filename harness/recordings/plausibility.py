@@ -20,6 +20,7 @@ from .channels import Channel
 from .drive import Drive
 from .headings import split
 from .missing_values import is_code
+from .relations import compared
 
 
 class Rule(NamedTuple):
@@ -88,8 +89,8 @@ ACCELERATION, SPIKE, WIDEST = 15.0, 1.0, 3
 CLIMB, STEP = 20.0, 10.0
 """Rate in m/s at which no road climbs, and the resolution in m that an elevation may have."""
 
-OSCILLATION, SWING = 8.0, 0.2
-"""Frequency of a drive train in Hz, and the share of the swing after a step that a ramp must leave."""
+OSCILLATION, SLOWEST = 8.0, 0.2
+"""Frequency of a drive train in Hz, and the longest interval of a demand in s."""
 
 BEYOND = 0.01
 """Share of the samples that may lie beyond T_max."""
@@ -140,8 +141,9 @@ JUMP = Rule(
 RATE = Rule(
     "rate",
     "a demand that is sampled too slowly to excite a drive train",
-    f"more than {1.0 / (pi * OSCILLATION * SWING):.3g} s between samples",
-    f"a ramp of the length h leaves at most 1/(π f h) of the swing after a step, here {SWING:g} at {OSCILLATION:g} Hz",
+    f"more than {SLOWEST:g} s between samples",
+    "a ramp of the length h leaves at most 1/(π f h) of the swing after a step, here "
+    f"{1.0 / (pi * OSCILLATION * SLOWEST):.2g} at {OSCILLATION:g} Hz",
 )
 CAPPED = Rule(
     "T_max",
@@ -268,15 +270,16 @@ def jumps(channel: Channel) -> Iterator[Finding]:
 def slow_sampling(drive: Drive) -> Iterator[Finding]:
     """A demand between whose samples the oscillation has no room."""
     interval = _interval(drive.time)
-    swing = 1.0 / (pi * OSCILLATION * interval)
-    if swing < SWING:
+    # the last digits of written times must not decide
+    if interval > SLOWEST * (1.0 + 1e-6):
+        swing = 1.0 / (pi * OSCILLATION * interval)
         yield Finding(
             RATE,
             drive.heading("T_mot"),
             float(drive.time[0]),
             f"has a sample every {interval:.3g} s: straight lines between them leave {swing:.1%} of the swing that a "
             f"step excites at {OSCILLATION:g} Hz, so the ride cannot show what damping is worth; "
-            f"{1.0 / (pi * OSCILLATION * SWING):.2g} s or less are needed",
+            f"{SLOWEST:g} s or less are needed",
         )
 
 
@@ -302,6 +305,7 @@ class Balance(NamedTuple):
         correlation: of what the motion takes with what the motor gives, while the car rolls; 0 if too little happens.
         judged: whether enough happens while the motor pushes.
         together, ratio: correlation and ratio of standard deviations then.
+        moved: standard deviation in N of what the motion takes then.
     """
 
     worst: int
@@ -309,6 +313,7 @@ class Balance(NamedTuple):
     judged: bool = False
     together: float = 0.0
     ratio: float = 1.0
+    moved: float = 0.0
 
     @property
     def fits(self) -> bool:
@@ -328,20 +333,24 @@ def balance(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Bal
     worst = int(np.argmax(np.where(rolls, np.abs(takes - gives), 0.0)))
     found = Balance(worst=worst)
     if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:
-        found = found._replace(correlation=_compared(takes[rolls], gives[rolls])[0])
+        found = found._replace(correlation=compared(takes[rolls], gives[rolls])[0])
     if pushes.sum() >= LEAST and max(np.std(gives[pushes]), np.std(takes[pushes])) > FORCE:
-        together, ratio = _compared(takes[pushes], gives[pushes])
-        found = found._replace(judged=True, together=together, ratio=ratio)
+        together, ratio = compared(takes[pushes], gives[pushes])
+        found = found._replace(judged=True, together=together, ratio=ratio, moved=float(np.std(takes[pushes])))
     return found
 
 
 def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
     """A motion that is not that of this torque and this car: one finding, of what explains it best."""
 
-    def fits(time: float = 1.0, v: float = 1.0, T_mot: float = 1.0) -> bool:
-        return balance(time * drive.time, v * drive.v, T_mot * drive.T_mot, car).fits
+    def tried(time: float = 1.0, v: float = 1.0, T_mot: float = 1.0) -> Balance:
+        return balance(time * drive.time, v * drive.v, T_mot * drive.T_mot, car)
 
-    found = balance(drive.time, drive.v, drive.T_mot, car)
+    def is_weak(factor: float) -> bool:
+        found = tried(T_mot=factor)
+        return found.fits and found.moved > FORCE
+
+    found = tried()
     at, torque = float(drive.time[found.worst]), drive.heading("T_mot")
     if found.correlation < -SIGNED:
         odd = (
@@ -349,14 +358,14 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
             f"wrong; {_given('T_mot', f'-{torque}')} turns it"
         )
         yield Finding(SIGN, torque, at, odd)
-    elif found.judged and found.together < TOGETHER and fits(time=MS):
+    elif found.judged and found.together < TOGETHER and tried(time=MS).fits:
         clock = drive.clock
         odd = (
             f"goes on by {_interval(drive.time):.4g} s a sample, and motion and torque fit if that is ms: its unit "
             f"looks wrong; {_given('time', f'{split(clock)[0]} [ms]')} gives it"
         )
         yield Finding(SLOW_TIME, clock, float(drive.time[0]), odd)
-    elif found.judged and found.together >= TOGETHER and found.ratio > LARGEST and fits(v=1.0 / KMH):
+    elif found.judged and found.together >= TOGETHER and found.ratio > LARGEST and tried(v=1.0 / KMH).fits:
         speed = drive.heading("v")
         odd = (
             f"changes as if the motor had {found.ratio:.2g} times its torque, and fits if it is {KMH:g} times too "
@@ -369,7 +378,7 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
             "or the side of the gear looks wrong, else the unit of the speed, or i, r, m of the car"
         )
         yield Finding(RATIO, torque, at, odd)
-    elif not found.judged and (weak := next(filter(lambda factor: fits(T_mot=factor), WEAK), None)):
+    elif not found.judged and (weak := next(filter(is_weak, WEAK), None)):
         given = _given("T_mot", f"{split(torque)[0]} [kNm]")
         unit = f"kN.m called N.m ({given})" if weak == WEAK[-1] else "its unit or the side of the gear looks wrong"
         odd = f"gives about 1/{weak:g} of what the motion takes, and follows it otherwise: {unit}"
@@ -410,10 +419,3 @@ def _more(count: int, what: str = "sample") -> str:
 
 def _interval(time: np.ndarray) -> float:
     return float(np.median(np.diff(time)))
-
-
-def _compared(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Correlation of two signals, and the standard deviation of the first over that of the second."""
-    x, y = x - x.mean(), y - y.mean()
-    size = float(np.sqrt((x @ x) * (y @ y)))
-    return (float(x @ y) / size if size else 0.0), float(np.std(x) / max(np.std(y), 1e-9))

@@ -65,7 +65,7 @@ def links(interval: float, signals: Mapping[str, np.ndarray]) -> dict[tuple[str,
     rates = {
         name: band(np.gradient(x, interval), interval, FAST) for name, x in signals.items() if name.startswith("omega_")
     }
-    return {(T, omega): _correlation(torques[T], rates[omega]) for T in torques for omega in rates}
+    return {(T, omega): compared(torques[T], rates[omega])[0] for T in torques for omega in rates}
 
 
 def _check_links(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
@@ -137,11 +137,12 @@ def _check_demand(path: Path, headings: Mapping[str, str], interval: float, sign
 
 def _slow_parts(x: np.ndarray, T_mot: np.ndarray, interval: float) -> tuple[float, float]:
     """Correlation of a torque with that of the motor, and its size over that of the motor, below SLOW."""
-    x, T_mot = low(x, interval, SLOW), low(T_mot, interval, SLOW)
-    return _correlation(x, T_mot), float(np.std(x) / np.std(T_mot))
+    return compared(low(x, interval, SLOW), low(T_mot, interval, SLOW))
 
 
-def _correlation(x: np.ndarray, y: np.ndarray) -> float:
+def compared(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Correlation of two signals, and the standard deviation of the first over that of the second; 0 of one that does
+    not vary, and infinity over it."""
     x, y = x - x.mean(), y - y.mean()
     size = np.sqrt((x @ x) * (y @ y))
-    return float(x @ y / size) if size > 0.0 else 0.0
+    return (float(x @ y / size) if size > 0.0 else 0.0), float(np.std(x) / np.std(y)) if y.any() else np.inf

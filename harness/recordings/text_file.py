@@ -67,7 +67,7 @@ class TextFile:
         column = self.columns[place]
         if not _is_clock(self._dialect, place):
             return self._numbers(cells, column, where)
-        values = seconds(cells)
+        values = seconds(cells.tolist())
         if isinstance(values, int):
             cell = plain(cells[values], LONGEST_CELL) or "nothing"
             raise RecordingError(

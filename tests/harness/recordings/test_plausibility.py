@@ -25,10 +25,10 @@ from driveline.harness.recordings.plausibility import (
     LARGEST,
     OSCILLATION,
     RULES,
+    SLOWEST,
     SMALLEST,
     SPIKE,
     STEP,
-    SWING,
     Finding,
     balance,
     codes,
@@ -66,7 +66,11 @@ SPOILED: dict[str, tuple[Spoil, str, str]] = {
     ),
     "kN.m": (scaled(T, 1e-3), "ratio of torque", r"kN\.m called N\.m \(--column T_mot='Motor Torque \[kNm\]'"),
     "T_max": (scaled(T, 1.6), "T_max", r"^Motor Torque \[Nm\] at 33\.2 s is 200 N\.m; \S+% of the samples lie beyond"),
-    "1 Hz": (lambda table: table[::10], "rate", r"^Motor Torque \[Nm\] at 0 s has a sample every 1 s: .* 4\.0% of"),
+    "1 Hz": (
+        lambda table: table.iloc[::10],
+        "rate",
+        r"^Motor Torque \[Nm\] at 0 s has a sample every 1 s: .* 4\.0% of",
+    ),
     "code": (at(T, -999.0, 100, 200), "code", r"^line 102: Motor Torque \[Nm\] at 10 s is -999, .* \(2 samples\)$"),
     "code of height": (at(H, -999.0, 300), "code", r"^line 302: Elevation \[m\] at 30 s is -999, which loggers write"),
     "spike": (at(V, 80.0, 100), "spike", r"^line 102: Velocity \[km/h\] at 10 s is \+47\.4 km/h off its neighbours"),
@@ -193,16 +197,15 @@ def drive(interval: float = 0.1, mass: float = 1.0, T_peak: float = 100.0) -> Dr
 
 
 def test_the_rate_must_leave_something_of_a_step() -> None:
-    slowest = 1.0 / (pi * OSCILLATION * SWING)
-    for factor, expected in ((0.99, []), (1.01, ["rate"])):
-        assert [finding.rule.name for finding in of_drive(drive(factor * slowest), CAR, T_MAX)] == expected
+    for factor, expected in ((1.0, []), (1.01, ["rate"])):
+        assert [finding.rule.name for finding in of_drive(drive(factor * SLOWEST), CAR, T_MAX)] == expected
 
 
 def test_a_ramp_leaves_of_the_swing_after_a_step_what_the_rule_says() -> None:
     """The swing of an undamped oscillator after a ramp over that after a step is |sin(pi f h)|/(pi f h)."""
     t = np.linspace(0.0, 1.0, 200_001)
     worst = 0.0
-    for h in np.linspace(0.9, 1.1, 21) / (pi * OSCILLATION * SWING):
+    for h in np.linspace(0.8, 1.2, 21) * SLOWEST:
         rate = np.where(t < h, 1.0 / h, 0.0)
         wave = np.exp(-2j * pi * OSCILLATION * t)
         worst = max(worst, h * pi * OSCILLATION * abs(np.trapezoid(rate * wave, t)))
