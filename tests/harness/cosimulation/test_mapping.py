@@ -6,12 +6,14 @@ from math import pi
 import numpy as np
 import pytest
 
+from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.mapping import parsed
 from driveline.harness.cosimulation.steps import interpreted
+from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -66,6 +68,12 @@ def test_compiled_steps_and_those_in_python_convert_alike(built, theirs):
         with loaded(loop(theirs, folder=built, mapping=MAPPING), make_steps=make) as running:
             results.append(running.run(Experiment(TIPIN.duration, 1e-3, signals(TIPIN), start(TIPIN))).tobytes())
     assert results[0] == results[1]
+
+
+def test_a_mapped_variable_without_a_unit_is_said(built, theirs, caplog):
+    warn_once.cache_clear()
+    fit(loop(theirs, folder=built, mapping=MAPPING))
+    assert caplog.messages == [f"{theirs.name}: what is mapped to v has no unit; it is taken to be in m/s"]
 
 
 def test_nothing_changes_where_names_and_units_are_the_same(built):
