@@ -15,11 +15,12 @@ from ..cosimulation.wiring import Fit, fit, out_of_bounds, require
 from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.road_load import Track
 from ..metrics.evaluate import at_samples, evaluate
 from ..metrics.run_metrics import Metrics
 from ..recordings.drive import Drive
 from ..simulation.simulate import simulate
-from ..studies.drives.replay import followed, on_road
+from ..studies.drives.replay import car_of, followed
 from ..views.html.paired_runs import NEEDED, shown_at_first
 from .knobs import CAR, GAINS, Knob, knobs
 from .request import Request, characterised, parameters
@@ -114,8 +115,8 @@ class RequestRunner:
         if name in self._manoeuvres:
             return self._manoeuvres[name]
         assert self._recording is not None
-        track, load = on_road(self._recording, self.settings(plant))
-        return followed(track, load, self.settings(plant))[0]
+        load, T_max = car_of(self.settings(plant))
+        return followed(Track.of(self._recording, T_max), load, self.settings(plant))[0]
 
     def require(self, request: Request) -> None:
         """Refuses what cannot run.
