@@ -1,24 +1,20 @@
 """Which pages are older than what they are made from.
 
 A page depends on the code that its numbers pass through: the modules that its own ones import, the equations and the
-C of its FMUs, and the data beside them. Of Python the syntax tree counts, without docstrings, comments, layout and
-annotations of functions; of C all but comments and layout. What only draws, prints, distributes or stores results
-does not count, nor do the versions of packages: they are pinned. `made.json` has the digests with which each page was
-made; only making a page, or coming out the same when it is made again, puts them there.
+C of its FMUs, and the data beside them, as far as they compute something (`code_digest.py`). What only draws, prints,
+distributes or stores results does not count, nor do the versions of packages: they are pinned. `made.json` has the
+digests with which each page was made; only making a page, or coming out the same when it is made again, puts them
+there.
 
 `stale.toml` says of pages that are stale and have not been made again why not, and what is known of the difference.
 """
 
-import ast
 import json
-import re
 import tomllib
 from collections.abc import Iterator
-from functools import cache
-from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
+from docs.studies.code_digest import digest
 from docs.studies.imports import ROOT, reached, source
 from docs.studies.pages import Page
 from driveline.harness.base.atomic_files import write_text
@@ -62,8 +58,6 @@ NO_NUMBERS = (
 
 DATA = (".c", ".h", ".csv", ".toml")
 """Files of a room that count, and in those of its folders that are no rooms."""
-
-COMMENT_OR_LAYOUT = re.compile(r'("(?:\\.|[^"\\])*")|/\*.*?\*/|\s+', re.S)
 
 
 def why_stale(page: Page) -> list[str]:
@@ -114,33 +108,3 @@ def _files(page: Page) -> Iterator[Path]:
         yield from (path for path in files if path != STALE)
     for pattern in page.files:
         yield from ROOT.glob(pattern)
-
-
-_UNSEEN = {ast.arg: ("annotation",), ast.FunctionDef: ("returns",), ast.ImportFrom: ("module", "level")}
-"""Fields of the syntax tree that do not count: from where something is imported is told by the list of files."""
-
-
-@cache
-def digest(path: Path) -> str:
-    """Of what a file computes."""
-    content = path.read_bytes()
-    if path.suffix == ".py":
-        content = repr(_shape(ast.parse(content))).encode()
-    elif path.suffix in (".c", ".h"):
-        content = COMMENT_OR_LAYOUT.sub(lambda found: found[1] or " ", content.decode()).encode()
-    return sha256(content).hexdigest()[:8]
-
-
-def _shape(node: Any) -> Any:
-    """A syntax tree without what computes nothing, the same from all versions of Python."""
-    if isinstance(node, list):
-        return [_shape(each) for each in node if not _computes_nothing(each)]
-    if not isinstance(node, ast.AST):
-        return node
-    fields = ((name, value) for name, value in ast.iter_fields(node) if name not in _UNSEEN.get(type(node), ()))
-    return type(node).__name__, [(name, _shape(value)) for name, value in fields if value is not None and value != []]
-
-
-def _computes_nothing(node: Any) -> bool:
-    is_docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-    return is_docstring or (isinstance(node, ast.ImportFrom) and node.module in ("typing", "collections.abc"))

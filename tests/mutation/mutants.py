@@ -1,11 +1,11 @@
 """Mutants of the files of the project."""
 
-import ast
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
+from runpy import run_path
 from typing import NamedTuple
 
 import faults_in_c
@@ -73,12 +73,9 @@ def code_files() -> list[str]:
 
 
 def digest(file: str) -> str:
-    """Of what a file computes: docstrings of Python and where it imports from do not count, so that a file that was
-    only moved is the same."""
-    lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
-    for node in ast.walk(ast.parse("\n".join(lines))) if file.endswith(".py") else ():
-        match node:
-            case ast.Expr(value=ast.Constant()) | ast.Import() | ast.ImportFrom():
-                span = slice(node.lineno - 1, node.end_lineno)
-                lines[span] = [""] * len(lines[span])
-    return sha256("\n".join(line for line in lines if line.strip()).encode()).hexdigest()[:16]
+    """Of what a file computes, as the pages of the documentation know it: one that was only moved is the same."""
+    return _digest(ROOT / file)
+
+
+_digest = run_path(str(ROOT / "docs" / "studies" / "code_digest.py"))["digest"]
+"""Not imported: tests that are run from here must find nothing of the tree imported."""

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from mutants import Mutant, digest
+from mutants import Mutant
 from page import PATH, changed, page
 from sample import LEAST, _lot, shares
 
@@ -29,20 +29,6 @@ def test_what_is_drawn_depends_on_the_seed_and_not_on_where_a_line_stands() -> N
     assert _lot(one, 1) == _lot(one._replace(file="harness/base/loop.py", line=9, place=99), 1)
     assert _lot(one, 1) != _lot(one, 2)
     assert _lot(one, 1) != _lot(one._replace(new="0.8"), 1)
-
-
-def test_a_file_that_is_moved_is_the_same_and_one_that_computes_otherwise_is_not(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("mutants.ROOT", tmp_path)
-
-    def of(text: str) -> str:
-        (tmp_path / "file.py").write_text(text, encoding="utf-8")
-        return digest("file.py")
-
-    one = '"""Doubles."""\n\nfrom ..a import b\n\n\ndef f(x):\n    """2 x"""\n    return 2 * x\n'
-    assert of(one) == of(one.replace("..a", "...c.a").replace("2 x", "Twice x."))
-    assert of(one) != of(one.replace("2 *", "3 *"))
 
 
 def test_a_fault_leaves_the_file_as_it_was(tmp_path: Path) -> None:

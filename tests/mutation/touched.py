@@ -1,10 +1,10 @@
-"""Which tests touch which line: one run of the tests under coverage, kept until the tests or the code change.
+"""Which tests touch which line: one run of the fast tests under coverage, kept until the tests or the code change.
 
     python tests/mutation/touched.py [SHARD SHARDS]  # of so many runs side by side, counted from 0
 
 What a test does is told apart from what is made once for many of them: the lines of a fixture of a module or of the
-session are touched by all tests that use it. A test that computes for longer than LONGEST is left out: with a thousand
-others at hand it would find hardly anything that they do not, and late.
+session are touched by all tests that use it. A slow test, or one that computes for longer than LONGEST, is left out:
+with a thousand others at hand it would find hardly anything that they do not, and late.
 """
 
 import ast
@@ -36,7 +36,7 @@ LONGEST = 1.5
 WAITED = 20.0
 """Time in s that a test may take with the programs that it waits for."""
 
-OPTIONS = "-q", "-p", "no:cacheprovider", "--hypothesis-profile=watched"
+OPTIONS = "-q", "--tb=no", "-m", "not slow", "--hypothesis-profile=watched"
 
 CONFIGURATION = """\
 [run]
@@ -77,6 +77,7 @@ class Watch:
         self.running = [""]
         self.tests: list[Test] = []
         self.passed: set[str] = set()
+        self.slow: list[str] = []
 
     @contextmanager
     def of(self, name: str) -> Iterator[None]:
@@ -101,10 +102,11 @@ class Watch:
             signal.setitimer(signal.ITIMER_REAL, WAITED, WAITED)
             return (yield)
         except TooLong:
-            pytest.fail("takes too long to be watched")
+            pass
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0.0)
             signal.setitimer(signal.ITIMER_REAL, 0.0)
+        pytest.fail("takes too long to be watched", pytrace=False)
 
     def pytest_sessionstart(self) -> None:
         def too_long(*_: object) -> None:
@@ -132,6 +134,9 @@ class Watch:
             self.keep()
         return result
 
+    def pytest_deselected(self, items: Collection[pytest.Item]) -> None:
+        self.slow += [item.nodeid for item in items]
+
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.when == "call" and report.passed:
             self.passed.add(report.nodeid)
@@ -141,7 +146,7 @@ class Watch:
         self.coverage.save()
         passed = [test for test in self.tests if test.name in self.passed]
         others = [test.name for test in self.tests if test.name not in self.passed]
-        record = {"tests": passed, "left_out": others, "digests": self.digests}
+        record = {"tests": passed, "left_out": others + self.slow, "digests": self.digests}
         self.record.write_text(json.dumps(record), encoding="utf-8")
 
 

@@ -6,29 +6,12 @@ from pathlib import Path
 import pytest
 
 from docs.studies import digests
-from docs.studies.digests import NO_NUMBERS, dependencies, digest, reasons, why_stale
+from docs.studies.digests import NO_NUMBERS, dependencies, reasons, why_stale
 from docs.studies.imports import source
 from docs.studies.pages import PAGES, Page
 from tests import ROOT
 
 RESULTS = dependencies(PAGES["results"])
-
-CODE = '''"""A sum."""
-from typing import Any
-from a import b
-
-def total(x: float, y: float) -> float:
-    """Of both."""
-    return b(x) + y  # plain
-'''
-
-
-def as_if(text: str, folder: Path, name: str = "code.py") -> str:
-    """The digest of a file with this text."""
-    path = folder / str(len(list(folder.iterdir()))) / name
-    path.parent.mkdir()
-    path.write_text(text, encoding="utf-8")
-    return digest(path)
 
 
 @pytest.mark.parametrize("page", PAGES.values(), ids=PAGES)
@@ -44,41 +27,6 @@ def test_a_page_is_stale_only_where_stale_toml_says_why(page: Page) -> None:
 def test_only_pages_that_exist_are_excused_with_a_sentence() -> None:
     assert reasons().keys() <= PAGES.keys()
     assert all(reason.endswith(".") and len(reason) > 40 for reason in reasons().values())
-
-
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        ("A sum", "The sum of two numbers"),
-        ("  # plain", ""),
-        ("b(x) + y", "(\n        b(x)\n        + y\n    )"),
-        ("x: float, y: float) -> float", "x, y)"),
-        ("import Any", "import Any, NamedTuple"),
-        ("from a import", "from .c import"),
-    ],
-)
-def test_what_computes_nothing_does_not_count(before: str, after: str, tmp_path: Path) -> None:
-    assert before in CODE
-    assert as_if(CODE, tmp_path) == as_if(CODE.replace(before, after), tmp_path)
-
-
-@pytest.mark.parametrize(("before", "after"), [("+ y", "- y"), ("b(x)", "b(y)"), ("import b", "import b, c")])
-def test_what_computes_counts(before: str, after: str, tmp_path: Path) -> None:
-    assert as_if(CODE, tmp_path) != as_if(CODE.replace(before, after), tmp_path)
-
-
-def test_a_field_that_is_declared_by_its_annotation_counts(tmp_path: Path) -> None:
-    field = 'class Input:\n    T_mot: Annotated[float, Real("N.m", minimum={})]\n'
-    assert as_if(field.format(0), tmp_path) != as_if(field.format(1), tmp_path)
-
-
-def test_of_c_comments_and_layout_do_not_count_and_all_else_does(tmp_path: Path) -> None:
-    c = 'x = y + 1; /* one\nmore */ puts("/* two  */");'
-    assert as_if(c, tmp_path, "a.c") == as_if(
-        'x =\n  y + 1; puts("/* two  */");'.replace("; p", "; /**/ p"), tmp_path, "a.c"
-    )
-    assert as_if(c, tmp_path, "a.c") != as_if(c.replace("two ", "two"), tmp_path, "a.c")
-    assert as_if(c, tmp_path, "a.c") != as_if(c.replace("1", "2"), tmp_path, "a.c")
 
 
 @pytest.mark.parametrize(
