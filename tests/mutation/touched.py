@@ -146,7 +146,7 @@ class Watch:
         self.coverage.save()
         passed = [test for test in self.tests if test.name in self.passed]
         others = [test.name for test in self.tests if test.name not in self.passed]
-        record = {"tests": passed, "left_out": others + self.slow, "digests": self.digests}
+        record = {"tests": passed, "left_out": others, "slow": self.slow, "digests": self.digests}
         self.record.write_text(json.dumps(record), encoding="utf-8")
 
 
@@ -194,12 +194,14 @@ class Touched:
         """Of no test if there was no run."""
         self.tests: dict[str, Test] = {}
         self.left_out: list[str] = []
+        self.slow: list[str] = []
         self.seen: list[CoverageData] = []
         self.digests: dict[str, str] = {}
         for folder in sorted(each.parent for each in KEPT.glob("*/tests.json")):
             record = json.loads((folder / "tests.json").read_text(encoding="utf-8"))
             self.digests |= record["digests"]
             self.left_out += record["left_out"]
+            self.slow += record["slow"]
             found = [Test(name, time, tuple(fixtures)) for name, time, fixtures in record["tests"]]
             self.tests |= {test.name: test for test in found}
             combined = Coverage(data_file=str(folder / "combined"), config_file=str(folder / "coverage.ini"))
@@ -222,13 +224,16 @@ class Touched:
         return [file for file in test_files() if file not in seen or self.digests[file] != bytes_of(ROOT / file)]
 
     def naming(self, file: str) -> list[str]:
-        """Those of them that name a module, its own first, and tests that take too long in others that do."""
+        """Those of them that name a module, its own first, then tests that were not watched: in its own file all, in
+        others that name it those that took too long."""
         stem = Path(file).stem
         name = re.compile(rf"[./]{stem}\b|import .*\b{stem}\b")
         own = [each for each in test_files() if Path(each).stem == f"test_{stem}"]
         others = [e for e in test_files() if e not in own and name.search((ROOT / e).read_text(encoding="utf-8"))]
-        left_out = [test for test in self.left_out if test.partition("::")[0] in {*own, *others} - {*self.unseen}]
-        return [each for each in (*own, *others) if each in self.unseen] + left_out
+        slow = [test for test in self.slow if test.partition("::")[0] in own]
+        left_out = [test for test in self.left_out if test.partition("::")[0] in (*own, *others)]
+        unseen = [each for each in (*own, *others) if each in self.unseen]
+        return unseen + [test for test in left_out + slow if test.partition("::")[0] not in unseen]
 
     def by(self, mutant: Mutant) -> list[Test]:
         """The tests that touch the place of a fault, the cheapest first and those of one function apart.

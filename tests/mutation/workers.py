@@ -1,5 +1,6 @@
 """Workers that try mutants, each in a copy of the tree of its own."""
 
+import ctypes
 import math
 import os
 import pickle
@@ -41,11 +42,20 @@ MEMORY = Path("/dev/shm")
 SOUND: set[str] = set()
 """Tests that are known by this worker to pass without a fault."""
 
+UNSOUND: set[str] = set()
+"""Tests that are known by this worker to fail without a fault."""
+
 TIME_LIMIT = 20
 """Of computing in a test, in s: a mutant that needs more does not end, and is found."""
 
+TEST_WAITED = 180
+"""Time in s after which a test does not end, whatever it waits for."""
+
 WAITED = 900.0
-"""Time in s after which tests do not end, whatever they wait for."""
+"""Time in s after which the tests of a fault do not end."""
+
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+"""Of prctl(2)."""
 
 COMPILER = """#!/bin/sh
 # cc that compiles a file again only when it, what it includes or an option has changed
@@ -82,12 +92,18 @@ def prepare(folder: str) -> None:
     os.environ["CC"] = str(compiler)
     os.chdir(copy)
     os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
+    _prctl(PR_SET_CHILD_SUBREAPER, 1)
+
+
+def _prctl(option: int, value: int) -> None:
+    ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
 class TimeLimit:
-    """Ends the process, or the program that it waits for, when a test computes for too long."""
+    """Ends the process, or the program that it waits for, when a test computes or waits for too long."""
 
     def pytest_runtest_setup(self) -> None:
+        signal.alarm(TEST_WAITED)
         used = resource.getrusage(resource.RUSAGE_SELF)
         limit = math.ceil(used.ru_utime + used.ru_stime) + TIME_LIMIT
         resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
@@ -138,9 +154,10 @@ def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def failing(tests: Sequence[str], same_fmus: bool = False, limit: float = WAITED) -> str | None:
     """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass. In a
-    process of its own, which has imported nothing of the tree.
+    process of its own, which has imported nothing of the tree; nothing that it has started is left running.
 
     Args:
+        tests: and options of pytest.
         same_fmus: the FMUs are those of the tree, but for their C core.
         limit: time in s after which the tests do not end.
     """
@@ -151,18 +168,30 @@ def failing(tests: Sequence[str], same_fmus: bool = False, limit: float = WAITED
         result = 1
         try:
             os.setsid()
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, 1)
-            os.dup2(nowhere, 2)
+            _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            for stream in range(3):
+                os.dup2(nowhere, stream)
             plugins = [TimeLimit(), Running(running), *([Remembered()] if same_fmus else [])]
             result = pytest.main([*OPTIONS, *tests], plugins=plugins)
         finally:
             os._exit(result)
-    ended, _, _ = select.select([os.pidfd_open(child)], [], [], limit)
-    if not ended:
-        os.killpg(child, signal.SIGKILL)
+    ended = os.pidfd_open(child)
+    select.select([ended], [], [], limit)
+    os.close(ended)
+    os.kill(child, signal.SIGKILL)  # does nothing to one that has ended
     passed = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    _end_children()
     return None if passed else running.read_text(encoding="utf-8")
+
+
+def _end_children() -> None:
+    """Those of processes that have ended are children of this one, whatever group or session they are in."""
+    children = Path(f"/proc/self/task/{os.getpid()}/children")
+    while found := children.read_text(encoding="ascii").split():
+        for child in map(int, found):
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
 
 
 def finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
@@ -172,17 +201,18 @@ def finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
         tests: in the order in which they are run.
     """
     same_fmus = mutant.file.startswith("harness") or not mutant.file.endswith(".py")
-    left = list(tests)
-    while left:
+    while True:
+        left = [*tests, *(f"--deselect={test}" for test in UNSOUND)]
         with mutant.applied(Path()):
             found = failing(left, same_fmus)
         if found is None or found in SOUND:
             return found
-        if failing([found] if found else left, same_fmus) is None:
+        if failing([found] if found else ["--collect-only", *left], same_fmus) is None:
             SOUND.add(found)
             return found
-        left = [test for test in left if found not in ("", test)]
-    return None
+        if not found:
+            return None
+        UNSOUND.add(found)
 
 
 def finders(mutants: Sequence[Mutant], tests: Sequence[Sequence[str]], number: int) -> Iterator[str | None]:
