@@ -4,8 +4,8 @@
     python tests/mutation [--every N] FILE ...     # C core and controller, file by file
 
 A fault that no test finds must be explained in survivors.toml. The score is written to docs/mutation.md. For each fault
-of the sample the tests run that touch its line, the cheapest first, until one fails; a run of all tests under coverage
-tells which these are (tests/mutation/touched.py). The sample is kept fault by fault: a run that was stopped goes on,
+of the sample the tests run that touch its line, the cheapest first, until one fails; a run of the fast tests under
+coverage tells which these are (tests/mutation/touched.py). The sample is kept fault by fault: a run that was stopped goes on,
 and what was found in files that have not changed since is not tried again.
 """
 
@@ -20,7 +20,7 @@ from pathlib import Path
 from mutants import Mutant, mutants_of
 from page import gone, reasons, record, write_page
 from sample import Sample
-from touched import KEPT, Test, Touched
+from touched import KEPT, Test, Touched, own_tests
 from workers import finders
 
 LEAST_SCORE = 0.95
@@ -109,7 +109,6 @@ def sampled(size: int, seed: int, workers: int) -> bool:
     sample, touched = Sample.drawn(size, seed), Touched()
     left = [mutant for mutant in sample.mutants if not sample.is_found(mutant) and mutant.known_as not in reasons()]
     tests = {mutant: tests_of(mutant, touched) for mutant in left}
-    left = [mutant for mutant in left if tests[mutant]]
     for mutant, by in zip(left, finders(left, [tests[mutant] for mutant in left], workers), strict=True):
         sample.keep(mutant, by)
         print(f"{mutant.file}:{mutant.line}: {mutant.fault}: {'NOT FOUND' if by is None else by}", flush=True)
@@ -118,10 +117,12 @@ def sampled(size: int, seed: int, workers: int) -> bool:
     return good >= LEAST_SCORE * len(sample.mutants)
 
 
-def tests_of(mutant: Mutant, touched: Touched) -> list[str]:
-    """What may find a fault, in the order in which it is run."""
+def tests_of(mutant: Mutant, touched: Touched) -> tuple[Sequence[str], Sequence[str]]:
+    """What may find a fault, in the order in which it is run; and the tests whose slow ones may too."""
     name = Path(mutant.file).name
-    return list(IN_C[name]) if name in IN_C else [*chosen(touched.by(mutant)), *touched.naming(mutant.file)]
+    if name in IN_C:
+        return IN_C[name], IN_C[name]
+    return [*chosen(touched.by(mutant)), *touched.naming(mutant.file)], own_tests(mutant.file)
 
 
 def chosen(tests: Sequence[Test]) -> list[str]:

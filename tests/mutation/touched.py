@@ -77,7 +77,6 @@ class Watch:
         self.running = [""]
         self.tests: list[Test] = []
         self.passed: set[str] = set()
-        self.slow: list[str] = []
 
     @contextmanager
     def of(self, name: str) -> Iterator[None]:
@@ -134,9 +133,6 @@ class Watch:
             self.keep()
         return result
 
-    def pytest_deselected(self, items: Collection[pytest.Item]) -> None:
-        self.slow += [item.nodeid for item in items]
-
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.when == "call" and report.passed:
             self.passed.add(report.nodeid)
@@ -146,7 +142,7 @@ class Watch:
         self.coverage.save()
         passed = [test for test in self.tests if test.name in self.passed]
         others = [test.name for test in self.tests if test.name not in self.passed]
-        record = {"tests": passed, "left_out": others, "slow": self.slow, "digests": self.digests}
+        record = {"tests": passed, "left_out": others, "digests": self.digests}
         self.record.write_text(json.dumps(record), encoding="utf-8")
 
 
@@ -194,14 +190,12 @@ class Touched:
         """Of no test if there was no run."""
         self.tests: dict[str, Test] = {}
         self.left_out: list[str] = []
-        self.slow: list[str] = []
         self.seen: list[CoverageData] = []
         self.digests: dict[str, str] = {}
         for folder in sorted(each.parent for each in KEPT.glob("*/tests.json")):
             record = json.loads((folder / "tests.json").read_text(encoding="utf-8"))
             self.digests |= record["digests"]
             self.left_out += record["left_out"]
-            self.slow += record["slow"]
             found = [Test(name, time, tuple(fixtures)) for name, time, fixtures in record["tests"]]
             self.tests |= {test.name: test for test in found}
             combined = Coverage(data_file=str(folder / "combined"), config_file=str(folder / "coverage.ini"))
@@ -224,16 +218,13 @@ class Touched:
         return [file for file in test_files() if file not in seen or self.digests[file] != bytes_of(ROOT / file)]
 
     def naming(self, file: str) -> list[str]:
-        """Those of them that name a module, its own first, then tests that were not watched: in its own file all, in
-        others that name it those that took too long."""
+        """Those of them that name a module, its own first, then tests that take too long in files that do."""
         stem = Path(file).stem
         name = re.compile(rf"[./]{stem}\b|import .*\b{stem}\b")
-        own = [each for each in test_files() if Path(each).stem == f"test_{stem}"]
+        own = own_tests(file)
         others = [e for e in test_files() if e not in own and name.search((ROOT / e).read_text(encoding="utf-8"))]
-        slow = [test for test in self.slow if test.partition("::")[0] in own]
-        left_out = [test for test in self.left_out if test.partition("::")[0] in (*own, *others)]
-        unseen = [each for each in (*own, *others) if each in self.unseen]
-        return unseen + [test for test in left_out + slow if test.partition("::")[0] not in unseen]
+        left_out = [test for test in self.left_out if test.partition("::")[0] in {*own, *others} - {*self.unseen}]
+        return [each for each in (*own, *others) if each in self.unseen] + left_out
 
     def by(self, mutant: Mutant) -> list[Test]:
         """The tests that touch the place of a fault, the cheapest first and those of one function apart.
@@ -255,6 +246,11 @@ class Touched:
             for line, contexts in data.contexts_by_lineno(file).items():
                 if lines is None or line in lines:
                     yield from contexts
+
+
+def own_tests(file: str) -> list[str]:
+    """The files of the tests of a module."""
+    return [each for each in test_files() if Path(each).stem == f"test_{Path(file).stem}"]
 
 
 def _spread(tests: Collection[Test]) -> list[Test]:

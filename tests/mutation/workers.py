@@ -51,8 +51,8 @@ TIME_LIMIT = 20
 TEST_WAITED = 180
 """Time in s after which a test does not end, whatever it waits for."""
 
-WAITED = 900.0
-"""Time in s after which the tests of a fault do not end."""
+WAITED = 300.0
+"""Time in s for the tests of a fault; those that are not run until then do not find it."""
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 """Of prctl(2)."""
@@ -152,14 +152,14 @@ def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
     return result
 
 
-def failing(tests: Sequence[str], same_fmus: bool = False, limit: float = WAITED) -> str | None:
-    """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass. In a
-    process of its own, which has imported nothing of the tree; nothing that it has started is left running.
+def failing(tests: Sequence[str], same_fmus: bool = False) -> str | None:
+    """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass, as far as
+    they are run within WAITED. In a process of its own, which has imported nothing of the tree; nothing that it has
+    started is left running.
 
     Args:
         tests: and options of pytest.
         same_fmus: the FMUs are those of the tree, but for their C core.
-        limit: time in s after which the tests do not end.
     """
     running = (Path("temporary") / "running").resolve()
     running.write_text("", encoding="utf-8")
@@ -176,12 +176,13 @@ def failing(tests: Sequence[str], same_fmus: bool = False, limit: float = WAITED
             result = pytest.main([*OPTIONS, *tests], plugins=plugins)
         finally:
             os._exit(result)
-    ended = os.pidfd_open(child)
-    select.select([ended], [], [], limit)
-    os.close(ended)
+    end = os.pidfd_open(child)
+    has_ended, _, _ = select.select([end], [], [], WAITED)
+    os.close(end)
     os.kill(child, signal.SIGKILL)  # does nothing to one that has ended
-    passed = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     _end_children()
+    passed = not has_ended or code in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
     return None if passed else running.read_text(encoding="utf-8")
 
 
@@ -194,12 +195,20 @@ def _end_children() -> None:
             os.waitpid(child, 0)
 
 
-def finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
+def finder(mutant: Mutant, tests: Sequence[str], own: Sequence[str]) -> str | None:
     """The first test that finds a fault; None if none does. Tests that fail without it are left out.
 
     Args:
-        tests: in the order in which they are run.
+        tests: of which the fast ones are run, in this order.
+        own: of which the slow ones are run after them.
     """
+    for marker, some in (("not slow", tests), ("slow", own)):
+        if some and (found := _finder(mutant, ["-m", marker, *some])) is not None:
+            return found
+    return None
+
+
+def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
     same_fmus = mutant.file.startswith("harness") or not mutant.file.endswith(".py")
     while True:
         left = [*tests, *(f"--deselect={test}" for test in UNSOUND)]
@@ -215,14 +224,16 @@ def finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
         UNSOUND.add(found)
 
 
-def finders(mutants: Sequence[Mutant], tests: Sequence[Sequence[str]], number: int) -> Iterator[str | None]:
+def finders(
+    mutants: Sequence[Mutant], tests: Sequence[tuple[Sequence[str], Sequence[str]]], number: int
+) -> Iterator[str | None]:
     """What finds each of the faults, in order, by so many workers.
 
     Args:
-        tests: for each fault, in the order in which they are run.
+        tests: for each fault, and those of its own, as `finder` takes them.
     """
     with working(number) as workers:
-        yield from workers.map(finder, mutants, tests)
+        yield from workers.map(finder, mutants, *zip(*tests, strict=True))
 
 
 @contextmanager
