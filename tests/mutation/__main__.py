@@ -5,8 +5,8 @@
 
 A fault that no test finds must be explained in survivors.toml. The score is written to docs/mutation.md. For each fault
 of the sample the tests run that touch its line, the cheapest first, until one fails; a run of the fast tests under
-coverage tells which these are (tests/mutation/touched.py). The sample is kept fault by fault: a run that was stopped goes on,
-and what was found in files that have not changed since is not tried again.
+coverage tells which these are (tests/mutation/touched.py). The sample is kept fault by fault: a run that was stopped
+goes on, and what was found in files that have not changed since is not tried again.
 """
 
 import argparse

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mutants import Mutant
-from page import PATH, changed, page
+from page import PATH, changed, gone, page, reasons
 from sample import LEAST, _lot, shares
 
 
@@ -12,6 +12,10 @@ def test_the_page_is_not_older_than_the_code_it_speaks_of() -> None:
     """`make mutation` tries the faults of files anew that have changed; `python tests/mutation/page.py` only takes
     their numbers out of the page."""
     assert PATH.read_text(encoding="utf-8") == page(), f"changed since they were run: {changed()}"
+
+
+def test_what_is_explained_can_be() -> None:
+    assert gone({file for file, _, _ in reasons()}) == set(), "in tests/mutation/survivors.toml: these go"
 
 
 @pytest.mark.parametrize("size", [40, 200, 201])

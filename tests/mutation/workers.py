@@ -153,9 +153,9 @@ def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def failing(tests: Sequence[str], same_fmus: bool = False) -> str | None:
-    """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass, as far as
-    they are run within WAITED. In a process of its own, which has imported nothing of the tree; nothing that it has
-    started is left running.
+    """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass, as far
+    as they are run within WAITED. In a process of its own, which has imported nothing of the tree; nothing that it
+    has started is left running.
 
     Args:
         tests: and options of pytest.
