@@ -38,7 +38,8 @@ demo: $(DEMO) ## build the FMUs, compare with and without damping, replay a shor
 	$(BIN)/driveline compare --replace
 	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv --replace
 
-TEST := $(BIN)/python -m pytest -n auto --dist worksteal
+# whatever the environment says, bytecode is kept: a third of what the fast tests would compute is compiling Python
+TEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
 test: $(READY) ## the tests but the slow ones; once set up, without network
 	$(TEST) -m 'not slow'

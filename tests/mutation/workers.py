@@ -92,6 +92,7 @@ def prepare(folder: str) -> None:
     os.environ["CC"] = str(compiler)
     os.chdir(copy)
     os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
+    os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False  # each run imports the same
     _prctl(PR_SET_CHILD_SUBREAPER, 1)
 
 
