@@ -94,6 +94,7 @@ def prepare(folder: str) -> None:
     os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
     os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False  # each run imports the same
     _prctl(PR_SET_CHILD_SUBREAPER, 1)
+    _prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 def _prctl(option: int, value: int) -> None:
