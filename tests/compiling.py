@@ -68,7 +68,8 @@ def _key(compiler: str, options: list[str]) -> str:
     parts = [f"{compiler} {file.st_size} {file.st_mtime_ns}".encode()]
     for name in options:
         if name.endswith(".c"):
-            places = [] if "-g" in flags else ["-P"]  # the names of files and folders are in what a debugger reads
+            # the names of files are in what a debugger reads; that of the folder too, but nobody needs it
+            places = ["-fno-working-directory"] if "-g" in flags else ["-P"]
             done = subprocess.run([compiler, *flags, "-E", *places, name], capture_output=True, check=False)
             if done.returncode:
                 return ""

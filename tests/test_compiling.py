@@ -69,6 +69,17 @@ def test_what_differs_in_anything_is_made_again(cached: Cached, change: str) -> 
     assert cached.answer() == (8 if change in ("source", "header") else 7)
 
 
+def test_where_it_is_made_does_not_count(cached: Cached, tmp_path: Path) -> None:
+    """Every test has a folder of its own, into which it unpacks the same sources."""
+    cached("-g")
+    other = tmp_path / "other"
+    other.mkdir()
+    for name in ("program.c", "value.h"):
+        shutil.copy(cached.folder / name, other)
+    subprocess.run([str(cached.command), "program.c", "-g", "-o", "program"], cwd=other, check=True)
+    assert cached.made == 1
+
+
 def test_an_object_that_changed_is_linked_again(cached: Cached) -> None:
     cached("-c", output="program.o")
     link = [str(cached.command), "program.o", "-o", "linked"]

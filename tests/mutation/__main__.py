@@ -108,6 +108,7 @@ def sampled(size: int, seed: int, workers: int) -> bool:
     """Tries what of the sample is not known to be found or explained; whether enough of it is then."""
     sample, touched = Sample.drawn(size, seed), Touched()
     left = [mutant for mutant in sample.mutants if not sample.is_found(mutant) and mutant.known_as not in reasons()]
+    left.sort(key=lambda mutant: mutant.known_as in sample.tried)  # what no test has found comes last
     tests = {mutant: tests_of(mutant, touched) for mutant in left}
     for mutant, by in zip(left, finders(left, [tests[mutant] for mutant in left], workers), strict=True):
         sample.keep(mutant, by)
