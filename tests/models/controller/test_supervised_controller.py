@@ -39,6 +39,11 @@ def test_it_damps_by_its_own_law() -> None:
     assert max(abs(x.T_damp) for x in states) > 10.0
 
 
+def test_what_is_not_trusted_from_the_first_sample_on_adds_nothing() -> None:
+    states = run(OURS, 40 * [ROLLING._replace(omega_1_meas=math.nan)], t_bad=0.0)
+    assert {(x.T_ref, x.T_landing) for x in states} == {(ROLLING.T_driver, 0.0)}
+
+
 class Ahead(NamedTuple):
     """State of a law that adds nothing."""
 
