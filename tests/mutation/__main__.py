@@ -52,7 +52,7 @@ IN_C = {
 OF_NUMBERS = "models/block/integrator.py", "fmus/protocol.py"
 """Of these only the numbers that C takes from them are changed."""
 
-SHARE = 60.0
+SHARE = 30.0
 """Time in s that the tests may take that are run for a fault of the sample."""
 
 
@@ -79,7 +79,7 @@ def whole(files: Sequence[str], step: int, workers: int) -> bool:
     mutants = [mutant for of_file in every.values() for mutant in of_file[::step]]
     known = {mutant.known_as for mutant in mutants} & reasons().keys()
     touched, found = Touched(), []
-    for mutant, by in zip(mutants, finders(mutants, [tests_of(m, touched) for m in mutants], workers), strict=True):
+    for mutant, by in finders(mutants, lambda mutant: tests_of(mutant, touched), touched.sound, workers):
         if by is None:
             print(f"{mutant.file}:{mutant.line}: {mutant.fault}", flush=True)
             found.append(mutant)
@@ -109,8 +109,7 @@ def sampled(size: int, seed: int, workers: int) -> bool:
     sample, touched = Sample.drawn(size, seed), Touched()
     left = [mutant for mutant in sample.mutants if not sample.is_found(mutant) and mutant.known_as not in reasons()]
     left.sort(key=lambda mutant: mutant.known_as in sample.tried)  # what no test has found comes last
-    tests = {mutant: tests_of(mutant, touched) for mutant in left}
-    for mutant, by in zip(left, finders(left, [tests[mutant] for mutant in left], workers), strict=True):
+    for mutant, by in finders(left, lambda mutant: tests_of(mutant, touched), touched.sound, workers):
         sample.keep(mutant, by)
         print(f"{mutant.file}:{mutant.line}: {mutant.fault}: {'NOT FOUND' if by is None else by}", flush=True)
     good = sum(sample.is_found(mutant) or mutant.known_as in reasons() for mutant in sample.mutants)
@@ -123,7 +122,9 @@ def tests_of(mutant: Mutant, touched: Touched) -> tuple[Sequence[str], Sequence[
     name = Path(mutant.file).name
     if name in IN_C:
         return IN_C[name], IN_C[name]
-    return [*chosen(touched.by(mutant)), *touched.naming(mutant.file)], own_tests(mutant.file)
+    own, naming = own_tests(mutant.file), touched.naming(mutant.file)
+    unseen = [test for test in naming if test in own]
+    return [*unseen, *chosen(touched.by(mutant)), *(test for test in naming if test not in own)], own
 
 
 def chosen(tests: Sequence[Test]) -> list[str]:

@@ -217,6 +217,11 @@ class Touched:
         seen = {test.file for test in self.tests.values()}
         return [file for file in test_files() if file not in seen or self.digests[file] != bytes_of(ROOT / file)]
 
+    @property
+    def sound(self) -> set[str]:
+        """Tests that have passed as they are."""
+        return {name for name, test in self.tests.items() if test.file not in self.unseen}
+
     def naming(self, file: str) -> list[str]:
         """Those of them that name a module, its own first, then tests that take too long in files that do."""
         stem = Path(file).stem

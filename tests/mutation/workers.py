@@ -12,8 +12,8 @@ import signal
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from hashlib import md5
 from importlib import import_module
@@ -227,15 +227,21 @@ def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
 
 
 def finders(
-    mutants: Sequence[Mutant], tests: Sequence[tuple[Sequence[str], Sequence[str]]], number: int
-) -> Iterator[str | None]:
-    """What finds each of the faults, in order, by so many workers.
+    mutants: Sequence[Mutant],
+    tests: Callable[[Mutant], tuple[Sequence[str], Sequence[str]]],
+    sound: Collection[str],
+    number: int,
+) -> Iterator[tuple[Mutant, str | None]]:
+    """Each of the faults with what finds it, as soon as that is known, by so many workers.
 
     Args:
-        tests: for each fault, and those of its own, as `finder` takes them.
+        tests: of a fault, and those of its own, as `finder` takes them.
+        sound: tests that are known to pass without a fault.
     """
+    SOUND.update(sound)
     with working(number) as workers:
-        yield from workers.map(finder, mutants, *zip(*tests, strict=True))
+        running = {workers.submit(finder, mutant, *tests(mutant)): mutant for mutant in mutants}
+        yield from ((running[done], done.result()) for done in as_completed(running))
 
 
 @contextmanager
