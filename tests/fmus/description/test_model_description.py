@@ -12,7 +12,7 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from driveline.fmus.catalogue import FMUS
+from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.description.build_kind import BuildKind
 from driveline.fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
 from driveline.fmus.description.model_description import model_description
@@ -204,6 +204,13 @@ def test_names_that_differ_in_case_only_are_refused():
     fmu = Fmu(replace(block, Input=Twice), stop_time=1.0)
     with pytest.raises(ValueError, match="the variables T_land and t_land differ in case only"):
         model_description(fmu, BuildKind("", {}, {}, ""), "")
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_experiment_that_it_proposes_takes_ten_seconds_and_that_of_the_motor_two(name):
+    text = model_description(EVERY[name], BuildKind("", {}, {}, ""), "").decode()
+    stop_time = 2 if name == "MotorTorqueLoop" else 10
+    assert f'<DefaultExperiment startTime="0" stopTime="{stop_time}.0" stepSize="0.001" />' in text
 
 
 @every_fmu
