@@ -13,6 +13,7 @@ from driveline.fmus.building.options import folder, output_folder
 from driveline.fmus.building.parameter_files import seeds
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.base.errors import DrivelineError
+from driveline.harness.commands.cli import parser
 from driveline.harness.commands.options import assignment, figure_options, megabytes, seconds, seed, window
 from driveline.harness.commands.recording_options import of_files
 from driveline.harness.loop.places import BUILD
@@ -180,3 +181,14 @@ def test_other_names_of_quantities_or_other_frames_make_another_run(tmp_path):
         file.write_text(text)
         seen += [of_files(Namespace(databases=[file], aliases=[])), of_files(Namespace(databases=[], aliases=[file]))]
     assert len({str(each) for each in seen}) == 4
+
+
+@pytest.mark.parametrize(("command", "most"), [("faults", 1_000_000), ("robustness", 100_000)])
+@pytest.mark.parametrize("option", ["--case", "--cases"])
+def test_cases_have_numbers_from_one_to_the_most(command, most, option, capsys):
+    for number in (1, most):
+        assert number in vars(parser().parse_args([command, option, str(number)])).values()
+    for number in (0, most + 1):
+        with pytest.raises(SystemExit):
+            parser().parse_args([command, option, str(number)])
+        assert f"argument {option}: '{number}' is not a whole number from 1 to {most}" in capsys.readouterr().err
