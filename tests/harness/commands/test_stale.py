@@ -113,3 +113,8 @@ def test_runs_from_python_name_them_once(stale: Path, caplog: pytest.LogCaptureF
 
     run_many(end, [1.0, 2.0, 3.0], workers)
     assert [text.count("native/") for text in caplog.messages if text.startswith("stale")] == [4]
+
+
+def test_a_program_is_told_too(stale: Path, caplog: pytest.LogCaptureFixture) -> None:
+    simulate(MANOEUVRES["prbs15"], folder=stale)
+    assert "stale, not made from the sources that are installed" in caplog.text

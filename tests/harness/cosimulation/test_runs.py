@@ -1,6 +1,8 @@
 """Systems that are kept loaded from one run to the next."""
 
+from pathlib import Path
 from shutil import copyfile
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from driveline.harness.cosimulation import runs
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
 from driveline.harness.cosimulation.system import System
+from driveline.harness.cosimulation.unpacked_fmu import UnpackingError, unpacked
 from tests.foreign import build_relay
 
 
@@ -107,3 +110,14 @@ def test_an_error_within_unloads_too(relay, unpacked):
         run(System({"a": relay}), Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
     assert files(unpacked) == []
     assert runs._here.kept is None
+
+
+def test_an_fmu_is_not_unpacked_to_where_its_uri_would_need_an_encoding(tmp_path):
+    folder = tmp_path / "Fahrzeuge für Anfänger"
+    folder.mkdir()
+    with (
+        pytest.raises(UnpackingError, match=r"^car\.fmu cannot be unpacked to .*: FMUs need a plain ASCII folder$"),
+        unpacked(SimpleNamespace(path=Path("car.fmu")), folder),
+    ):
+        pass
+    assert list(folder.iterdir()) == []

@@ -5,7 +5,14 @@ import pytest
 from scipy.signal import lsim
 
 from driveline.harness.identification.drive_train import Parameters
-from driveline.harness.identification.drive_train_response import FREQUENCIES, Tyre, resonance, response, tyre
+from driveline.harness.identification.drive_train_response import (
+    FREQUENCIES,
+    WINDOW,
+    Tyre,
+    resonance,
+    response,
+    tyre,
+)
 from driveline.harness.identification.two_mass_equivalent import equivalent
 from tests.harness.identification.simulated import T_S, demand
 
@@ -104,3 +111,10 @@ def test_a_stiff_tyre_makes_the_vehicle_part_of_the_wheels() -> None:
     assert found.J_2 == pytest.approx(1.8, rel=1e-3)
     assert found.C == pytest.approx(p.C, rel=1e-3)
     assert found.d == pytest.approx(p.d, rel=1e-2)
+
+
+def test_a_recording_that_is_shorter_than_the_window_is_one_window(recwarn: pytest.WarningsRecorder) -> None:
+    rng = np.random.default_rng(1)
+    T_mot, T_load, omega_2 = rng.standard_normal((3, WINDOW // 2))
+    tyre(T_load, omega_2, T_mot, 0.002, 40.0)
+    assert [str(each.message) for each in recwarn] == []

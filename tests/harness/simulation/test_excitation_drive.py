@@ -1,13 +1,15 @@
 """The test drive, recorded as a real car would."""
 
 import json
+import re
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from driveline.harness.base.errors import WiringError
-from driveline.harness.commands.cli import main
+from driveline.harness.commands.cli import main, parser
 from driveline.harness.manoeuvres.prbs import FEEDBACK, binary_torque, shift_register
 from driveline.harness.manoeuvres.road_load import RoadLoad
 from driveline.harness.recordings.measurement import Measurement, read_measurement
@@ -153,3 +155,15 @@ def test_options_that_are_no_drive(option: list[str]) -> None:
     with pytest.raises(SystemExit) as end:
         main(["record", *option])
     assert end.value.code == 2
+
+
+def test_without_options_the_measurement_wheels_are_those_of_a_program():
+    given = vars(parser().parse_args(["record"]))
+    assert {name: given[name] for name in asdict(MeasurementWheels())} == asdict(MeasurementWheels())
+
+
+def test_the_speed_is_told_in_kilometres_per_hour(native, tmp_path, capsys):
+    options = ["--speed", "40", "--duration", "2.5", "--fmus", str(native.parent), "--output", str(tmp_path)]
+    assert main(["record", *options]) == 0
+    found = re.search(r"speed ([\d.]+) to ([\d.]+) km/h", capsys.readouterr().out)
+    assert [float(each) for each in found.groups()] == pytest.approx([40.0, 40.0], rel=0.1)

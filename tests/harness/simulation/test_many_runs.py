@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from driveline.harness.base.atomic_files import complete
+from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.base.errors import DrivelineError, SimulationError
 from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -287,3 +288,14 @@ def test_workers_end_when_the_process_that_waits_is_killed(tmp_path):
     done = subprocess.run(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, timeout=30, check=False)
     assert done.returncode == -signal.SIGKILL
     assert not list(tmp_path.glob("driveline-*"))
+
+
+def warned(case):
+    warn_once(f"this is said of all runs, also of {min(case, 1)}")
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_several_workers_warn_of_is_logged_once(workers, caplog):
+    warn_once.cache_clear()
+    run_many(warned, range(6), workers=workers)
+    assert sorted(caplog.messages) == [f"this is said of all runs, also of {k}" for k in (0, 1)]

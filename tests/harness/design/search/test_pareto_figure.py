@@ -2,7 +2,7 @@
 
 import pytest
 
-from driveline.harness.design.search.pareto_figure import _symbol
+from driveline.harness.design.search.pareto_figure import MARGIN, _around, _symbol
 
 
 @pytest.mark.parametrize(
@@ -17,3 +17,13 @@ from driveline.harness.design.search.pareto_figure import _symbol
 )
 def test_a_parameter_is_a_symbol_with_its_index_and_a_word_stays_a_word(name: str, shown: str) -> None:
     assert _symbol(name) == shown
+
+
+@pytest.mark.parametrize(
+    ("values", "limits"),
+    [([1.0, 3.0], (1.0 - 2.0 * MARGIN, 3.0 + 2.0 * MARGIN)), ([1.0], (0.98, 1.02)), ([1.0, 1.01], (0.98, 1.03))],
+)
+def test_points_have_a_margin_around_them_even_where_there_is_only_one(
+    values: list[float], limits: tuple[float, float]
+) -> None:
+    assert _around(values) == pytest.approx(limits)

@@ -27,6 +27,13 @@ from tests.foreign import tampered
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
 
+def test_a_torque_that_is_off_by_thirty_percent_may_be_off_by_less_and_to_both_sides():
+    rng = np.random.default_rng(1)
+    sizes = [KINDS["motor torque ±30 %"].size(rng) for _ in range(500)]
+    assert 0.7 <= min(sizes) < 0.71
+    assert 1.29 < max(sizes) <= 1.3
+
+
 def test_a_case_follows_from_seed_and_number_alone():
     assert case(7, 1, PLANTS) == case(7, 1, PLANTS)
     assert case(7, 2, PLANTS).faults != case(7, 1, PLANTS).faults

@@ -10,11 +10,13 @@ import pytest
 
 from driveline.harness.metrics.evaluate import T_S
 from driveline.harness.studies.compare.compare_report import verdict
-from driveline.harness.studies.drives.replay_report import PIECE, _worst, roughest
+from driveline.harness.studies.drives.replay_report import PIECE, _densities, _worst, roughest
 from driveline.harness.studies.faults.fault_report import _classes
-from driveline.harness.studies.faults.fault_report_html import _ratio
+from driveline.harness.studies.faults.fault_report_html import _ratio, _table
 from driveline.harness.studies.faults.judges import JUDGES
+from driveline.harness.views.html import metric_dots
 from driveline.harness.views.html.report_page import Section, write_report
+from driveline.harness.views.panels import Curve
 from tests.harness.views.html.test_report_page import PROVENANCE
 
 
@@ -80,3 +82,32 @@ def test_the_worst_of_a_kind_stands_with_its_unit_and_its_number(judge: str, sho
 
     table = _classes([outcome(3, 1.0), outcome(7, 12.34), outcome(9, 2.0)])
     assert f"| late | drive | Car | {judge} | 3 | {shown} | 7 |" in re.sub(" +", " ", table)
+
+
+def test_the_density_of_a_swing_is_largest_at_its_frequency() -> None:
+    panel = _densities({"with": ride(0.0, 5.0)}, {"with": ("C0",)})  # type: ignore[dict-item]
+    (curve,) = panel.parts
+    assert isinstance(curve, Curve)
+    assert curve.x[np.argmax(curve.y)] == pytest.approx(50.0 / (2.0 * np.pi), abs=0.25)
+
+
+def test_all_columns_of_the_faults_but_the_first_are_numbers() -> None:
+    first, *others = _table([]).headings
+    assert not first.number
+    assert all(heading.number for heading in others)
+
+
+def test_of_each_pair_of_runs_the_metrics_without_and_with_damping_are_dots(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: Any = [
+        SimpleNamespace(manoeuvre=name, plant="car", metrics=value)
+        for name, values in {"tip-in": (4.0, 1.0), "launch": (5.0, 2.0), "drive": (6.0, 3.0)}.items()
+        for value in values
+    ]
+    shown = SimpleNamespace(of=lambda value: value), SimpleNamespace(factor=10.0, plain_heading="swing", unit="N·m")
+    monkeypatch.setattr(metric_dots, "SHOWN", [shown])
+    *_, figure = metric_dots.metric_dots(runs)
+    assert figure.renderers[0].data_source.data == {
+        "run": ["tip-in on car", "launch on car", "drive on car"],
+        "off": [40.0, 50.0, 60.0],
+        "on": [10.0, 20.0, 30.0],
+    }
