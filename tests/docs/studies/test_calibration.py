@@ -95,6 +95,7 @@ def test_a_change_has_its_sign_unless_it_is_nothing() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_the_figure_is_the_same_each_time(tmp_path: Path) -> None:
     found = {case: answer(1.0 + 0.01 * k) for k, case in enumerate(cases())}
     first, second = (plot_calibration(found, "TwoMassDriveline", tmp_path / name)[0] for name in ("a", "b"))

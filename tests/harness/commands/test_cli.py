@@ -187,12 +187,12 @@ def test_a_quiet_build_says_nothing(capsys, tmp_path):
 
 
 @pytest.fixture
-def simulate(capsys, built, tmp_path):
-    """Runs `driveline simulate` on the freshly built FMUs; gives its answer and the folder."""
+def simulate(capsys, both_built, tmp_path):
+    """Runs `driveline simulate` on freshly built FMUs; gives its answer and the folder."""
 
     def run(*arguments):
         folder = tmp_path / "results"
-        return answer(capsys, "simulate", *arguments, "--fmus", str(built), "--output", str(folder)), folder
+        return answer(capsys, "simulate", *arguments, "--fmus", str(both_built), "--output", str(folder)), folder
 
     return run
 
@@ -320,8 +320,8 @@ def test_missing_fmus_are_answered_with_the_command_that_makes_them(capsys, tmp_
     assert f"`{made_by} --output {tmp_path}` makes it" in err
 
 
-def test_compare_as_a_document_has_every_metric_of_every_run(capsys, built, tmp_path):
-    given = ("--fmus", str(built), "--output", str(tmp_path), "--manoeuvre", "prbs15", "--plant", PLANTS[0])
+def test_compare_as_a_document_has_every_metric_of_every_run(capsys, both_built, tmp_path):
+    given = ("--fmus", str(both_built), "--output", str(tmp_path), "--manoeuvre", "prbs15", "--plant", PLANTS[0])
     code, out, err = answer(capsys, "compare", *given, "--set", "controller.k_d=0", "--json")
     assert (code, err) == (0, "")
     document = json.loads(out)

@@ -32,6 +32,7 @@ def test_a_run_says_which_file_it_drove(native, tmp_path, tipin, capsys):
     assert "is of another run (manoeuvre_files tip:" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_comparison_measures_a_step_of_a_file_as_one_of_the_catalogue(native, tmp_path, tipin):
     tipin.write_text(TIPIN.replace("3.0", "6.0"), encoding="utf-8")
     pulse = tmp_path / "pulse.toml"

@@ -47,6 +47,7 @@ def test_the_folder_gets_the_gains_the_candidates_and_the_front(
     assert {name: (folder / name).read_bytes() for name in before} == before
 
 
+@pytest.mark.slow
 def test_the_character_chooses_from_the_same_candidates(search: Callable[..., int], tmp_path: Path) -> None:
     outputs = [tmp_path / f"{name}.toml" for name in ("sport", "comfort")]
     for output, character in zip(outputs, ("0", "1"), strict=True):

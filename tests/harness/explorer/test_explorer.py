@@ -64,6 +64,7 @@ def test_curves_follow_a_slider_and_the_run_without_control_stays(view: Browser)
     assert not [line for line in view.console() if "ERROR" in line]
 
 
+@pytest.mark.slow
 def test_a_slider_can_be_dragged(view: Browser) -> None:
     before = metrics(view)
     handle = view.js(
@@ -87,6 +88,7 @@ def test_control_can_be_switched_off_and_others_stand_beside(view: Browser) -> N
     eventually(lambda: torque.pixels(VERMILION) > 100)
 
 
+@pytest.mark.slow
 def test_plant_and_manoeuvre_are_chosen(view: Browser) -> None:
     before = metrics(view)
     put(view, "plant", "ValidationVehicle")
@@ -187,6 +189,7 @@ def test_what_a_page_of_ones_own_sends_is_kept_within_the_slider(view: Browser) 
     assert "takes" not in status(view)
 
 
+@pytest.mark.slow
 def test_two_tabs_do_not_see_each_other_and_one_that_vanishes_disturbs_nobody(view: Browser, running: Served) -> None:
     first, before = view.chrome.current_window_handle, metrics(view)
     view.chrome.switch_to.new_window("tab")
@@ -202,6 +205,7 @@ def test_two_tabs_do_not_see_each_other_and_one_that_vanishes_disturbs_nobody(vi
     assert running.process.poll() is None
 
 
+@pytest.mark.slow
 def test_clicks_save_the_car_the_gains_and_a_report(view: Browser, running: Served) -> None:
     put(view, "phi_B", 0.3)
     put(view, "k_d", 2.0)

@@ -42,9 +42,11 @@ def test_the_example_and_the_page_have_every_kind_and_key():
         assert re.findall(r"`(\w+)`", row) == list(signature(part).parameters)
 
 
-def test_the_lines_of_python_on_the_page_print_what_they_say(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_lines_of_python_on_the_page_print_what_they_say(
+    both_built: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (lines,) = re.findall(r"```python\n(.*?)```", PAGE, re.S)
-    exec(re.sub(r"simulate\((\w+)\)", rf"simulate(\1, folder=Path({str(built)!r}))", lines), {"Path": Path})
+    exec(re.sub(r"simulate\((\w+)\)", rf"simulate(\1, folder=Path({str(both_built)!r}))", lines), {"Path": Path})
     settling, absent = capsys.readouterr().out.splitlines()
     assert 0.05 < float(settling) < 0.2
     assert absent == "the manoeuvre is no step"

@@ -77,6 +77,7 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
     assert answers(end, cases, cluster) == [end(case) for case in cases]
 
 
+@pytest.mark.slow
 def test_faults_and_search_on_a_cluster_are_those_here(cluster, native, native_builder, tmp_path):
     folder, address = native.parent, cluster.scheduler_address
     settings = Settings(folder=folder, build="native")
@@ -123,6 +124,7 @@ def test_what_is_warned_of_on_a_worker_is_told_here(cluster, caplog):
     assert logged == ["case of the cluster is odd"]
 
 
+@pytest.mark.slow
 def test_a_case_that_ends_its_workers_is_named(cluster, monkeypatch):
     monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
 
@@ -147,6 +149,7 @@ def test_without_the_package_the_extra_is_named(monkeypatch):
         many(abs, scheduler="tcp://127.0.0.1:1").__enter__()
 
 
+@pytest.mark.slow
 def test_loops_that_are_closed_are_loaded_again(native, tmp_path):
     from driveline.harness.loop.settings import loop
 

@@ -20,7 +20,7 @@ from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 
-TIPIN = replace(MANOEUVRES["tipin15"], duration=0.5)
+TIPIN = replace(MANOEUVRES["tipin15"], duration=0.1)
 
 CASES = [
     (plant, build, k_d)
@@ -32,6 +32,7 @@ CASES = [
 
 THREADS = """
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -40,7 +41,8 @@ from driveline.harness.simulation.simulate import simulate
 
 
 def end(k_d):
-    return simulate(MANOEUVRES["tipin15"], parameters={{"controller.k_d": k_d}}, folder=Path({0!r}))[-1].tolist()
+    tip_in = replace(MANOEUVRES["tipin15"], duration=0.5)
+    return simulate(tip_in, parameters={{"controller.k_d": k_d}}, folder=Path({0!r}))[-1].tolist()
 
 
 cases = [0.0, 1.0, 2.0]
