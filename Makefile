@@ -38,7 +38,7 @@ demo: $(DEMO) ## build the FMUs, compare with and without damping, replay a shor
 	$(BIN)/driveline compare --replace
 	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv --replace
 
-# whatever the environment says, bytecode is kept: a third of what the fast tests would compute is compiling Python
+# bytecode is kept, whatever the environment says: tests are collected in half the time
 TEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
 test: $(READY) ## the tests but the slow ones; once set up, without network
