@@ -3,6 +3,7 @@
 from pathlib import Path
 from shutil import copyfile
 from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -113,11 +114,11 @@ def test_an_error_within_unloads_too(relay, unpacked):
 
 
 def test_an_fmu_is_not_unpacked_to_where_its_uri_would_need_an_encoding(tmp_path):
-    folder = tmp_path / "Fahrzeuge für Anfänger"
+    folder, car = tmp_path / "Fahrzeuge für Anfänger", cast(Any, SimpleNamespace(path=Path("car.fmu")))
     folder.mkdir()
     with (
         pytest.raises(UnpackingError, match=r"^car\.fmu cannot be unpacked to .*: FMUs need a plain ASCII folder$"),
-        unpacked(SimpleNamespace(path=Path("car.fmu")), folder),
+        unpacked(car, folder),
     ):
         pass
     assert list(folder.iterdir()) == []

@@ -165,5 +165,5 @@ def test_without_options_the_measurement_wheels_are_those_of_a_program():
 def test_the_speed_is_told_in_kilometres_per_hour(native, tmp_path, capsys):
     options = ["--speed", "40", "--duration", "2.5", "--fmus", str(native.parent), "--output", str(tmp_path)]
     assert main(["record", *options]) == 0
-    found = re.search(r"speed ([\d.]+) to ([\d.]+) km/h", capsys.readouterr().out)
-    assert [float(each) for each in found.groups()] == pytest.approx([40.0, 40.0], rel=0.1)
+    (found,) = re.findall(r"speed ([\d.]+) to ([\d.]+) km/h", capsys.readouterr().out)
+    assert [float(each) for each in found] == pytest.approx([40.0, 40.0], rel=0.1)
