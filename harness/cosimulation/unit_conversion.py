@@ -2,9 +2,16 @@
 
 import re
 from functools import cache
+from math import isfinite
 from typing import Any, cast
 
-SYMBOL = r"(?:[A-Za-zµΩ%°]+(?:\^?[+-]?[1-9]\d*)?|1)"
+from ..base.plain_text import quoted
+
+LONGEST = 60
+"""Characters of a unit. Real ones have up to 20; thousands of factors would be more than pint can nest."""
+
+SYMBOL = r"(?:[A-Za-zµΩ%°]+(?:\^?[+-]?[1-9])?|1)"
+"""Its exponent has one digit, as all real ones: the power of a number to one of eight digits takes for ever."""
 PRODUCT = rf"{SYMBOL}(?:[.*]{SYMBOL})*"
 UNIT = re.compile(rf"{PRODUCT}(?:/(?:{SYMBOL}|\({PRODUCT}\)))?")
 """A product, over one symbol or a product in brackets: N.m, kg.m2, s-1, N.m/rad, J/(kg.K), 1."""
@@ -37,10 +44,15 @@ def factor(unit: str, target_unit: str) -> float:
     base = registry.get_base_units(given)[1] if target_unit == SI else _parsed(target_unit, registry)
     if not given.is_compatible_with(base):
         raise ValueError(f"is in {unit}, which does not convert into {target_unit}")
-    zero, one = (registry.convert(value, given, base) for value in (0.0, 1.0))
+    try:
+        zero, one = (float(registry.convert(value, given, base)) for value in (0.0, 1.0))
+    except OverflowError:
+        zero, one = 0.0, 0.0
     if zero:
         raise ValueError(f"is in {unit}, which has an offset to {target_unit}; only factors are converted")
-    return float(one)
+    if not (isfinite(one) and one):
+        raise ValueError(f"is in {unit}, whose factor to {target_unit} is larger or smaller than a number can be")
+    return one
 
 
 def known(unit: str) -> bool:
@@ -66,9 +78,10 @@ def _parsed(unit: str, registry: Any) -> Any:
 
     text = ALIASES.get(unit, unit)
     try:
-        if not UNIT.fullmatch(text):
+        if len(text) > LONGEST or not UNIT.fullmatch(text):
             raise ValueError(unit)
         powers = re.sub(r"([^\W\d_]|[%°])\^?([+-]?\d+)", r"\1**(\2)", text)
         return registry.Unit(powers.replace(".", "*"))
     except (ValueError, pint.PintError) as error:
-        raise ValueError(f"is in {unit!r}, which is not a known unit (known are those such as N.m/rad)") from error
+        known_are = "known are those such as N.m/rad"
+        raise ValueError(f"is in {quoted(unit)}, which is not a known unit ({known_are})") from error

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from driveline.harness.cosimulation.unit_conversion import SI, factor
+from driveline.harness.cosimulation.unit_conversion import LONGEST, SI, factor
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,15 @@ def test_the_same_unit_needs_no_factor_whether_it_is_known_or_not(unit):
     assert factor(unit, unit) == 1.0
 
 
+def test_a_unit_may_have_exponents_of_one_digit_and_sixty_characters():
+    assert factor("h9.min-9.N.m", "N.m") == pytest.approx(60.0**9, rel=1e-14)
+    longest, longer = (f"mm{short * '.m.m-1'}{long * '.m.m^-1'}" for short, long in ((5, 4), (4, 5)))
+    assert (len(longest), len(longer)) == (LONGEST, LONGEST + 1)
+    assert factor(longest, "m") == pytest.approx(1e-3)
+    with pytest.raises(ValueError, match="not a known unit"):
+        factor(longer, "m")
+
+
 @pytest.mark.parametrize(
     ("unit", "target_unit", "reason"),
     [
@@ -55,6 +64,12 @@ def test_the_same_unit_needs_no_factor_whether_it_is_known_or_not(unit):
         ("J/kg.K", SI, "'J/kg.K', which is not a known unit"),
         ("import", "m", "'import', which is not a known unit"),
         ("", "m", "'', which is not a known unit"),
+        # what would take for ever, or is larger than any number
+        ("h200.min-200.N.m", "N.m", "'h200.min-200.N.m', which is not a known unit"),
+        ("h99999999.min-99999999", "1", "which is not a known unit"),
+        (".".join(["m", *["m.m-1"] * 3000]), "m", r"(m.m-1)+.*characters\)', which is not a known unit"),
+        (".".join(["Ys9"] * 14) + ".s", SI, "whose factor to SI is larger or smaller than a number can be"),
+        (".".join(["ys9"] * 14) + ".s", SI, "whose factor to SI is larger or smaller than a number can be"),
     ],
 )
 def test_what_does_not_convert_is_refused_by_name(unit, target_unit, reason):
