@@ -38,6 +38,13 @@ KINDS: Mapping[str, tuple[Any, str]] = {
 }
 """By FMI type the Python type of an entry, and what it is called."""
 
+LARGEST_FILE, LONGEST_LINE, MOST_PROBLEMS = 100_000, 1000, 20
+"""Bytes of a file, characters of a line and lines of a refusal. Files of cars have some kilobytes; a key of 20 000
+parts takes the square of that in time and memory, and a name that is not known is compared with all that are."""
+
+LONGEST_NAME = 60
+"""Characters of a name that is not known, as a message shows it."""
+
 Owners = Mapping[str, Collection[tuple[str, Variable]]]
 """For each parameter the FMUs that have it, and how each declares it."""
 
@@ -150,26 +157,45 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
     if not path.is_file():
         raise ParameterFileError(f"there is no file {path}")
     try:
-        text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+        text = _text(path)
         entries = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, brackets in brackets
         raise ParameterFileError(f"{path} is not TOML: {error}") from error
     values: dict[str, Any] = {}
     problems: list[str] = []
     for name, entry in entries.items():
+        shown = name if name.isprintable() and len(name) <= LONGEST_NAME else f"{name!r:.{LONGEST_NAME}}"
         try:
             if isinstance(entry, dict):
-                raise ParameterFileError(f"{name} is a table; an entry stands alone, for all that have it: J_1 = 0.09")
+                raise ParameterFileError(f"{shown} is a table; an entry stands alone, for all that have it: J_1 = 0.09")
             if name in set_elsewhere:
                 raise ParameterFileError(f"{name} does not belong here: {set_elsewhere[name]}")
             if name not in known and name not in others:
-                raise ParameterFileError(f"{name} is not known{_nearest(name, {*known, *others})}")
+                raise ParameterFileError(f"{shown} is not known{_nearest(name, {*known, *others})}")
             values[name] = _value(name, entry, known.get(name, ()))
         except ParameterFileError as problem:
             problems.append(f"{path}, line {_line(text, name)}: {problem}")
+            if len(problems) == MOST_PROBLEMS:
+                problems.append(f"{path}: there may be more")
+                break
     if problems:
         raise ParameterFileError("\n".join(problems))
     return values
+
+
+def _text(path: Path) -> str:
+    """
+    Raises:
+        ParameterFileError: it is longer than any file of a car.
+        ValueError: it is no text.
+    """
+    if (size := path.stat().st_size) > LARGEST_FILE:
+        raise ParameterFileError(f"{path} has {size} bytes; at most {LARGEST_FILE}")
+    text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > LONGEST_LINE:
+            raise ParameterFileError(f"{path}, line {number} has {len(line)} characters; at most {LONGEST_LINE}")
+    return text
 
 
 def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> Any:

@@ -39,20 +39,25 @@ def factor(unit: str, target_unit: str) -> float:
     """
     if unit == target_unit:
         return 1.0
+    try:
+        one = _factor(unit, target_unit)
+    except OverflowError:
+        one = 0.0
+    if not (isfinite(one) and one):
+        raise ValueError(f"is in {unit}, whose factor to {target_unit} is larger or smaller than a number can be")
+    return one
+
+
+def _factor(unit: str, target_unit: str) -> float:
     registry = _registry()
     given = _parsed(unit, registry)
     base = registry.get_base_units(given)[1] if target_unit == SI else _parsed(target_unit, registry)
     if not given.is_compatible_with(base):
         raise ValueError(f"is in {unit}, which does not convert into {target_unit}")
-    try:
-        zero, one = (float(registry.convert(value, given, base)) for value in (0.0, 1.0))
-    except OverflowError:
-        zero, one = 0.0, 0.0
+    zero, one = (registry.convert(value, given, base) for value in (0.0, 1.0))
     if zero:
         raise ValueError(f"is in {unit}, which has an offset to {target_unit}; only factors are converted")
-    if not (isfinite(one) and one):
-        raise ValueError(f"is in {unit}, whose factor to {target_unit} is larger or smaller than a number can be")
-    return one
+    return float(one)
 
 
 def known(unit: str) -> bool:

@@ -10,7 +10,6 @@
 Every kind and its keys are a function of `harness.manoeuvres.parts` and its arguments.
 """
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from inspect import Parameter, signature
 from math import atan, isfinite
@@ -19,6 +18,7 @@ from typing import Any
 
 from ..base.known_names import nearest
 from ..base.plain_text import plain
+from ..base.toml_file import toml_entries
 from ..loop.places import STEP_SIZE
 from .composed import composed
 from .manoeuvre import Manoeuvre
@@ -29,9 +29,6 @@ SIGNALS = {"T_driver": "N.m", "T_brake": "N.m", "slope": "rad"}
 """What a manoeuvre is made of, and the units."""
 
 KEYS = ("description", "duration", "v_0", *SIGNALS)
-
-LARGEST = 1_000_000
-"""Bytes of a TOML file at the most."""
 
 EXAMPLES = {"s": "200 ms", "Hz": "5 Hz", "N.m": "0.1 kN.m", "rad": "5 %", "m/s": "15 km/h"}
 """Of a text with a unit, by the unit of the SI."""
@@ -77,12 +74,10 @@ def _from_toml(path: Path) -> Manoeuvre:
 def _entries(path: Path) -> dict[str, Any]:
     if not path.is_file():
         raise ManoeuvreError("it is a folder, not a file" if path.is_dir() else "there is no such file")
-    if (size := path.stat().st_size) > LARGEST:
-        raise ManoeuvreError(f"{size / 1e6:.1f} MB is too long; at most {LARGEST / 1e6:g} MB, or a table as CSV")
     try:
-        entries = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        raise ManoeuvreError(f"not TOML: {plain(error)}") from error
+        entries = toml_entries(path)
+    except ValueError as reason:
+        raise ManoeuvreError(str(reason)) from reason
     if not entries:
         raise ManoeuvreError(f"it is empty; a manoeuvre has {', '.join(KEYS)}")
     return entries

@@ -3,7 +3,6 @@
 Nothing here is slow to import: help needs it.
 """
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from ..base.known_names import nearest
 from ..base.plain_text import plain
+from ..base.toml_file import toml_entries
 from .headings import key
 from .source import RecordingError
 
@@ -107,9 +107,9 @@ def _read(path: Path) -> dict[str, list[str]]:
     if not path.is_file():
         raise RecordingError(f"there is no file of names {path}")
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise RecordingError(f"{path} is not TOML: {plain(error)}") from error
+        content = toml_entries(path)
+    except ValueError as reason:
+        raise RecordingError(f"{path}: {reason}") from reason
     for quantity, names in content.items():
         if quantity not in QUANTITIES:
             raise RecordingError(f"{path}: {plain(quantity, 60)} is no quantity; {nearest(quantity, QUANTITIES)}")

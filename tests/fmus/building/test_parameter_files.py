@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 
 from driveline.fmus.building.parameter_files import (
+    LARGEST_FILE,
+    LONGEST_LINE,
+    MOST_PROBLEMS,
     OF_A_RUN,
     for_instances,
     read_files,
@@ -122,9 +125,28 @@ def test_a_file_that_is_absent_or_no_text_is_named(tmp_path: Path) -> None:
     assert "is not TOML" in refusal(read_vehicle, tmp_path / "car.toml")
 
 
-@pytest.mark.parametrize("text", [f"J_1 = {'1' * 5000}\n", f"J_1 = {'[' * 5000}\n"])
-def test_what_python_cannot_read_is_no_toml_either(written: Callable[[str], Path], text: str) -> None:
-    assert "is not TOML" in refusal(read_vehicle, written(text))
+def test_brackets_in_brackets_are_no_toml_either(written: Callable[[str], Path]) -> None:
+    assert "is not TOML" in refusal(read_vehicle, written(f"J_1 = {'[' * 990}\n"))
+
+
+def test_a_file_is_no_longer_than_those_of_cars_are(written: Callable[[str], Path]) -> None:
+    longest_line = "m = 1500 #".ljust(LONGEST_LINE, "x")
+    assert read_vehicle(written(longest_line)) == {"m": 1500.0}
+    assert refusal(read_vehicle, written(f"{longest_line}x")).endswith("line 1 has 1001 characters; at most 1000")
+    largest = "m = 1500".ljust(LARGEST_FILE, "\n")
+    assert read_vehicle(written(largest)) == {"m": 1500.0}
+    assert refusal(read_vehicle, written(f"{largest}\n")).endswith("has 100001 bytes; at most 100000")
+
+
+def test_a_refusal_has_no_more_lines_than_somebody_reads(written: Callable[[str], Path]) -> None:
+    lines = refusal(read_vehicle, written("".join(f"a{k} = 1\n" for k in range(1000)))).splitlines()
+    assert len(lines) == MOST_PROBLEMS + 1
+    assert lines[-1].endswith("there may be more")
+
+
+def test_a_name_is_shown_in_one_line(written: Callable[[str], Path]) -> None:
+    assert refusal(read_vehicle, written('"a\\u001bb\\n" = 1')).endswith(r"line 1: 'a\x1bb\n' is not known")
+    assert len(refusal(read_vehicle, written(f"{'a' * 900} = 1"))) < 300
 
 
 def test_a_file_may_begin_with_the_mark_of_utf_8(written: Callable[[str], Path]) -> None:

@@ -130,7 +130,7 @@ def test_names_of_a_file_are_known_beside_ours(write: Write, tmp_path: Path) -> 
         ("omega_1 = 'n'", "omega_1 = n; it must be a list"),
         ("omega_1 = ['']", "it must be a list"),
         ("omega_1 = ['Torque']", "Torque names both T_mot and omega_1"),
-        ("omega_1 = [", r"names\.toml is not TOML: Invalid value"),
+        ("omega_1 = [", r"names\.toml: not TOML: Invalid value"),
     ],
 )
 def test_a_file_of_names_that_is_refused(tmp_path: Path, content: str, message: str) -> None:

@@ -1,0 +1,48 @@
+"""TOML files of anybody: read as they are, or refused before they take long."""
+
+from pathlib import Path
+
+import pytest
+
+from driveline.harness.base.toml_file import DEEPEST, LARGEST, MOST_DIGITS, toml_entries
+
+
+def read(folder: Path, text: str) -> dict:
+    path = folder / "file.toml"
+    path.write_text(text, encoding="utf-8")
+    return toml_entries(path)
+
+
+@pytest.mark.parametrize("part", ["a", "1", '"a b"', "'='", r'"\""', "a "])
+def test_a_key_has_ten_parts_at_the_most(tmp_path: Path, part: str) -> None:
+    assert read(tmp_path, f"{'.'.join([part] * DEEPEST)} = 1")
+    assert read(tmp_path, f"[{'.'.join([part] * DEEPEST)}]")
+    for text in (f"{'.'.join([part] * (DEEPEST + 1))} = 1", f"x = {{{'.'.join([part] * 20_000)} = 1}}"):
+        with pytest.raises(ValueError, match=r"^the key .* has more than 10 parts$"):
+            read(tmp_path, text)
+
+
+@pytest.mark.parametrize("number", ["9{}", "0x{}", "-1{}", "0.{}", "1e{}"])
+def test_a_number_has_three_hundred_digits_at_the_most(tmp_path: Path, number: str) -> None:
+    assert read(tmp_path, f"x = {number.format('1' * (MOST_DIGITS - 2))}")
+    for digits in ("1" * 100_000, "1_" * 50_000 + "1"):
+        with pytest.raises(ValueError, match=r"^the number .* has more than 300 digits$"):
+            read(tmp_path, f"x = {number.format(digits)}")
+
+
+def test_a_list_of_points_is_no_key(tmp_path: Path) -> None:
+    points = [[0.001 * k, 1.5] for k in range(10_000)]
+    assert read(tmp_path, f"points = {points}")["points"] == points
+
+
+def test_a_file_has_a_megabyte_at_the_most(tmp_path: Path) -> None:
+    assert read(tmp_path, "x = 1".ljust(LARGEST)) == {"x": 1}
+    with pytest.raises(ValueError, match=r"^1\.0 MB is too long; at most 1 MB$"):
+        read(tmp_path, "x = 1".ljust(LARGEST + 1))
+
+
+@pytest.mark.parametrize("text", ["x", "x = " + 10_000 * "[", "x = " + 10_000 * "{a = ", "\ud800"])
+def test_what_is_no_toml_is_said(tmp_path: Path, text: str) -> None:
+    (tmp_path / "file.toml").write_bytes(text.encode("utf-8", "surrogatepass"))
+    with pytest.raises(ValueError, match=r"^not TOML: "):
+        toml_entries(tmp_path / "file.toml")
