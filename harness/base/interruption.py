@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+from time import sleep
 from types import FrameType
 from typing import NoReturn
 
@@ -154,6 +155,24 @@ def _stopped_after() -> Iterator[None]:
             signal.signal(number, handler)
         for number in come[:1]:
             signal.raise_signal(number)
+
+
+def end_with(parent: int, tidy: Callable[[], object] = lambda: None) -> None:
+    """In a process that was begun for another one: from now on ends it when that is gone, killed before it could end
+    those that it began.
+
+    Args:
+        parent: number of that process.
+        tidy: is called before.
+    """
+
+    def attend() -> None:
+        while sys.platform == "win32" or os.getppid() == parent:
+            sleep(1.0)
+        tidy()
+        os._exit(1)
+
+    threading.Thread(target=attend, daemon=True).start()
 
 
 def reopen_closed_streams() -> None:

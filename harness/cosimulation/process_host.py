@@ -10,10 +10,9 @@ import sys
 from collections.abc import Callable
 from mmap import mmap
 from pathlib import Path
-from threading import Thread
-from time import sleep
 from typing import Any, BinaryIO
 
+from ..base.interruption import end_with
 from ..base.progress import hidden
 from . import call_trace
 from .process_answers import Answer, Bytes, send
@@ -22,7 +21,7 @@ from .process_answers import Answer, Bytes, send
 def main() -> None:
     """Answers until nobody asks any more."""
     questions, answers = _silenced()
-    Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+    end_with(os.getppid())  # an FMU that hangs does not outlive a parent that was killed
     with Path(sys.argv[1]).open("r+b") as page:
         call_trace.share(mmap(page.fileno(), 0))
     while True:
@@ -52,10 +51,3 @@ def _silenced() -> tuple[BinaryIO, BinaryIO]:
     for descriptor in range(3):
         os.dup2(nothing, descriptor)
     return pipes
-
-
-def _end_with(parent: int) -> None:
-    """An FMU that hangs does not outlive a parent that was killed."""
-    while os.getppid() == parent:
-        sleep(1.0)
-    os._exit(1)

@@ -56,13 +56,7 @@ class ArrowFile:
     def _done(self, work: Any) -> Any:
         try:
             return work()
-        except (
-            OSError,
-            ValueError,
-            KeyError,
-            MemoryError,
-            NotImplementedError,
-        ) as error:  # all that pyarrow raises of a file
+        except (OSError, ValueError, KeyError, NotImplementedError) as error:  # all that pyarrow raises of a file
             raise RecordingError(f"{self.path} is a damaged Parquet or Feather file: {plain(error, 200)}") from error
 
 

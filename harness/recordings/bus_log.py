@@ -159,7 +159,7 @@ def _opened(path: Path) -> Iterator[Any]:
     try:
         with can.BLFReader(path) if blf else can.ASCReader(path) as log:
             yield log
-    except RecordingError:
+    except (RecordingError, MemoryError):
         raise
     except Exception as error:
         detail = plain(error, 200) or type(error).__name__

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .alignment import aligned, is_slower
+from .bounded_reading import bounded
 from .channels import Channel, Channels
 from .file_units import FileUnit
 from .source import RecordingError
@@ -48,6 +49,7 @@ class Drive:
         return self.channels["T_mot"].clock if "T_mot" in self.channels else "time"
 
 
+@bounded
 def read_drive(
     path: Path,
     columns: Mapping[str, str] | None = None,

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .alignment import aligned
+from .bounded_reading import bounded
 from .channels import Channel, Channels
 
 OPTIONAL = ("T_brake", "slope")
@@ -27,6 +28,7 @@ class Course:
     v_0: float
 
 
+@bounded
 def read_course(path: Path) -> Course:
     """Reads a file that a manoeuvre is drawn from.
 

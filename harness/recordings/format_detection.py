@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from zipfile import BadZipFile, ZipFile
 
 from .arrow_file import FEATHER, PARQUET, ArrowFile
@@ -12,7 +13,6 @@ from .text_file import TextFile
 
 KINDS = dict.fromkeys(MARKS, MdfFile) | {PARQUET: ArrowFile, FEATHER: ArrowFile}
 """By the bytes with which the file begins; what begins otherwise is text."""
-
 
 FOREIGN = {
     b"\xd0\xcf\x11\xe0": "an Excel workbook or another document of Office",
@@ -42,15 +42,14 @@ def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
     """
     if not path.is_file():
         raise RecordingError(f"there is no recording {path}")
-    with path.open("rb") as file:
-        begin = file.read(LOOKED_AT)
-    if begin.startswith(BLF) or ASC.match(begin):
+    begin = _begin(path)
+    kind = _kind(begin)
+    if kind is BusLog:
         return BusLog(path, databases)
     if databases:
         raise RecordingError(f"{path} is no log of a bus (BLF, ASC), which {databases[0]} is for")
     if named := _foreign(path, begin):
         raise RecordingError(f"{path} is {named}, which is not read; save the recording as a text file (CSV)")
-    kind = next((kind for mark, kind in KINDS.items() if begin.startswith(mark)), TextFile)
     return kind(path)
 
 
@@ -64,3 +63,19 @@ def _foreign(path: Path, begin: bytes) -> str | None:
             excel = False
         return "an Excel workbook" if excel else "a ZIP archive"
     return next((name for mark, name in FOREIGN.items() if begin.startswith(mark)), None)
+
+
+def is_text(path: Path) -> bool:
+    """Whether a file is read as text of numbers, and by no package that unpacks it."""
+    return _kind(_begin(path)) is TextFile
+
+
+def _begin(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(LOOKED_AT)
+
+
+def _kind(begin: bytes) -> Any:
+    if begin.startswith(BLF) or ASC.match(begin):
+        return BusLog
+    return next((kind for mark, kind in KINDS.items() if begin.startswith(mark)), TextFile)

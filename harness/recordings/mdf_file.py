@@ -75,7 +75,7 @@ def _opened(path: Path) -> Iterator[Any]:
     try:
         with asammdf.MDF(path) as file:
             yield file
-    except RecordingError:
+    except (RecordingError, MemoryError):
         raise
     except Exception as error:
         damage = plain(error, 200) or type(error).__name__

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .alignment import aligned, is_slower
+from .bounded_reading import bounded
 from .channels import Channel, Channels
 from .delays import Delay, estimated
 from .file_units import FileUnit
@@ -64,6 +65,7 @@ class Measurement:
     file_units: Mapping[str, FileUnit]
 
 
+@bounded
 def read_measurement(
     path: Path,
     i: float,

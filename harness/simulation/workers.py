@@ -12,8 +12,6 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from pickle import loads
 from shutil import rmtree
-from threading import Thread
-from time import sleep
 from typing import Any
 
 from cloudpickle import dumps
@@ -24,7 +22,7 @@ from loky.process_executor import BrokenProcessPool
 from ..base.atomic_files import note_unfinished, remove_unfinished
 from ..base.collected_warnings import LOG, CollectedWarnings
 from ..base.errors import SimulationError
-from ..base.interruption import uninterrupted_children
+from ..base.interruption import end_with, uninterrupted_children
 from ..base.plain_text import words
 from ..base.progress import hidden
 from ..cosimulation.runs import kept_loaded
@@ -109,7 +107,7 @@ def _begin(folder: Path, function: Callable[[Any], Any], waiting: int) -> None:
     """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
     global _function
     _function = function
-    Thread(target=_end_with, args=(waiting, folder), daemon=True).start()
+    end_with(waiting, tidy=lambda: rmtree(folder, ignore_errors=True))
     note_unfinished(folder)
     collect_warnings().propagate = False
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
@@ -117,14 +115,6 @@ def _begin(folder: Path, function: Callable[[Any], Any], waiting: int) -> None:
     kept.enter_context(kept_loaded(folder))
     atexit.register(kept.close)
     gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
-
-
-def _end_with(waiting: int, folder: Path) -> None:
-    """In a worker: ends it when the process that waits is gone, killed before it could end its workers."""
-    while sys.platform == "win32" or os.getppid() == waiting:
-        sleep(1.0)
-    rmtree(folder, ignore_errors=True)
-    os._exit(1)
 
 
 def collect_warnings() -> logging.Logger:

@@ -1,0 +1,101 @@
+"""Files that unpack to more than they are, and packages that crash, hang or swell over damaged ones: they are read by a
+process of its own, with limits of time and memory.
+
+What a file says of its size would be quicker to check, but is written by whoever wrote the file; and no package lets
+itself be told how much it may unpack. A limit of the operating system holds for all of them, known faults and others.
+"""
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import wraps
+from importlib import import_module
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from ..base.errors import DrivelineError
+from ..base.interruption import end_with
+from ..base.plain_text import plain, words
+from .format_detection import is_text
+from .limits import MEMORY, SECONDS, SMALL_TEXT
+from .source import RecordingError
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None
+
+FEW_THREADS = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+"""Environment in which packages reserve no memory for threads and data that there may never be."""
+
+
+Read = TypeVar("Read", bound=Callable[..., Any])
+
+
+def bounded(read: Read) -> Read:
+    """The function, which reads the recording at its first argument, with limits.
+
+    Raises:
+        RecordingError: the file takes more than recordings do, or ends the process that reads it.
+    """
+
+    @wraps(read)
+    def limited(path: Path, *arguments: Any, **named: Any) -> Any:
+        if not path.is_file() or (is_text(path) and path.stat().st_size <= SMALL_TEXT):
+            return read(path, *arguments, **named)
+        answer = _asked(path, (read.__module__, read.__name__, (path, *arguments), named))
+        if isinstance(answer, DrivelineError):
+            raise answer
+        return answer
+
+    return cast(Read, limited)
+
+
+def _asked(path: Path, question: Any) -> Any:
+    start = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import main; main({os.getpid()})"
+    with subprocess.Popen(
+        [sys.executable, "-c", start],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=os.environ | FEW_THREADS,
+        start_new_session=True,  # who waits for it is stopped at the keyboard, and ends it
+    ) as process:
+        try:
+            answer, complaint = process.communicate(pickle.dumps(question), SECONDS)
+        except subprocess.TimeoutExpired as late:
+            raise RecordingError(f"{path} is not read within {SECONDS:g} s, in which every recording is") from late
+        finally:
+            process.kill()
+    if process.returncode:
+        last = plain(complaint.decode(errors="replace").strip().rpartition("\n")[2], 200)
+        raise RecordingError(f"{path} ended the process that read it: {last or f'exit code {process.returncode}'}")
+    return pickle.loads(answer)
+
+
+def main(parent: int) -> None:
+    """In the process: reads one file, and answers with what it holds or why it cannot be read."""
+    end_with(parent)
+    module, name, arguments, named = pickle.load(sys.stdin.buffer)
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what packages print is no answer
+    read = getattr(import_module(module), name).__wrapped__
+    path = arguments[0]
+    if resource:
+        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+    try:
+        answer = read(*arguments, **named)
+    except DrivelineError as refusal:
+        answer = refusal
+    except MemoryError:
+        answer = RecordingError(
+            f"{path} takes more than {MEMORY / 1e6:.0f} MB of memory, with which every recording is read"
+        )
+    except Exception as fault:
+        answer = RecordingError(f"{path} cannot be read: {plain(words(fault), 200)}")
+    with answers:
+        pickle.dump(answer, answers, pickle.HIGHEST_PROTOCOL)
+    sys.stderr.flush()
+    os._exit(0)  # freeing what is read takes time
