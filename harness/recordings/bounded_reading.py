@@ -7,6 +7,7 @@ itself be told how much it may unpack. A limit of the operating system holds for
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,13 +20,15 @@ from ..base.errors import DrivelineError
 from ..base.interruption import end_with
 from ..base.plain_text import plain, words
 from .format_detection import is_text
-from .limits import MEMORY, SECONDS, SMALL_TEXT
+from .limits import MEMORY, PATIENCE, SECONDS, SMALL_TEXT
 from .source import RecordingError
 
 try:
     import resource
 except ImportError:  # Windows
     resource = None
+
+OUT_OF_TIME = getattr(signal, "SIGXCPU", 0)
 
 FEW_THREADS = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Environment in which packages reserve no memory for threads and data that there may never be."""
@@ -64,15 +67,21 @@ def _asked(path: Path, question: Any) -> Any:
         start_new_session=True,  # who waits for it is stopped at the keyboard, and ends it
     ) as process:
         try:
-            answer, complaint = process.communicate(pickle.dumps(question), SECONDS)
+            answer, complaint = process.communicate(pickle.dumps(question), PATIENCE if resource else SECONDS)
         except subprocess.TimeoutExpired as late:
-            raise RecordingError(f"{path} is not read within {SECONDS:g} s, in which every recording is") from late
+            raise _late(path) from late
         finally:
             process.kill()
+    if process.returncode == -OUT_OF_TIME:
+        raise _late(path)
     if process.returncode:
         last = plain(complaint.decode(errors="replace").strip().rpartition("\n")[2], 200)
         raise RecordingError(f"{path} ended the process that read it: {last or f'exit code {process.returncode}'}")
     return pickle.loads(answer)
+
+
+def _late(path: Path) -> RecordingError:
+    return RecordingError(f"{path} takes more than {SECONDS} s to read")
 
 
 def main(parent: int) -> None:
@@ -85,14 +94,13 @@ def main(parent: int) -> None:
     path = arguments[0]
     if resource:
         resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
     try:
         answer = read(*arguments, **named)
     except DrivelineError as refusal:
         answer = refusal
     except MemoryError:
-        answer = RecordingError(
-            f"{path} takes more than {MEMORY / 1e6:.0f} MB of memory, with which every recording is read"
-        )
+        answer = RecordingError(f"{path} takes more than {MEMORY / 1e6:.0f} MB of memory to read")
     except Exception as fault:
         answer = RecordingError(f"{path} cannot be read: {plain(words(fault), 200)}")
     with answers:

@@ -1,6 +1,7 @@
 """Logs of a bus, BLF and ASC, read by python-can, whose frames are decoded by cantools with databases (DBC, ...)."""
 
 import re
+from array import array
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -11,7 +12,6 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
-from ..base.progress import progress
 from .source import Column, RecordingError, Samples, samples
 
 BLF = b"LOGG"
@@ -21,9 +21,6 @@ ASC = re.compile(rb"\s*date [^\n]*\n\s*base\s+(hex|dec)", re.IGNORECASE)
 """And how these do."""
 
 IDENTIFIERS_SHOWN = 5
-
-AT_ONCE = 1000
-"""Frames between which progress is shown."""
 
 
 class Kind(NamedTuple):
@@ -37,7 +34,7 @@ class Kind(NamedTuple):
 class Frames(NamedTuple):
     """The frames of one kind: times in s from the first frame of the log on, and their bytes."""
 
-    times: list[float]
+    times: "array[float]"
     data: list[bytes]
 
 
@@ -73,41 +70,45 @@ class BusLog:
 
     def read(self, places: Sequence[int]) -> list[Samples]:
         """See `harness.recordings.source.Source.read`; signals of a message have the same array of times."""
-        decoded: dict[Kind, tuple[np.ndarray, list[Mapping[str, Any]]]] = {}
-        return [self._samples(place, decoded) for place in places]
+        found: dict[int, Samples] = {}
+        for kind in dict.fromkeys(self._places[place][0] for place in places):
+            found |= self._decoded(kind, [place for place in places if self._places[place][0] == kind])
+        return [found[place] for place in places]
 
-    def _samples(self, place: int, decoded: dict[Kind, tuple[np.ndarray, list[Mapping[str, Any]]]]) -> Samples:
-        kind, message, signal = self._places[place]
-        if kind not in decoded:
-            decoded[kind] = np.array(self._frames[kind].times), self._decoded(kind, message)
-        time, contents = decoded[kind]
-        there = [k for k, content in enumerate(contents) if signal.name in content]  # others may be multiplexed
-        if len(there) < len(contents):
-            time = time[there]
-        values = np.array([contents[k][signal.name] for k in there])
-        if len(values) and values.dtype.kind not in "biuf":
-            raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers")
+    def _decoded(self, kind: Kind, places: Sequence[int]) -> dict[int, Samples]:
+        """Some signals of a message. Of what its frames hold beside them nothing is kept."""
+        frames, (_, message, _) = self._frames[kind], self._places[places[0]]
+        names = {place: self._places[place][2].name for place in places}
+        values, there = ({place: array(code) for place in places} for code in "dq")
+        for k, (moment, data) in enumerate(zip(frames.times, frames.data, strict=True)):
+            try:
+                content = message.decode(data, decode_choices=False)
+            except Exception as error:
+                raise RecordingError(
+                    f"{self.path}, frame at {moment:g} s: {data.hex(' ') or 'nothing'} is no {message.name} "
+                    f"(0x{kind.identifier:X}) of {message.length} bytes: {plain(error, 200)}"
+                ) from error
+            for place, name in names.items():
+                if name in content:  # others may be multiplexed
+                    self._append(values[place], content[name], place)
+                    there[place].append(k)
+        time = np.array(frames.times)
+        return {
+            place: self._samples(place, np.array(values[place]), time if len(at) == len(time) else time[np.array(at)])
+            for place, at in there.items()
+        }
 
+    def _append(self, values: "array[float]", value: Any, place: int) -> None:
+        try:
+            values.append(value)
+        except TypeError:
+            raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers") from None
+
+    def _samples(self, place: int, values: np.ndarray, time: np.ndarray) -> Samples:
         def where(k: int) -> str:
             return f"frame at {time[k]:g} s"
 
-        return samples(self.path, self.columns[place], values.astype(float), time, where)
-
-    def _decoded(self, kind: Kind, message: Any) -> list[Mapping[str, Any]]:
-        times, data = self._frames[kind]
-        contents = []
-        with progress(len(data), f"decoding {message.name}") as done:
-            for k, one in enumerate(data):
-                if k % AT_ONCE == 0:
-                    done(k)
-                try:
-                    contents.append(message.decode(one, decode_choices=False))
-                except Exception as error:
-                    raise RecordingError(
-                        f"{self.path}, frame at {times[k]:g} s: {one.hex(' ') or 'nothing'} is no {message.name} "
-                        f"(0x{kind.identifier:X}) of {message.length} bytes: {plain(error, 200)}"
-                    ) from error
-        return contents
+        return samples(self.path, self.columns[place], values, time, where)
 
 
 def _messages(path: Path) -> Mapping[tuple[int, bool], Any]:
@@ -127,11 +128,8 @@ def _read(path: Path, known: Mapping[tuple[int, bool], Any], databases: Sequence
     frames: dict[Kind, Frames] = {}
     others: set[int] = set()
     begin = None
-    with _opened(path) as log, progress(path.stat().st_size, f"reading {path.name}") as done:
-        position = getattr(log.file, "buffer", log.file).tell  # a text file that is read by lines does not tell its own
-        for number, message in enumerate(log):
-            if number % AT_ONCE == 0:
-                done(position())
+    with _opened(path) as log:
+        for message in log:
             begin = message.timestamp if begin is None else begin
             if message.is_error_frame or message.is_remote_frame:
                 continue
@@ -139,7 +137,7 @@ def _read(path: Path, known: Mapping[tuple[int, bool], Any], databases: Sequence
                 others.add(message.arbitration_id)
                 continue
             kind = Kind(message.channel, message.arbitration_id, message.is_extended_id)
-            times, data = frames.setdefault(kind, Frames([], []))
+            times, data = frames.setdefault(kind, Frames(array("d"), []))
             times.append(message.timestamp - begin)
             data.append(bytes(message.data))
     if begin is None:

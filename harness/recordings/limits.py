@@ -17,8 +17,11 @@ SMALL_TEXT = 20_000_000
 """Bytes of a text file that needs no process of its own: none takes more than some seconds, since texts are read piece
 by piece and unpack to nothing."""
 
-SECONDS = 30.0
-"""In which all other files must have been read."""
+SECONDS = 30
+"""Of computing in which all other files must have been read; a log of a bus with four million frames takes 20."""
+
+PATIENCE = 10 * SECONDS
+"""Seconds in which they must have been read on a machine that is busy, or by a disk that is slow."""
 
 MEMORY = 1_500_000_000
 """Bytes that the process has that reads them; who waits for it takes what it answers, which is part of that."""
