@@ -3,7 +3,6 @@
 import os
 import shutil
 import struct
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,6 +11,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import fmpy
+
+from ..child_process import run
 
 FLAGS = (
     *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"),
@@ -143,7 +144,7 @@ def _folder_of(sources: Mapping[str, bytes]) -> Iterator[Path]:
 
 
 def _run(command: Sequence[str], folder: Path) -> None:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = run(command, folder)
     if done.returncode:
         raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
 

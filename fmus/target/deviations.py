@@ -1,13 +1,12 @@
 """What MISRA C:2012 and further warnings of the compiler find in the C of the target, and why it stays."""
 
-import os
 import re
-import subprocess
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from ..child_process import run
 from .image import BOARD, COMPILER, FLAGS, LINK, PROCESSOR, SCHEDULER, require_packages, written
 
 CHECKER = "cppcheck"
@@ -103,16 +102,17 @@ def _misra(names: Iterable[str], folder: Path) -> list[tuple[str, str, str]]:
     """Rule, file and line; what cppcheck finds beside MISRA has its name for a rule."""
     template = "--template={id} {file} {line}"
     command = [CHECKER, "--quiet", "--addon=misra", "--std=c99", template, "--template-location=", *names]
-    output = subprocess.run(
-        command, cwd=folder, env=os.environ | WITHOUT_VALUES, capture_output=True, text=True, check=True
-    ).stderr
-    rows = [line.split() for line in output.splitlines() if line.strip()]
+    rows = [line.split() for line in _complaints(command, folder, WITHOUT_VALUES).splitlines() if line.strip()]
     return [(rule.removeprefix("misra-c2012-"), file, line) for rule, file, line in rows]
 
 
 def _warned(names: Iterable[str], folder: Path) -> list[tuple[str, str, str]]:
     warnings = ("-Wno-error", "-Wfloat-equal", f"-Wstack-usage={LARGEST_STACK}", "-fno-diagnostics-color")
     command = [COMPILER, *PROCESSOR, *FLAGS, *warnings, "-c", *names]
-    environment = os.environ | {"LC_ALL": "C"}
-    output = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True).stderr
-    return [(rule, file, line) for file, line, rule in WARNING.findall(output)]
+    return [(rule, file, line) for file, line, rule in WARNING.findall(_complaints(command, folder, {"LC_ALL": "C"}))]
+
+
+def _complaints(command: list[str], folder: Path, environment: Mapping[str, str]) -> str:
+    done = run(command, folder, environment)
+    done.check_returncode()
+    return done.stderr

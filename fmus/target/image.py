@@ -5,6 +5,7 @@ import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..child_process import run
 from ..native.compiler import CompilerError, host_compiler
 from .link import EMULATOR
 
@@ -93,6 +94,6 @@ def written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -
 
 
 def _run(command: list[str], folder: Path) -> None:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = run(command, folder)
     if done.returncode:
         raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")

@@ -9,11 +9,12 @@ import select
 import signal
 import struct
 import subprocess
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from time import monotonic
 from typing import NamedTuple
+
+from ..child_process import BEFORE_START
 
 EMULATOR = "qemu-system-arm"
 
@@ -29,9 +30,6 @@ START_LIMIT, LIMIT = 10.0, 1.0
 
 CRASHED = 3
 """Exit code of a program that had a fault, as board_mps2.c gives it."""
-
-SET_PARENT_DEATH_SIGNAL = 1
-"""Of prctl on Linux."""
 
 
 class TargetError(Exception):
@@ -86,7 +84,7 @@ class Link:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 bufsize=0,
-                preexec_fn=_die_with_parent if sys.platform == "linux" else None,
+                preexec_fn=BEFORE_START,
             )
         except OSError as error:
             raise TargetError(f"{name} cannot be started: {command[0]}: {error.strerror}") from error
@@ -188,8 +186,3 @@ class Link:
             return f"{self.name} was lost: ended by {signal.Signals(-code).name}"
         reason = "a fault of the processor" if code == CRASHED else lines[0] if lines else f"exit code {code}"
         return f"{self.name} crashed: {reason}"
-
-
-def _die_with_parent() -> None:
-    """Has the process that is being started killed when the one that starts it ends, however that ends."""
-    ctypes.CDLL(None).prctl(SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)

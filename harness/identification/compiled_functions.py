@@ -13,6 +13,8 @@ import casadi as ca
 
 from ..base.user_cache import user_cache
 
+from ...fmus.child_process import run
+
 FLAGS = ("-shared", "-fPIC", "-O1", "-ffp-contract=off")
 """Each operation rounds on its own, as in CasADi."""
 
@@ -44,7 +46,7 @@ def _compile(source: str, compiler: str, library: Path) -> None:
     with TemporaryDirectory(dir=library.parent) as folder:
         written, made = Path(folder) / "source.c", Path(folder) / library.name
         written.write_text(source, encoding="utf-8")
-        subprocess.run([compiler, *FLAGS, str(written), "-o", str(made), "-lm"], check=True, capture_output=True)
+        run([compiler, *FLAGS, str(written), "-o", str(made), "-lm"], Path(folder)).check_returncode()
         made.replace(library)
     _sum(library).write_text(sha256(library.read_bytes()).hexdigest(), encoding="utf-8")
 

@@ -22,6 +22,7 @@ from distributed.comm.core import connect
 
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
+from ..base.plain_text import plain
 from ..cosimulation.runs import KeptLoops, kept_by
 from .workers import answered_by, collect_warnings
 
@@ -67,8 +68,10 @@ def _connected(address: str) -> Iterator[Client]:
     try:
         with ThreadPoolExecutor(1) as pool:  # a notebook has an event loop of its own in this thread
             pool.submit(lambda: asyncio.run(_knock(address))).result()  # a client complains long after
+    except TimeoutError as reason:
+        raise DrivelineError(f"no Dask scheduler answers at {address!r} within {TIMEOUT:g} s") from reason
     except (OSError, ValueError) as reason:
-        raise DrivelineError(f"no Dask scheduler answers at {address!r}: {reason}") from reason
+        raise DrivelineError(f"no Dask scheduler answers at {address!r}: {plain(reason)}") from reason
     with Client(address, timeout=TIMEOUT, set_as_default=False) as client:
         if not client.scheduler_info()["workers"]:
             warn_once(f"the scheduler at {address} has no workers yet; the cases wait for them")
@@ -76,7 +79,12 @@ def _connected(address: str) -> Iterator[Client]:
 
 
 async def _knock(address: str) -> None:
-    await (await connect(address, timeout=TIMEOUT)).close()
+    """
+    Raises:
+        TimeoutError: nothing answers, or only takes the connection and says nothing.
+    """
+    async with asyncio.timeout(TIMEOUT):
+        await (await connect(address, timeout=TIMEOUT)).close()
 
 
 def _result(client: Client, name: str, address: str, case: Any) -> Any:

@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from ....fmus.child_process import run
 from ....fmus.target.image import SCHEDULER, target_image
 from ....fmus.target.link import TargetError, emulated
 
@@ -46,7 +47,7 @@ def schedule(sources: Mapping[str, str]) -> Schedule:
     with TemporaryDirectory(prefix="driveline-") as temporary:
         command = emulated(target_image(sources, Path(temporary), SCHEDULER))
         try:
-            done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=LIMIT, check=False)
+            done = run(command, Path(temporary), timeout=LIMIT, text=False)
         except subprocess.TimeoutExpired as error:
             raise TargetError(f"the scheduler on the emulated target has not ended within {LIMIT:g} s") from error
     if done.returncode or len(done.stdout) != 4 * len(Schedule._fields):
