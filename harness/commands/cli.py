@@ -8,10 +8,11 @@ when it is asked for, and itself imports what it needs when it runs, so that hel
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from errno import ENOSPC
 from functools import partial
 from io import TextIOWrapper
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from ..base.errors import DrivelineError
 from ..base.interruption import forget_stdout, reopen_closed_streams, stoppable
@@ -122,6 +123,12 @@ class Parser(argparse.ArgumentParser):
             name = "/".join(action.option_strings) or str(action.metavar).lower()
             self.error(f"{name}: {plain(value, 60) or 'an empty name'} is unknown; {nearest(value, action.choices)}")
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """As argparse does, which takes no notice of a disk that is full."""
+        if message:
+            with suppress(BrokenPipeError):  # noticed when the rest is written
+                (file or sys.stderr).write(message)
+
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}\n(`{self.prog} --help` explains)\n")
 
@@ -213,6 +220,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with stoppable():
             try:
+                _require_one_line(words)
                 args = parser().parse_args(words)
                 name = args.program
                 silent = getattr(args, "quiet", False) or getattr(args, "json", False)
@@ -238,3 +246,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt as stop:
         print("; ".join([f"{name}: stopped", *getattr(stop, "__notes__", [])]), file=sys.stderr)
         return getattr(stop, "exit_code", 130)
+
+
+def _require_one_line(words: Sequence[str]) -> None:
+    """
+    Raises:
+        DrivelineError: a word would make two lines of a message that repeats it, as the path of a file may.
+    """
+    for word in words:
+        if len(word.splitlines()) > 1:
+            raise DrivelineError(f"the argument {word[:60]!r} has more than one line; rename the file")

@@ -33,6 +33,11 @@ def run(args: argparse.Namespace) -> int:
     """
     from ...fmus.errors import BuildError
 
+    if getattr(args, "list", False):
+        from .manoeuvres import print_manoeuvres
+
+        print_manoeuvres(getattr(args, "json", False))
+        return 0
     try:
         return command(args.module).run(args)
     except BuildError as refusal:

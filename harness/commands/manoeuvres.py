@@ -1,10 +1,11 @@
 """--manoeuvre: one of the catalogue by its name, or a file of the user's own."""
 
 import argparse
+import json
 from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
@@ -29,18 +30,19 @@ def add_manoeuvre(parser: argparse.ArgumentParser, what: str, **how: Any) -> Non
         how: further arguments of `add_argument`.
     """
     action = parser.add_argument("--manoeuvre", type=name_or_file, metavar="NAME|FILE", help=what, **how)
-    parser.add_argument("--list", action=List, nargs=0, help="print the manoeuvres and exit")
+    parser.add_argument("--list", action="store_true", help="print the manoeuvres and exit")
     action.complete = names_or_files(tuple(MANOEUVRES), ("toml", "csv"), "manoeuvre")  # type: ignore[attr-defined]
 
 
-class List(argparse.Action):
-    """Prints the manoeuvres of the catalogue, a line each."""
-
-    def __call__(self, parser, namespace, values, option_string=None) -> NoReturn:
-        width = max(map(len, MANOEUVRES))
-        for each in MANOEUVRES.values():
-            print(f"{each.name:{width}}  {each.description} ({each.duration:g} s)")
-        parser.exit()
+def print_manoeuvres(as_json: bool) -> None:
+    """Prints the manoeuvres of the catalogue, a line each or as one document for tools."""
+    if as_json:
+        rows = [{"name": m.name, "description": m.description, "duration": m.duration} for m in MANOEUVRES.values()]
+        print(json.dumps({"manoeuvres": rows}, indent=2))
+        return
+    width = max(map(len, MANOEUVRES))
+    for each in MANOEUVRES.values():
+        print(f"{each.name:{width}}  {each.description} ({each.duration:g} s)")
 
 
 def name_or_file(text: str) -> str:

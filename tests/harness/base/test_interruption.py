@@ -171,11 +171,12 @@ def test_a_reader_that_has_gone_is_no_traceback(arguments: list[str], code: int)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
-def test_a_full_device_is_named_in_one_line() -> None:
-    command = [sys.executable, "-m", "driveline", "design"]
+@pytest.mark.parametrize(("words", "name"), [(["design"], "driveline design"), (["--help"], "driveline")])
+def test_a_full_device_is_named_in_one_line(words: list[str], name: str) -> None:
+    command = [sys.executable, "-m", "driveline", *words]
     with open("/dev/full", "w", encoding="utf-8") as full:
         done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert (done.returncode, done.stderr) == (1, "driveline design: standard output: No space left on device\n")
+    assert (done.returncode, done.stderr) == (1, f"{name}: standard output: No space left on device\n")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")

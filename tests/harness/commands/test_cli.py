@@ -68,6 +68,21 @@ def test_the_manoeuvres_are_listed_a_line_each(capsys, command):
     assert out.splitlines()[0] == "tipin15       tip-in through the backlash at 15 km/h (6 s)"
 
 
+@pytest.mark.parametrize("words", [["--list", "--json"], ["--json", "--list"]])
+def test_the_manoeuvres_are_listed_as_one_document_for_tools(capsys, words):
+    code, out, err = answer(capsys, "simulate", *words)
+    assert (code, err) == (0, "")
+    first, *others = json.loads(out)["manoeuvres"]
+    assert first == {"name": "tipin15", "description": "tip-in through the backlash at 15 km/h", "duration": 6.0}
+    assert [first["name"], *(other["name"] for other in others)] == list(MANOEUVRES)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r", "\u2028"])
+def test_an_argument_of_two_lines_is_refused_in_one(capsys, end):
+    expected = f"driveline: the argument {f'a{end}b.csv'!r} has more than one line; rename the file\n"
+    assert answer(capsys, "replay", f"a{end}b.csv") == (2, "", expected)
+
+
 @pytest.mark.parametrize("command", ["bound", "coupling", "back-to-back"])
 def test_what_is_measured_of_the_project_is_a_study(capsys, command):
     assert answer(capsys, command)[0] == 2
