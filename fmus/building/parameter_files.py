@@ -154,6 +154,7 @@ def declarations(fmus: Iterable[Fmu]) -> dict[str, list[tuple[str, Variable]]]:
 
 
 def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Mapping[str, str]) -> dict[str, Any]:
+    path = Path(path)
     if not path.is_file():
         raise ParameterFileError(f"there is no file {path}")
     try:

@@ -1,6 +1,10 @@
 """What FMUs that are not ours may take."""
 
 from dataclasses import dataclass
+from numbers import Real
+
+from ..base.errors import WiringError
+from ..base.plain_text import plain
 
 
 @dataclass(frozen=True)
@@ -10,10 +14,18 @@ class Limits:
     Attributes:
         call: seconds that a call may last.
         unpacked: bytes that an archive may unpack to.
+
+    Raises:
+        WiringError: one is no number above 0.
     """
 
     call: float = 60.0
     unpacked: int = 10**9
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (isinstance(value, Real) and float(value) > 0.0):
+                raise WiringError(f"Limits, {name} = {plain(repr(value), 60)}: it must be a number above 0")
 
 
 USUAL = Limits()

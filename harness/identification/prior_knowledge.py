@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..base.argument_kinds import require_each, require_kind
 from ..design.design_weights import records
 from ..recordings.measurement import Measurement
 from .drive_train import Parameters
@@ -33,6 +34,8 @@ def identify(
         RecordingError: the recording is too short, or nothing moves in it.
         MissingExtra: the extra `native` is not installed.
     """
+    require_kind("recording", recording, Measurement, "a Measurement, as read_measurement reads it")
+    require_each("more", more, str, "names of parameters")
     plant, motor, _ = records(vehicle or {})
     start = Parameters(plant.J_1, plant.J_2, plant.C, 0.0, plant.phi_B)
     return identified_from(recording, start, motor.tau, plant.m * plant.r**2 / plant.i**2, more, log)

@@ -1,6 +1,7 @@
 """What the settings of a run take from Python: a value of another kind gets one line that names it."""
 
 from collections.abc import Callable, Mapping
+from math import inf
 from numbers import Integral, Real
 from os import PathLike
 from typing import Any
@@ -36,9 +37,9 @@ ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "can": BLOCK,
     "control": (lambda value: _number(value) and value in (True, False), "True or False"),
     "parameters": (lambda value: _texts(value, object), "a dictionary such as {'plant.J_1': 0.06}"),
-    "step_size": (lambda value: isinstance(value, Real), "a number of seconds"),
+    "step_size": (lambda value: isinstance(value, Real) and 0.0 < float(value) < inf, "a number of seconds above 0"),
     "scheme": (lambda value: isinstance(value, Scheme | str), "a Scheme or its name"),
-    "seed": (lambda value: isinstance(value, Integral), "a whole number"),
+    "seed": (lambda value: isinstance(value, Integral) and int(value) >= 0, "a whole number from 0 on"),
     "folder": (lambda value: isinstance(value, str | PathLike), "the path of a folder"),
     "build": (lambda value: value is None or isinstance(value, str), "'native', 'python' or None"),
     "mapping": (lambda value: _texts(value, str), "a dictionary such as {'plant.T_gear': 'Shaft.tau'}"),

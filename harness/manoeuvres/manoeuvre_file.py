@@ -43,6 +43,7 @@ def read_manoeuvre(path: Path) -> Manoeuvre:
         ManoeuvreError: names file, key and value, and what is allowed.
         RecordingError: of a table; names the file, the column and what is wrong.
     """
+    path = Path(path)
     return _from_toml(path) if path.suffix == ".toml" else _from_table(path)
 
 

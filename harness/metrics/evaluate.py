@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
@@ -47,8 +48,11 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         T_s: sample time of the controller in s.
 
     Raises:
+        WiringError: results or manoeuvre are something else.
         ValueError: T_s is not a multiple of the interval of the results.
     """
+    require_kind("results", results, np.ndarray, "results of a run, as simulate gives them")
+    require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
     sampled = at_samples(results, T_s)
     t, T_gear, T_driver = sampled["time"], sampled["plant.T_gear"], sampled["controller.T_driver"]
     e = added_torque(T_driver, sampled["controller.T_ref"])

@@ -46,6 +46,7 @@ def bounded(read: Read) -> Read:
 
     @wraps(read)
     def limited(path: Path, *arguments: Any, **named: Any) -> Any:
+        path = Path(path)
         if not path.is_file() or (is_text(path) and path.stat().st_size <= SMALL_TEXT):
             return read(path, *arguments, **named)
         answer = _asked(path, (read.__module__, read.__name__, (path, *arguments), named))

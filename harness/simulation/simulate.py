@@ -8,9 +8,9 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..base.collected_warnings import warn_once
 from ..base.errors import WiringError
-from ..base.plain_text import plain
 from ..cosimulation.experiment import Experiment, Source, require_steps
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
@@ -50,9 +50,7 @@ def simulate(
         MemoryError: the results of so many steps do not fit in memory.
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
-    if not isinstance(manoeuvre, Manoeuvre):
-        said = plain(repr(manoeuvre), 60)
-        raise WiringError(f"manoeuvre = {said}: it must be a Manoeuvre, such as MANOEUVRES['tipin15']")
+    require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
     made = settings_of(settings, **changes)
     given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterable, Mapping
 from functools import partial
+from os import PathLike
 from typing import Unpack
 
+from ...base.argument_kinds import BLOCKS, require_each
 from ...base.errors import DrivelineError
 from ...loop.places import PLANTS, NameOrFile
 from ...loop.settings import Changes, Settings
@@ -43,10 +45,10 @@ def compare(
     if own := changes.keys() & {"plant", "control"}:
         raise TypeError(f"compare sets {' and '.join(sorted(own))} itself, for each run")
     by_name: dict[str, Manoeuvre] = {}
-    for manoeuvre in manoeuvres:
+    for manoeuvre in require_each("manoeuvres", manoeuvres, Manoeuvre, "manoeuvres, such as MANOEUVRES['tipin15']"):
         if by_name.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
             raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename one")
-    todo = cases([str(plant) for plant in plants], list(by_name))
+    todo = cases([str(plant) for plant in require_each("plants", plants, str | PathLike, BLOCKS)], list(by_name))
     one = partial(_metrics, manoeuvres=by_name, settings=Settings().replace(**changes))
     return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
 

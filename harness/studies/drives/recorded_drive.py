@@ -1,8 +1,10 @@
 """A recorded drive through the simulated vehicle, as a program asks for it."""
 
 from collections.abc import Sequence
+from os import PathLike
 from typing import Unpack
 
+from ...base.argument_kinds import BLOCKS, require_each, require_kind
 from ...base.errors import DrivelineError
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.settings import RunChanges, Settings
@@ -51,6 +53,8 @@ def replay(
     """
     if "controller" in changes:  # for scripts that no type checker reads
         raise TypeError("replay takes controllers, and no single controller")
+    require_kind("drive", drive, Drive, "a Drive, as read_drive reads it")
+    controllers = require_each("controllers", controllers, str | PathLike, BLOCKS)
     require_held(held)
     if not controllers:
         raise DrivelineError("there is no controller to drive with; NoDamping is one too")

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
+from ...base.argument_kinds import require_each
 from ...design.design_trials import loop_parameters
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import RunChanges, Settings
@@ -35,6 +36,7 @@ def analyse(
     """
     if "plant" in changes:  # for scripts that no type checker reads
         raise TypeError("analyse takes plants, and no single plant")
+    require_each("plants", plants, str, "names of plants of the project")
     common = Settings(controller=controller).replace(**changes)
     return analysis(
         {

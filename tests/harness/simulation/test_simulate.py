@@ -39,7 +39,7 @@ def test_damping_is_on_or_off(value: Any) -> None:
         ({"controller": []}, r"controller = \[\]: it must be the name of a block"),
         ({"parameters": [1]}, r"parameters = \[1\]: it must be a dictionary"),
         ({"parameters": {1: 2.0}}, r"parameters = \{1: 2.0\}: it must be a dictionary"),
-        ({"step_size": "1e-3"}, "step_size = '1e-3': it must be a number of seconds"),
+        ({"step_size": "1e-3"}, "step_size = '1e-3': it must be a number of seconds above 0"),
         ({"scheme": 3}, "scheme = 3: it must be a Scheme or its name"),
         ({"scheme": "gauss"}, "unknown scheme gauss; known are"),
         ({"control": np.ones(2)}, "control = .*: it must be True or False"),
