@@ -104,12 +104,9 @@ class TextFile:
     def _head(self) -> str:
         """Whole lines at the beginning."""
         with self._text() as file:
-            head, more = file.read(LONGEST_LINE), file.read(1)
-        if not more:
-            return head
-        if "\n" not in head:
-            raise self._too_long(1)
-        return head[: head.rindex("\n") + 1]
+            head = file.read(3 * LONGEST_LINE) + file.readline(LONGEST_LINE + 1)
+        self._require_short(head.split("\n"), 1)
+        return head
 
     def _pieces(self) -> Iterator[tuple[int, list[str]]]:
         """The lines below the names, some at a time, and the number of the first of them in the file."""
@@ -119,8 +116,7 @@ class TextFile:
                 file.readline()
             while piece := file.read(PIECE):
                 lines = (piece + file.readline(LONGEST_LINE + 1)).removesuffix("\n").split("\n")
-                if len(max(lines, key=len)) > LONGEST_LINE:
-                    raise self._too_long(number + next(k for k, line in enumerate(lines) if len(line) > LONGEST_LINE))
+                self._require_short(lines, number)
                 yield number, lines
                 number += len(lines)
 
@@ -227,8 +223,14 @@ class TextFile:
                 raise RecordingError(f"{refusal}, nor a time such as {EXAMPLES}") if ":" in cell else refusal
         return np.array(texts, dtype=float)
 
-    def _too_long(self, line: int) -> RecordingError:
-        return RecordingError(f"{self.path}, line {line} has more than {LONGEST_LINE} characters")
+    def _require_short(self, lines: Sequence[str], first: int) -> None:
+        """
+        Args:
+            first: number of the first of them in the file.
+        """
+        for number, line in enumerate(lines, first):
+            if len(line) > LONGEST_LINE:
+                raise RecordingError(f"{self.path}, line {number} has more than {LONGEST_LINE} characters")
 
     def _too_wide(self, line: int, cells: int) -> RecordingError:
         return RecordingError(f"{self.path}, line {line} has {cells} cells; at most {MOST_COLUMNS} are read")

@@ -1,0 +1,171 @@
+"""What a file may take: attacks are refused in one line, recordings are read."""
+
+import os
+import signal
+import sys
+import zlib
+from pathlib import Path
+from struct import pack
+from typing import Any
+
+import numpy as np
+import pytest
+
+from driveline.harness.base.interruption import stoppable
+from driveline.harness.recordings import bounded_reading, limits, text_file
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.source import RecordingError
+from tests.harness.recordings.test_bus_log import drive as frames
+from tests.harness.recordings.test_bus_log import write as write_log
+from tests.harness.recordings.variants import TEXTS, recording, table, write_arrow, write_mdf
+
+HEADING = "Time [s],Velocity [km/h],Motor Torque [Nm]\n"
+
+
+def refusal(path: Path, **how: Any) -> str:
+    with pytest.raises(RecordingError) as refused:
+        read_drive(path, **how)
+    message = str(refused.value)
+    assert message.startswith(str(path))
+    assert message.isprintable(), message
+    return message.removeprefix(str(path)).lstrip(" :,")
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "drive.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def rows(count: int) -> str:
+    return HEADING + "".join(f"{0.01 * k:.2f},50,{k % 7}\n" for k in range(count))
+
+
+@pytest.mark.parametrize("variant", TEXTS)
+def test_a_text_in_many_pieces_is_read_as_in_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, variant: str) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_bytes(TEXTS[variant](recording()))
+    whole = read_drive(path)
+    monkeypatch.setattr(text_file, "PIECE", 100)
+    in_pieces = read_drive(path)
+    for name in ("time", "v", "elevation", "T_mot"):
+        np.testing.assert_array_equal(getattr(whole, name), getattr(in_pieces, name))
+
+
+def test_a_bad_cell_of_a_later_piece_is_named_with_its_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(text_file, "PIECE", 100)
+    lines = [*rows(200).splitlines(), "", "2.01,50,true"]
+    message = refusal(written(tmp_path, "\n".join(lines)))
+    assert message == "line 203, column Motor Torque [Nm]: true is not a finite number"
+    message = refusal(written(tmp_path, "\n".join([*lines[:-1], '2.01,50,"7', '"', *lines[-1:]])))
+    assert "line 203, column Motor Torque [Nm]: 7" in message
+
+
+def test_a_text_has_so_many_bytes_at_the_most(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(tmp_path, rows(100))
+    monkeypatch.setattr(text_file, "LARGEST_TEXT", path.stat().st_size)
+    assert len(read_drive(path).time) == 100
+    monkeypatch.setattr(text_file, "LARGEST_TEXT", path.stat().st_size - 1)
+    assert "a text is read up to" in refusal(path)
+
+
+@pytest.mark.parametrize("line", [1, 2, 151])
+def test_a_line_has_so_many_characters_at_the_most(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: int) -> None:
+    lines = rows(200).splitlines()
+    lines[line - 1] += ","
+    lines[line - 1] = lines[line - 1].ljust(3000)
+    path = written(tmp_path, "\n".join(lines))
+    monkeypatch.setattr(text_file, "LONGEST_LINE", 3000)
+    assert len(read_drive(path).time) == 200
+    monkeypatch.setattr(text_file, "LONGEST_LINE", 2999)
+    assert refusal(path) == f"line {line} has more than 2999 characters"
+
+
+def test_a_text_of_one_line_is_refused_for_its_length(tmp_path: Path) -> None:
+    assert refusal(written(tmp_path, "1," * limits.LONGEST_LINE)) == "line 1 has more than 1000000 characters"
+
+
+def test_a_line_has_so_many_cells_at_the_most(tmp_path: Path) -> None:
+    wide = [HEADING.strip(), *(f"{k},50,7" for k in range(150))]
+    wide[140] += "," * (limits.MOST_COLUMNS - 3)
+    assert len(read_drive(written(tmp_path, "\n".join(wide))).time) == 150
+    wide[140] += ","
+    assert refusal(written(tmp_path, "\n".join(wide))) == "line 141 has 10001 cells; at most 10000 are read"
+    names = HEADING.strip() + "".join(f",x{k}" for k in range(limits.MOST_COLUMNS - 2))
+    assert refusal(written(tmp_path, f"{names}\n0,50,7\n1,50,8\n")) == "line 1 has 10001 cells; at most 10000 are read"
+
+
+def test_a_record_beside_a_file_is_read_up_to_a_megabyte(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("Time,Velocity,Motor Torque\n0,50,7\n1,50,8\n")
+    note = '{"files": ["drive.csv"], "units": {"Time": "s", "Velocity": "km/h", "Motor Torque": "N.m"}}'
+    (tmp_path / "drive.json").write_text(note.ljust(limits.LARGEST_NOTE))
+    assert len(read_drive(path).time) == 2
+    (tmp_path / "drive.json").write_text(note.ljust(limits.LARGEST_NOTE + 1))
+    assert "has no unit" in refusal(path)
+
+
+@pytest.mark.parametrize("unit", ["h200.min-200.km/h", "h99999999.min-99999999", ".".join(["m"] * 3000)])
+def test_a_unit_with_powers_is_no_unit_of_a_speed(tmp_path: Path, unit: str) -> None:
+    assert "is not a known unit" in refusal(written(tmp_path, rows(3).replace("km/h", unit)))
+
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux limits the memory of a process")
+
+
+@pytest.mark.slow
+@linux
+def test_a_parquet_file_that_unpacks_to_gigabytes_is_refused(tmp_path: Path) -> None:
+    pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    names = HEADING.strip().split(",")
+    some = pa.table({name: np.zeros(2_000_000) for name in names})
+    path = tmp_path / "bomb.parquet"
+    with pq.ParquetWriter(path, some.schema) as file:
+        for _ in range(100):  # 4.8 GB
+            file.write_table(some)
+    assert path.stat().st_size < 3_000_000
+    assert refusal(path) == "takes more than 1500 MB of memory to read"
+
+
+@pytest.mark.slow
+@linux
+def test_a_container_of_a_log_that_unpacks_to_gigabytes_is_refused(tmp_path: Path) -> None:
+    path, databases = write_log(tmp_path, frames())
+    packer = zlib.compressobj(9)
+    content = b"".join(packer.compress(bytes(10_000_000)) for _ in range(100)) + packer.flush()
+    head = pack("<4sHHLL", b"LOBJ", 16, 1, 32 + len(content), 10) + pack("<H6xL4x", 2, 0)
+    path.write_bytes(path.read_bytes() + head + content)
+    assert refusal(path, databases=databases) == "takes more than 1500 MB of memory to read"
+
+
+def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "drive.parquet"
+    write_arrow(recording(), path)
+    monkeypatch.setattr(bounded_reading, "resource", None)
+    monkeypatch.setattr(bounded_reading, "SECONDS", 0.01)
+    assert refusal(path) == "takes more than 0.01 s to read"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_a_crash_of_a_package_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "drive.mf4"
+    write_mdf(recording(), path)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    (tmp_path / "asammdf.py").write_text("import os\nos.abort()\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert refusal(path) == f"ended the process that read it: exit code {-signal.SIGABRT}"
+
+
+def test_large_texts_and_packed_files_are_read_by_a_process_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = written(tmp_path, table(recording()))
+    monkeypatch.setattr(bounded_reading, "SMALL_TEXT", path.stat().st_size)
+    monkeypatch.setattr(bounded_reading, "_asked", lambda *_: pytest.fail("in a process of its own"))
+    whole = read_drive(path)
+    monkeypatch.undo()
+    monkeypatch.setattr(bounded_reading, "SMALL_TEXT", path.stat().st_size - 1)
+    with stoppable():
+        alone = read_drive(path)
+    np.testing.assert_array_equal(whole.T_mot, alone.T_mot)
+    assert alone.file_units == whole.file_units
