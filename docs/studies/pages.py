@@ -170,6 +170,7 @@ _ROWS = (
     Page("mutation", made_by="make mutation", scores="tests/mutation/score.json"),
     _fuzz("calls", "fmus.native.packaging"),
     *map(_fuzz, ("archives", "plants", "recordings", "parameter_files")),
+    _fuzz("swollen"),
     _fuzz("options", "harness.commands.cli", "harness.commands.options"),
 )
 

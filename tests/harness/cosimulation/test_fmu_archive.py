@@ -6,7 +6,9 @@ from zipfile import ZIP_DEFLATED, ZipFile
 import pytest
 
 from driveline.harness.base.errors import DrivelineError, WiringError
+from driveline.harness.cosimulation import fmu_archive
 from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.fmu_archive import described
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.limits import Limits
 from driveline.harness.cosimulation.runs import run
@@ -46,6 +48,15 @@ def test_an_archive_may_unpack_to_the_limit_and_no_further(stranger, tmp_path):
         WiringError, match=rf"is not unpacked: it unpacks to {size / 1e6} MB; {(size - 1) / 1e6} MB are allowed"
     ):
         Interface(path, Limits(unpacked=size - 1))
+
+
+def test_a_model_description_has_so_many_bytes_at_the_most(stranger, monkeypatch):
+    size = len(described(stranger))
+    monkeypatch.setattr(fmu_archive, "LARGEST_DESCRIPTION", size)
+    assert len(described(stranger)) == size
+    monkeypatch.setattr(fmu_archive, "LARGEST_DESCRIPTION", size - 1)
+    with pytest.raises(WiringError, match=rf"modelDescription.xml has {size / 1e6} MB$"):
+        described(stranger)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,168 @@
+"""Files that are small and take much: units, keys and numbers without end, lines and columns without number, and packed
+recordings that unpack to gigabytes."""
+
+import resource
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from struct import pack
+from time import process_time
+
+import asammdf
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from driveline.fmus.building.parameter_files import read_vehicle
+from driveline.fmus.errors import BuildError
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.cosimulation.unit_conversion import SI, factor
+from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.limits import SECONDS
+from driveline.harness.recordings.quantities import aliases
+from tests.fuzz.target import Attempt, Target, Unclean
+from tests.harness.recordings.test_bus_log import drive as frames
+from tests.harness.recordings.test_bus_log import write as write_log
+
+MEMORY, BESIDE = 2_000_000_000, 2.0
+"""Bytes that the process may have that reads a file, and seconds that it may compute beside reading."""
+
+SYMBOLS = ("m", "s", "h", "min", "N", "km", "rad", "deg", "Ym", "ym", "g", "x")
+
+NAMES = ["Time [s]", "Velocity [km/h]", "Motor Torque [Nm]"]
+
+
+def scale(random: Random, most: float) -> int:
+    """A number up to so many, small and large alike."""
+    return int(10.0 ** random.uniform(0.0, np.log10(most)))
+
+
+def unit(random: Random) -> str:
+    """A product of powers."""
+    powers = ("", str(scale(random, 1e9)), f"-{scale(random, 1e9)}", f"^{scale(random, 9)}")
+    count = scale(random, 5000)
+    return random.choice((".", "*", "/")).join(random.choice(SYMBOLS) + random.choice(powers) for _ in range(count))
+
+
+def in_heading(random: Random, folder: Path) -> None:
+    name = random.choice(NAMES)
+    heading = ",".join([*(each for each in NAMES if each != name), f"{name.partition('[')[0]}[{unit(random)}]"])
+    read_drive(written(folder / "drive.csv", f"{heading}\n0,1,2\n1,1,2\n"))
+
+
+def in_manoeuvre(random: Random, folder: Path) -> None:
+    read_manoeuvre(written(folder / "mine.toml", f'duration = 2\nv_0 = "15 {unit(random)}"\n'))
+
+
+def in_fmu(random: Random, folder: Path) -> None:
+    try:
+        factor(unit(random), random.choice((SI, "N.m", unit(random))))
+    except ValueError as reason:
+        raise DrivelineError(str(reason)) from reason
+
+
+def entry(random: Random) -> str:
+    """A line of TOML with a key of many parts, a number of many digits, or brackets in brackets."""
+    name, count = random.choice(("duration", "J_1", "omega_1", "x")), scale(random, 200_000)
+    part = random.choice(("a", "'a'", '"\\""', "1", '"="'))
+    dots = random.choice((".", " . ")).join([part] * count)
+    digits = random.choice(("9", "1_", "0")) * count + "1"
+    value = random.choice((digits, f"0x{'F' * count}", f"0.{digits}", f"1e{digits}", "[" * count, "{a=" * count))
+    return random.choice((f"{name}.{dots} = 1", f"[{dots}]", f"{name} = {{{dots} = 1}}", *3 * (f"{name} = {value}",)))
+
+
+def toml(random: Random, folder: Path) -> None:
+    text = "\n".join(entry(random) for _ in range(random.choice((1, 1, 3, 100))))[: scale(random, 2e6) + 1000]
+    path = written(folder / "file.toml", text)
+    random.choice((read_manoeuvre, read_vehicle, aliases))(path)
+
+
+def text(random: Random, folder: Path) -> None:
+    """One line, one column or one cell again and again."""
+    again = random.choice(("x", ",", "\n", " ", "1,2,3\n", "1,", '"', "1\u00a0,2,3\n", "true,1,2\n", ";", "\r", "\t"))
+    count = scale(random, 3e7) // len(again) + 1
+    read_drive(written(folder / "drive.csv", random.choice(("", ",".join(NAMES) + "\n0,1,2\n1,1,2\n")) + again * count))
+
+
+def parquet(random: Random, folder: Path) -> None:
+    """Zeros, at most 2.4 GB of them."""
+    rows = scale(random, 1e8)
+    some = pa.table({name: np.zeros(min(rows, 10_000_000)) for name in NAMES})
+    with pq.ParquetWriter(folder / "drive.parquet", some.schema, compression=random.choice(("zstd", "gzip"))) as file:
+        for _ in range(rows // len(some)):
+            file.write_table(some, row_group_size=len(some))
+    read_drive(folder / "drive.parquet")
+
+
+def mdf(random: Random, folder: Path) -> None:
+    """Zeros, at most 1.2 GB of them."""
+    time = 0.001 * np.arange(scale(random, 5e7))
+    with asammdf.MDF() as file:
+        for name, of in (("Velocity", "km/h"), ("Motor Torque", "Nm")):
+            file.append([asammdf.Signal(np.zeros(len(time)), time, name=name, unit=of)])
+        file.save(folder / "drive.mf4", overwrite=True, compression=2)
+    read_drive(folder / "drive.mf4")
+
+
+def log(random: Random, folder: Path) -> None:
+    """A container of zeros, at most 2 GB of them, behind sound frames."""
+    path, databases = write_log(folder, frames())
+    packer = zlib.compressobj(1)
+    content = b"".join(packer.compress(bytes(1_000_000)) for _ in range(scale(random, 2000))) + packer.flush()
+    head = pack("<4sHHLL", b"LOBJ", 16, 1, 32 + len(content), 10) + pack("<H6xL4x", 2, 0)
+    path.write_bytes(path.read_bytes() + head + content)
+    read_drive(path, databases=databases)
+
+
+QUICK = (in_heading, in_manoeuvre, in_fmu, toml, text)
+PACKED = (parquet, mdf, log)
+SHARE = 0.1
+"""Of the tries that are packed files."""
+
+
+def written(path: Path, content: str) -> Path:
+    path.write_text(content, encoding="utf-8")
+    return path
+
+
+@contextmanager
+def attempts(folder: Path) -> Iterator[Attempt]:
+    def attempt(random: Random) -> str:
+        kind: Callable[[Random, Path], None] = random.choice(PACKED if random.random() < SHARE else QUICK)
+        before, began = _children_time(), process_time()
+        try:
+            kind(random, folder)
+            answer = "read"
+        except (DrivelineError, BuildError) as refusal:
+            answer = "refused in one line"
+            if not all(line.isprintable() for line in str(refusal).splitlines()[: None if kind is toml else 1]):
+                raise Unclean(f"{kind.__name__}: {refusal}") from refusal
+        except Exception as fault:
+            raise Unclean(f"{kind.__name__}: {type(fault).__name__}: {str(fault)[:300]}") from fault
+        seconds = max(process_time() - began if kind in QUICK else 0.0, _children_time() - before)
+        memory = 1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+        for path in folder.iterdir():
+            path.unlink()
+        if seconds > SECONDS + BESIDE or memory > MEMORY:
+            raise Unclean(f"{kind.__name__}: {seconds:.1f} s of computing, {memory / 1e6:.0f} MB")
+        return answer
+
+    yield attempt
+
+
+def _children_time() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+TARGET = Target(
+    "small files that take much: units, keys, numbers, lines and columns without end, Parquet, MDF and BLF that unpack "
+    "to gigabytes",
+    "read or refused in a line, with at most 30 s of computing and 2 GB",
+    attempts,
+    short=15,
+    long=1000,
+)
