@@ -17,6 +17,8 @@ import can
 import numpy as np
 import pandas as pd
 
+from driveline.harness.base.interruption import script
+
 DBC = """VERSION ""
 BU_: ECU
 BO_ 256 Motor: 8 ECU
@@ -83,7 +85,7 @@ def read(path: Path, rows: int) -> str:
     return f"{computed:.1f} s of computing, {lasted:.1f} s in all, at most {after.ru_maxrss * 1024 / 1e6:.0f} MB"
 
 
-def main(kind: str, rows: int, others: int) -> None:
+def one(kind: str, rows: int, others: int) -> None:
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"drive.{kind}"
         KINDS[kind](drive(rows, others), path)
@@ -91,12 +93,16 @@ def main(kind: str, rows: int, others: int) -> None:
         print(f"{rows} rows, {others + 4} columns, {kind}, {size:.0f} MB: {read(path, rows)}", flush=True)
 
 
-if __name__ == "__main__":
+def main() -> None:
     if sys.argv[1:]:
-        main(sys.argv[1], *map(int, sys.argv[2:]))
-    else:
-        for shape in ((3_600_000, 0), (1_000_000, 16)):
-            for each in KINDS:
-                if shape[1] == 0 or each != "blf":
-                    arguments = [each, *map(str, shape)]  # a process each, whose children tell their own memory
-                    subprocess.run([sys.executable, "-m", __spec__.name, *arguments], check=True)
+        one(sys.argv[1], *map(int, sys.argv[2:]))
+        return
+    for rows, others in ((3_600_000, 0), (1_000_000, 16)):
+        for kind in KINDS:
+            if others == 0 or kind != "blf":
+                arguments = [kind, str(rows), str(others)]  # a process each, whose children tell their own memory
+                subprocess.run([sys.executable, "-m", __spec__.name, *arguments], check=True)
+
+
+if __name__ == "__main__":
+    script(main)
