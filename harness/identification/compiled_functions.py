@@ -11,9 +11,8 @@ from tempfile import TemporaryDirectory
 
 import casadi as ca
 
-from ..base.user_cache import user_cache
-
 from ...fmus.child_process import run
+from ..base.user_cache import user_cache
 
 FLAGS = ("-shared", "-fPIC", "-O1", "-ffp-contract=off")
 """Each operation rounds on its own, as in CasADi."""
