@@ -10,7 +10,7 @@ import numpy as np
 from ..base.optional_packages import required
 from ..base.plain_text import plain
 from .headings import split
-from .source import Column, RecordingError, Samples, samples
+from .source import Column, RecordingError, Samples, Where, samples
 
 PARQUET, FEATHER = b"PAR1", b"ARROW1"
 """With which such files begin."""
@@ -48,10 +48,8 @@ class ArrowFile:
             )
         values = values.astype(float)
 
-        def where(k: int) -> str:
-            return f"row {k + 1}"
-
-        return samples(self.path, self.columns[place], values, None, where)
+        rows = Where("row {0}", range(len(values)))
+        return samples(self.path, self.columns[place], values, None, rows)
 
     def _done(self, work: Any) -> Any:
         try:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
-from .source import Column, RecordingError, Samples, samples
+from .source import Column, RecordingError, Samples, Where, samples
 
 BLF = b"LOGG"
 """With which such files begin."""
@@ -105,10 +105,7 @@ class BusLog:
             raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers") from None
 
     def _samples(self, place: int, values: np.ndarray, time: np.ndarray) -> Samples:
-        def where(k: int) -> str:
-            return f"frame at {time[k]:g} s"
-
-        return samples(self.path, self.columns[place], values, time, where)
+        return samples(self.path, self.columns[place], values, time, Where("frame at {1:g} s", time))
 
 
 def _messages(path: Path) -> Mapping[tuple[int, bool], Any]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
-from .source import Column, RecordingError, Samples, samples
+from .source import Column, RecordingError, Samples, Where, samples
 
 MARKS = (b"MDF     ", b"UnFinMF ")
 """With which such files begin; the second one if the logger was cut off."""
@@ -60,10 +60,7 @@ class MdfFile:
         time = same if np.array_equal(same, time) else time
         values = signal.samples.astype(float)
 
-        def where(k: int) -> str:
-            return f"sample {k + 1} at {time[k]:g} s"
-
-        return samples(self.path, column, values, time, where)
+        return samples(self.path, column, values, time, Where("sample {0} at {1:g} s", time))
 
 
 @contextmanager

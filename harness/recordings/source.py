@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from ..base.errors import DrivelineError
 
@@ -15,6 +15,22 @@ if TYPE_CHECKING:
 
 class RecordingError(DrivelineError):
     """A recording that cannot be used; the message says where and why."""
+
+
+class Where(NamedTuple):
+    """What messages say of where a value is in its file.
+
+    Attributes:
+        pattern: of the text: {0} stands for which value it is, {1} for the number that goes with it.
+        numbers: these.
+    """
+
+    pattern: str
+    numbers: Sequence[int] | np.ndarray
+
+    def __call__(self, k: int) -> str:
+        """Of the value with that index."""
+        return self.pattern.format(k + 1, self.numbers[k])
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from .clock_times import EXAMPLES, seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
 from .limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
-from .source import Column, RecordingError, Samples, not_finite
+from .source import Column, RecordingError, Samples, Where, not_finite
 
 LONGEST_CELL = 60
 """Characters of a cell that are shown."""
@@ -67,11 +67,7 @@ class TextFile:
             for place, values in self._parsed([lines[k] for k in kept], places, at).items():
                 pieces[place].append(values)
             numbers.append(at)
-        line = np.concatenate([*numbers, np.empty(0, dtype=int)])
-
-        def where(k: int) -> str:
-            return f"line {line[k]}"
-
+        where = Where("line {1}", np.concatenate([*numbers, np.empty(0, dtype=int)]))
         whole = {place: np.concatenate([*pieces[place], np.empty(0)]) for place in places}
         return [Samples(self._values(whole[place], place, where), None, where) for place in places]
 
@@ -87,8 +83,8 @@ class TextFile:
         if isinstance(values, int):
             cell = plain(cells[values], LONGEST_CELL) or "nothing"
             raise RecordingError(
-                f"{self.path}, {where(values)}, column {self.columns[place].heading}: {cell} is no time as in the first row, "
-                f"such as {EXAMPLES}"
+                f"{self.path}, {where(values)}, column {self.columns[place].heading}: {cell} is no time as in the "
+                f"first row, such as {EXAMPLES}"
             )
         return values
 
