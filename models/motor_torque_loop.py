@@ -2,8 +2,12 @@
 
     tau^2 d2T_mot/dt2 + sqrt(2) tau dT_mot/dt + T_mot = T_ref,   |T_ref| limited to T_max
 
-and what motor control reports: the torque with the error of its estimate, the speed as the resolver
-gives it. The noise is held for T_s; sample k of it is a pure function of the seed and k.
+Three more effects are off until their parameters are set: the demand acts t_dead later (physics.dead_time); above
+omega_base the power is constant, and T_max falls with omega_base/|omega_1| (field weakening); the torque follows
+the rate dT_mot/dt of the lag within +-dT_max.
+
+Motor control reports the torque with the error of its estimate, and the speed as the resolver gives it.
+The noise is held for T_s; sample k of it is a pure function of the seed and k.
 """
 
 from typing import Annotated, NamedTuple
@@ -13,10 +17,15 @@ from .block.frame import Content, Frame
 from .block.noise import normals
 from .block.operators import clip, floor, maximum, where
 from .block.types import ContinuousBlock
+from .physics import dead_time
+from .physics.dead_time import Line
 from .physics.vehicle import CAR, MotorLag, MotorTorque
 
 SQRT_2 = 2.0**0.5
 NOISE = 0.0
+
+OMEGA_MAX = 5000.0
+"""Largest speed of the motor in rad/s."""
 
 
 class Parameters(NamedTuple):
@@ -29,17 +38,26 @@ class Parameters(NamedTuple):
     q_omega: Annotated[float, Real("rad/s", "resolution of the measured speed, 0 for none", 0.0, 10.0)] = 0.1
     T_s: Annotated[float, Real("s", "interval for which a sample of the noise is held", 1e-4, 0.1)] = 0.002
     seed: Annotated[int, Integer("seed of the noise", 0, 1_000_000)] = 1
+    t_dead: Annotated[float, Real("s", "dead time of the demand; below 0.1 ms none", 0.0, 0.01)] = 0.0
+    dT_max: Annotated[float, Real("N.m/s", "largest rate of the torque; 1e7 limits none", 10.0, 1e8)] = 1e7
+    omega_base: Annotated[
+        float, Real("rad/s", "speed above which the power is constant; 5000 is never reached", 10.0, 1e4)
+    ] = OMEGA_MAX
 
 
 class Input(NamedTuple):
     T_ref: Annotated[float, Real("N.m", "demanded motor torque", -2000.0, 2000.0, 100.0)] = 0.0
-    omega_1: Annotated[float, Real("rad/s", "speed of the motor", -5000.0, 5000.0, 100.0)] = 0.0
+    omega_1: Annotated[float, Real("rad/s", "speed of the motor", -OMEGA_MAX, OMEGA_MAX, 100.0)] = 0.0
 
 
 class State(NamedTuple):
     T_mot: Annotated[float, Real("N.m", "air-gap torque")]
-    dT_mot: Annotated[float, Real("N.m/s", "rate of the air-gap torque")]
+    dT_mot: Annotated[float, Real("N.m/s", "rate of the air-gap torque, before its limit")]
     sample: Annotated[float, Real("1", "time in samples of the noise")]
+    d_0: Annotated[float, Real("N.m", "demand in the dead time, filtered")]
+    d_1: Annotated[float, Real("N.m", "first derivative of d_0 times t_dead")]
+    d_2: Annotated[float, Real("N.m", "second derivative of d_0 times t_dead^2")]
+    d_3: Annotated[float, Real("N.m", "third derivative of d_0 times t_dead^3")]
 
 
 class Output(NamedTuple):
@@ -48,17 +66,38 @@ class Output(NamedTuple):
     omega_1_meas: Annotated[float, Real("rad/s", "speed of the motor as the resolver measures it")]
 
 
+def limited(T: float, omega_1: float, p: Parameters) -> float:
+    """A torque in N.m, limited to what the motor has at a speed (rad/s)."""
+    T_max = p.T_max * (p.omega_base / maximum(abs(omega_1), p.omega_base))
+    return clip(T, -T_max, T_max)
+
+
 def start(u: Input, p: Parameters) -> State:
     """Stationary at the demanded torque."""
-    return State(T_mot=clip(u.T_ref, -p.T_max, p.T_max), dT_mot=0.0, sample=0.0)
+    T_mot = limited(u.T_ref, u.omega_1, p)
+    return State(T_mot=T_mot, dT_mot=0.0, sample=0.0, d_0=u.T_ref, d_1=0.0, d_2=0.0, d_3=0.0)
+
+
+def line(x: State) -> Line:
+    return Line(x.d_0, x.d_1, x.d_2, x.d_3)
+
+
+def delayed_demand(x: State, u: Input, p: Parameters) -> float:
+    """T_ref as it was t_dead ago, in N.m."""
+    return dead_time.delayed(line(x), u.T_ref, p.t_dead)
 
 
 def derivative(x: State, u: Input, p: Parameters) -> State:
-    T_ref = clip(u.T_ref, -p.T_max, p.T_max)
+    T_ref = limited(delayed_demand(x, u, p), u.omega_1, p)
+    d_0, d_1, d_2, d_3 = dead_time.rates(line(x), u.T_ref, p.t_dead)
     return State(
-        T_mot=x.dT_mot,
+        T_mot=clip(x.dT_mot, -p.dT_max, p.dT_max),
         dT_mot=(T_ref - x.T_mot - SQRT_2 * p.tau * x.dT_mot) / (p.tau * p.tau),
         sample=1.0 / p.T_s,
+        d_0=d_0,
+        d_1=d_1,
+        d_2=d_2,
+        d_3=d_3,
     )
 
 
@@ -72,6 +111,13 @@ def output(x: State, u: Input, p: Parameters) -> Output:
         T_mot_est=p.g_T * x.T_mot + p.o_T + p.sigma_T * noise_T,
         omega_1_meas=where(p.q_omega > 0.0, steps * p.q_omega, omega_1),
     )
+
+
+def event_indicators(x: State, u: Input, p: Parameters) -> tuple[float, ...]:
+    """The torque changes at its largest rate, the delayed demand reaches the largest torque, the speed omega_base."""
+    T_max = limited(p.T_max, u.omega_1, p)
+    T_ref = delayed_demand(x, u, p)
+    return (x.dT_mot - p.dT_max, x.dT_mot + p.dT_max, T_ref - T_max, T_ref + T_max, abs(u.omega_1) - p.omega_base)
 
 
 FRAMES = (
@@ -109,6 +155,7 @@ BLOCK = ContinuousBlock(
     start=start,
     output=output,
     derivative=derivative,
+    event_indicators=event_indicators,
     step_size=0.001,
     frames=FRAMES,
 )

@@ -90,6 +90,8 @@ class Parameters(NamedTuple):
     omega_sat: brake.BristleSpeedLimit = BRAKE.omega_sat
     v_0: vehicle.StartSpeed = 0.0
     T_0: vehicle.StartTorque = 0.0
+    g_muL: Annotated[float, Real("1", "friction of the road under the left wheel, over mu", 0.02, 2.0)] = 1.0
+    g_muR: Annotated[float, Real("1", "friction of the road under the right wheel, over mu", 0.02, 2.0)] = 1.0
 
 
 class State(NamedTuple):
@@ -185,17 +187,27 @@ def air_gap_torque(x: State, u: Input, p: Parameters) -> float:
     return u.T_mot + ripple / (1.0 + ratio * ratio) - p.c_fm * tanh(x.omega_1 / p.omega_fm)
 
 
+def tyre_spring(u: float, share: float, mu: float, F_z: float, p: Parameters) -> float:
+    """Force in N of one tyre with the deflection u (m).
+
+    Args:
+        share: of the stiffness, over that of half the axle.
+        mu: friction coefficient of the road under it.
+        F_z: load of the axle in N.
+    """
+    B = p.c_slip / (p.C_x * mu * p.F_z0) / p.sigma * share
+    return 0.5 * mu * F_z * sin(p.C_x * atan(B * u))
+
+
 def wheels(x: State, u: Input, p: Parameters) -> Wheels:
     F_z = maximum(200.0, p.F_z0 - (p.k_th * x.theta_b + p.d_th * x.omega_b) / p.L_w)
-    B_0 = p.c_slip / (p.C_x * p.mu * p.F_z0) / p.sigma
-    grip = 0.5 * p.mu * F_z
     d = 0.5 * vehicle.standstill_damping(x.v_h, p)
     dz_L = brake.bristle_rate(x.omega_L, x.z_L, p)
     dz_R = brake.bristle_rate(x.omega_R, x.z_R, p)
     rolling = 0.5 * p.c_rr * F_z * p.r
     return Wheels(
-        F_L=grip * sin(p.C_x * atan(B_0 * (1.0 - p.t_asym) * x.u_L)) + d * (p.r * x.omega_L - x.v_h),
-        F_R=grip * sin(p.C_x * atan(B_0 * (1.0 + p.t_asym) * x.u_R)) + d * (p.r * x.omega_R - x.v_h),
+        F_L=tyre_spring(x.u_L, 1.0 - p.t_asym, p.mu * p.g_muL, F_z, p) + d * (p.r * x.omega_L - x.v_h),
+        F_R=tyre_spring(x.u_R, 1.0 + p.t_asym, p.mu * p.g_muR, F_z, p) + d * (p.r * x.omega_R - x.v_h),
         T_rL=rolling * tanh(p.r * x.omega_L / p.v_rr),
         T_rR=rolling * tanh(p.r * x.omega_R / p.v_rr),
         T_brL=0.5 * u.T_brake * brake.grip(x.z_L, dz_L, p),

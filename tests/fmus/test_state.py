@@ -123,3 +123,17 @@ def test_numbers_keep_type_and_bits(value):
 
 def test_not_a_number_stays_not_a_number():
     assert math.isnan(snapshot.unpack("build", snapshot.pack("build", (math.nan,)))[0])
+
+
+def test_a_demand_that_is_on_its_way_through_the_dead_time_is_in_the_state(built, tmp_path):
+    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(t_dead=0.005, dT_max=5000.0, omega_base=20.0)
+        drive(host, 0, 30)
+        host.set(T_ref=150.0)
+        host.step(30 * 0.0013, 0.0013)
+        state = host.fmu.getFMUstate()
+        host.set(T_ref=0.0)
+        expected = drive(host, 31, 45)
+        host.fmu.setFMUstate(state)
+        assert drive(host, 31, 45) == expected
+        host.fmu.freeFMUstate(state)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from driveline.models import motor_torque_loop as motor
 from driveline.models.block.integrator import Integrator
+from driveline.models.physics import dead_time
 
 P = motor.Parameters()
 SILENT = P._replace(sigma_T=0.0, sigma_omega=0.0, q_omega=0.0)
@@ -115,3 +116,78 @@ def test_the_noise_is_held_for_a_sample() -> None:
     seen = run(motor.Input(0.0, 7.0), P._replace(q_omega=0.0), 40, 5e-4)[:40, 2].reshape(10, 4)
     assert (np.ptp(seen, axis=1) == 0.0).all()
     assert len(set(seen[:, 0])) == 10
+
+
+@pytest.mark.parametrize(
+    ("t_dead", "stated"), [(0.0, 0.0), (9.9e-5, 0.0), (1e-3, 4e-4), (2e-3, 2e-3), (5e-3, 0.01), (0.01, 0.035)]
+)
+def test_the_torque_comes_the_dead_time_later_but_for_the_error_that_is_stated(t_dead: float, stated: float) -> None:
+    """Seen every 0.1 ms, over the height of the step; none below 0.1 ms."""
+    delayed = run(motor.Input(1.0), SILENT._replace(t_dead=t_dead), 400, 1e-4)[:, 0]
+    late = int(t_dead / 1e-4 + 1e-6)
+    exact = np.array([step_response(max(k - late, 0) * 1e-4, P.tau) for k in range(401)])
+    assert np.max(np.abs(delayed - exact)) == pytest.approx(stated, rel=0.2, abs=1e-8)
+
+
+@pytest.mark.parametrize("t_dead", [1e-4, 1e-3, 5e-3, 0.01])
+@pytest.mark.parametrize("frequency", [1.0, 10.0, 20.0])
+def test_a_sine_is_late_by_the_dead_time_and_as_high_as_before(t_dead: float, frequency: float) -> None:
+    """The frequency response of the line, from its matrices: exp(-s T)."""
+    s, eye = 2j * np.pi * frequency, np.eye(4)
+    A = np.array([dead_time.rates(dead_time.Line(*column), 0.0, t_dead) for column in eye]).T
+    B = np.array(dead_time.rates(dead_time.Line(0.0, 0.0, 0.0, 0.0), 1.0, t_dead))
+    C = np.array([dead_time.delayed(dead_time.Line(*column), 0.0, t_dead) for column in eye])
+    assert C @ np.linalg.solve(s * eye - A, B) == pytest.approx(np.exp(-s * t_dead), abs=1e-4)
+
+
+EFFECTS = SILENT._replace(t_dead=5e-3, dT_max=5000.0, omega_base=300.0)
+"""All of them at once."""
+
+
+def test_the_communication_step_changes_nothing_with_all_effects() -> None:
+    """1 ms and 0.1 ms, a demand that changes every 2 ms."""
+    coarse, fine = (course(EFFECTS, steps) for steps in (2, 20))
+    assert coarse == pytest.approx(fine, abs=1e-5)
+    assert np.ptp(coarse) > 50.0
+
+
+def course(p: motor.Parameters, steps: int) -> np.ndarray:
+    """The torque every 2 ms of 200 ms, in so many steps each, under a random demand at 400 rad/s."""
+    integrator, x, rows = Integrator(motor.BLOCK), motor.start(motor.Input(), p), []
+    for T_ref in np.random.default_rng(1).uniform(-200.0, 200.0, 100).tolist():
+        for _ in range(steps):
+            x = integrator.advance(x, motor.Input(T_ref, 400.0), p, 2e-3 / steps)
+        rows.append(x.T_mot)
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("tau", [1e-3, P.tau, 0.03])
+@pytest.mark.parametrize("dT_max", [500.0, 10_000.0, 1e5])
+def test_the_torque_changes_at_most_at_its_rate_and_overshoots_no_more_for_it(tau: float, dT_max: float) -> None:
+    p = SILENT._replace(tau=tau, dT_max=dT_max)
+    T = run(motor.Input(100.0), p, 5000, 1e-4)[:, 0]
+    rate, free = np.diff(T).max() / 1e-4, 0.4556 * 100.0 / tau  # exp(-pi/4) of the lag alone
+    assert rate == pytest.approx(min(dT_max, free), rel=0.02)
+    assert T.max() <= 100.0 * (1.0 + exp(-np.pi)) + 1e-6
+    assert T[-1] == pytest.approx(100.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("omega_1", "limit"), [(0.0, 180.0), (299.9, 180.0), (-300.0, 180.0), (400.0, 135.0), (-600.0, 90.0)]
+)
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_above_the_base_speed_the_power_is_constant(omega_1: float, limit: float, side: float) -> None:
+    p, u = SILENT._replace(omega_base=300.0), motor.Input(side * 200.0, omega_1)
+    assert motor.start(u, p).T_mot == pytest.approx(side * limit)
+    assert run(u, p, 1, 0.1)[-1, 0] == pytest.approx(side * limit, abs=1e-6)
+
+
+def test_without_their_parameters_the_effects_change_no_bit() -> None:
+    """Of the rates that are integrated, at any demand and speed."""
+    draw = np.random.default_rng(1)
+    for T_ref, omega_1, T_mot, dT_mot in (draw.uniform(-1.0, 1.0, (200, 4)) * (2000.0, 5000.0, 2000.0, 1e6)).tolist():
+        x = motor.start(motor.Input(), P)._replace(T_mot=T_mot, dT_mot=dT_mot)
+        dx = motor.derivative(x, motor.Input(T_ref, omega_1), P)
+        within = max(-P.T_max, min(T_ref, P.T_max))
+        assert dx[:2] == (dT_mot, (within - T_mot - motor.SQRT_2 * P.tau * dT_mot) / (P.tau * P.tau))
+        assert dx[3:] == (0.0,) * 4

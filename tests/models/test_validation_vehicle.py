@@ -80,18 +80,18 @@ def power(x: vehicle.State, u: vehicle.Input, p: vehicle.Parameters) -> Power:
         0.5 * p.k_s * (1.0 + p.asym) * x.x_R * dx.x_R,
         p.k_x * x.s_h * dx.s_h,
         p.k_th * x.theta_b * dx.theta_b,
-        tyre_spring(x, x.u_L, 1.0 - p.t_asym, p) * dx.u_L,
-        tyre_spring(x, x.u_R, 1.0 + p.t_asym, p) * dx.u_R,
+        tyre_spring(x, x.u_L, 1.0 - p.t_asym, p.mu * p.g_muL, p) * dx.u_L,
+        tyre_spring(x, x.u_R, 1.0 + p.t_asym, p.mu * p.g_muR, p) * dx.u_R,
         0.5 * u.T_brake * (x.z_L * dx.z_L + x.z_R * dx.z_R) / p.z_br,
     ]
     return Power(sum(supplied), sum(stored), sum(abs(term) for term in supplied + stored))
 
 
-def tyre_spring(x: vehicle.State, deflection: float, share: float, p: vehicle.Parameters) -> float:
+def tyre_spring(x: vehicle.State, deflection: float, share: float, mu: float, p: vehicle.Parameters) -> float:
     """Force in N of one tyre without its damping."""
     F_z = max(200.0, p.F_z0 - (p.k_th * x.theta_b + p.d_th * x.omega_b) / p.L_w)
-    B = share * p.c_slip / (p.C_x * p.mu * p.F_z0)
-    return 0.5 * p.mu * F_z * sin(p.C_x * atan(B * deflection / p.sigma))
+    B = share * p.c_slip / (p.C_x * mu * p.F_z0)
+    return 0.5 * mu * F_z * sin(p.C_x * atan(B * deflection / p.sigma))
 
 
 @cache
@@ -108,16 +108,17 @@ def manoeuvre() -> list[tuple[vehicle.State, vehicle.Input]]:
     return run
 
 
-def dissipation(x: vehicle.State, u: vehicle.Input) -> tuple[float, float]:
+def dissipation(x: vehicle.State, u: vehicle.Input, p: vehicle.Parameters = P) -> tuple[float, float]:
     """Dissipated power in W, and its rounding."""
-    found = power(x, u, P)
+    found = power(x, u, p)
     return found.supplied - found.stored, 1e-12 * found.flowing
 
 
+@pytest.mark.parametrize("p", [P, P._replace(g_muL=0.1)], ids=["equal grip", "split grip"])
 @given(x=states, u=inputs)
 @settings(max_examples=500)
-def test_dissipation_is_never_negative(x: vehicle.State, u: vehicle.Input) -> None:
-    dissipated, rounding = dissipation(x, u)
+def test_dissipation_is_never_negative(p: vehicle.Parameters, x: vehicle.State, u: vehicle.Input) -> None:
+    dissipated, rounding = dissipation(x, u, p)
     assert dissipated >= -rounding
 
 
@@ -235,10 +236,28 @@ def test_a_raised_nose_unloads_the_tyres_but_never_lifts_them() -> None:
     assert forces[-1] > 0.0
 
 
-@given(u_L=st.floats(-1.0, 1.0))
-def test_a_tyre_transmits_at_most_what_the_road_gives(u_L: float) -> None:
-    x = REST._replace(u_L=u_L)
-    assert abs(vehicle.wheels(x, vehicle.Input(), P).F_L) <= 0.5 * P.mu * P.F_z0
+@given(u_L=st.floats(-1.0, 1.0), u_R=st.floats(-1.0, 1.0), mu=st.floats(0.05, 2.0))
+def test_a_tyre_transmits_at_most_what_the_road_gives_under_it(u_L: float, u_R: float, mu: float) -> None:
+    """Each of them; with equal grip all that it is today."""
+    p = P._replace(mu=mu, g_muL=0.3, g_muR=1.2)
+    found, equal = (vehicle.wheels(REST._replace(u_L=u_L, u_R=u_R), vehicle.Input(), q) for q in (p, P))
+    assert abs(found.F_L) <= 0.5 * 0.3 * mu * P.F_z0 * (1.0 + 1e-12)
+    assert abs(found.F_R) <= 0.5 * 1.2 * mu * P.F_z0 * (1.0 + 1e-12)
+    assert equal == vehicle.wheels(
+        REST._replace(u_L=u_L, u_R=u_R), vehicle.Input(), P._replace(mu=0.5, g_muL=2.0, g_muR=2.0)
+    )
+
+
+def test_on_split_grip_the_wheel_on_ice_spins_and_the_other_pulls_no_more_than_it() -> None:
+    """The open differential gives both half shafts the same torque."""
+    p, u, integrator = P._replace(g_muL=0.1), vehicle.Input(120.0), Integrator(vehicle.BLOCK)
+    x = vehicle.start(vehicle.Input(), p)
+    for _ in range(1000):
+        x = integrator.advance(x, u, p, 1e-3)
+    k = vehicle.wheels(x, u, p)
+    assert x.omega_L > 5.0 * x.omega_R
+    assert 0.5 < k.F_R / k.F_L < 2.0
+    assert k.F_R < 0.5 * 0.5 * P.mu * P.F_z0
 
 
 def test_the_twist_follows_the_speed_difference() -> None:

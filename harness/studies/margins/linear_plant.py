@@ -52,8 +52,11 @@ def motor_and_plant(plant: ContinuousBlock) -> ContinuousBlock:
         return MOTOR.output(x_motor, u_motor, p[0]), plant.output(x_plant, u_plant, p[1])
 
     def event_indicators(x: Any, u: Any, p: Any) -> tuple[Any, ...]:
-        _, _, x_plant, u_plant = parts(x, u)
-        return plant.event_indicators(x_plant, u_plant, p[1])
+        x_motor, u_motor, x_plant, u_plant = parts(x, u)
+        return (
+            *MOTOR.event_indicators(x_motor, u_motor, p[0]),
+            *plant.event_indicators(x_plant, u_plant, p[1]),
+        )
 
     functions = {"start": start, "derivative": derivative, "output": output, "event_indicators": event_indicators}
     return replace(plant, State=State, **functions)

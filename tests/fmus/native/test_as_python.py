@@ -13,6 +13,7 @@ from tests.fmus.description.test_model_description import (  # noqa: F401
 from tests.fmus.test_numbers import *  # noqa: F403
 from tests.fmus.test_state import (  # noqa: F401
     test_a_damaged_state_is_refused_and_changes_nothing,
+    test_a_demand_that_is_on_its_way_through_the_dead_time_is_in_the_state,
     test_a_run_goes_on_bit_by_bit_after_set_and_after_deserialise,
     test_a_state_moves_to_another_instance_and_has_one_serialised_form,
     test_a_state_of_another_fmu_is_refused_and_both_are_named,

@@ -44,6 +44,20 @@ def test_random_inputs_give_the_same_in_functions_and_both_builds(both_built, na
         assert max(found) <= allowed
 
 
+EFFECTS = {
+    "MotorTorqueLoop": {"t_dead": 5e-3, "dT_max": 8000.0, "omega_base": 60.0},
+    "ValidationVehicle": {"g_muL": 0.1},
+}
+"""That are off by default."""
+
+
+@pytest.mark.parametrize("name", slow(EFFECTS, but=("MotorTorqueLoop",)))
+def test_effects_that_are_off_by_default_are_the_same_in_functions_and_both_builds(both_built, name):
+    random = random_inputs(FMUS[name].block, STEPS)
+    given = random._replace(parameters={**random.parameters, **EFFECTS[name]})
+    assert max(compare_block(name, given, both_built)) <= AFTER_FLANKS
+
+
 @pytest.mark.parametrize("plant", slow(PLANTS, but=("TwoMassDriveline",)))
 @pytest.mark.parametrize("manoeuvre", ["tipin15", "hill_hold"])
 def test_the_loop_does_not_see_which_build_a_block_is_of(both_built, plant, manoeuvre):
