@@ -73,11 +73,13 @@ class Chosen(NamedTuple):
         return {"manoeuvre_files": found} if found else {}
 
     def require_drivable(self, fits: "Mapping[str, Fit]", given: Mapping[str, Settings]) -> None:
-        """Refuses those of files that the loops of the plants, by their names, cannot be driven through, see
-        `harness.manoeuvres.drivable`."""
-        from ..manoeuvres.drivable import require_drivable
+        """Refuses those that the loops of the plants, by their names, cannot be driven through, see
+        `harness.manoeuvres.drivable`; only those of files are not known to be within all bounds."""
+        from ..manoeuvres.drivable import require_drivable, require_road
 
         for plant, fitted in fits.items():
+            for manoeuvre in self.manoeuvres.values():
+                require_road(manoeuvre, fitted)
             for name, path in self.files.items():
                 require_drivable(self.manoeuvres[name], fitted, given[plant].parameters, str(path))
 

@@ -23,6 +23,20 @@ def require_drivable(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str,
         raise ManoeuvreError("\n".join(f"{label}: {problem}" for problem in problems))
 
 
+def require_road(manoeuvre: Manoeuvre, fitted: Fit) -> None:
+    """Refuses a plant that cannot have the road of a manoeuvre.
+
+    Raises:
+        ManoeuvreError: names the parameter that the plant lacks.
+    """
+    plant = fitted.interfaces["plant"]
+    for name, value in manoeuvre.road.items():
+        if name not in plant.variables:
+            raise ManoeuvreError(
+                f"{manoeuvre.name} is for plants with a parameter {name} ({value:g} there); {plant.path.name} has none"
+            )
+
+
 def _problems(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
     time = instants(manoeuvre.duration, min(STEP_SIZE, manoeuvre.duration))
     for port in PARAMETERS:

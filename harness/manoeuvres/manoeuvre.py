@@ -1,6 +1,7 @@
 """What a manoeuvre is."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from .signals import NOTHING, Signal
 
@@ -17,6 +18,7 @@ class Manoeuvre:
         T_driver: demanded motor torque in N.m.
         T_brake: brake torque capacity of the driven wheels in N.m, wheel side.
         slope: of the road in rad, positive uphill.
+        road: parameters of the plant that are of the road too, by name, such as `mu`; not every plant has them.
         t_0: instant in s from which the metrics count; of a step, its first instant.
         dT: height of the demanded step in N.m, None if the manoeuvre is not a step.
         plateau_ends: instants in s at which the demand leaves a constant value, for the metric `plateau_swing`.
@@ -32,6 +34,7 @@ class Manoeuvre:
     t_0: float = 0.0
     dT: float | None = None
     plateau_ends: tuple[float, ...] = ()
+    road: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def T_0(self) -> float:

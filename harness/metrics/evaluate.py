@@ -81,6 +81,7 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "jerk_rms_to_50_Hz": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, TO_50_HZ, derivative=True),
         "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e) ** 2))),
         "added_torque_peak": lambda: float(np.abs(windowed(e)).max()),
+        "gear_torque_peak": lambda: float(np.abs(windowed(T_gear)).max()),
         "end_swing": lambda: float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),
         "plateau_swing": lambda: plateau_swing(t, T_gear, manoeuvre.plateau_ends),
     }

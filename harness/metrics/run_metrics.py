@@ -87,6 +87,7 @@ class Metrics(NotebookTable):
     jerk_rms_to_50_Hz: Annotated[float, Metric("m/s3", "rms of the jerk of the body up to 50 Hz")]
     added_torque_rms: Annotated[float, Metric("N.m", "rms of the torque that the control adds")]
     added_torque_peak: Annotated[float, Metric("N.m", "largest magnitude of the torque that the control adds")]
+    gear_torque_peak: Annotated[float, Metric("N.m", "largest magnitude of the gear torque")]
     end_swing: Annotated[float, Metric("N.m", "largest swing of the gear torque in the last second")]
     plateau_swing: Annotated[
         float,

@@ -118,7 +118,8 @@ def _ahead(signal: Signal, time: float) -> Signal:
 
 def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:
     """Parameters with which the loop starts a manoeuvre."""
-    return {port.name: _value(port, manoeuvre, seed=seed) for port in PARAMETERS}
+    road = {f"plant.{name}": value for name, value in manoeuvre.road.items()}
+    return {port.name: _value(port, manoeuvre, seed=seed) for port in PARAMETERS} | road
 
 
 def _value(port: Port, manoeuvre: Manoeuvre, **settings: Any) -> Any:

@@ -65,7 +65,7 @@ def test_the_manoeuvres_are_listed_a_line_each(capsys, command):
     code, out, err = answer(capsys, command, "--list")
     assert (code, err) == (0, "")
     assert [line.split()[0] for line in out.splitlines()] == list(MANOEUVRES)
-    assert out.splitlines()[0] == "tipin15       tip-in through the backlash at 15 km/h (6 s)"
+    assert out.splitlines()[0] == "tipin15         tip-in through the backlash at 15 km/h (6 s)"
 
 
 @pytest.mark.parametrize("words", [["--list", "--json"], ["--json", "--list"]])

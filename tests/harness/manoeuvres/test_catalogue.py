@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.harness.manoeuvres.catalogue import COMPARED, MANOEUVRES
+from driveline.harness.manoeuvres.catalogue import COMPARED, EVERYDAY, MANOEUVRES, USUAL
 from driveline.harness.manoeuvres.prbs import shift_register
 from driveline.harness.manoeuvres.signals import FlatSine, Held, lines
 
@@ -80,6 +80,25 @@ def test_compared_are_the_manoeuvres_of_the_main_job():
     assert COMPARED == (
         "tipin15", "tipin50", "tipin15r", "tipin50r", "tipin0", "tipout", "launch", "drive", "creep", "prbs"
     )  # fmt: skip
+
+
+def test_the_everyday_ones_are_known_by_name_and_no_study_drives_them() -> None:
+    assert list(MANOEUVRES) == [each.name for each in (*USUAL, *EVERYDAY)]
+    assert len(USUAL) == 13
+    assert {"regen", "one_pedal_hard", "blending", "hill_start", "park_back", "abs"} <= {each.name for each in EVERYDAY}
+    assert not {each.name for each in EVERYDAY} & set(COMPARED)
+
+
+def test_only_the_slippery_ones_set_the_grip_of_the_road() -> None:
+    found = {name: dict(each.road) for name, each in MANOEUVRES.items() if each.road}
+    assert found == {"launch_ice": {"mu": 0.12}, "launch_split": {"g_muL": 0.12}, "ice_hill": {"mu": 0.12}}
+
+
+def test_brakes_pulse_five_times_a_second() -> None:
+    t = np.arange(4000) * 1e-3
+    T_brake = MANOEUVRES["abs"].T_brake(t)
+    assert set(T_brake.tolist()) == {200.0, 3500.0}
+    assert np.diff(t[1:][np.diff(T_brake) > 0.0]) == pytest.approx(0.2)
 
 
 def test_signals_are_held_beyond_their_ends():

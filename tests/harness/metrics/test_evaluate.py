@@ -255,6 +255,14 @@ def test_a_run_that_is_too_short_has_no_metrics_of_its_end(name, duration):
     assert all(found.values())
 
 
+def test_the_peak_of_the_gear_torque_is_that_after_a_step_and_else_of_the_whole_run():
+    def torque(t):
+        return np.where(t < 0.5, -150.0, np.where(t < 2.0, -120.0, 100.0))
+
+    assert evaluate(run(T_gear=torque), MANOEUVRES["tipin15"]).gear_torque_peak == 120.0
+    assert evaluate(run(T_gear=torque), MANOEUVRES["creep"]).gear_torque_peak == 150.0
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 @pytest.mark.parametrize("column", ["T_gear", "a_body", "T_ref", "omega_1"])
 def test_metrics_of_what_is_not_finite_are_absent_and_never_zero(column, value):

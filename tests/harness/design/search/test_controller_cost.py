@@ -26,6 +26,7 @@ FOUND = Metrics(
     jerk_rms_to_50_Hz=5.0,
     added_torque_rms=5.0,
     added_torque_peak=90.0,
+    gear_torque_peak=120.0,
     end_swing=0.1,
     plateau_swing=nan,
 )

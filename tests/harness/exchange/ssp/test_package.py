@@ -145,7 +145,11 @@ def test_a_vehicle_file_its_gains_and_what_is_set_are_the_parameter_sets(package
         assert {name: every[f"plant.{name}"] for name in found} == found
 
 
-@pytest.mark.parametrize("name", [m for m in MANOEUVRES if m not in ("creep", "prbs", "prbs15")])
+CURVED = ("creep", "prbs", "prbs15", "throttle", "abs")
+"""Manoeuvres that are no straight lines, or too many."""
+
+
+@pytest.mark.parametrize("name", [name for name, each in MANOEUVRES.items() if name not in CURVED and not each.road])
 def test_the_points_of_the_source_are_the_manoeuvre(packaged, name) -> None:
     manoeuvre = MANOEUVRES[name]
     found = values(packaged("--manoeuvre", name), "resources/manoeuvre_Manoeuvre.ssv")
@@ -157,6 +161,11 @@ def test_the_points_of_the_source_are_the_manoeuvre(packaged, name) -> None:
         corners = [found[f"{signal}_{k}"] for k in range(1, count + 1)]
         drawn = np.interp(np.round(instants, 9), times, corners)
         np.testing.assert_allclose(drawn, getattr(manoeuvre, signal)(instants), atol=1e-10, err_msg=signal)
+
+
+def test_the_grip_of_the_road_is_a_parameter_of_the_plant(packaged) -> None:
+    ssp = packaged("--manoeuvre", "launch_ice", "--plant", "ValidationVehicle")
+    assert values(ssp, "resources/ValidationVehicle.ssv")["plant.mu"] == 0.12
 
 
 def test_it_starts_and_ends_as_the_manoeuvre_does(packaged) -> None:
