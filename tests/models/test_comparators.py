@@ -4,6 +4,7 @@ import math
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 
 from driveline.models.block.declaration import without
@@ -13,9 +14,11 @@ from driveline.models.comparators import (
     paper_observer,
     perfect_state,
     speed_difference,
+    speed_washout,
     state_feedback,
 )
 from driveline.models.controller import supervision
+from driveline.models.controller.interfaces import Motion
 from driveline.models.controller.supervision import T_S, Input, State
 from driveline.models.physics.backlash import dead_zone
 from tests.models.controller.controllers import OURS, drive_inputs, run, shaken
@@ -31,6 +34,44 @@ def torques(states: list[State]) -> list[float]:
 def test_without_damping_the_demand_is_passed_through() -> None:
     inputs = shaken(0.3)
     assert torques(run(no_damping.BLOCK, inputs))[1:] == [u.T_driver for u in inputs]
+
+
+def washed_out(speeds: np.ndarray, **values: float) -> np.ndarray:
+    """What the law opposes of a motor speed, over k_v; a value each sample."""
+    p, law = speed_washout.WashoutParameters(k_v=1.0, **values), speed_washout.Washout()
+    motions = [Motion(float(omega), float(omega), 0.0, 0.0) for omega in speeds]
+    x, opposed = law.start(motions[0], 0.0, p), []
+    for motion in motions:
+        x, addition = law.update(x, motion, lambda _, seen=motion: seen, 0.0, T_S, p)
+        opposed.append(-addition.damping)
+    return np.array(opposed)
+
+
+@pytest.mark.parametrize("zeta_v", [0.4, 1.0, 5.0])
+def test_the_washout_of_the_motor_speed_opposes_no_steady_acceleration(zeta_v: float) -> None:
+    speeds = 100.0 + 30.0 * T_S * np.arange(3000)
+    assert abs(washed_out(speeds, omega_v=20.0, zeta_v=zeta_v)[-1]) < 1e-6
+
+
+@pytest.mark.parametrize("frequency", [1.0, 4.0, 30.0])
+@pytest.mark.parametrize(("omega_v", "zeta_v"), [(10.3, 0.426), (100.0, 2.0), (400.0, 10.0)])
+def test_the_washout_has_the_response_of_second_order_that_it_states(
+    frequency: float, omega_v: float, zeta_v: float
+) -> None:
+    """With frequencies as the trapezoidal rule warps them."""
+    k = np.arange(20000)
+    turning = np.exp(2j * np.pi * frequency * T_S * k)
+    opposed = washed_out(turning.imag, omega_v=omega_v, zeta_v=zeta_v)
+    found = 2j * np.mean((opposed / turning)[10000:])
+    s = 2j / T_S * np.tan(np.pi * frequency * T_S)
+    assert found == pytest.approx(s * s / (s * s + 2.0 * zeta_v * omega_v * s + omega_v**2), abs=1e-3)
+
+
+def test_for_a_large_damping_ratio_the_washout_is_one_of_first_order() -> None:
+    """With the corner 2 zeta_v omega_v; here 20 rad/s, for a step, over the first quarter of a second."""
+    k = np.arange(125)
+    found = washed_out(np.where(k > 0, 1.0, 0.0), omega_v=1.0, zeta_v=10.0)[1:]
+    assert found == pytest.approx(np.exp(-20.0 * T_S * k[:-1]), abs=0.03)
 
 
 @pytest.mark.parametrize("omega_delta", [0.0, 20.0])

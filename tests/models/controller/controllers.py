@@ -2,24 +2,49 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any, NamedTuple
 
 import pytest
 from hypothesis import strategies as st
 
 from driveline.models import damping_controller
-from driveline.models.block.declaration import with_defaults
+from driveline.models.block.declaration import Real
 from driveline.models.block.types import SampledBlock
-from driveline.models.comparators import speed_washout
+from driveline.models.comparators import measured_speeds
+from driveline.models.controller.damping_law import washed_out
+from driveline.models.controller.interfaces import Addition, Motion
+from driveline.models.controller.supervised_controller import supervised
 from driveline.models.controller.supervision import T_S, Input, State
 
 OURS = damping_controller.BLOCK
-OTHER = replace(
-    speed_washout.BLOCK, Parameters=with_defaults(speed_washout.BLOCK.Parameters, {"k_v": 2.0, "omega_v": 25.0})
-)
-"""With gains of its own, whatever the search finds."""
+
+
+class WashoutParameters(NamedTuple):
+    k_v: Annotated[float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 20.0)] = 2.0
+    omega_v: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0)] = 25.0
+
+
+class WashoutState(NamedTuple):
+    slow: Annotated[float, Real("rad/s", "part of the motor speed that does not change")]
+
+
+class Washout:
+    """The plainest law: T_damp = -k_v s/(s + omega_v) omega_1."""
+
+    Parameters = WashoutParameters
+
+    def start(self, motion: Motion, T_driver: float, p: WashoutParameters) -> WashoutState:
+        return WashoutState(motion.omega_1)
+
+    def update(
+        self, x: WashoutState, motion: Motion, later: Any, T_driver: float, T_s: float, p: WashoutParameters
+    ) -> tuple[WashoutState, Addition]:
+        slow = washed_out(x.slow, motion.omega_1, p.omega_v, T_s)
+        return WashoutState(slow), Addition(damping=-p.k_v * (motion.omega_1 - x.slow), landing=0.0)
+
+
+OTHER = supervised("PlainWashout", "with the plainest law", __name__, measured_speeds, Washout())
 EVERY = (OURS, OTHER)
 
 every_controller = pytest.mark.parametrize("block", EVERY, ids=lambda block: block.name)

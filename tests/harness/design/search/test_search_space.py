@@ -65,7 +65,7 @@ def test_others_take_what_they_have_in_common_with_ours() -> None:
     usual, of_van = space("LinearObserver", {}), space("LinearObserver", VAN)
     assert of_van.computed["L_phi"] == space(OURS, VAN).computed["L_phi"] != usual.computed["L_phi"]
     washout = space("SpeedWashout", VAN)
-    assert [each.name for each in washout.searched] == ["k_v", "omega_v"]
+    assert [each.name for each in washout.searched] == ["k_v", "omega_v", "zeta_v"]
     assert washout.computed == {}
 
 
