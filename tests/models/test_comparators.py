@@ -61,7 +61,7 @@ def test_the_washout_has_the_response_of_second_order_that_it_states(
     """With frequencies as the trapezoidal rule warps them."""
     k = np.arange(20000)
     turning = np.exp(2j * np.pi * frequency * T_S * k)
-    opposed = washed_out(turning.imag, omega_v=omega_v, zeta_v=zeta_v)
+    opposed = washed_out(np.imag(turning), omega_v=omega_v, zeta_v=zeta_v)
     found = 2j * np.mean((opposed / turning)[10000:])
     s = 2j / T_S * np.tan(np.pi * frequency * T_S)
     assert found == pytest.approx(s * s / (s * s + 2.0 * zeta_v * omega_v * s + omega_v**2), abs=1e-3)

@@ -7,7 +7,6 @@ with one instance after the other exchanged.
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -133,7 +132,7 @@ def compare_all(steps: int, folder: Path) -> tuple[dict[str, Differences], list[
     alone = run_many(
         lambda name: compare_block(name, random_inputs(FMUS[name].block, steps), folder), FMUS, label="blocks alone"
     )
-    cases = list(product(PLANTS, USUAL))
+    cases = [(plant, each) for plant in PLANTS for each in USUAL]
     found = run_many(lambda case: compare_loop(*case, folder), cases, label="blocks in the loop")
     rows = [LoopRow(plant, each.name, blocks) for (plant, each), blocks in zip(cases, found, strict=True)]
     return dict(zip(FMUS, alone, strict=True)), rows
