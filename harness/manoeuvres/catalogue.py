@@ -26,7 +26,7 @@ def parking(name: str, description: str, way: float) -> Manoeuvre:
 
 
 def brake_pulse(begin: float, end: float) -> tuple[tuple[float, float], ...]:
-    """Corners of a pulse that locks the wheels, above a brake torque that does not."""
+    """Corners of a pulse beyond what a dry road can take, above a brake torque that it can."""
     return (begin, 200.0), (begin, 3500.0), (end, 3500.0), (end, 200.0)
 
 
@@ -141,7 +141,7 @@ EVERYDAY = (
     ),
     Manoeuvre(
         name="abs",
-        description="brake pulses at 5 Hz from 22 m/s, by which the wheels lock",
+        description="brake pulses at 5 Hz from 22 m/s, in which the wheels slip to half the speed of the car",
         duration=4.0,
         v_0=22.0,
         T_driver=lines((0.8, 12.0), (1.0, 0.0)),

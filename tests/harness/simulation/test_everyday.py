@@ -52,12 +52,14 @@ def test_parking_back_only_goes_backwards(runs: dict[str, Results]) -> None:
     assert runs["park_back"]["plant.v"].max() < 0.15
 
 
-def test_the_wheels_lock_under_the_pulses_and_turn_again(runs: dict[str, Results]) -> None:
+def test_the_wheels_slip_to_half_the_speed_of_the_car_in_the_pulses_and_catch_up_between(
+    runs: dict[str, Results],
+) -> None:
     run = runs["abs"]
     speed = run["plant.omega_2"] * 0.29 / 9.0 / np.maximum(run["plant.v"], 1.0)
     braked = (run["time"] > 1.0) & (run["time"] < 3.3)
-    assert speed[braked].min() < 0.1
-    assert speed[(run["time"] > 1.18) & (run["time"] < 1.2)].min() > 0.9
+    assert 0.4 < speed[braked].min() < 0.6
+    assert speed[(run["time"] > 1.15) & (run["time"] < 1.2)].max() > 0.95
 
 
 def test_the_wheels_spin_on_ice_alone(runs: dict[str, Results]) -> None:
