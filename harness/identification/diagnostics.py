@@ -131,9 +131,9 @@ def diagnose_offsets(through: Filtered, p: Parameters) -> list[str]:
 
 def diagnose_outliers(through: Filtered, T_s: float) -> list[str]:
     """Samples of the motor speed that are off alone."""
-    size = np.abs(through.size[through.settled :])
+    size = np.abs(through.size[through.counted])
     largest = np.sort(size)[-CROWD:]
-    at = np.flatnonzero(size > max(OUTLIER, LONELY * float(np.median(largest)))) + through.settled
+    at = np.flatnonzero(size > max(OUTLIER, LONELY * float(np.median(largest)))) + through.counted.start
     if not len(at):
         return []
     k = int(at[np.argmax(np.abs(through.size[at]))])

@@ -28,6 +28,8 @@ class Parameters(NamedTuple):
         d: structural damping in N.m.s/rad.
         phi_B: half the backlash in rad.
         g_T, g_L: recorded over true motor and load torque.
+        late_T, late_L: time in s by which motor and load torque are recorded after the motor speed; see
+            `harness.identification.time_shifts`.
     """
 
     J_1: float
@@ -37,6 +39,8 @@ class Parameters(NamedTuple):
     phi_B: float
     g_T: float = 1.0
     g_L: float = 1.0
+    late_T: float = 0.0
+    late_L: float = 0.0
 
 
 class State(NamedTuple):

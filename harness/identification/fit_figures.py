@@ -106,7 +106,7 @@ def plot_innovations(identified: Identified, stem: Path, options: FigureOptions 
 def innovations(identified: Identified) -> np.ndarray:
     """What the filter did not foresee, over its standard deviation, once it has settled."""
     through = filtered(identified.drive, identified.p, identified.noise)
-    return through.size[through.settled :]
+    return through.size[through.counted]
 
 
 def distribution(size: np.ndarray) -> Panel:

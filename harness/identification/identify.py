@@ -35,7 +35,10 @@ from .torque_loop import FittedLoop
 DAMPED = ("J_2", "C", "phi_B", "d")
 """What is searched without the load torque."""
 
-NEUTRAL = {"d": 0.0, "g_T": 1.0}
+SHIFTS = ("late_T", "late_L")
+"""What a recording is skewed by."""
+
+NEUTRAL = {"d": 0.0, "g_T": 1.0, "late_T": 0.0, "late_L": 0.0}
 """Parameters that may not be significant, and their values if they are not."""
 
 WIDE_LOAD_NOISE = 5.0
@@ -233,7 +236,7 @@ def prediction_error_fit(
     drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = (), log: Log = lambda _: None
 ) -> Found:
     """The fit by prediction error, with no parameter that is not significant."""
-    found = maximise(Predictor((*_searched(more), "g_L")), drive, initial, noise, most=FEW)
+    found = maximise(Predictor((*_searched(more), "g_L", *SHIFTS)), drive, initial, noise, most=FEW)
     _log_stage(log, "predicted with the noise of the sensors", found.p)
     return backward_elimination(drive, found, noise, more, log)
 

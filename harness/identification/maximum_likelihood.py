@@ -9,9 +9,10 @@ import numpy as np
 from .drive_train import Parameters
 from .model_inputs import Drive
 from .prediction import Innovations, Noise, Predictor
+from .time_shifts import MOST
 
-SIGNED = {"d"}
-"""Parameters that may be zero; they are searched as they are, in this unit."""
+SIGNED = {"d": 1.0, "late_T": 1e-3, "late_L": 1e-3}
+"""Parameters that may be zero; they are searched as they are, in these units."""
 
 UNKNOWN = 1e-4
 """Information that is added about all that is searched. What the recording tells nothing of (a gap that is not crossed)
@@ -61,14 +62,15 @@ def _information(innovations: Innovations, scale: np.ndarray) -> np.ndarray:
 
 def scales(p: Parameters, free: Sequence[str]) -> np.ndarray:
     """Derivative of each free parameter by what is searched."""
-    return np.array([1.0 if name in SIGNED else getattr(p, name) for name in free])
+    return np.array([SIGNED.get(name) or getattr(p, name) for name in free])
 
 
 def moved(p: Parameters, free: Sequence[str], by: np.ndarray) -> Parameters:
     values = {
-        name: getattr(p, name) + step if name in SIGNED else getattr(p, name) * float(np.exp(step))
+        name: getattr(p, name) + SIGNED[name] * step if name in SIGNED else getattr(p, name) * float(np.exp(step))
         for name, step in zip(free, by, strict=True)
     }
+    values |= {name: float(np.clip(values[name], -MOST, MOST)) for name in ("late_T", "late_L") if name in values}
     return p._replace(**values)
 
 

@@ -1,13 +1,15 @@
 """Inputs of the model between the samples of a recording, and the motor speed that it is compared with."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
-from .drive_train import STEPS
+from .drive_train import STEPS, Parameters
+from .time_shifts import d_shifted, integral, shifted
 from .torque_loop import FittedLoop, fitted
 
 UNEVEN = 0.05
@@ -36,6 +38,28 @@ class Drive:
         """Samples first to last, without last."""
         at = slice(first, last)
         return replace(self, omega_1=self.omega_1[first : last + 1], T_mot=self.T_mot[at], T_load=self.T_load[at])
+
+    def acting(self, p: Parameters) -> "Drive":
+        """The drive with both torques when they acted."""
+        if p.late_T == p.late_L == 0.0:
+            return self
+        T_mot, T_load = (
+            shifted(of, len(self), late / self.T_s)
+            for of, late in zip(self._integrals, (p.late_T, p.late_L), strict=True)
+        )
+        return replace(self, T_mot=T_mot, T_load=T_load)
+
+    def d_acting(self, p: Parameters) -> np.ndarray:
+        """Derivatives of both torques of `acting` by late_T and late_L in N.m/s, shape (2 STEPS, n)."""
+        each = (
+            d_shifted(of, len(self), late / self.T_s).T / self.T_s
+            for of, late in zip(self._integrals, (p.late_T, p.late_L), strict=True)
+        )
+        return np.vstack(list(each))
+
+    @cached_property
+    def _integrals(self) -> tuple[BSpline, BSpline]:
+        return integral(self.T_mot, self.T_s), integral(self.T_load, self.T_s)
 
 
 def model_inputs(recording: Measurement) -> tuple[Drive, FittedLoop | None]:

@@ -17,6 +17,7 @@ from .buffered import Buffered
 from .compiled_functions import compiled
 from .drive_train import STEPS, Parameters, State, sample
 from .model_inputs import Drive
+from .time_shifts import MOST
 
 STATES = len(State._fields)
 LOWER = [(row, column) for row in range(STATES) for column in range(row + 1)]
@@ -47,22 +48,23 @@ class Predicted:
     """Attributes:
     size: what each sample was predicted wrong by, over its standard deviation, shape (n,).
     log_S: logarithm of the variance in (rad/s)2 that the filter expects of it, shape (n,).
-    settled: sample from which on they count: a recording may begin in the middle of a swing.
+    counted: samples that count: a recording may begin in the middle of a swing, and of a torque that comes late the
+        end is not known.
     """
 
     size: np.ndarray
     log_S: np.ndarray
-    settled: int
+    counted: slice
 
     @property
     def cost(self) -> float:
         """Minus the logarithm of the likelihood, but for a constant."""
-        return 0.5 * float(np.sum((self.size**2 + self.log_S)[self.settled :]))
+        return 0.5 * float(np.sum((self.size**2 + self.log_S)[self.counted]))
 
     @property
     def rms(self) -> float:
         """Of size: 1 where model and noise are right."""
-        return float(np.sqrt(np.mean(self.size[self.settled :] ** 2)))
+        return float(np.sqrt(np.mean(self.size[self.counted] ** 2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,14 +82,14 @@ class Innovations(Predicted):
 
     @property
     def scores(self) -> np.ndarray:
-        """The share of each sample that counts in the gradient, shape (n - settled, parameters)."""
-        at = slice(self.settled, None)
+        """The share of each sample that counts in the gradient, shape (samples, parameters)."""
+        at = self.counted
         return self.d_size[at] * self.size[at, None] + 0.5 * self.d_log_S[at]
 
     @property
     def information(self) -> np.ndarray:
         """Fisher's, as these innovations show it. A half of what the variance tells is in d_size."""
-        d_size, d_log_S = self.d_size[self.settled :], self.d_log_S[self.settled :]
+        d_size, d_log_S = self.d_size[self.counted], self.d_log_S[self.counted]
         return d_size.T @ d_size + 0.25 * d_log_S.T @ d_log_S
 
 
@@ -99,12 +101,14 @@ class Predictor:
         self._columns = [Parameters._fields.index(name) for name in self.free]
 
     def innovations(self, drive: Drive, p: Parameters, noise: Noise) -> Innovations:
-        n = len(drive)
+        n, acting = len(drive), drive.acting(p)
+        d_torques = drive.d_acting(p) if {"late_T", "late_L"} & {*self.free} else np.zeros((2 * STEPS, n))
         start, d_start = _start(drive, p, noise)
-        _, _, seen, d_seen = _filter().passed_with_derivatives(n)(start, d_start, *_given(drive, p, noise))
+        given = _given(acting, p, noise)
+        _, _, seen, d_seen = _filter().passed_with_derivatives(n)(start, d_start, *given, d_torques)
         size, log_S = seen.copy()
         d_size, d_log_S = d_seen.reshape(2, n, -1)[:, :, self._columns]
-        return Innovations(size, log_S, _settled(drive), d_size, d_log_S)
+        return Innovations(size, log_S, _counted(drive), d_size, d_log_S)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,14 +127,15 @@ class Filtered(Predicted):
 
 def filtered(drive: Drive, p: Parameters, noise: Noise) -> Filtered:
     """The filter without derivatives, in a fifth of the time."""
+    acting = drive.acting(p)
     start, _ = _start(drive, p, noise)
-    after, seen = _filter().passed(len(drive))(start, *_given(drive, p, noise))
+    after, seen = _filter().passed(len(drive))(start, *_given(acting, p, noise))
     size, log_S = seen.copy()
-    return Filtered(size, log_S, _settled(drive), after[:STATES].T.copy())
+    return Filtered(size, log_S, _counted(drive), after[:STATES].T.copy())
 
 
-def _settled(drive: Drive) -> int:
-    return min(round(BURN_IN / drive.T_s), len(drive) // 2)
+def _counted(drive: Drive) -> slice:
+    return slice(min(round(BURN_IN / drive.T_s), len(drive) // 2), len(drive) - round(MOST / drive.T_s))
 
 
 def _given(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, ...]:
@@ -155,7 +160,7 @@ COMPARED = 0.4
 def _start(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, np.ndarray]:
     """State and covariance at the first sample, and their derivatives by all parameters: the likeliest of several,
     since a recording may begin in the middle of a swing."""
-    piece = drive.between(0, min(round(COMPARED / drive.T_s), len(drive)))
+    piece = drive.between(0, min(round(COMPARED / drive.T_s), len(drive))).acting(p)
     run, given = _filter().passed(len(piece)), _given(piece, p, noise)
     T_0 = abs(float(drive.T_mot[0, 0]))
 
@@ -182,6 +187,7 @@ class _Filter:
         self.x, self.lower = ca.SX.sym("x", STATES), ca.SX.sym("lower", len(LOWER))
         self.p, self.noise, self.T_s = ca.SX.sym("p", len(Parameters._fields)), ca.SX.sym("noise", 4), ca.SX.sym("T_s")
         T_mot, T_load, omega_1 = ca.SX.sym("T_mot", STEPS), ca.SX.sym("T_load", STEPS), ca.SX.sym("omega_1")
+        self.torques = ca.vertcat(T_mot, T_load)
         self.given = [T_mot, T_load, omega_1, self.p, self.noise, self.T_s]
         self.state = ca.vertcat(self.x, self.lower)
         self.after, self.seen = self._step(T_mot, T_load, omega_1)
@@ -220,12 +226,14 @@ class _Filter:
     @cached_property
     def with_derivatives(self) -> ca.Function:
         n, m = self.state.numel(), self.p.numel()
-        d_state = ca.SX.sym("d_state", n, m)
-        all_after, all_before = ca.vertcat(self.after, self.seen), ca.vertcat(self.state, self.p)
-        d = ca.jtimes(all_after, all_before, ca.vertcat(d_state, ca.DM.eye(m)))
-        return compiled(
-            ca.Function("sensitivity", [self.state, d_state, *self.given], [self.after, d[:n, :], self.seen, d[n:, :]])
-        )
+        d_state, d_torques = ca.SX.sym("d_state", n, m), ca.SX.sym("d_torques", 2 * STEPS)
+        by_p = ca.SX(2 * STEPS, m)  # the torques depend on the shifts alone, each on its own
+        by_p[:STEPS, Parameters._fields.index("late_T")] = d_torques[:STEPS]
+        by_p[STEPS:, Parameters._fields.index("late_L")] = d_torques[STEPS:]
+        all_after, all_before = ca.vertcat(self.after, self.seen), ca.vertcat(self.state, self.p, self.torques)
+        d = ca.jtimes(all_after, all_before, ca.vertcat(d_state, ca.DM.eye(m), by_p))
+        given = [self.state, d_state, *self.given, d_torques]
+        return compiled(ca.Function("sensitivity", given, [self.after, d[:n, :], self.seen, d[n:, :]]))
 
 
 _filter = cache(_Filter)

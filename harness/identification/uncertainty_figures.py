@@ -167,7 +167,7 @@ def drawn_responses(identified: Identified, frequencies: np.ndarray, behind: Tyr
 def recorded_response(identified: Identified) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies in Hz and omega_1/T_mot there, by the spectra of both (Welch), of which the means of the samples are
     taken. Of a recording that crosses the gap it is not that of teeth in contact."""
-    drive = identified.drive
+    drive = identified.drive.acting(identified.p)
     T_mot = drive.T_mot.mean(axis=1) / identified.p.g_T
     omega_1 = 0.5 * (drive.omega_1[1:] + drive.omega_1[:-1])
     rate, length = 1.0 / drive.T_s, min(WINDOW, len(drive))
