@@ -85,6 +85,19 @@ def step(x: State, T_mot: ca.SX, T_load: ca.SX, h: ca.SX, p: Parameters) -> Stat
     return State(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), x.o_T, x.o_L)
 
 
+def d_torques_by(names: Sequence[str], d_acting: ca.SX) -> ca.SX:
+    """Derivatives of the torques of a sample by parameters, shape (2 STEPS, names): each depends on its own shift.
+
+    Args:
+        d_acting: by late_T and late_L, shape (2 STEPS,).
+    """
+    d = ca.SX(2 * STEPS, len(names))
+    for name, at in (("late_T", slice(0, STEPS)), ("late_L", slice(STEPS, None))):
+        if name in names:
+            d[at, names.index(name)] = d_acting[at]
+    return d
+
+
 def sample(x: State, T_mot: Sequence[ca.SX], T_load: Sequence[ca.SX], T_s: ca.SX, p: Parameters) -> State:
     """The state after a sample of T_s seconds.
 

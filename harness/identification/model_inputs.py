@@ -9,7 +9,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
 from .drive_train import STEPS, Parameters
-from .time_shifts import d_shifted, integral, shifted
+from .time_shifts import integral, shifted
 from .torque_loop import FittedLoop, fitted
 
 UNEVEN = 0.05
@@ -39,23 +39,22 @@ class Drive:
         at = slice(first, last)
         return replace(self, omega_1=self.omega_1[first : last + 1], T_mot=self.T_mot[at], T_load=self.T_load[at])
 
-    def acting(self, p: Parameters) -> "Drive":
-        """The drive with both torques when they acted."""
+    def acting(self, p: Parameters, first: int = 0, last: int | None = None) -> "Drive":
+        """Samples first to last, without last, with both torques when they acted."""
+        last = len(self) if last is None else last
+        piece = self.between(first, last)
         if p.late_T == p.late_L == 0.0:
-            return self
-        T_mot, T_load = (
-            shifted(of, len(self), late / self.T_s)
-            for of, late in zip(self._integrals, (p.late_T, p.late_L), strict=True)
-        )
-        return replace(self, T_mot=T_mot, T_load=T_load)
+            return piece
+        lates = np.array([p.late_T, p.late_L]) / self.T_s
+        T_mot, T_load = (shifted(of, first, last, late) for of, late in zip(self._integrals, lates, strict=True))
+        return replace(piece, T_mot=T_mot, T_load=T_load)
 
-    def d_acting(self, p: Parameters) -> np.ndarray:
-        """Derivatives of both torques of `acting` by late_T and late_L in N.m/s, shape (2 STEPS, n)."""
-        each = (
-            d_shifted(of, len(self), late / self.T_s).T / self.T_s
-            for of, late in zip(self._integrals, (p.late_T, p.late_L), strict=True)
-        )
-        return np.vstack(list(each))
+    def d_acting(self, p: Parameters, first: int = 0, last: int | None = None) -> np.ndarray:
+        """Derivatives of both torques of `acting` by late_T and late_L in N.m/s, shape (2 STEPS, samples)."""
+        last = len(self) if last is None else last
+        lates = np.array([p.late_T, p.late_L]) / self.T_s
+        each = [shifted(of, first, last, late, derivative=1).T for of, late in zip(self._integrals, lates, strict=True)]
+        return np.vstack(each) / self.T_s
 
     @cached_property
     def _integrals(self) -> tuple[BSpline, BSpline]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from .buffered import Buffered
 from .compiled_functions import compiled
-from .drive_train import STEPS, Parameters, State, sample
+from .drive_train import STEPS, Parameters, State, d_torques_by, sample
 from .model_inputs import Drive
 from .time_shifts import MOST
 
@@ -160,7 +160,7 @@ COMPARED = 0.4
 def _start(drive: Drive, p: Parameters, noise: Noise) -> tuple[np.ndarray, np.ndarray]:
     """State and covariance at the first sample, and their derivatives by all parameters: the likeliest of several,
     since a recording may begin in the middle of a swing."""
-    piece = drive.between(0, min(round(COMPARED / drive.T_s), len(drive))).acting(p)
+    piece = drive.acting(p, 0, min(round(COMPARED / drive.T_s), len(drive)))
     run, given = _filter().passed(len(piece)), _given(piece, p, noise)
     T_0 = abs(float(drive.T_mot[0, 0]))
 
@@ -227,9 +227,7 @@ class _Filter:
     def with_derivatives(self) -> ca.Function:
         n, m = self.state.numel(), self.p.numel()
         d_state, d_torques = ca.SX.sym("d_state", n, m), ca.SX.sym("d_torques", 2 * STEPS)
-        by_p = ca.SX(2 * STEPS, m)  # the torques depend on the shifts alone, each on its own
-        by_p[:STEPS, Parameters._fields.index("late_T")] = d_torques[:STEPS]
-        by_p[STEPS:, Parameters._fields.index("late_L")] = d_torques[STEPS:]
+        by_p = d_torques_by(Parameters._fields, d_torques)
         all_after, all_before = ca.vertcat(self.after, self.seen), ca.vertcat(self.state, self.p, self.torques)
         d = ca.jtimes(all_after, all_before, ca.vertcat(d_state, ca.DM.eye(m), by_p))
         given = [self.state, d_state, *self.given, d_torques]

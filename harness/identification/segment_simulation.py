@@ -8,7 +8,7 @@ import numpy as np
 
 from .buffered import Buffered
 from .compiled_functions import compiled
-from .drive_train import STEPS, Parameters, State, sample
+from .drive_train import STEPS, Parameters, State, d_torques_by, sample
 from .model_inputs import Drive
 
 STATES = len(State._fields)
@@ -28,6 +28,7 @@ class Simulator:
         state, parameters = State(*ca.vertsplit(x)), Parameters._make(ca.vertsplit(p))
         after = ca.vertcat(*sample(state, ca.vertsplit(T_mot), ca.vertsplit(T_load), T_s, parameters))
         self._given, self._x, self._p, self._after = [T_mot, T_load, p, T_s], x, p, after
+        self._torques = ca.vertcat(T_mot, T_load)
 
     @cached_property
     def _alone(self) -> Buffered:
@@ -40,8 +41,11 @@ class Simulator:
         d_p = np.zeros((len(Parameters._fields), m))
         for k, name in enumerate(self.free):
             d_p[Parameters._fields.index(name), STATES + k] = 1.0
-        d = ca.jtimes(self._after, ca.vertcat(self._x, self._p), ca.vertcat(d_x, ca.DM(d_p)))
-        alone = compiled(ca.Function("sensitivity", [self._x, d_x, *self._given], [self._after, d]))
+        d_acting = ca.SX.sym("d_acting", 2 * STEPS)
+        d_torques = ca.horzcat(ca.SX(2 * STEPS, STATES), d_torques_by(self.free, d_acting))
+        before = ca.vertcat(self._x, self._p, self._torques)
+        d = ca.jtimes(self._after, before, ca.vertcat(d_x, ca.DM(d_p), d_torques))
+        alone = compiled(ca.Function("sensitivity", [self._x, d_x, *self._given, d_acting], [self._after, d]))
         return Buffered(alone.mapaccum("runs", self.n, 2))
 
     def run(self, drive: Drive, first: int, start: np.ndarray, p: Parameters) -> np.ndarray:
@@ -54,14 +58,16 @@ class Simulator:
     ) -> tuple[np.ndarray, np.ndarray]:
         """The same, and the derivatives by start and free parameters, shape (n, states, states + parameters)."""
         m = STATES + len(self.free)
-        x, d = self._with_derivatives(start, np.eye(STATES, m), *self._inputs(drive, first, p))
+        shifts = {"late_T", "late_L"} & {*self.free}
+        d_acting = drive.d_acting(p, first, first + self.n) if shifts else np.zeros((2 * STEPS, self.n))
+        x, d = self._with_derivatives(start, np.eye(STATES, m), *self._inputs(drive, first, p), d_acting)
         return x.T.copy(), d.reshape(STATES, self.n, m).transpose(1, 0, 2).copy()
 
     def _inputs(self, drive: Drive, first: int, p: Parameters) -> tuple[np.ndarray, ...]:
-        at = slice(first, first + self.n)
+        acting = drive.acting(p, first, first + self.n)
         return (
-            drive.T_mot[at].T,
-            drive.T_load[at].T,
+            acting.T_mot.T,
+            acting.T_load.T,
             np.tile(np.array(p)[:, None], (1, self.n)),
             np.full((1, self.n), drive.T_s),
         )

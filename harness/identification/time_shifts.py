@@ -32,15 +32,8 @@ def integral(means: np.ndarray, T_s: float) -> BSpline:
     return make_interp_spline(time, np.concatenate([[0.0], np.cumsum(held)]) / STEPS, k=5)
 
 
-def shifted(of: BSpline, n: int, late: float) -> np.ndarray:
-    """Means over the parts of n samples, `late` samples later, shape (n, STEPS)."""
-    return np.diff(of(_edges(n) + late)).reshape(n, STEPS) * STEPS
-
-
-def d_shifted(of: BSpline, n: int, late: float) -> np.ndarray:
-    """Derivative of `shifted` by `late`."""
-    return np.diff(of(_edges(n) + late, nu=1)).reshape(n, STEPS) * STEPS
-
-
-def _edges(n: int) -> np.ndarray:
-    return np.arange(STEPS * n + 1) / STEPS
+def shifted(of: BSpline, first: int, last: int, late: float, derivative: int = 0) -> np.ndarray:
+    """Means over the parts of the samples from first to last, without last, `late` samples later; or their derivative
+    by `late`. Shape (samples, STEPS)."""
+    edges = np.arange(STEPS * first, STEPS * last + 1) / STEPS + late
+    return np.diff(of(edges, nu=derivative)).reshape(-1, STEPS) * STEPS
