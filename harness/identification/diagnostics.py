@@ -1,32 +1,23 @@
 """Diagnostics: what may be wrong with a recording, or with what is taken as known, shows in the innovations."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.signal import welch
 
 from .drive_train import Parameters
 from .drive_train_response import Tyre
-from .maximum_likelihood import Found, maximise
-from .model_inputs import Drive
-from .prediction import Filtered, Noise, Predictor
+from .prediction import Filtered
 from .quality import Z_95
+from .time_shifts import MOST
 from .torque_loop import FittedLoop
 
 LIKELY = 15.1
 """Twice the gain in likelihood of one more parameter up to which it is not asked for: more comes by chance once in ten
 thousand."""
 
-LATE = 0.004
-"""Time in s by which it is tried whether the load torque is late or early."""
-
-LEFT, SCATTER = 0.5, 0.1
-"""Share of what the innovations are too large by that a shift of the load torque may leave, and what they may be too
-large by where nothing is wrong (0.06 at most in 20 recordings of the design model)."""
-
-TRIAL = 8
-"""Passes that a trial may take."""
+SKEWED = 2e-4
+"""Time in s from which on a shift between channels is named; what is smaller is allowed for too."""
 
 DEMAND_LATE = 0.5
 """Samples by which the torque demand must be late or early to be named."""
@@ -35,7 +26,7 @@ LAG_OFF = 0.1
 """Share of tau that the vehicle file may be wrong by without a warning."""
 
 SURELY = 3.0
-"""Standard deviations by which the gain of the motor torque must be off to be named."""
+"""Standard deviations by which a shift or the gain of the motor torque must be off to be named."""
 
 UNKNOWN_GAIN, LOAD_GAIN = 0.3, 0.1
 """Relative standard deviation of the gain of the load torque from which on it tells nothing, and what the gain may be
@@ -67,20 +58,31 @@ CLOSE = 0.05
 """Relative standard deviation from which on a parameter counts as undetermined."""
 
 
-def diagnose_load_delay(drive: Drive, found: Found, noise: Noise) -> list[str]:
-    """Whether the recording is explained better if the load torque is shifted: if half of what the innovations are too
-    large by is gone then, or all but chance. Whatever else is wrong, some shift makes it a little better."""
-    gains = []
-    samples = max(round(LATE / drive.T_s), 1)
-    for late, word in ((samples, "late"), (-samples, "early")):
-        shifted = replace(drive, T_load=np.roll(drive.T_load, -late, axis=0))
-        refit = maximise(Predictor(found.free), shifted, found.p, noise, most=TRIAL)
-        if refit.innovations.rms - 1.0 < max(LEFT * (found.innovations.rms - 1.0), SCATTER):
-            gains.append((found.gain(refit), word))
-    gain, word = max(gains, default=(0.0, ""))
-    by = 1e3 * drive.T_s * samples
-    warning = f"the load torque looks {word}: shifted by {by:g} ms the recording is explained better"
-    return [warning] if gain > LIKELY else []
+def diagnose_shifts(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """What channel is recorded late or early: the motor speed if it is so against both torques."""
+    torques = {"late_T": "motor torque", "late_L": "load torque"}
+    least = {name: max(SKEWED, SURELY * deviations.get(name, 0.0)) for name in torques}
+    lates = {name: late for name in torques if abs(late := getattr(p, name)) > least[name]}
+
+    def by(name: str) -> str:
+        late = abs(lates[name])
+        return (
+            f"{1e3 * late:.2f} ms or more"
+            if late >= MOST
+            else (f"{1e3 * late:.2f} +- {1e3 * Z_95 * deviations.get(name, 0.0):.2f} ms")
+        )
+
+    def text(channel: str, late: float, others: Mapping[str, str]) -> str:
+        word, side = ("late", "after") if late > 0.0 else ("early", "before")
+        behind = " and ".join(f"{by(name)} {side} the {other}" for name, other in others.items())
+        return (
+            f"the {channel} looks {word}: it is recorded {behind}, which is allowed for here; "
+            "other commands take the channels as recorded"
+        )
+
+    if p.late_T * p.late_L > 0.0 and lates.keys() == torques.keys():
+        return [text("motor speed", -p.late_T, torques)]
+    return [text(torques[name], late, {name: "motor speed"}) for name, late in lates.items()]
 
 
 def diagnose_motor_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:

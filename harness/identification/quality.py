@@ -70,7 +70,7 @@ def judged(drive: Drive, p: Parameters, noise: Noise, drift: float, first: int) 
     errors = [ahead.run(drive, k, through.states[k - 1], p)[-1, 0] - drive.omega_1[k + after] for k in begins]
     pieces = segments(drive, (), drift, first)
     simulated, recorded = pieces.free_runs(p, near_starts(pieces, through))
-    size = through.size[first:]
+    size = through.size[first : through.counted.stop]
     return Quality(
         nrmse(simulated[..., 0] - recorded, recorded),
         nrmse(through.errors[first:], drive.omega_1[first + 1 :]),
