@@ -19,6 +19,9 @@ thousand."""
 SKEWED = 2e-4
 """Time in s from which on a shift between channels is named; what is smaller is allowed for too."""
 
+CHANNELS = {"late_1": "motor speed", "late_T": "motor torque", "late_L": "load torque"}
+"""By their delays."""
+
 DEMAND_LATE = 0.5
 """Samples by which the torque demand must be late or early to be named."""
 
@@ -58,31 +61,21 @@ CLOSE = 0.05
 """Relative standard deviation from which on a parameter counts as undetermined."""
 
 
-def diagnose_shifts(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
-    """What channel is recorded late or early: the motor speed if it is so against both torques."""
-    torques = {"late_T": "motor torque", "late_L": "load torque"}
-    least = {name: max(SKEWED, SURELY * deviations.get(name, 0.0)) for name in torques}
-    lates = {name: late for name in torques if abs(late := getattr(p, name)) > least[name]}
-
-    def by(name: str) -> str:
-        late = abs(lates[name])
-        return (
-            f"{1e3 * late:.2f} ms or more"
-            if late >= MOST
-            else (f"{1e3 * late:.2f} +- {1e3 * Z_95 * deviations.get(name, 0.0):.2f} ms")
-        )
-
-    def text(channel: str, late: float, others: Mapping[str, str]) -> str:
+def diagnose_delays(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """What channel is recorded late or early."""
+    others = {"late_1": "both torques", "late_T": "the motor speed", "late_L": "the motor speed"}
+    texts = []
+    for name, channel in CHANNELS.items():
+        late, deviation = getattr(p, name), deviations.get(name, 0.0)
+        if abs(late) <= max(SKEWED, SURELY * deviation):
+            continue
         word, side = ("late", "after") if late > 0.0 else ("early", "before")
-        behind = " and ".join(f"{by(name)} {side} the {other}" for name, other in others.items())
-        return (
-            f"the {channel} looks {word}: it is recorded {behind}, which is allowed for here; "
-            "other commands take the channels as recorded"
+        within = " ms or more" if abs(late) >= MOST else f" +- {1e3 * Z_95 * deviation:.2f} ms"
+        texts.append(
+            f"the {channel} looks {word}: it is recorded {1e3 * abs(late):.2f}{within} {side} {others[name]}, "
+            "which is allowed for here; other commands take the channels as recorded"
         )
-
-    if p.late_T * p.late_L > 0.0 and lates.keys() == torques.keys():
-        return [text("motor speed", -p.late_T, torques)]
-    return [text(torques[name], late, {name: "motor speed"}) for name, late in lates.items()]
+    return texts
 
 
 def diagnose_motor_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:

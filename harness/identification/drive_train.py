@@ -28,8 +28,8 @@ class Parameters(NamedTuple):
         d: structural damping in N.m.s/rad.
         phi_B: half the backlash in rad.
         g_T, g_L: recorded over true motor and load torque.
-        late_T, late_L: time in s by which motor and load torque are recorded after the motor speed; see
-            `harness.identification.time_shifts`.
+        late_1, late_T, late_L: time in s by which motor speed, motor and load torque are recorded late; what is common
+            to all cannot be seen. See `harness.identification.time_shifts`.
     """
 
     J_1: float
@@ -39,8 +39,18 @@ class Parameters(NamedTuple):
     phi_B: float
     g_T: float = 1.0
     g_L: float = 1.0
+    late_1: float = 0.0
     late_T: float = 0.0
     late_L: float = 0.0
+
+    @property
+    def shifts(self) -> tuple[float, float]:
+        """Time in s by which motor and load torque are recorded after the motor speed."""
+        return self.late_T - self.late_1, self.late_L - self.late_1
+
+
+DELAYS = ("late_1", "late_T", "late_L")
+"""Of the parameters those of the logger."""
 
 
 class State(NamedTuple):
@@ -89,12 +99,13 @@ def d_torques_by(names: Sequence[str], d_acting: ca.SX) -> ca.SX:
     """Derivatives of the torques of a sample by parameters, shape (2 STEPS, names): each depends on its own shift.
 
     Args:
-        d_acting: by late_T and late_L, shape (2 STEPS,).
+        d_acting: by these, shape (2 STEPS,).
     """
     d = ca.SX(2 * STEPS, len(names))
-    for name, at in (("late_T", slice(0, STEPS)), ("late_L", slice(STEPS, None))):
+    both = (("late_1", slice(None), -1.0), ("late_T", slice(0, STEPS), 1.0), ("late_L", slice(STEPS, None), 1.0))
+    for name, at, sign in both:
         if name in names:
-            d[at, names.index(name)] = d_acting[at]
+            d[at, names.index(name)] = sign * d_acting[at]
     return d
 
 

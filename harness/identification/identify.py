@@ -11,6 +11,7 @@ from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
 from .diagnostics import (
     LIKELY,
+    diagnose_delays,
     diagnose_demand,
     diagnose_excitation,
     diagnose_innovations,
@@ -18,11 +19,10 @@ from .diagnostics import (
     diagnose_motor_gain,
     diagnose_offsets,
     diagnose_outliers,
-    diagnose_shifts,
     diagnose_spectrum,
     diagnose_tyre,
 )
-from .drive_train import Parameters
+from .drive_train import DELAYS, Parameters
 from .drive_train_response import Tyre, resonance, tyre
 from .global_start import best_start
 from .maximum_likelihood import Found, maximise
@@ -36,15 +36,7 @@ from .torque_loop import FittedLoop
 DAMPED = ("J_2", "C", "phi_B", "d")
 """What is searched without the load torque."""
 
-SHIFTS = ("late_T", "late_L")
-"""What a recording is skewed by."""
-
-LIKELY_SKEW = 4.0
-"""Twice the gain in likelihood of a shift up to which it is not asked for. Less than LIKELY: channels are rarely
-aligned, a shift that is left out moves the others, and one too many costs 3 % of the interval of J_2 and 13 % of that of
-C."""
-
-NEUTRAL = {"d": 0.0, "g_T": 1.0, "late_T": 0.0, "late_L": 0.0}
+NEUTRAL = {"d": 0.0, "g_T": 1.0, **dict.fromkeys(DELAYS, 0.0)}
 """Parameters that may not be significant, and their values if they are not."""
 
 WIDE_LOAD_NOISE = 5.0
@@ -180,7 +172,7 @@ def identify(
         *diagnose_spectrum(recording.omega_1),
         *diagnose_outliers(filter_run, drive.T_s),
         *(diagnose_offsets(filter_run, estimate.p) if measured else ()),
-        *diagnose_shifts(estimate.p, estimate.deviations),
+        *diagnose_delays(estimate.p, estimate.deviations),
         *diagnose_motor_gain(estimate.p, estimate.deviations),
         *diagnose_load_gain(estimate.p, estimate.deviations),
         *estimate.warnings,
@@ -224,7 +216,7 @@ def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Seq
     if best.innovations.rms <= EXPLAINED:
         return Estimate("prediction error", best.p, best.covariance, best.free, noise, ())
     log("the model does not explain all of the recording: pieces of 0.5 s are simulated")
-    shifts = {name: late for name in SHIFTS if abs(late := getattr(best.p, name)) > UNSURE}
+    shifts = {name: late for name in DELAYS if abs(late := getattr(best.p, name)) > UNSURE}
     fitted = output_error_fit(drive, initial._replace(**shifts), noise, (*more, *shifts))
     _log_stage(log, "simulated", fitted.p)
     warnings = (
@@ -247,9 +239,29 @@ def prediction_error_fit(
     drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = (), log: Log = lambda _: None
 ) -> Found:
     """The fit by prediction error, with no parameter that is not significant."""
-    found = maximise(Predictor((*_searched(more), "g_L", *SHIFTS)), drive, initial, noise, most=FEW)
+    found = maximise(Predictor((*_searched(more), "g_L", "late_T", "late_L")), drive, initial, noise, most=FEW)
     _log_stage(log, "predicted with the noise of the sensors", found.p)
+    found = with_late_speed(drive, found, noise)
     return backward_elimination(drive, found, noise, more, log)
+
+
+def with_late_speed(drive: Drive, found: Found, noise: Noise) -> Found:
+    """The motor speed late instead of both torques early, or as they are found: where the load torque is surely not
+    aligned with the motor speed, and may be so with the motor torque. Of a tyre that is mostly a damper one shift of
+    the load torque alone cannot be told from another J_2 (the motor torque is known ten times as closely).
+
+    Args:
+        found: with both shifts.
+    """
+    T, L = (found.free.index(name) for name in ("late_T", "late_L"))
+    covariance = found.covariance
+    off, apart = found.p.late_L, found.p.late_L - found.p.late_T
+    variance = covariance[L, L] + covariance[T, T] - 2.0 * covariance[L, T]
+    if off**2 <= LIKELY * covariance[L, L] or apart**2 > LIKELY * variance:
+        return found
+    free = (*(name for name in found.free if name not in DELAYS), "late_1")
+    begin = found.p._replace(late_1=-found.p.late_T, late_T=0.0, late_L=0.0)
+    return maximise(Predictor(free), drive, begin, noise, most=FEWER)
 
 
 def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequence[str], log: Log) -> Found:
@@ -263,10 +275,9 @@ def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequenc
     best = found
     while optional := [name for name in NEUTRAL if name in best.free and name not in more]:
         deviations = dict(zip(best.free, np.sqrt(np.diag(best.covariance)), strict=True))
-        asked = {name: LIKELY_SKEW if name in SHIFTS else LIKELY for name in optional}
-        gains = {name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 for name in optional}
-        least = min(optional, key=lambda name: gains[name] / asked[name])
-        if gains[least] > asked[least]:
+        significance = {name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 for name in optional}
+        least = min(optional, key=lambda name: significance[name])
+        if significance[least] > LIKELY:
             break
         free = tuple(name for name in best.free if name != least)
         best = maximise(Predictor(free), drive, best.p._replace(**{least: NEUTRAL[least]}), noise, most=FEWER)

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .drive_train import Parameters
+from .drive_train import DELAYS, Parameters
 from .model_inputs import Drive
 from .prediction import Innovations, Noise, Predictor
 from .time_shifts import MOST
 
-SIGNED = {"d": 1.0, "late_T": 1e-3, "late_L": 1e-3}
+SIGNED = {"d": 1.0, **dict.fromkeys(DELAYS, 1e-3)}
 """Parameters that may be zero; they are searched as they are, in these units."""
 
 UNKNOWN = 1e-4
@@ -70,7 +70,7 @@ def moved(p: Parameters, free: Sequence[str], by: np.ndarray) -> Parameters:
         name: getattr(p, name) + SIGNED[name] * step if name in SIGNED else getattr(p, name) * float(np.exp(step))
         for name, step in zip(free, by, strict=True)
     }
-    values |= {name: float(np.clip(values[name], -MOST, MOST)) for name in ("late_T", "late_L") if name in values}
+    values |= {name: float(np.clip(values[name], -MOST, MOST)) for name in DELAYS if name in values}
     return p._replace(**values)
 
 

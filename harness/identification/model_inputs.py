@@ -43,16 +43,16 @@ class Drive:
         """Samples first to last, without last, with both torques when they acted."""
         last = len(self) if last is None else last
         piece = self.between(first, last)
-        if p.late_T == p.late_L == 0.0:
+        if p.shifts == (0.0, 0.0):
             return piece
-        lates = np.array([p.late_T, p.late_L]) / self.T_s
+        lates = np.array(p.shifts) / self.T_s
         T_mot, T_load = (shifted(of, first, last, late) for of, late in zip(self._integrals, lates, strict=True))
         return replace(piece, T_mot=T_mot, T_load=T_load)
 
     def d_acting(self, p: Parameters, first: int = 0, last: int | None = None) -> np.ndarray:
-        """Derivatives of both torques of `acting` by late_T and late_L in N.m/s, shape (2 STEPS, samples)."""
+        """Derivatives of both torques of `acting` by their shifts in N.m/s, shape (2 STEPS, samples)."""
         last = len(self) if last is None else last
-        lates = np.array([p.late_T, p.late_L]) / self.T_s
+        lates = np.array(p.shifts) / self.T_s
         each = [shifted(of, first, last, late, derivative=1).T for of, late in zip(self._integrals, lates, strict=True)]
         return np.vstack(each) / self.T_s
 

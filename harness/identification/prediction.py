@@ -15,7 +15,7 @@ import numpy as np
 
 from .buffered import Buffered
 from .compiled_functions import compiled
-from .drive_train import STEPS, Parameters, State, d_torques_by, sample
+from .drive_train import DELAYS, STEPS, Parameters, State, d_torques_by, sample
 from .model_inputs import Drive
 from .time_shifts import MOST
 
@@ -102,7 +102,7 @@ class Predictor:
 
     def innovations(self, drive: Drive, p: Parameters, noise: Noise) -> Innovations:
         n, acting = len(drive), drive.acting(p)
-        d_torques = drive.d_acting(p) if {"late_T", "late_L"} & {*self.free} else np.zeros((2 * STEPS, n))
+        d_torques = drive.d_acting(p) if {*DELAYS} & {*self.free} else np.zeros((2 * STEPS, n))
         start, d_start = _start(drive, p, noise)
         given = _given(acting, p, noise)
         _, _, seen, d_seen = _filter().passed_with_derivatives(n)(start, d_start, *given, d_torques)

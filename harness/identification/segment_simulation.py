@@ -8,7 +8,7 @@ import numpy as np
 
 from .buffered import Buffered
 from .compiled_functions import compiled
-from .drive_train import STEPS, Parameters, State, d_torques_by, sample
+from .drive_train import DELAYS, STEPS, Parameters, State, d_torques_by, sample
 from .model_inputs import Drive
 
 STATES = len(State._fields)
@@ -58,8 +58,8 @@ class Simulator:
     ) -> tuple[np.ndarray, np.ndarray]:
         """The same, and the derivatives by start and free parameters, shape (n, states, states + parameters)."""
         m = STATES + len(self.free)
-        shifts = {"late_T", "late_L"} & {*self.free}
-        d_acting = drive.d_acting(p, first, first + self.n) if shifts else np.zeros((2 * STEPS, self.n))
+        shifted = {*DELAYS} & {*self.free}
+        d_acting = drive.d_acting(p, first, first + self.n) if shifted else np.zeros((2 * STEPS, self.n))
         x, d = self._with_derivatives(start, np.eye(STATES, m), *self._inputs(drive, first, p), d_acting)
         return x.T.copy(), d.reshape(STATES, self.n, m).transpose(1, 0, 2).copy()
 

@@ -12,19 +12,19 @@ from driveline.harness.identification.diagnostics import (
     DEMAND_LATE,
     FLANK,
     LAG_OFF,
-    LIKELY,
     LONELY,
     OUTLIER,
-    TRIAL,
+    SKEWED,
+    SURELY,
     ZERO,
     diagnose_demand,
     diagnose_excitation,
     diagnose_innovations,
-    diagnose_load_delay,
     diagnose_load_gain,
     diagnose_motor_gain,
     diagnose_offsets,
     diagnose_outliers,
+    diagnose_shifts,
     diagnose_spectrum,
     diagnose_tyre,
 )
@@ -33,6 +33,7 @@ from driveline.harness.identification.identify import backward_elimination
 from driveline.harness.identification.maximum_likelihood import maximise
 from driveline.harness.identification.model_inputs import Drive
 from driveline.harness.identification.prediction import Filtered, Predictor, filtered
+from driveline.harness.identification.time_shifts import MOST
 from driveline.harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
 from tests.harness.identification.simulated import NOISE, T_S, P, simulated
 
@@ -48,55 +49,48 @@ CAR = P._replace(g_T=1.0, d=0.0)
 TRUE = P._replace(g_T=1.0, g_L=1.0)
 
 
-def shifted(drive: Drive, samples: int) -> Drive:
-    """Its load torque so many samples late."""
-    return replace(drive, T_load=np.roll(drive.T_load, samples, axis=0))
-
-
-def looked_for(drive: Drive) -> list[str]:
-    return diagnose_load_delay(drive, maximise(Predictor(FREE), drive, P, NOISE, most=12), NOISE)
-
-
 def test_nothing_is_said_of_a_drive_that_is_as_it_should_be() -> None:
     drive = simulated(seed=6)
-    assert looked_for(drive) == []
+    assert diagnose_shifts(P, {}) == []
     assert diagnose_excitation(twist(drive), P, SHARP, FREE) == []
 
 
-@pytest.mark.parametrize(("samples", "word"), [(2, "late"), (-2, "early")])
-def test_a_load_torque_that_is_4_ms_late_or_early_is_named(samples: int, word: str) -> None:
-    assert looked_for(shifted(simulated(seed=6), samples)) == [
-        f"the load torque looks {word}: shifted by 4 ms the recording is explained better"
+@pytest.mark.parametrize(("name", "channel"), [("late_T", "motor torque"), ("late_L", "load torque")])
+@pytest.mark.parametrize(("sign", "word", "side"), [(1.0, "late", "after"), (-1.0, "early", "before")])
+def test_a_torque_that_is_late_or_early_is_named(name: str, channel: str, sign: float, word: str, side: str) -> None:
+    (text,) = diagnose_shifts(P._replace(**{name: sign * 0.00151}), {name: 1e-5})
+    assert text.startswith(f"the {channel} looks {word}: it is recorded 1.51 +- 0.02 ms {side} the motor speed,")
+
+
+@pytest.mark.parametrize(("sign", "word", "side"), [(-1.0, "late", "after"), (1.0, "early", "before")])
+def test_where_both_torques_are_shifted_alike_it_is_the_motor_speed(sign: float, word: str, side: str) -> None:
+    p = P._replace(late_T=sign * 0.001, late_L=sign * 0.0015)
+    (text,) = diagnose_shifts(p, {"late_T": 1e-5, "late_L": 2e-5})
+    assert text.startswith(
+        f"the motor speed looks {word}: it is recorded 1.00 +- 0.02 ms {side} the motor torque and "
+        f"1.50 +- 0.04 ms {side} the load torque,"
+    )
+
+
+def test_torques_that_are_shifted_against_each_other_are_named_both() -> None:
+    texts = diagnose_shifts(P._replace(late_T=0.0005, late_L=-0.0005), {})
+    assert [text.partition(":")[0] for text in texts] == [
+        "the motor torque looks late",
+        "the load torque looks early",
     ]
 
 
-def test_it_is_named_from_a_gain_in_likelihood_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    drive = shifted(simulated(seed=6), 2)
-    late = maximise(Predictor(FREE), drive, P, NOISE, most=12)
-    right = maximise(Predictor(FREE), shifted(drive, -2), late.p, NOISE, most=TRIAL)
-    gain = late.gain(right)
-    assert gain > LIKELY
-    for threshold, named in ((0.999 * gain, True), (1.001 * gain, False)):
-        monkeypatch.setattr("driveline.harness.identification.diagnostics.LIKELY", threshold)
-        assert bool(diagnose_load_delay(drive, late, NOISE)) == named
+@pytest.mark.parametrize("name", ["late_T", "late_L"])
+@pytest.mark.parametrize("deviation", [0.0, SKEWED])
+def test_a_shift_is_named_from_its_thresholds_on(name: str, deviation: float) -> None:
+    least = max(SKEWED, SURELY * deviation)
+    for late, named in ((0.999 * least, False), (1.001 * least, True), (-1.001 * least, True)):
+        assert bool(diagnose_shifts(P._replace(**{name: late}), {name: deviation})) == named
 
 
-@pytest.mark.parametrize("name", ["LEFT", "SCATTER"])
-def test_a_shift_that_leaves_most_of_the_innovations_is_not_spoken_of(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Another fault is made a little smaller by some shift."""
-    drive = shifted(simulated(seed=6), 2)
-    late = maximise(Predictor(FREE), drive, P, NOISE, most=12)
-    right = maximise(Predictor(FREE), shifted(drive, -2), late.p, NOISE, most=TRIAL)
-    left = right.innovations.rms - 1.0
-    if name == "LEFT":
-        left /= late.innovations.rms - 1.0
-    monkeypatch.setattr("driveline.harness.identification.diagnostics.LEFT", 0.0)
-    monkeypatch.setattr("driveline.harness.identification.diagnostics.SCATTER", -1.0)
-    for threshold, named in ((left + 1e-6, True), (left - 1e-6, False)):
-        monkeypatch.setattr(f"driveline.harness.identification.diagnostics.{name}", threshold)
-        assert bool(diagnose_load_delay(drive, late, NOISE)) == named
+def test_a_shift_that_is_as_large_as_is_looked_at_may_be_larger() -> None:
+    (text,) = diagnose_shifts(P._replace(late_L=MOST), {"late_L": 1e-5})
+    assert "recorded 6.00 ms or more after the motor speed" in text
 
 
 @pytest.mark.parametrize(
@@ -274,7 +268,7 @@ def test_a_damper_that_drives_is_named() -> None:
 def through(size: np.ndarray, *offsets: float) -> Filtered:
     states = np.zeros((len(size), 5))
     states[-1, 3:] = offsets or (0.0, 0.0)
-    return Filtered(size, np.zeros(len(size)), 100, states)
+    return Filtered(size, np.zeros(len(size)), slice(100, None), states)
 
 
 def test_a_zero_that_is_off_is_named_from_its_threshold_on() -> None:

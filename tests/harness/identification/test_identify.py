@@ -23,7 +23,7 @@ def white(n: int) -> np.ndarray:
 def found(d_size: np.ndarray, free: tuple[str, ...] = ("J_2", "C"), p: tuple[float, ...] = (1.0, 1.0)) -> Found:
     """With innovations of size 1 that depend on the free parameters so."""
     ones, nothing = np.ones(len(d_size)), np.zeros_like(d_size)
-    innovations = Innovations(size=ones, log_S=0.0 * ones, settled=0, d_size=d_size, d_log_S=nothing)
+    innovations = Innovations(size=ones, log_S=0.0 * ones, counted=slice(None), d_size=d_size, d_log_S=nothing)
     return Found(P._replace(**dict(zip(free, p, strict=True))), free, innovations, passes=1)
 
 
