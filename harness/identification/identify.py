@@ -239,29 +239,24 @@ def prediction_error_fit(
     drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = (), log: Log = lambda _: None
 ) -> Found:
     """The fit by prediction error, with no parameter that is not significant."""
-    found = maximise(Predictor((*_searched(more), "g_L", "late_T", "late_L")), drive, initial, noise, most=FEW)
+    found = fit_with_delays(drive, initial, noise, more)
     _log_stage(log, "predicted with the noise of the sensors", found.p)
-    found = with_late_speed(drive, found, noise)
     return backward_elimination(drive, found, noise, more, log)
 
 
-def with_late_speed(drive: Drive, found: Found, noise: Noise) -> Found:
-    """The motor speed late instead of both torques early, or as they are found: where the load torque is surely not
-    aligned with the motor speed, and may be so with the motor torque. Of a tyre that is mostly a damper one shift of
-    the load torque alone cannot be told from another J_2 (the motor torque is known ten times as closely).
-
-    Args:
-        found: with both shifts.
-    """
-    T, L = (found.free.index(name) for name in ("late_T", "late_L"))
-    covariance = found.covariance
-    off, apart = found.p.late_L, found.p.late_L - found.p.late_T
-    variance = covariance[L, L] + covariance[T, T] - 2.0 * covariance[L, T]
-    if off**2 <= LIKELY * covariance[L, L] or apart**2 > LIKELY * variance:
-        return found
-    free = (*(name for name in found.free if name not in DELAYS), "late_1")
-    begin = found.p._replace(late_1=-found.p.late_T, late_T=0.0, late_L=0.0)
-    return maximise(Predictor(free), drive, begin, noise, most=FEWER)
+def fit_with_delays(drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str]) -> Found:
+    """With the motor torque late; with the motor speed late instead, and then with a shift of either torque, where that
+    is surely likelier. With a tyre that is mostly a damper a shift of the load torque can hardly be told from another
+    J_2, so that it is not freed with the others."""
+    free = (*_searched(more), "g_L")
+    best = maximise(Predictor((*free, "late_T")), drive, initial, noise, most=FEW)
+    speed = initial._replace(late_1=-best.p.late_T)
+    tried = maximise(Predictor((*free, "late_1")), drive, speed, noise, most=FEW)
+    best = tried if best.gain(tried) > LIKELY else best
+    late_T, late_L = best.p.shifts
+    both = best.p._replace(late_1=0.0, late_T=late_T, late_L=late_L)
+    tried = maximise(Predictor((*free, "late_T", "late_L")), drive, both, noise, most=FEW)
+    return tried if best.gain(tried) > LIKELY else best
 
 
 def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequence[str], log: Log) -> Found:
