@@ -10,6 +10,7 @@ from driveline.harness.identification.global_start import best_start
 from driveline.harness.identification.identify import WIDE_LOAD_NOISE
 from driveline.harness.identification.maximum_likelihood import Found, maximise, moved, scales
 from driveline.harness.identification.prediction import Noise, Predictor
+from driveline.harness.identification.time_shifts import MOST
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "g_L", "d")
@@ -64,7 +65,7 @@ def test_what_the_recording_tells_nothing_of_remains_and_is_unknown() -> None:
 
 def test_the_covariance_is_the_inverse_of_the_information_times_the_noise_that_is_left() -> None:
     result = found(P)
-    assert result.innovations.rms == pytest.approx(np.sqrt(np.mean(result.innovations.size[100:] ** 2)))
+    assert result.innovations.rms == pytest.approx(np.sqrt(np.mean(result.innovations.size[100:-3] ** 2)))
     inverse = result.covariance / result.innovations.rms**2
     np.testing.assert_allclose(inverse @ result.innovations.information, np.eye(len(FREE)), atol=1e-3)
     np.testing.assert_allclose(inverse, result.inverse_information)
@@ -91,11 +92,15 @@ def test_no_more_passes_than_are_allowed() -> None:
 
 
 def test_a_step_of_the_search_keeps_signs_and_scales_tell_it() -> None:
-    free = ("J_2", "d")
-    step = np.array([-5.0, -1.0])
+    free = ("J_2", "d", "late_L")
+    step = np.array([-5.0, -1.0, 0.7])
     there = moved(P, free, step)
+    assert there.late_L == pytest.approx(0.0007)
+    assert moved(there, free, np.array([0.0, 0.0, 9.0])).late_L == MOST
+    assert moved(there, free, np.array([0.0, 0.0, -9.0])).late_L == -MOST
     assert there.J_2 > 0.0
     assert there.d == pytest.approx(P.d - 1.0)
     by = 1e-6
-    assert (moved(P, free, np.array([by, 0.0])).J_2 - P.J_2) / by == pytest.approx(scales(P, free)[0], rel=1e-5)
-    assert (moved(P, free, np.array([0.0, by])).d - P.d) / by == pytest.approx(scales(P, free)[1], rel=1e-5)
+    for k, name in enumerate(free):
+        further = moved(P, free, by * np.eye(3)[k])
+        assert (getattr(further, name) - getattr(P, name)) / by == pytest.approx(scales(P, free)[k], rel=1e-5)

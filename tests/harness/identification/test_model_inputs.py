@@ -11,6 +11,7 @@ from driveline.harness.identification.model_inputs import UNEVEN, model_inputs, 
 from driveline.harness.identification.torque_loop import TorqueLoop
 from driveline.harness.recordings.measurement import Measurement
 from driveline.harness.recordings.source import RecordingError
+from tests.harness.identification.simulated import P
 
 T_S = 0.002
 TIME = 0.5 + T_S * np.arange(400)
@@ -53,6 +54,26 @@ def test_a_part_of_a_drive_is_that_of_its_samples() -> None:
     np.testing.assert_array_equal(part.omega_1, drive.omega_1[100:251])
     np.testing.assert_array_equal(part.T_mot, drive.T_mot[100:250])
     np.testing.assert_array_equal(part.T_load, drive.T_load[100:250])
+
+
+def test_torques_act_as_much_before_they_are_recorded_as_they_are_later_than_the_motor_speed() -> None:
+    """The mean of each part is that of the recorded signal so much later; a piece is that of the whole."""
+    drive, _ = model_inputs(recording(T_load=-10.0 + 3.0 * np.sin(5.0 * TIME)))
+    p = P._replace(late_1=-0.0004, late_T=0.0003, late_L=-0.001)
+    middle = TIME[:-1, None] + T_S * (np.arange(STEPS) + 0.5) / STEPS
+    acting, inside = drive.acting(p, 100, 250), slice(100, 250)
+    np.testing.assert_allclose(acting.T_mot, (10.0 + np.sin(20.0 * (middle + 0.0007)))[inside], atol=2e-5)
+    np.testing.assert_allclose(acting.T_load, (-10.0 + 3.0 * np.sin(5.0 * (middle - 0.0006)))[inside], atol=2e-5)
+    np.testing.assert_array_equal(acting.omega_1, drive.omega_1[100:251])
+    by_T, by_L = np.split(drive.d_acting(p, 100, 250).T, 2, axis=1)
+    np.testing.assert_allclose(by_T, (20.0 * np.cos(20.0 * (middle + 0.0007)))[inside], rtol=1e-3, atol=1e-2)
+    np.testing.assert_allclose(by_L, (15.0 * np.cos(5.0 * (middle - 0.0006)))[inside], rtol=1e-3, atol=1e-2)
+
+
+def test_torques_that_are_not_late_are_those_that_were_recorded() -> None:
+    drive, _ = model_inputs(recording())
+    for p in (P, P._replace(late_1=0.001, late_T=0.001, late_L=0.001)):
+        np.testing.assert_array_equal(drive.acting(p).T_mot, drive.T_mot)
 
 
 def test_where_the_demand_is_known_the_motor_torque_has_no_noise() -> None:

@@ -69,7 +69,7 @@ def test_the_gradient_after_the_starts_are_eliminated_is_that_of_the_cost(pieces
         return pieces._linear(_Point(p, o_T, there, point.expected)).cost
 
     for k, name in enumerate(("o_T", *FREE)):
-        size = 1.0 if name == "o_T" else getattr(point.p, name)
+        size = 1.0 if name == "o_T" else getattr(point.p, name) or 1e-3
         by = 1e-6 * size
         gradient = (cost(name, by) - cost(name, -by)) / (2.0 * by)
         assert linear.scores.sum(axis=0)[k] == pytest.approx(gradient, rel=1e-4), name

@@ -16,7 +16,7 @@ SETTLED = 100
 LAST = 3
 """Samples at the end of which nothing is known if a torque comes 6 ms late."""
 
-SKEWED = P._replace(late_T=0.0007, late_L=-0.0013)
+SKEWED = P._replace(late_1=0.0004, late_T=0.0007, late_L=-0.0013)
 
 STEP = 1e-5
 """Relative, of central differences."""
