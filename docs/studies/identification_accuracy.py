@@ -13,6 +13,7 @@ from time import monotonic
 
 import numpy as np
 
+from docs.studies.foreign_loop import CARS, Loop, logged
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.design.design import design
 from driveline.harness.design.design_trials import controller_parameters, loop_records, settled
@@ -35,6 +36,7 @@ from driveline.harness.identification.identify import (
 )
 from driveline.harness.identification.model_inputs import model_inputs
 from driveline.harness.identification.prediction import filtered
+from driveline.harness.identification.prior_knowledge import identify as known_car
 from driveline.harness.identification.quality import near_starts, nrmse, segments
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.prbs import TEST_DRIVE, TEST_SPEED, binary_torque
@@ -171,6 +173,20 @@ def trapped(case: tuple[int, int]) -> Found:
     if trap.late and recorded.T_load is not None:
         recorded = replace(recorded, T_load=np.interp(recorded.time - trap.late, recorded.time, recorded.T_load))
     return found(recorded, KNOWN._replace(J_1=KNOWN.J_1 * trap.J_1))
+
+
+def foreign(case: tuple[int, Loop, int]) -> tuple[Found, tuple[float, float]]:
+    """In a loop that is not ours: number of the car, loop, seed. With the shifts of motor and load torque that were
+    found, in s."""
+    number, loop, seed = case
+    car = CARS[number]
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "drive.csv")
+        logged(car, loop, seed, path)
+        recorded = read_measurement(path, car.i, car.r)
+    began = monotonic()
+    answer = known_car(recorded, car.known)
+    return _found(answer, monotonic() - began), answer.p.shifts
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from docs.studies.foreign_loop import CARS, Loop
 from docs.studies.generated_sections import filled
 from docs.studies.identification_accuracy import (
     DESIGN_MODEL,
@@ -17,6 +18,7 @@ from docs.studies.identification_accuracy import (
     Redesigned,
     accuracy,
     both_methods,
+    foreign,
     from_random_starts,
     judged,
     redesigned,
@@ -40,6 +42,23 @@ DRAWS = {DESIGN_MODEL: 36, VEHICLE: 14}
 
 DRAWN = 9
 """Seed of the random cars."""
+
+LOOPS = {
+    "aligned, mean of the motor torque": Loop("averaged"),
+    "motor first": Loop("motor first"),
+    "car first, samples of 1 ms": Loop("plant first", T_s=0.001),
+    "motor speed 1 ms late": Loop("averaged", late_omega=0.001),
+    "motor first, motor speed 1 ms late, samples of 2.5 ms": Loop("motor first", T_s=0.0025, late_omega=0.001),
+    "car first, load held, motor speed 1.8 ms late": Loop("plant first", load_held=True, late_omega=0.0018),
+    "load torque 1.5 ms late": Loop("averaged", late_T_load=0.0015),
+    "motor first, both torques 2 ms late, samples of 4 ms": Loop(
+        "motor first", T_s=0.004, late_T_mot=0.002, late_T_load=0.002
+    ),
+}
+"""Loops that are not ours, of three cars each."""
+
+OF_A_LOOP = 2
+"""Recordings of each car."""
 
 RIGHT = {"J_2": 0.004, "C": 0.001, "phi_B": 0.0035}
 """Relative error below which a search from a wide start has found the right optimum."""
@@ -81,6 +100,13 @@ def traps_table() -> str:
     return _traps([found[k : k + OF_A_TRAP] for k in range(0, len(found), OF_A_TRAP)]) + f"\n\n{OF_A_TRAP} each."
 
 
+def foreign_table() -> str:
+    cases = [(k, loop, FIRST + n) for loop in LOOPS.values() for k in range(len(CARS)) for n in range(OF_A_LOOP)]
+    found = run_many(foreign, cases, label="foreign loops")
+    size = len(CARS) * OF_A_LOOP
+    return _foreign([list(zip(cases, found, strict=True))[k : k + size] for k in range(0, len(found), size)])
+
+
 def methods_table() -> str:
     cases = {plant: [(plant, FIRST + n) for n in range(METHODS)] for plant in DRAWS}
     found = {plant: run_many(both_methods, of, label=plant) for plant, of in cases.items()}
@@ -97,6 +123,7 @@ TABLES = {
     "accuracy": accuracy_table,
     "vehicle": vehicle_table,
     "traps": traps_table,
+    "foreign": foreign_table,
     "methods": methods_table,
     "redesigned": redesigned_table,
 }
@@ -196,6 +223,28 @@ def _traps(every: Sequence[Sequence[Found]]) -> str:
         shares = [f"{100.0 * np.mean(share):.0f}" for share in (inside, named, fine)]
         rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2]])
     return markdown_table(["", "right within 3 sd, %", "cause named, %", "either, %"], rows, labels=1)
+
+
+def _foreign(every: Sequence[Sequence[tuple[tuple[int, Loop, int], tuple[Found, tuple[float, float]]]]]) -> str:
+    rows = []
+    for name, of in zip(LOOPS, every, strict=True):
+        off = {parameter: [] for parameter in ("J_2", "C", "phi_B")}
+        inside, shifts = [], []
+        for (k, loop, _), (found, seen) in of:
+            for parameter, errors in off.items():
+                true = getattr(CARS[k], parameter)
+                errors.append(100.0 * abs(found.values[parameter] / true - 1.0))
+                inside.append(abs(found.z(parameter, true)) < Z_95)
+            shifts.append(1e3 * np.subtract(seen, loop.shifts))
+        errors = [f"{np.sqrt(np.mean(np.square(each))):.2f} / {max(each):.2f}" for each in off.values()]
+        true = " / ".join(f"{1e3 * shift:.1f}" for shift in LOOPS[name].shifts)
+        worst = " / ".join(f"{shift:.2f}" for shift in np.abs(shifts).max(axis=0))
+        rows.append([name, *errors, f"{100.0 * np.mean(inside):.0f}", true, worst])
+    headings = [
+        *("loop and logger", "J_2, %", "C, %", "phi_B, %", "in the 95 % interval, %"),
+        *("motor / load torque late, ms", "found, off by at most, ms"),
+    ]
+    return markdown_table(headings, rows, labels=1)
 
 
 def _redesigned(every: Sequence[Redesigned]) -> str:

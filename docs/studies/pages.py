@@ -137,7 +137,7 @@ _ROWS = (
         ("harness.simulation.excitation_drive", "harness.identification.identify"),
         LOOP,
     ),
-    *map(_identification, ("accuracy", "vehicle", "traps", "methods", "redesigned")),
+    *map(_identification, ("accuracy", "vehicle", "traps", "foreign", "methods", "redesigned")),
     Page(
         "bound",
         ("driveline study bound --output OUT --replace --quiet",),
