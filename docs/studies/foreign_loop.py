@@ -26,7 +26,7 @@ CLOCK = 0.04
 @dataclass(frozen=True)
 class Car:
     """Motor side but for r, m: inertias in kg.m2, C in N.m/rad, phi_B in rad, tau in s; tyre c_t in N.m/rad and d_t in
-    N.m.s/rad."""
+    N.m.s/rad, in series: a spring above c_t/d_t rad/s, a damper below."""
 
     J_1: float
     J_2: float

@@ -6,7 +6,9 @@ things:
   with load torque                  measurement wheels were recorded: J_2 is that of the wheels
   effective, without load torque    J_2 carries the vehicle
 
-g_T and g_L are the gains of the recorded motor and load torque, 1 if they are right; d is structural damping.
+g_T and g_L are the gains of the recorded motor and load torque, 1 if they are right; d is structural damping. late_1,
+late_T and late_L are the times by which motor speed, motor torque and load torque are recorded late, of which there are
+those that the data ask for, up to 6 ms and less than a sample too.
 
 Where the model explains the recording, prediction error is used (the likelihood of an extended Kalman filter); where it
 does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.

@@ -19,6 +19,9 @@ UNITS = {
     "d": "N.m.s/rad",
     "phi_B": "rad",
     "tau": "s",
+    "late_1": "s",
+    "late_T": "s",
+    "late_L": "s",
 }
 """Of what has one."""
 
