@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from driveline.harness.identification.drive_train import DELAYS
 from driveline.harness.identification.model_inputs import Drive
 from driveline.harness.identification.output_error import Segments, _Linear, _Point
 from driveline.harness.identification.prediction import filtered
@@ -33,16 +34,18 @@ def starts(drive: Drive, pieces: Segments) -> np.ndarray:
 
 
 def test_the_derivatives_of_a_free_run_are_those_of_its_states(drive: Drive) -> None:
-    simulator, start = Simulator(LENGTH, FREE), np.array([130.0, 129.0, 0.3, 0.2, -0.4])
-    states, d = simulator.run_with_derivatives(drive, 200, start, P)
-    np.testing.assert_allclose(states, simulator.run(drive, 200, start, P), atol=1e-9)
-    for k in range(len(start) + len(FREE)):
-        by = np.zeros(len(start) + len(FREE))
+    """With torques that are late."""
+    free, late = (*FREE, *DELAYS), P._replace(late_1=0.0004, late_T=0.0007, late_L=-0.0013)
+    simulator, start = Simulator(LENGTH, free), np.array([130.0, 129.0, 0.3, 0.2, -0.4])
+    states, d = simulator.run_with_derivatives(drive, 200, start, late)
+    np.testing.assert_allclose(states, simulator.run(drive, 200, start, late), atol=1e-9)
+    for k in range(len(start) + len(free)):
+        by = np.zeros(len(start) + len(free))
         by[k] = 1e-6
         ends = []
         for sign in (1.0, -1.0):
             step = sign * by
-            p = P._replace(**{name: getattr(P, name) + step[5 + j] for j, name in enumerate(FREE)})
+            p = late._replace(**{name: getattr(late, name) + step[5 + j] for j, name in enumerate(free)})
             ends.append(simulator.run(drive, 200, start + step[:5], p))
         difference = (ends[0] - ends[1]) / 2e-6
         np.testing.assert_allclose(d[:, :, k], difference, atol=1e-4 * np.abs(difference).max(), err_msg=str(k))
@@ -69,7 +72,7 @@ def test_the_gradient_after_the_starts_are_eliminated_is_that_of_the_cost(pieces
         return pieces._linear(_Point(p, o_T, there, point.expected)).cost
 
     for k, name in enumerate(("o_T", *FREE)):
-        size = 1.0 if name == "o_T" else getattr(point.p, name) or 1e-3
+        size = 1.0 if name == "o_T" else getattr(point.p, name)
         by = 1e-6 * size
         gradient = (cost(name, by) - cost(name, -by)) / (2.0 * by)
         assert linear.scores.sum(axis=0)[k] == pytest.approx(gradient, rel=1e-4), name
