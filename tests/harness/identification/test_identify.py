@@ -5,8 +5,12 @@ import pytest
 
 from driveline.harness.identification import identify
 from driveline.harness.identification.diagnostics import LIKELY
-from driveline.harness.identification.drive_train import Parameters
-from driveline.harness.identification.identify import backward_elimination, sandwich_covariance
+from driveline.harness.identification.drive_train import DELAYS, Parameters
+from driveline.harness.identification.identify import (
+    backward_elimination,
+    prediction_error_fit,
+    sandwich_covariance,
+)
 from driveline.harness.identification.maximum_likelihood import Found
 from driveline.harness.identification.model_inputs import Drive
 from driveline.harness.identification.prediction import Innovations, Noise, Predictor
@@ -93,3 +97,14 @@ def test_what_the_data_ask_for_least_goes_first(
     best = backward_elimination(simulated(seed=1, n=10), with_(("d", "g_T")), NOISE, (), lambda _: None)
     assert {*best.free} == free
     assert dropped == sorted({"d", "g_T"} - free, key=lambda name: {"d": d, "g_T": g_T}[name])
+
+
+@pytest.mark.parametrize("late", [0.0, 0.0005, -0.0003])
+def test_a_motor_torque_that_is_recorded_late_is_found_and_no_other_channel(late: float) -> None:
+    """It is recorded late where it acts as much earlier."""
+    car = P._replace(d=0.0, g_T=1.0)
+    recorded = simulated(seed=7, n=2000, p=car).acting(P._replace(late_T=-late))
+    found = prediction_error_fit(recorded, car._replace(J_2=0.33, C=110.0), NOISE)
+    assert {*DELAYS} & {*found.free} == ({"late_T"} if late else set())
+    assert found.p.late_T == pytest.approx(late, abs=5e-5)
+    assert found.innovations.rms == pytest.approx(1.0, abs=0.08)
