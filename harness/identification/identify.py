@@ -219,8 +219,8 @@ def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Seq
     if best.innovations.rms <= EXPLAINED:
         return Estimate("prediction error", best.p, best.covariance, best.free, noise, ())
     log("the model does not explain all of the recording: pieces of 0.5 s are simulated")
-    shifts = {name: late for name in DELAYS if abs(late := getattr(best.p, name)) > UNSURE}
-    fitted = output_error_fit(drive, initial._replace(**shifts), noise, (*more, *shifts))
+    late = _sure_delays(best.p)
+    fitted = output_error_fit(drive, initial._replace(**late), noise, (*more, *late))
     _log_stage(log, "simulated", fitted.p)
     warnings = (
         "the two masses do not explain all of this car (with the noise of the sensors alone the innovations have the "
@@ -324,6 +324,14 @@ def _searched(more: Sequence[str]) -> tuple[str, ...]:
 def _names(*names: str) -> tuple[str, ...]:
     """Each once."""
     return tuple(dict.fromkeys(names))
+
+
+def _sure_delays(p: Parameters) -> dict[str, float]:
+    """Delays in s that are more than what the model may lack; of both torques alike it is that of the motor speed."""
+    late_T, late_L = p.shifts
+    if min(abs(late_T), abs(late_L)) > UNSURE >= abs(late_T - late_L):
+        return {"late_1": -0.5 * (late_T + late_L)}
+    return {name: late for name, late in (("late_T", late_T), ("late_L", late_L)) if abs(late) > UNSURE}
 
 
 def _damping(p: Parameters) -> float:
