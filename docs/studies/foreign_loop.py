@@ -93,7 +93,7 @@ def driven(car: Car, loop: Loop, seed: int) -> dict[str, np.ndarray]:
     demand = loop.mean + loop.amplitude * (2.0 * bits - 1.0)
     steps, clock = round(loop.duration / FINE) // STEP + 20, round(CLOCK / FINE)
     J_v = car.m * car.r**2 / car.i**2
-    omega = car.i * 15.0 / 3.6 / car.r
+    omega = 9.0 * 15.0 / 3.6 / car.r
     x = [omega, omega, car.phi_B + loop.mean / car.C, omega, loop.mean / car.c_t]
     T, rate, T_load = float(demand[0]), 0.0, -loop.mean
     out = np.empty((steps * STEP, 5))

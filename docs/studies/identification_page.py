@@ -57,6 +57,9 @@ LOOPS = {
 }
 """Loops that are not ours, of three cars each."""
 
+TYRES = {"spring": (0, 2), "damper": (1,)}
+"""Numbers of the cars by what their tyre mostly is at 8 Hz."""
+
 OF_A_LOOP = 2
 """Recordings of each car."""
 
@@ -226,25 +229,29 @@ def _traps(every: Sequence[Sequence[Found]]) -> str:
 
 
 def _foreign(every: Sequence[Sequence[tuple[tuple[int, Loop, int], tuple[Found, tuple[float, float]]]]]) -> str:
+    """A row for each loop and kind of tyre."""
     rows = []
     for name, of in zip(LOOPS, every, strict=True):
-        off = {parameter: [] for parameter in ("J_2", "C", "phi_B")}
-        inside, shifts = [], []
-        for (k, loop, _), (found, seen) in of:
-            for parameter, errors in off.items():
-                true = getattr(CARS[k], parameter)
-                errors.append(100.0 * abs(found.values[parameter] / true - 1.0))
-                inside.append(abs(found.z(parameter, true)) < Z_95)
-            shifts.append(1e3 * np.subtract(seen, loop.shifts))
-        errors = [f"{np.sqrt(np.mean(np.square(each))):.2f} / {max(each):.2f}" for each in off.values()]
-        true = " / ".join(f"{1e3 * shift:.1f}" for shift in LOOPS[name].shifts)
-        worst = " / ".join(f"{shift:.2f}" for shift in np.abs(shifts).max(axis=0))
-        rows.append([name, *errors, f"{100.0 * np.mean(inside):.0f}", true, worst])
+        for tyre, numbers in TYRES.items():
+            off = {parameter: [] for parameter in ("J_2", "C", "phi_B")}
+            inside, shifts = [], []
+            for (k, loop, _), (found, seen) in of:
+                if k not in numbers:
+                    continue
+                for parameter, errors in off.items():
+                    true = getattr(CARS[k], parameter)
+                    errors.append(100.0 * abs(found.values[parameter] / true - 1.0))
+                    inside.append(abs(found.z(parameter, true)) < Z_95)
+                shifts.append(1e3 * np.subtract(seen, loop.shifts))
+            errors = [f"{np.sqrt(np.mean(np.square(each))):.2f} / {max(each):.2f}" for each in off.values()]
+            true = " / ".join(f"{1e3 * shift:.1f}" for shift in LOOPS[name].shifts)
+            worst = " / ".join(f"{shift:.2f}" for shift in np.abs(shifts).max(axis=0))
+            rows.append([name, tyre, *errors, f"{100.0 * np.mean(inside):.0f}", true, worst])
     headings = [
-        *("loop and logger", "J_2, %", "C, %", "phi_B, %", "in the 95 % interval, %"),
+        *("loop and logger", "tyre", "J_2, %", "C, %", "phi_B, %", "in the 95 % interval, %"),
         *("motor / load torque late, ms", "found, off by at most, ms"),
     ]
-    return markdown_table(headings, rows, labels=1)
+    return markdown_table(headings, rows, labels=2)
 
 
 def _redesigned(every: Sequence[Redesigned]) -> str:
