@@ -1,6 +1,7 @@
 """What identification leaves behind: a vehicle file for the controller's design, and a document with all of it."""
 
 from collections.abc import Mapping
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,9 @@ MEANS = {
     WITH_LOAD: "J_2 is that of the wheels alone, C that between motor and wheels",
     WITHOUT_LOAD: "J_2 carries the vehicle, C has its tyres in it",
 }
+
+WIDEST = 118
+"""Characters of a line of text in a vehicle file."""
 
 
 def found(identified: Identified) -> list[tuple[str, float, float]]:
@@ -121,7 +125,8 @@ def vehicle_file(identified: Identified, comment: str, vehicle: Mapping[str, Any
         "What follows is for the design and both plants: C is that of the two masses that answer as the car does on",
         "its own, tyre and vehicle included; the shafts of the validation vehicle follow from it. J_2 stays as it was.",
     ]
-    head = "\n".join(f"# {line}".rstrip() for line in [*comment.splitlines(), "", *known])
+    lines = [part for line in [*comment.splitlines(), "", *known] for part in wrap(line, WIDEST) or [""]]
+    head = "\n".join(f"# {line}".rstrip() for line in lines)
     entries = identified_car(identified, vehicle)
     return f"{head}\n\n" + "".join(
         f"{name} = {'true' if value is True else 'false' if value is False else repr(value)}\n"

@@ -174,7 +174,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
         return (0.123, 0.045) if "k_d" in assumed else (0.234, 0.056)
 
     monkeypatch.setattr(redesign, "worth", worth)
-    monkeypatch.setattr("driveline.harness.commands.redesign.built", lambda *_: None)
+    monkeypatch.setattr("driveline.harness.commands.redesign.build_missing", lambda *_: None)
     assert identify("--design") == 0
     folder = tmp_path / "out"
     car, gains = read_vehicle(folder / "car.toml"), read_parameters(folder / "car_gains.toml")

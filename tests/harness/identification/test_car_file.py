@@ -115,7 +115,7 @@ def test_the_file_tells_in_comments_what_was_found_and_what_is_odd() -> None:
     head, _, body = car_file.vehicle_file(FOUND, "The car of a drive.").partition("\n\n")
     assert head.startswith("# The car of a drive.\n#\n# identified with load torque")
     assert "\n# warning: something is odd\n" in head
-    assert all(line.startswith("#") and len(line) <= 130 for line in head.splitlines())
+    assert all(line.startswith("#") and len(line) <= 120 for line in head.splitlines())
     assert [line.split(" = ")[0] for line in body.splitlines()] == ["C", "phi_B", "tau"]
 
 
