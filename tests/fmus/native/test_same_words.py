@@ -100,7 +100,7 @@ REFUSALS = [
     Refusal("WRONG_TYPE", set_by("setBoolean", tau=True)),
     Refusal("WRONG_TYPE", set_by("setString", T_mot="1")),
     *(Refusal("WRONG_TYPE", get_by(f"get{kind}", 0)) for kind in ("Integer", "Boolean", "String")),
-    Refusal("UNKNOWN_REFERENCE", get_by("getReal", 14)),
+    Refusal("UNKNOWN_REFERENCE", get_by("getReal", 17)),
     Refusal("UNKNOWN_REFERENCE", get_by("getBoolean", 2**32 - 1)),
     Refusal("WRONG_MODE", step(0.0, 0.001)),
     Refusal("WRONG_MODE", terminated(step(1.0, 0.001))),
