@@ -58,6 +58,7 @@ def test_a_stiffer_car_is_told_with_its_stiffness_and_gets_more_damping() -> Non
     assert assumed["controller.k_d"] > damping_law.Parameters().k_d
 
 
+@pytest.mark.slow
 def test_less_damping_overshoots_more_and_pulls_away_sooner(both_built: Path) -> None:
     less = changed_law("k_d")[0]
     settings = Settings(folder=both_built, build=NATIVE)

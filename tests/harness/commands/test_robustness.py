@@ -109,6 +109,7 @@ def test_one_draw_again_is_the_one_of_the_campaign(
         assert float(row[rows[0].index("settling_time_s")]) == summary["settling_time_s_50_percent"]
 
 
+@pytest.mark.slow
 def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
     robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

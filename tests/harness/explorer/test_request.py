@@ -69,6 +69,7 @@ def test_in_the_middle_the_character_changes_nothing_and_at_its_ends_it_makes_th
     assert characterised(gains, 1.0) == {name: 2.0 * COMFORT.get(name, 1.0) for name in gains}
 
 
+@pytest.mark.slow
 def test_comfort_swings_and_jerks_less_and_sport_answers_sooner(runner: RequestRunner) -> None:
     """In the mean over the steps on both plants."""
 
@@ -125,6 +126,7 @@ def test_a_plant_or_manoeuvre_that_is_none_is_refused(runner: RequestRunner, cha
         runner.require(replace(REQUEST, **change))
 
 
+@pytest.mark.slow
 def test_the_knobs_that_can_be_turned_are_those_that_change_a_run(runner: RequestRunner) -> None:
     """Each is turned, and what the loops of the shown runs get is compared."""
 

@@ -92,6 +92,7 @@ def test_the_stiffness_in_the_file_is_the_one_that_is_told() -> None:
     assert car_file.document(FOUND)["intervals_95"]["C"] == {"value": P.C, "half": pytest.approx(0.196, abs=1e-3)}
 
 
+@pytest.mark.slow
 def test_its_interval_is_that_of_what_it_is_made_of() -> None:
     """Here by draws."""
     _, half = car_file.of_car(FOUND)

@@ -100,6 +100,7 @@ def test_a_gain_error_of_the_receiver_is_not_on_the_bus(results, tmp_path: Path)
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", LOGS)
 def test_a_run_is_logged_and_replayed(native, tmp_path: Path, form: str, capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--fmus", str(native.parent), "--output", str(tmp_path), "--quiet"]

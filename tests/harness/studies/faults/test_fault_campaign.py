@@ -140,6 +140,7 @@ class Dying(FaultRunner):
         return super().runs(case)
 
 
+@pytest.mark.slow
 def test_a_campaign_survives_a_process_that_is_killed(injector, settings, tmp_path):
     known = {}
     found = campaign(Dying(injector, settings, tmp_path), range(1, 5), 3, known, workers=2)

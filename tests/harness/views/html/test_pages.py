@@ -90,6 +90,7 @@ def test_headings_say_what_their_columns_mean_and_the_page_what_made_it(opened: 
     assert "in 2 of 2 runs" in text
 
 
+@pytest.mark.slow
 def test_the_report_of_a_replay_shows_pieces_of_the_drive(chromium: Browser, both_built: Path, tmp_path: Path) -> None:
     page = tmp_path / "replay.html"
     drive = ROOT / "harness/manoeuvres/data/town_drive.csv"
@@ -126,6 +127,7 @@ def test_the_report_of_an_identification_shows_response_and_innovations(
     require_clean(page, chromium)
 
 
+@pytest.mark.slow
 def test_the_report_of_a_campaign_of_cars_shows_distributions_and_the_worst(
     chromium: Browser, both_built: Path, tmp_path: Path
 ) -> None:
@@ -139,6 +141,7 @@ def test_the_report_of_a_campaign_of_cars_shows_distributions_and_the_worst(
     require_clean(page, chromium)
 
 
+@pytest.mark.slow
 def test_the_report_of_faults_shows_the_worst_cases(chromium: Browser, both_built: Path, tmp_path: Path) -> None:
     page = tmp_path / "faults.html"
     what = ["--cases", "4", "--plant", "TwoMassDriveline", "--fmus", str(both_built)]
