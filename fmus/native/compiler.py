@@ -39,8 +39,8 @@ WINDOWS_SOURCE = Path(__file__).parent / "windows.c"
 LINUX, WINDOWS, MAC_INTEL, MAC_ARM = (
     "x86_64-linux-gnu.2.17",
     "x86_64-windows-gnu",
-    "x86_64-macos",
-    "aarch64-macos",
+    "x86_64-macos.11.0",
+    "aarch64-macos.11.0",
 )
 """Targets as Zig names them."""
 

@@ -35,6 +35,25 @@ def test_one_small_file_holds_all_platforms_and_a_rebuild_gives_the_same_bytes(b
     assert builder(FMUS[name], tmp_path / "twice").read_bytes() == path.read_bytes()
 
 
+def test_a_library_for_macos_asks_for_no_later_one_than_11(builder, tmp_path):
+    with zipfile.ZipFile(builder(FMUS["WheelSpeedCan"], tmp_path)) as archive:
+        library = archive.read("binaries/aarch64-darwin/WheelSpeedCan.dylib")
+    assert least_macos(library) == (11, 0)
+
+
+def least_macos(library: bytes) -> tuple[int, int]:
+    """The version that the load command LC_BUILD_VERSION of a Mach-O file asks for."""
+    (count,) = struct.unpack_from("<I", library, 16)
+    place = 32
+    for _ in range(count):
+        command, size = struct.unpack_from("<2I", library, place)
+        if command == 0x32:
+            minor, major = struct.unpack_from("<x2B", library, place + 12)
+            return major, minor
+        place += size
+    raise AssertionError("there is no LC_BUILD_VERSION")
+
+
 def test_a_universal_file_tells_where_the_part_of_each_processor_is():
     parts = {MAC_INTEL: b"intel", MAC_ARM: b"arm" * 10_000}
     file = universal(parts)
