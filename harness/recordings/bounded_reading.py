@@ -28,7 +28,8 @@ try:
 except ImportError:  # Windows
     resource = None
 
-OUT_OF_TIME = getattr(signal, "SIGXCPU", 0)
+OUT_OF_TIME = -signal.SIGXCPU if resource else None
+"""Exit code of a process that has computed for too long; Windows has none."""
 
 FEW_THREADS = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Environment in which packages reserve no memory for threads and data that there may never be."""
@@ -73,7 +74,7 @@ def _asked(path: Path, question: Any) -> Any:
             raise _late(path) from late
         finally:
             process.kill()
-    if process.returncode == -OUT_OF_TIME:
+    if process.returncode == OUT_OF_TIME:
         raise _late(path)
     if process.returncode:
         last = plain(complaint.decode(errors="replace").strip().rpartition("\n")[2], 200)

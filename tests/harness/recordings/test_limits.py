@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import zlib
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from struct import pack
 from typing import Any
@@ -144,6 +145,20 @@ def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(bounded_reading, "resource", None)
     monkeypatch.setattr(bounded_reading, "SECONDS", 0.01)
     assert refusal(path) == "takes more than 0.01 s to read"
+
+
+def test_without_limits_of_the_system_a_file_is_read_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "drive.parquet"
+    write_arrow(recording(), path)
+    monkeypatch.setitem(sys.modules, "resource", None)
+    monkeypatch.delattr(signal, "SIGXCPU", raising=False)
+    spec = spec_from_file_location(bounded_reading.__name__, bounded_reading.__file__)
+    assert spec is not None
+    assert spec.loader is not None
+    as_on_windows = module_from_spec(spec)
+    spec.loader.exec_module(as_on_windows)
+    read = as_on_windows.bounded(read_drive.__wrapped__)  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(read(path).v, read_drive(path).v)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
