@@ -105,6 +105,10 @@ SIGNED, TOGETHER = 0.5, 0.7
 SMALLEST, LARGEST = 0.5, 2.5
 """What a motion takes over what the motor gives."""
 
+SHORTEST = 2e-4
+"""Interval in s of the fastest recordings. What would be faster in ms is not tried in them: the smoothing would go over
+millions of samples, which takes hours."""
+
 KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
 """Factors on speed, time and torque that are tried. Those on a torque that never reaches FORCE leave no ratio out."""
 
@@ -173,7 +177,7 @@ FAST = Rule(
 SLOW_TIME = Rule(
     "unit of time",
     "ms called s: the motion takes a thousandth of what the motor gives",
-    f"correlation less than {TOGETHER:g}, but that and the right ratio in ms",
+    f"correlation less than {TOGETHER:g}, but that and the right ratio in ms; {SHORTEST / MS:g} s between samples",
     "as ratio of torque",
 )
 FOLLOWING = Rule(
@@ -358,7 +362,7 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
             f"wrong; {_given('T_mot', f'-{torque}')} turns it"
         )
         yield Finding(SIGN, torque, at, odd)
-    elif found.judged and found.together < TOGETHER and tried(time=MS).fits:
+    elif found.judged and found.together < TOGETHER and MS * _interval(drive.time) >= SHORTEST and tried(time=MS).fits:
         clock = drive.clock
         odd = (
             f"goes on by {_interval(drive.time):.4g} s a sample, and motion and torque fit if that is ms: its unit "

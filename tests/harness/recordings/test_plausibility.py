@@ -23,12 +23,15 @@ from driveline.harness.recordings.plausibility import (
     CLIMB,
     FOLLOWED,
     LARGEST,
+    MS,
     OSCILLATION,
     RULES,
+    SHORTEST,
     SLOWEST,
     SMALLEST,
     SPIKE,
     STEP,
+    Balance,
     Finding,
     balance,
     codes,
@@ -122,6 +125,22 @@ def test_what_is_said_to_mend_it_mends_it(tmp_path: Path) -> None:
     ):
         SPOILED[case][0](pd.read_csv(PATH)).to_csv(path, index=False)
         assert found(path, **given) == []
+
+
+@pytest.mark.parametrize(("longer", "tried"), [(1.001, True), (0.999, False)])
+def test_ms_are_not_tried_where_no_recording_is_that_fast(
+    monkeypatch: pytest.MonkeyPatch, longer: float, tried: bool
+) -> None:
+    durations: list[float] = []
+
+    def unlike(time: np.ndarray, *_: object) -> Balance:
+        durations.append(float(time[-1]))
+        return Balance(0, judged=True, together=0.0)
+
+    monkeypatch.setattr(plausibility, "balance", unlike)
+    time = longer * SHORTEST / MS * np.arange(20.0)
+    assert not list(plausibility.unbalanced(Drive("drive", time, time, None, time, {}), CAR))
+    assert (pytest.approx(MS * time[-1]) in durations) == tried
 
 
 @pytest.mark.parametrize("path", [PATH, *(TRIPS / f"bmw_i3_trip_{trip}.csv" for trip in ("a01", "a11"))])
