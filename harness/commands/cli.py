@@ -254,5 +254,5 @@ def _require_one_line(words: Sequence[str]) -> None:
         DrivelineError: a word would make two lines of a message that repeats it, as the path of a file may.
     """
     for word in words:
-        if len(word.splitlines()) > 1:
+        if len(f"{word}.".splitlines()) > 1:
             raise DrivelineError(f"the argument {word[:60]!r} has more than one line; rename the file")
