@@ -59,7 +59,7 @@ def _port(text: str) -> int:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     require_drawing("the explorer")
-    asked = chosen(args.manoeuvre)
+    asked, offered = chosen(args.manoeuvre), chosen([*args.manoeuvre, *MANOEUVRES]).manoeuvres
     given = settings_of_pairs(args)
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..explorer.request_runs import Answer, RequestRunner
@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     if args.recording is not None:
         recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
     car = read_vehicle(args.vehicle) if args.vehicle else {}
-    runner, out = RequestRunner(given, car, {**asked.manoeuvres, **MANOEUVRES}, recording), Printer(args)
+    runner, out = RequestRunner(given, car, offered, recording), Printer(args)
     fits = {plant: runner.fit(plant, runner.controllers[0]) for plant in runner.plants}
     asked.require_drivable(fits, {plant: runner.settings(plant) for plant in runner.plants})
     read = [args.vehicle, args.parameters, args.recording, *asked.files.values()]

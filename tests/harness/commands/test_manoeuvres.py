@@ -82,10 +82,11 @@ def test_what_the_loop_just_takes_is_driven(native, tmp_path):
     assert main(["simulate", "--manoeuvre", str(path), "--fmus", str(native.parent), "--output", str(tmp_path)]) == 0
 
 
-def test_two_manoeuvres_of_one_name_are_refused(native, tmp_path, capsys):
+@pytest.mark.parametrize("words", [["compare", "--manoeuvre", "tipin15"], ["explore"]])
+def test_two_manoeuvres_of_one_name_are_refused(native, tmp_path, capsys, words):
     path = tmp_path / "tipin15.toml"
     path.write_text(TIPIN, encoding="utf-8")
-    assert main(["compare", "--manoeuvre", "tipin15", "--manoeuvre", str(path), "--fmus", str(native.parent)]) == 2
+    assert main([*words, "--manoeuvre", str(path), "--fmus", str(native.parent)]) == 2
     assert "two manoeuvres are called tipin15; rename the file of one" in capsys.readouterr().err
 
 
