@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from ..catalogue import FMUS
 from ..description.variables import Variable
 from .one_car import DAMPERS, FOLLOW, SHAFTS, WHEELS, WITH_MASS, of_one_car
-from .parameter_files import car_names, declarations
+from .parameter_files import car_names, declarations, of_vehicle
 
 SET, FOLLOWS, DEFAULT = "set", "follows", "default"
 """Where the value of an entry is from."""
@@ -60,7 +60,7 @@ def car(entries: Mapping[str, Any] | None = None) -> dict[str, Any]:
         entries: of a vehicle file, as `read_vehicle` gives them.
 
     Raises:
-        ParameterFileError: they disagree, or there is no such car.
+        ParameterFileError: one is not known, no number or out of range; they disagree, or there is no such car.
     """
     return {entry.name: entry.value for entry in car_entries(entries or {})}
 
@@ -71,6 +71,7 @@ def car_entries(entries: Mapping[str, Any]) -> list[Entry]:
     Raises:
         ParameterFileError: see `car`.
     """
+    entries = of_vehicle(entries)
     full = of_one_car(entries, FOLLOW)
     order = (SET, FOLLOWS, DEFAULT)
     found = [_entry(name, variable, blocks, entries, full) for name, (variable, blocks) in _declared().items()]

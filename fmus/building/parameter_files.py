@@ -68,14 +68,30 @@ def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = 
         ParameterFileError: names the lines with what is not known, no number or out of range; or the entries that
             disagree.
     """
-    everything, of_car = declarations([*EVERY.values(), *own]), car_names(own)
-    of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
-    values = _read(path, {name: everything[name] for name in of_car}, others, of_controller | OF_A_RUN)
+    known, set_elsewhere = _of_vehicle(own)
+    values = _read(path, known, others, set_elsewhere)
     try:
         of_one_car(values, ())
     except ParameterFileError as problem:
         raise ParameterFileError(f"{path}: {problem}") from problem
     return values
+
+
+def of_vehicle(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """Entries that a program gives as those of a vehicle file, each as it would stand there.
+
+    Raises:
+        ParameterFileError: one is not known, no number or out of range.
+    """
+    known, set_elsewhere = _of_vehicle()
+    return {name: _checked(str(name), entry, known, (), set_elsewhere) for name, entry in entries.items()}
+
+
+def _of_vehicle(own: Iterable[Fmu] = ()) -> tuple[Owners, Mapping[str, str]]:
+    """The entries of a vehicle file, and the names that do not belong there, with the reason."""
+    everything, of_car = declarations([*EVERY.values(), *own]), car_names(own)
+    of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
+    return {name: everything[name] for name in of_car}, of_controller | OF_A_RUN
 
 
 def read_parameters(path: Path) -> dict[str, Any]:
@@ -165,15 +181,8 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
     values: dict[str, Any] = {}
     problems: list[str] = []
     for name, entry in entries.items():
-        shown = name if name.isprintable() and len(name) <= LONGEST_NAME else f"{name!r:.{LONGEST_NAME}}"
         try:
-            if isinstance(entry, dict):
-                raise ParameterFileError(f"{shown} is a table; an entry stands alone, for all that have it: J_1 = 0.09")
-            if name in set_elsewhere:
-                raise ParameterFileError(f"{name} does not belong here: {set_elsewhere[name]}")
-            if name not in known and name not in others:
-                raise ParameterFileError(f"{shown} is not known{_nearest(name, {*known, *others})}")
-            values[name] = _value(name, entry, known.get(name, ()))
+            values[name] = _checked(name, entry, known, others, set_elsewhere)
         except ParameterFileError as problem:
             problems.append(f"{path}, line {_line(text, name)}: {problem}")
             if len(problems) == MOST_PROBLEMS:
@@ -197,6 +206,22 @@ def _text(path: Path) -> str:
         if len(line) > LONGEST_LINE:
             raise ParameterFileError(f"{path}, line {number} has {len(line)} characters; at most {LONGEST_LINE}")
     return text
+
+
+def _checked(name: str, entry: Any, known: Owners, others: Collection[str], set_elsewhere: Mapping[str, str]) -> Any:
+    """The value of an entry; arguments as of `_read`.
+
+    Raises:
+        ParameterFileError: the entry is not known or has no such value.
+    """
+    shown = name if name.isprintable() and len(name) <= LONGEST_NAME else f"{name!r:.{LONGEST_NAME}}"
+    if isinstance(entry, dict):
+        raise ParameterFileError(f"{shown} is a table; an entry stands alone, for all that have it: J_1 = 0.09")
+    if name in set_elsewhere:
+        raise ParameterFileError(f"{name} does not belong here: {set_elsewhere[name]}")
+    if name not in known and name not in others:
+        raise ParameterFileError(f"{shown} is not known{_nearest(name, {*known, *others})}")
+    return _value(name, entry, known.get(name, ()))
 
 
 def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> Any:

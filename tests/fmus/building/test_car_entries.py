@@ -1,6 +1,7 @@
 """A car entry by entry, and the template of a vehicle file."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -44,6 +45,23 @@ def test_a_car_has_all_its_entries() -> None:
     assert car({"m": 2900.0})["F_z0"] == 17000.0
     with pytest.raises(ParameterFileError, match=r"C = 300 N\.m/rad: k_s does not follow"):
         car({"C": 300.0})
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"ks": 30000.0}, "ks is not known; did you mean k_s"),
+        ({"C": "150"}, "C = '150': it must be a finite number"),
+        ({"m": True}, "m = True: it must be a finite number"),
+        ({"T_max": -5.0}, "T_max = -5: MotorTorqueLoop takes 1 to 2000 N.m"),
+        ({"k_d": 2.0}, "k_d does not belong here: "),
+        ({"v_0": 2.0}, "v_0 does not belong here: the manoeuvre sets it"),
+    ],
+)
+def test_what_no_vehicle_file_could_have_is_refused(entries: dict[str, Any], message: str) -> None:
+    with pytest.raises(ParameterFileError) as refused:
+        car(entries)
+    assert str(refused.value).startswith(message)
 
 
 def test_the_template_is_the_default_car(tmp_path: Path) -> None:
