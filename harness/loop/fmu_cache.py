@@ -52,7 +52,7 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
                 with complete(here) as unfinished:
                     copyfile(there, unfinished)
     os.utime(kept)
-    _forget(sorted(cache.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_FOLDERS])
+    _forget(sorted(cache.iterdir(), key=_last_used)[:-MOST_FOLDERS])
     return kept, new
 
 
@@ -72,6 +72,14 @@ def _key(folder: Path, build: str) -> str:
     cars = {name: origin.start_values for name, origin in found.items() if origin and origin.start_values}
     made_from = [sources_digest(), cars, platform.system(), platform.machine()]
     return sha256(json.dumps(made_from, sort_keys=True).encode()).hexdigest()[:32]
+
+
+def _last_used(folder: Path) -> float:
+    """Instant in s; 0 of a folder that another process has just forgotten."""
+    try:
+        return folder.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
 
 
 def _forget(folders: Sequence[Path]) -> None:

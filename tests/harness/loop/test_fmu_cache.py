@@ -89,6 +89,13 @@ def test_folders_that_were_used_last_are_kept(given: Path, cache: Path) -> None:
     assert {path.name for path in cache.iterdir()} == {kept.name, *map(str, range(MOST_FOLDERS - 1))}
 
 
+def test_a_folder_that_another_process_forgets_meanwhile_is_no_fault(given: Path, cache: Path) -> None:
+    cache.mkdir(parents=True)
+    (cache / "gone").symlink_to(cache / "nowhere")  # is listed and has no state either
+    kept, new = refreshed_copy([CAN], given, "python")
+    assert new == [kept / "WheelSpeedCan.fmu"]
+
+
 def test_a_file_of_the_cache_stands_for_one_that_is_built(given: Path, cache: Path) -> None:
     assert as_built(cache / "key" / "native" / "WheelSpeedCan.fmu") == BUILD / "native" / "WheelSpeedCan.fmu"
     assert as_built(given / "WheelSpeedCan.fmu") == given / "WheelSpeedCan.fmu"
