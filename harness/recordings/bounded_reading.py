@@ -59,6 +59,7 @@ def bounded(read: Read) -> Read:
 
 
 def _asked(path: Path, question: Any) -> Any:
+    patience = PATIENCE if resource else SECONDS
     start = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import main; main({os.getpid()})"
     with subprocess.Popen(
         [sys.executable, "-c", start],
@@ -69,21 +70,21 @@ def _asked(path: Path, question: Any) -> Any:
         start_new_session=True,  # who waits for it is stopped at the keyboard, and ends it
     ) as process:
         try:
-            answer, complaint = process.communicate(pickle.dumps(question), PATIENCE if resource else SECONDS)
+            answer, complaint = process.communicate(pickle.dumps(question), patience)
         except subprocess.TimeoutExpired as late:
-            raise _late(path) from late
+            raise _late(path, patience) from late
         finally:
             process.kill()
     if process.returncode == OUT_OF_TIME:
-        raise _late(path)
+        raise _late(path, SECONDS)
     if process.returncode:
         last = plain(complaint.decode(errors="replace").strip().rpartition("\n")[2], 200)
         raise RecordingError(f"{path} ended the process that read it: {last or f'exit code {process.returncode}'}")
     return pickle.loads(answer)
 
 
-def _late(path: Path) -> RecordingError:
-    return RecordingError(f"{path} takes more than {SECONDS} s to read")
+def _late(path: Path, seconds: float) -> RecordingError:
+    return RecordingError(f"{path} takes more than {seconds} s to read")
 
 
 def main(parent: int) -> None:

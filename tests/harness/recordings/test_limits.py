@@ -139,11 +139,12 @@ def test_a_container_of_a_log_that_unpacks_to_gigabytes_is_refused(tmp_path: Pat
     assert refusal(path, databases=databases) == "takes more than 1500 MB of memory to read"
 
 
-def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("resource", "limit"), [(None, "SECONDS"), (bounded_reading.resource, "PATIENCE")])
+def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, resource: Any, limit: str) -> None:
     path = tmp_path / "drive.parquet"
     write_arrow(recording(), path)
-    monkeypatch.setattr(bounded_reading, "resource", None)
-    monkeypatch.setattr(bounded_reading, "SECONDS", 0.01)
+    monkeypatch.setattr(bounded_reading, "resource", resource)
+    monkeypatch.setattr(bounded_reading, limit, 0.01)
     assert refusal(path) == "takes more than 0.01 s to read"
 
 
