@@ -11,7 +11,7 @@ from .plain_text import plain
 def require_kind(name: str, value: object, kind: Any, allowed: str) -> None:
     """
     Args:
-        kind: a type or several, as `isinstance` takes them.
+        kind: a type, or a union of several.
         allowed: what it must be, as the message says it.
 
     Raises:
