@@ -112,7 +112,7 @@ def zig_compiler() -> list[str]:
 
 def _compiled(compiler: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
     with _folder_of(sources) as folder:
-        _run([*compiler, *FLAGS, *LIBRARY_FLAGS, WHOLE, "-o", binary, "-lm"], folder)
+        run_compiler([*compiler, *FLAGS, *LIBRARY_FLAGS, WHOLE, "-o", binary, "-lm"], folder)
         return (folder / binary).read_bytes()
 
 
@@ -123,8 +123,8 @@ def _compiled_for_windows(zig: Sequence[str], binary: str, sources: Mapping[str,
         objects: list[str] = []
         for file in (WHOLE, WINDOWS_SOURCE.name):
             objects.append(file.replace(".c", ".o"))
-            _run([*compiler, *FLAGS, "-c", file, "-o", objects[-1]], folder)
-        _run([*compiler, "-nostdlib", "-shared", "-s", *objects, *WINDOWS_LIBRARIES, "-o", binary], folder)
+            run_compiler([*compiler, *FLAGS, "-c", file, "-o", objects[-1]], folder)
+        run_compiler([*compiler, "-nostdlib", "-shared", "-s", *objects, *WINDOWS_LIBRARIES, "-o", binary], folder)
         return _undated((folder / binary).read_bytes())
 
 
@@ -143,7 +143,12 @@ def _folder_of(sources: Mapping[str, bytes]) -> Iterator[Path]:
         yield folder
 
 
-def _run(command: Sequence[str], folder: Path) -> None:
+def run_compiler(command: Sequence[str], folder: Path) -> None:
+    """Runs a compiler in a folder.
+
+    Raises:
+        CompilerError: it complains; the text is what it says.
+    """
     done = run(command, folder)
     if done.returncode:
         raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")

@@ -5,8 +5,7 @@ import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..child_process import run
-from ..native.compiler import CompilerError, host_compiler
+from ..native.compiler import CompilerError, host_compiler, run_compiler
 from .link import EMULATOR
 
 C_FILES = Path(__file__).parent / "c"
@@ -51,17 +50,17 @@ def target_image(sources: Mapping[str, str], folder: Path, program: str = LINK) 
     require_packages()
     files = written(sources, (program, *BOARD), folder)
     for name in files:
-        _run([COMPILER, *PROCESSOR, *FLAGS, "-fstack-usage", "-ffunction-sections", "-c", name], folder)
+        run_compiler([COMPILER, *PROCESSOR, *FLAGS, "-fstack-usage", "-ffunction-sections", "-c", name], folder)
     objects = [name.replace(".c", ".o") for name in files]
     script = [f"-T{name}" for name in BOARD if name.endswith(".ld")]
-    _run([COMPILER, *PROCESSOR, *BARE, *script, *objects, "-o", "controller.elf"], folder)
+    run_compiler([COMPILER, *PROCESSOR, *BARE, *script, *objects, "-o", "controller.elf"], folder)
     return folder / "controller.elf"
 
 
 def host_program(sources: Mapping[str, str], folder: Path) -> Path:
     """The same program for this machine, whose link is its standard input and output; errors as for `target_image`."""
     files = written(sources, (LINK, *HOST), folder)
-    _run([host_compiler(), *FLAGS, *files, "-lm", "-o", "controller"], folder)
+    run_compiler([host_compiler(), *FLAGS, *files, "-lm", "-o", "controller"], folder)
     return folder / "controller"
 
 
@@ -91,9 +90,3 @@ def written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -
     for name, text in {**sources, **{name: (C_FILES / name).read_text(encoding="utf-8") for name in others}}.items():
         (folder / name).write_text(text, encoding="utf-8")
     return [name for name in (*sources, *others) if name.endswith(".c")]
-
-
-def _run(command: list[str], folder: Path) -> None:
-    done = run(command, folder)
-    if done.returncode:
-        raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
