@@ -1,6 +1,6 @@
-"""Feeds random inputs and those of all manoeuvres to the Python functions of each block and to both builds of
-its FMU, and exchanges the builds in the loop one by one. The result is a page of Markdown with the
-differences, back_to_back.md in the output folder; the exit code is 1 if one is larger than allowed.
+"""Feeds random inputs and those of the thirteen manoeuvres of the studies to the Python functions of each block
+and to both builds of its FMU, and exchanges the builds in the loop one by one. The result is a page of Markdown with
+the differences, back_to_back.md in the output folder; the exit code is 1 if one is larger than allowed.
 
 examples:
   driveline study back-to-back                 writes results/back_to_back.md

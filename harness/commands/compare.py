@@ -1,4 +1,5 @@
-"""Runs every manoeuvre on every plant twice, with the damping off and on, and prints one table:
+"""Runs ten manoeuvres, or those that are given, on every plant twice, with the damping off and on, and prints one
+table:
 
 {metrics}
 

@@ -85,7 +85,7 @@ USUAL = (
         slope=lines((0.2, 0.0), (0.7, 0.10)),
     ),
 )
-"""Those that the studies drive through."""
+"""Those that the studies drive through; where they say every manoeuvre, they mean these."""
 
 GRADE, ICE = atan(0.12), 0.12
 """Slope of a hill in rad, friction coefficient of ice."""
