@@ -14,6 +14,7 @@ from ..base.known_names import nearest
 from ..cosimulation.wiring import Fit, fit, out_of_bounds, require
 from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
+from ..manoeuvres.drivable import require_road
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.road_load import Track
 from ..metrics.evaluate import at_samples, evaluate
@@ -122,10 +123,13 @@ class RequestRunner:
         """Refuses what cannot run.
 
         Raises:
-            DrivelineError: there is no such plant, manoeuvre or parameter, or an FMU does not take a value.
+            DrivelineError: there is no such plant, manoeuvre or parameter, the plant cannot have the road, or an FMU
+                does not take a value.
         """
         if request.plant not in self.plants or request.manoeuvre not in self.manoeuvres:
             raise DrivelineError(f"there is no {request.plant} or {request.manoeuvre}")
+        if request.manoeuvre in self._manoeuvres:
+            require_road(self._manoeuvres[request.manoeuvre], self.fit(request.plant, self.controllers[0]))
         shown = {self.controllers[0], *self._controllers(request)}
         known = {
             f"{place}.{name}"

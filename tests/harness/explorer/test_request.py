@@ -126,6 +126,12 @@ def test_a_plant_or_manoeuvre_that_is_none_is_refused(runner: RequestRunner, cha
         runner.require(replace(REQUEST, **change))
 
 
+def test_a_road_that_a_plant_cannot_have_is_refused_before_it_runs(runner: RequestRunner) -> None:
+    runner.require(replace(REQUEST, plant="ValidationVehicle", manoeuvre="launch_ice"))
+    with pytest.raises(DrivelineError, match="launch_ice is for plants with a parameter mu"):
+        runner.require(replace(REQUEST, manoeuvre="launch_ice"))
+
+
 @pytest.mark.slow
 def test_the_knobs_that_can_be_turned_are_those_that_change_a_run(runner: RequestRunner) -> None:
     """Each is turned, and what the loops of the shown runs get is compared."""
