@@ -34,11 +34,12 @@ def design(vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS)
         gains["k_d"]  # in N.m.s/rad
 
     Args:
-        vehicle: entries of a vehicle file, in SI units, as `read_vehicle` gives them; what they do not name is that
-            of the default car.
+        vehicle: entries of a vehicle file, in SI units, as `read_vehicle` gives them; what they do not name follows
+            from them or is that of the default car, and entries of other blocks are passed over.
         weights: what the designer decides.
 
     Raises:
+        ParameterFileError: the entries disagree, or there is no such car.
         DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
     """
     return gains_of(*records(vehicle or {}), weights)
