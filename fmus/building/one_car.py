@@ -70,9 +70,9 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
             among them.
 
     Raises:
-        ParameterFileError: entries disagree, are out of bounds, or there is no such car.
+        ParameterFileError: entries disagree, are no numbers or out of bounds, or there is no such car.
     """
-    given = frozenset((name, value) for name, value in entries.items() if name in DECLARED)
+    given = frozenset((name, _number(name, value)) for name, value in entries.items() if name in DECLARED)
     followed = _common(given) | (_detailed(given) if set(taken) >= set(FOLLOW) else {})
     return {**entries, **followed}
 
@@ -225,6 +225,18 @@ def _others_than_usual(found: Mapping[str, float]) -> dict[str, float]:
 def _told(car: Mapping[str, float], *names: str) -> str:
     """Those of the names that the car has, with value and unit."""
     return ", ".join(f"{name} = {car[name]:g} {DECLARED[name][1].unit}" for name in names if name in car)
+
+
+def _number(name: str, value: Any) -> float:
+    """The value as the models take it; the numbers of NumPy answer comparisons with what is no bool.
+
+    Raises:
+        ParameterFileError: it is no number.
+    """
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ParameterFileError(f"{name} = {value!r:.40}: it must be a number") from None
 
 
 def _require_possible(name: str, value: float, why: str = "") -> None:

@@ -1,5 +1,6 @@
 """One car for both plants and the design: what follows from what a vehicle file names."""
 
+import numpy as np
 import pytest
 
 from docs.studies.one_car import cars, frequencies
@@ -45,6 +46,19 @@ def test_the_default_car_is_left_as_it_is() -> None:
     for name in every.keys() - {*SHAFTS}:
         assert followed(**{name: every[name]}) == {}, name
     assert followed(phi_B=0.3) == {}
+
+
+@pytest.mark.parametrize("name", ["C", "k_s"])
+@pytest.mark.parametrize("kind", [np.float64, np.float32, int])
+def test_numbers_of_all_kinds_are_taken(name: str, kind: type) -> None:
+    value = 1.1 * USUAL[name] // 1
+    assert of_one_car({name: kind(value)}, FOLLOW) == of_one_car({name: value}, FOLLOW)
+
+
+def test_what_is_no_number_is_refused_by_name() -> None:
+    for value in ("stiff", None, [1.0]):
+        with pytest.raises(ParameterFileError, match=r"^C = .*: it must be a number$"):
+            of_one_car({"C": value}, FOLLOW)
 
 
 def test_gains_and_other_blocks_pass() -> None:
