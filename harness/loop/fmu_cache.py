@@ -42,6 +42,7 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
     cache = _cache()
     kept, new = cache / _key(folder, build), list[Path]()
     with alone(kept):
+        os.utime(kept)  # at once: another run that ends meanwhile forgets what was used longest ago
         for fmu in fmus:
             there, here = (located(fmu.name, each, build) for each in (folder, kept))
             if not is_stale(here):
@@ -51,7 +52,6 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
             else:
                 with complete(here) as unfinished:
                     copyfile(there, unfinished)
-    os.utime(kept)
     _forget(sorted(cache.iterdir(), key=_last_used)[:-MOST_FOLDERS])
     return kept, new
 

@@ -11,6 +11,7 @@ from driveline.fmus import origin
 from driveline.fmus.catalogue import EVERY
 from driveline.fmus.origin import is_stale, origin_of
 from driveline.fmus.python.packaging import build
+from driveline.harness.loop import fmu_cache
 from driveline.harness.loop.fmu_cache import MOST_FOLDERS, as_built, refreshed_copy
 from driveline.harness.loop.places import BUILD
 from tests import ROOT
@@ -94,6 +95,20 @@ def test_a_folder_that_another_process_forgets_meanwhile_is_no_fault(given: Path
     (cache / "gone").symlink_to(cache / "nowhere")  # is listed and has no state either
     kept, new = refreshed_copy([CAN], given, "python")
     assert new == [kept / "WheelSpeedCan.fmu"]
+
+
+def test_a_folder_counts_as_used_before_it_is_looked_through(given: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept, _ = refreshed_copy([CAN], given, "python")
+    os.utime(kept, (1e9, 1e9))
+    looked: list[float] = []
+
+    def stale(path: Path) -> bool:
+        looked.append(kept.stat().st_mtime)
+        return is_stale(path)
+
+    monkeypatch.setattr(fmu_cache, "is_stale", stale)
+    assert refreshed_copy([CAN], given, "python") == (kept, [])
+    assert min(looked) > 1e9
 
 
 def test_a_file_of_the_cache_stands_for_one_that_is_built(given: Path, cache: Path) -> None:
