@@ -8,7 +8,7 @@ import numpy as np
 from ...models.block.types import ContinuousBlock
 
 SPEED = 15.0 / 3.6
-"""In m/s, at which cars are told: on slow tyres the drive train swings most."""
+"""In m/s, at which frequency and damping ratio of a car are given: slow, where tyres damp little."""
 
 SHARE = 0.05
 """Of the load on the driven wheels, which their tyres pull there: far from sliding."""

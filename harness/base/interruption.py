@@ -159,7 +159,7 @@ def _stopped_after() -> Iterator[None]:
 
 def end_with(parent: int, tidy: Callable[[], object] = lambda: None) -> None:
     """In a process that was begun for another one: from now on ends it when that is gone, killed before it could end
-    those that it began.
+    those that it began. Windows tells no process that: there it goes on.
 
     Args:
         parent: number of that process.

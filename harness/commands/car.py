@@ -60,19 +60,18 @@ def run(args: argparse.Namespace) -> int:
 
     values = read_vehicle(args.vehicle) if args.vehicle else {}
     entries = car_entries(values)
-    gains, of = None, f"the gains of {args.parameters}"
+    origin = f"the gains of {args.parameters}" if args.parameters else "gains by `driveline design`"
     try:
         gains = read_parameters(args.parameters) if args.parameters else design(values)
-        of = of if args.parameters else "gains by `driveline design`"
     except DesignError as reason:
-        of = f"no gains: {' '.join(str(reason).splitlines())}"
+        gains, origin = None, f"no gains: {' '.join(str(reason).splitlines())}"
     found = car_properties(values, gains)
     if not out.silent:
-        _show(entries, found, args.vehicle, of)
+        _show(entries, found, args.vehicle, origin)
     out.document(
         {
             "entries": [entry._asdict() for entry in entries],
-            "gains": of,
+            "gains": origin,
             "properties": {**found._asdict(), "plants": [_of_plant(plant) for plant in found.plants]},
         }
     )
@@ -96,7 +95,7 @@ def _of_plant(plant: "PlantProperties") -> dict[str, Any]:
     return {**plant._asdict(), "damped": plant.damped and plant.damped._asdict()}
 
 
-def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, of: str) -> None:
+def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, gains: str) -> None:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
@@ -118,7 +117,7 @@ def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, 
     for plant in found.plants:
         damped = [f"{plant.damped.frequency:.2f}", f"{plant.damped.damping_ratio:.2f}"] if plant.damped else ["-", "-"]
         rows.append([plant.plant, f"{plant.frequency:.2f}", f"{plant.damping_ratio:.3f}", *damped])
-    print_table(plain_table(f"control: {of}; - where there is none, or the loop is not stable", headings, rows))
+    print_table(plain_table(f"control: {gains}; - where there is none, or the loop is not stable", headings, rows))
     print(
         f"backlash at the wheel: {found.gap:.2f} degrees from flank to flank\n"
         f"authority: the control takes up to {found.taken:g} N.m from the demand and adds up to {found.added:g} N.m, "
@@ -138,4 +137,4 @@ SHORT = {
 
 
 def _short(block: str) -> str:
-    return SHORT[block]
+    return SHORT.get(block, block)
