@@ -12,8 +12,8 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
 
 LARGEST = 210 * 1024
-"""Of a file with four libraries, one of them for two processors. 150 kB were enough until Arm Macs had one twice, 200 kB
-until the grip of each wheel was a parameter."""
+"""Of a file with four libraries, one of them for two processors. 150 kB were enough until Arm Macs had one twice,
+200 kB until the grip of each wheel was a parameter."""
 
 
 @pytest.fixture(scope="module")
