@@ -18,10 +18,7 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.provenance import BEGINS_ANEW
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
-from tests.signals import heed_signals
-
-COMPARE = [sys.executable, "-m", "driveline", "compare"]
-"""Long enough to be stopped on its way: all manoeuvres on both plants."""
+from tests.signals import started
 
 
 @pytest.mark.parametrize(
@@ -34,16 +31,8 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
     """A terminal that closes or Ctrl-C reaches every process of the group, a `kill` only the first."""
     temporary, results = tmp_path / "temporary", tmp_path / "results"
     temporary.mkdir()
-    process = subprocess.Popen(
-        [*COMPARE, "--fmus", str(native.parent), "--output", str(results)],
-        env=os.environ | {"TMPDIR": str(temporary)},
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=heed_signals,
-    )
+    # long enough to be stopped on its way: all manoeuvres on both plants
+    process = started("driveline", "compare", "--fmus", native.parent, "--output", results, TMPDIR=temporary)
     deadline = time.monotonic() + 60.0
     while not list(temporary.rglob("*.so")) and time.monotonic() < deadline:
         time.sleep(0.02)  # until a worker has unpacked an FMU
@@ -55,15 +44,7 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
 
 
 def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
-    process = subprocess.Popen(
-        [sys.executable, "-m", "docs.studies.undetectable_faults"],
-        env=os.environ | {"TMPDIR": str(tmp_path)},
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=heed_signals,
-    )
+    process = started("docs.studies.undetectable_faults", TMPDIR=tmp_path)
     deadline = time.monotonic() + 60.0
     while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
         time.sleep(0.02)

@@ -3,7 +3,6 @@
 import os
 import signal
 import subprocess
-import sys
 import time
 
 import pytest
@@ -12,9 +11,8 @@ from driveline.harness.base.errors import SimulationError
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from tests import ROOT
 from tests.foreign.stranger import build_stranger
-from tests.signals import heed_signals
+from tests.signals import started
 
 COMMANDS = {
     "simulate": ["simulate"],
@@ -31,15 +29,7 @@ def drive(native, tmp_path):
 
     def start(command, plant):
         words = [*COMMANDS[command], "--plant", plant, "--fmus", native.parent, "--output", tmp_path / "out"]
-        return subprocess.Popen(
-            [sys.executable, "-m", "driveline", *words],
-            cwd=ROOT,
-            env=os.environ | {"TMPDIR": str(temporary)},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            preexec_fn=heed_signals,
-        )
+        return started("driveline", *words, TMPDIR=temporary)
 
     return start, temporary
 

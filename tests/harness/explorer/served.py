@@ -2,12 +2,9 @@
 
 import re
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
-from tests import ROOT
-from tests.signals import heed_signals
+from tests.signals import started
 
 PATIENCE = 60.0
 """In s, for what takes milliseconds on a machine that has nothing else to do."""
@@ -19,16 +16,8 @@ class Served:
     def __init__(self, fmus: Path, folder: Path) -> None:
         self.folder = folder
         blocks = ["--controller", "DampingController", "--controller", "SpeedWashout"]
-        command = ["explore", *blocks, "--fmus", str(fmus), "--output", str(folder), "--port", "0", "--build", "native"]
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "driveline", *command],
-            cwd=ROOT,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-            preexec_fn=heed_signals,
-        )
+        command = ["explore", *blocks, "--fmus", fmus, "--output", folder, "--port", "0", "--build", "native"]
+        self.process = started("driveline", *command)
         assert self.process.stdout is not None
         line = self.process.stdout.readline()
         found = re.match(r"http://127\.0\.0\.1:(\d+)/ ", line)
