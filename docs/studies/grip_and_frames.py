@@ -1,0 +1,218 @@
+"""Roads without grip, and frames of motor control that are late or wrong: gear torque over that without control.
+
+    python -m docs.studies.grip_and_frames
+    python -m docs.studies.grip_and_frames --controller LinearObserver --controller SpeedWashout
+
+On the validation vehicle. A row of the tables is a group of runs: largest gear torque and its rms from 5 to 50 Hz
+over those of the same run without control (the worst run, and the mean of all), and the longest time in fallback.
+Where the frame is wrong, the torque counts from 150 ms after the error begins.
+"""
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import product
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from driveline.harness.base.interruption import script
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.loop.built_fmus import made_if_missing
+from driveline.harness.loop.places import BUILD, COMPARATORS, NATIVE, T_S
+from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.manoeuvres.signals import lines
+from driveline.harness.metrics.evaluate import at_samples
+from driveline.harness.metrics.spectrum import band_rms
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import signals, start
+from driveline.harness.studies.faults.fault_injection import with_faults
+from driveline.harness.views.terminal import print_table
+from driveline.models.controller.supervision import FALLBACK
+
+from .frame_errors import FMU
+
+PLANT, OURS = "ValidationVehicle", "DampingController"
+QUIET_PEAK, QUIET_RMS = 20.0, 1.0
+"""Gear torque in N.m without control below which a ratio counts as over these."""
+
+AFTER = 0.15
+"""Time in s after the beginning of an error from which on the torque counts."""
+
+MOST = 1.1
+"""Ratio of peak or rms that a run should not exceed."""
+
+HOLDING = 2400.0
+"""Brakes that hold the car on a grade, N.m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run of the loop.
+
+    Attributes:
+        group: row of the tables.
+        seen_from: instant in s from which the torque counts.
+        errors: parameters of FrameErrors.
+        plant: parameters of the plant.
+    """
+
+    group: str
+    manoeuvre: Manoeuvre
+    seen_from: float = 1.0
+    plant: Mapping[str, float] = field(default_factory=dict)
+    errors: Mapping[str, float] = field(default_factory=dict)
+    seed: int = 1
+
+    def __str__(self) -> str:
+        """What it is within its group."""
+        begin = (f"wrong from {self.errors['begin']:g} s on",) if self.errors else ()
+        return ", ".join((self.manoeuvre.name, *(f"{name} {value:g}" for name, value in self.plant.items()), *begin))
+
+
+class Ratios(NamedTuple):
+    """Gear torque over that without control, and the time in fallback in s."""
+
+    peak: float
+    rms: float
+    fallback: float
+
+
+def rolling_back(grade: float, T_driver: float, pushes: float) -> Manoeuvre:
+    """The brakes are let go at 2 s; the driver pushes uphill later."""
+    return Manoeuvre(
+        name=f"rolls back on {grade:g}, {T_driver:g} N.m at {pushes:g} s",
+        description="",
+        duration=7.0,
+        v_0=0.0,
+        T_driver=lines((pushes, 0.0), (pushes + 0.1, np.sign(grade) * T_driver)),
+        T_brake=lines((2.0, HOLDING), (2.1, 0.0)),
+        slope=lines((0.5, 0.0), (1.0, grade)),
+    )
+
+
+def rocking(T_driver: float, turns: float) -> Manoeuvre:
+    """On the flat: pulls away with T_driver, and back at `turns` s."""
+    course = lines((1.0, 0.0), (1.0, T_driver), (turns, T_driver), (turns, -T_driver))
+    return Manoeuvre(f"{T_driver:+g} then {-T_driver:+g} N.m at {turns:g} s", "", 6.0, 0.0, course)
+
+
+def tip_in(v_0: float, T_driver: float) -> Manoeuvre:
+    course = lines((1.0, -10.0), (1.05, T_driver), (3.0, T_driver), (3.1, -10.0))
+    return Manoeuvre(f"{T_driver:g} N.m at {v_0:g} m/s", "", 6.0, v_0, course)
+
+
+def pulses(frequency: float, T_brake: float, v_0: float = 22.0) -> Manoeuvre:
+    """Brakes as ABS lets them go: half of each period."""
+    points = [(1.0, 0.0), (1.0, 200.0)]
+    for t in np.arange(1.0, 4.0, 1.0 / frequency):
+        ends = t + 0.5 / frequency
+        points += [(t, 200.0), (t, 200.0 + T_brake), (ends, 200.0 + T_brake), (ends, 200.0)]
+    course = lines(*points, (4.5, 0.0))
+    return Manoeuvre(f"{T_brake:g} N.m at {frequency:g} Hz", "", 6.0, v_0, lines((0.0, 0.0)), course)
+
+
+def hill_start(grade: float) -> Manoeuvre:
+    T_brake, slope = lines((1.0, HOLDING), (1.1, 0.0)), lines((0.2, 0.0), (0.7, grade))
+    return Manoeuvre("hill start", "", 6.0, 0.0, lines((1.0, 0.0), (1.1, 100.0)), T_brake, slope)
+
+
+def on_slippery_roads() -> Iterator[Run]:
+    grips = (0.05, 0.08, 0.1, 0.12, 0.15, 0.2)
+    for mu, grade, pushes in product(grips, (0.12, 0.2, -0.12), (2.5, 3.0, 3.5)):
+        yield Run("rolls back, then 120 N.m", rolling_back(grade, 120.0, pushes), 2.0, {"mu": mu})
+    for mu, T_driver, turns in product((0.08, 0.15, 0.2), (80.0, -80.0), (2.0, 3.0)):
+        yield Run("80 N.m on ice, then back", rocking(T_driver, turns), 1.0, {"mu": mu})
+    for mu, T_driver in product((*grips, 0.3, 0.5, 1.0), (60.0, 120.0, 180.0)):
+        yield Run("pulls away", Manoeuvre("launch", "", 5.0, 0.0, lines((1.0, 0.0), (1.1, T_driver))), 1.0, {"mu": mu})
+    for mu, v_0, T_driver in product((*grips, 0.5), (4.0, 15.0), (100.0, -60.0)):
+        yield Run("tip-in and back", tip_in(v_0, T_driver), 1.0, {"mu": mu})
+
+
+def with_abs() -> Iterator[Run]:
+    for mu, frequency, T_brake in product((0.2, 0.5, 1.0), (4.0, 5.0, 8.0, 12.0), (500.0, 1500.0, 3300.0, 4000.0)):
+        yield Run(f"ABS, mu {mu:g}", pulses(frequency, T_brake), 1.0, {"mu": mu})
+
+
+DRIVES = (MANOEUVRES["launch"], hill_start(0.12), MANOEUVRES["tipin15"], MANOEUVRES["tipout"])
+
+
+def with_wrong_frames() -> Iterator[Run]:
+    for late in (0.01, 0.02, 0.03, 0.04, 0.052, 0.062, 0.08, 0.1):
+        for what, errors in (
+            ("speed", {"late_omega_1": late}),
+            ("torque", {"late_T_mot": late}),
+            ("frame", {"late_omega_1": late, "late_T_mot": late}),
+        ):
+            for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
+                given = {**errors, "begin": begin}
+                yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, given)
+    for frequency in (2.0, 4.0, 6.0, 8.0, 10.0, 14.0):
+        for what, errors in (("speed off by 7 rad/s", {"e_omega_1": 7.0}), ("torque off by 40 N.m", {"e_T_mot": 40.0})):
+            for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
+                given = {**errors, "begin": begin, "frequency": frequency}
+                yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, given)
+
+
+STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
+
+
+def gear_torque(
+    each: Run, controller: str | Path, control: bool, folder: Path, injector: Path
+) -> tuple[np.ndarray, float]:
+    """In N.m at the samples that count, and the time in fallback in s."""
+    settings = Settings(PLANT, controller, folder=folder, build=NATIVE, control=control)
+    system = with_faults(loop(settings), injector)
+    parameters = start(each.manoeuvre, each.seed) | {f"plant.{name}": value for name, value in each.plant.items()}
+    parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
+    inputs = signals(each.manoeuvre, control, settings.step_size)
+    rows = at_samples(run(system, Experiment(each.manoeuvre.duration, inputs=inputs, parameters=parameters)))
+    fallback = T_S * float(np.count_nonzero(rows["controller.status"] == FALLBACK))
+    return rows["plant.T_gear"][rows["time"] >= each.seen_from], fallback
+
+
+def ratios(each: Run, controller: str | Path, folder: Path, injector: Path) -> Ratios:
+    off, _ = gear_torque(each, OURS, False, folder, injector)
+    on, fallback = gear_torque(each, controller, True, folder, injector)
+    return Ratios(
+        peak=float(np.abs(on).max() / max(np.abs(off).max(), QUIET_PEAK)),
+        rms=band_rms(on, T_S) / max(band_rms(off, T_S), QUIET_RMS),
+        fallback=fallback,
+    )
+
+
+def show(runs: Sequence[Run], found: Sequence[Ratios], title: str) -> None:
+    heads = ("count", "peak, worst", "mean", "rms, worst", "mean", f"over {MOST}", "fallback, s", "the worst run")
+    table = Table("runs", *heads, title=title, title_justify="left")
+    for group in (*dict.fromkeys(each.group for each in runs), ""):
+        of = [(each, y) for each, y in zip(runs, found, strict=True) if group in ("", each.group)]
+        peak, rms, fallback = (np.array(column) for column in zip(*(y for _, y in of), strict=True))
+        at_worst = of[int(np.argmax(np.maximum(peak, rms)))][0]
+        over = int(np.count_nonzero(np.maximum(peak, rms) > MOST))
+        numbers = (f"{y:.2f}" for y in (peak.max(), peak.mean(), rms.max(), rms.mean()))
+        table.add_row(group or "all", f"{len(of)}", *numbers, f"{over}", f"{fallback.max():.2f}", str(at_worst))
+    print_table(table)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--controller", action="append", choices=(OURS, *COMPARATORS), help="default: ours")
+    parser.add_argument("--study", action="append", choices=tuple(STUDIES), help="default: all")
+    parser.add_argument("--fmus", type=Path, default=BUILD, help="folder of the FMUs")
+    parser.add_argument("--workers", type=int, help="processes (default: one a core)")
+    options = parser.parse_args(arguments)
+    with made_if_missing(FMU, options.fmus, NATIVE) as injector:
+        for controller, study in product(options.controller or [OURS], options.study or STUDIES):
+            runs = list(STUDIES[study]())
+            measure = partial(ratios, controller=controller, folder=options.fmus, injector=injector.absolute())
+            show(runs, run_many(measure, runs, options.workers, study), f"{controller}: {study}")
+
+
+if __name__ == "__main__":
+    script(main)
