@@ -45,7 +45,7 @@ def predict(x: SpeedState, T_mot: float, T_s: float, p: Parameters) -> SpeedStat
     return x._replace(omega_1=x.omega_1 + T_s * T_mot / p.J, T_mot=T_mot)
 
 
-def take_motor_speed(x: SpeedState, omega_1: float, p: Parameters) -> SpeedState:
+def take_motor_speed(x: SpeedState, omega_1: float, T_s: float, p: Parameters) -> SpeedState:
     return x._replace(omega_1=omega_1)
 
 

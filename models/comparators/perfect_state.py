@@ -11,12 +11,8 @@ from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, is_finite
 from ..controller import damping_law, supervision, supervision_interface, torque_estimator
 from ..controller.damping_law import LawState
-from ..controller.launch_direction import LaunchState
-from ..controller.signal_monitor import MonitorState
 from ..controller.supervised_controller import Supervised, supervised
-from ..controller.supervision import State
 from ..controller.torque_estimator import AllParameters, Estimate, EstimatorState, bounded
-from ..controller.wheel_monitor import WheelState
 from .fixed import fixed
 
 NO_GAINS = {name: 0.0 for name in torque_estimator.Parameters._fields if name.startswith("L")}
@@ -37,11 +33,10 @@ class Truth(NamedTuple):
 class WithTrueMotion(Supervised[EstimatorState, LawState]):
     """A controller that gets the true motion of the plant."""
 
-    def measured(
-        self, x: State[EstimatorState, LawState], u: supervision_interface.Input, p: supervision_interface.Parameters
-    ) -> tuple[EstimatorState, MonitorState, WheelState, LaunchState]:
-        expected, signals, wheel_state, launch = super().measured(x, u, p)
-        return with_true_motion(expected, cast(Truth, u), cast(AllParameters, p)), signals, wheel_state, launch
+    def estimated(
+        self, e: EstimatorState, u: supervision_interface.Input, p: supervision_interface.Parameters
+    ) -> EstimatorState:
+        return with_true_motion(e, cast(Truth, u), cast(AllParameters, p))
 
 
 def with_true_motion(expected: EstimatorState, u: Truth, p: AllParameters) -> EstimatorState:
@@ -50,7 +45,7 @@ def with_true_motion(expected: EstimatorState, u: Truth, p: AllParameters) -> Es
     Its twist is that which makes the true gear torque and, in the gap, the true one.
     """
     phi = u.T_gear / p.C + clip(u.phi, -p.phi_B, p.phi_B)
-    true = EstimatorState(0.0, bounded(Estimate(u.omega_1, u.omega_2, phi, 0.0), 0.0, p), expected.past, expected.share)
+    true = expected._replace(base=0.0, estimate=bounded(Estimate(u.omega_1, u.omega_2, phi, 0.0), 0.0, p))
     known = is_finite(u.omega_1 + u.omega_2 + u.phi + u.T_gear)
     return branch(known, lambda: true, lambda: expected)
 

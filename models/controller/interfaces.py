@@ -52,7 +52,7 @@ class Estimator(Part, Protocol[S, P]):
         """State one sample later under the mean motor torque of that sample."""
         ...
 
-    def take_motor_speed(self, x: S, omega_1: float, p: P) -> S:
+    def take_motor_speed(self, x: S, omega_1: float, T_s: float, p: P) -> S:
         """State corrected by the measured motor speed."""
         ...
 

@@ -6,9 +6,6 @@ Sensor noise would otherwise rattle the motor of a standing car in its gap.
 from ..block.operators import logical_and, maximum, minimum, where
 from .supervision_interface import Parameters
 
-LAUNCH = 1.0
-"""Time in s after rest for which a car is pulling away: nothing was tense in it that could push it back."""
-
 
 def is_still(T_driver: float, omega_1: float, p: Parameters) -> bool:
     """Neither demand nor motion."""
@@ -23,11 +20,6 @@ def longest(p: Parameters) -> float:
 def quiet_time(quiet: float, still: bool, T_s: float, p: Parameters) -> float:
     """Time in s without demand and motion, one sample later; counted no further than needed."""
     return where(still, minimum(quiet + T_s, longest(p)), 0.0)
-
-
-def time_since(since: float, resting: bool, T_s: float) -> float:
-    """Time in s since the car was at rest, one sample later; counted no further than LAUNCH."""
-    return where(resting, 0.0, minimum(since + T_s, LAUNCH))
 
 
 def share(quiet: float, p: Parameters) -> float:

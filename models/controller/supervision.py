@@ -2,7 +2,7 @@
 
 In every sample the estimator goes one sample on and takes what was measured, the law says what to add
 to the driver's demand. Motor signals that have failed lead to fallback: the demand is passed through,
-estimator and law restart, until the signals have healed. A lost, late or absurd wheel speed
+estimator and law restart, until the signals have healed (causes). A lost, late or absurd wheel speed
 only ends the mode that uses it. A demand that is not finite counts as zero. At rest the damping fades out
 and the estimator is held. Modes fade within t_fade. Whatever comes in, T_ref is finite and within T_max,
 and takes no more than T_take_max from the demand and adds no more than T_add_max to it; T_add_max is also
@@ -12,15 +12,15 @@ what the damping alone may take.
 from typing import Annotated, Any, Generic, NamedTuple, TypeVar
 
 from ..block.declaration import Enumeration, Real
-from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, maximum, where
-from . import launch_direction, oscillation_monitor, signal_trust, standstill
+from ..block.operators import clip, is_finite, where
+from . import causes, oscillation, trust
+from .direction import DirectionState
 from .interfaces import Addition, Motion
-from .launch_direction import LaunchState
-from .oscillation_monitor import SwingState
-from .signal_monitor import MonitorState
-from .signal_trust import TrustState
+from .motor_signals import MotorState
+from .oscillation import SwingState
 from .supervision_interface import Input, Parameters
-from .wheel_monitor import WheelState
+from .trust import TrustState
+from .wheel_messages import WheelState
 
 T_S = 0.002
 """Sample time in s."""
@@ -37,16 +37,13 @@ class State(NamedTuple, Generic[E, L]):
 
     estimator: E
     law: L
-    monitor: MonitorState
-    wheels: WheelState
-    launch_direction: LaunchState
+    motor: MotorState
+    wheel: WheelState
+    direction: DirectionState
     swings: SwingState
     trust: TrustState
     level: Annotated[float, Real("1", "share of the damping that acts")]
     quiet: Annotated[float, Real("s", "time without demand and motion")]
-    since_rest: Annotated[float, Real("s", "time since the car was at rest")]
-    opposing: Annotated[float, Real("N.m", "what the law would damp with")]
-    added: Addition
     T_ref: Annotated[float, Real("N.m", "torque reference")]
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
     T_landing: Annotated[float, Real("N.m", "part of it that lets the teeth land softly")]
@@ -77,6 +74,7 @@ class Output(NamedTuple):
         ),
     ]
     T_landing: Annotated[float, Real("N.m", "part of T_damp that lets the teeth land softly")]
+    cause: Annotated[int, causes.OUTPUT]
 
 
 def demand(u: Input, p: Parameters) -> float:
@@ -90,6 +88,7 @@ def status(enable: bool, trusted: bool, wheel: bool) -> int:
 
 
 def output(x: AnyState, u: Input, p: Parameters) -> Output:
+    feeding = where(oscillation.share(x.swings) < 1.0, causes.FEEDS, causes.NONE)
     return Output(
         T_ref=x.T_ref,
         T_damp=x.T_damp,
@@ -98,30 +97,8 @@ def output(x: AnyState, u: Input, p: Parameters) -> Output:
         omega_2_hat=x.ahead.omega_2,
         status=x.status,
         T_landing=x.T_landing,
+        cause=where(trust.is_trusted(x.trust), feeding, x.trust.cause),
     )
-
-
-def is_suspect(signals: MonitorState, wheel_state: WheelState) -> bool:
-    """Whether the motor signals are bad in this sample, or do not match the wheel speed."""
-    return logical_or(signals.bad > 0.0, wheel_state.mismatch_time > 0.0)
-
-
-def is_launching(x: AnyState) -> bool:
-    """Whether the car was at rest a moment ago."""
-    return x.since_rest < standstill.LAUNCH
-
-
-def trust_after(
-    x: AnyState, signals: MonitorState, wheel_state: WheelState, launch: LaunchState, resting: bool, p: Parameters
-) -> TrustState:
-    """The trust in the motor signals with those of this sample; `resting`: the car is at rest."""
-    wrong_direction = logical_and(
-        launch_direction.is_against(launch), logical_not(launch_direction.is_against(x.launch_direction))
-    )
-    confirmed = logical_and(wheel_state.reference_valid, oscillation_monitor.is_calm(x.opposing, p))
-    implausible = logical_or(oscillation_monitor.feeds(x.swings), wrong_direction)
-    mismatch_time = maximum(wheel_state.mismatch_time, where(launch.wrong_sign, T_S, 0.0))
-    return signal_trust.update(x.trust, signals.bad, mismatch_time, implausible, confirmed, resting, T_S, p)
 
 
 def damping_limited(added: Addition, p: Parameters) -> Addition:

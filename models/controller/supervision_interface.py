@@ -6,6 +6,11 @@ from ..block.declaration import Boolean, Integer, Real
 from ..physics.vehicle import CAR, MotorInertia, MotorLag
 
 
+def speed(meaning: str) -> Real:
+    """The declaration of a threshold of speeds, in units of added_speed."""
+    return Real("1", f"{meaning}, over T_max T_s/J_1", 0.0, 1000.0)
+
+
 class Parameters(NamedTuple):
     """Of the supervision, for every controller."""
 
@@ -22,15 +27,31 @@ class Parameters(NamedTuple):
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1
     t_proof: Annotated[float, Real("s", "good motor signals for so long end the fallback", 0.01, 1.0)] = 0.15
-    t_frozen: Annotated[float, Real("s", "a motor speed unchanged for so long is frozen", 0.01, 10.0)] = 0.1
+    t_turn: Annotated[float, Real("s", "the same after the motor speed has changed its sign", 0.01, 10.0)] = 1.0
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
+    t_late: Annotated[float, Real("s", "time for which messages may tell what the motor speed was", 0.01, 1.0)] = 0.08
+    t_move: Annotated[float, Real("s", "time for which an expected movement is remembered", 0.01, 10.0)] = 0.1
+    t_forget: Annotated[float, Real("s", "time after which a half swing is forgotten", 0.01, 100.0)] = 0.5
     T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 3000.0
-    e_max: Annotated[float, Real("rad/s", "largest distance of a usable wheel speed", 1.0, 1000.0)] = 40.0
-    e_jump: Annotated[float, Real("rad/s", "largest jump of the motor speed in a sample", 1.0, 1000.0)] = 8.0
-    e_wheel: Annotated[float, Real("rad/s", "largest distance of the motor from the wheel speed", 1.0, 1000.0)] = 30.0
+    q_omega: Annotated[float, Real("rad/s", "resolution of the measured motor speed", 0.0, 10.0)] = 0.1
+    jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.25
+    frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.05
+    apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
+    leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
+    near: Annotated[float, speed("largest distance of a message that corrects the estimate")] = 6.0
+    free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.7
+    g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
+    T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
+    g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
+    swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 0.0, 1.0)] = 0.12
+
+
+def added_speed(p: Parameters, T_s: float) -> float:
+    """Speed in rad/s that T_max adds to the free motor in a sample, the unit of the thresholds of speeds."""
+    return p.T_max * T_s / p.J_1
 
 
 class Input(NamedTuple):
@@ -41,3 +62,4 @@ class Input(NamedTuple):
     valid: Annotated[bool, Boolean("the received wheel speed is above its minimum")] = False
     counter: Annotated[int, Integer("one more with every message that arrives")] = 0
     enable: Annotated[bool, Boolean("damping on")] = True
+    direction: Annotated[int, Integer("of the car, if the bus tells it: 1 forwards, -1 backwards, 0 not known")] = 0

@@ -19,7 +19,7 @@ rounds them as little as the twist, which is the integral of their difference.
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import clip, interpolate, where
+from ..block.operators import clip, interpolate, maximum, minimum, where
 from ..physics.backlash import dead_zone
 from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia
 from .fading import toward
@@ -51,6 +51,14 @@ class Parameters(NamedTuple):
     L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = GAINS["L_can_phi"]
     L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = GAINS["L_can_T_l"]
     T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.1)] = GAINS["T_age"]
+    Ls_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, wheels slip", -2.0, 2.0)] = 0.3348
+    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, wheels slip", -2.0, 2.0)] = 0.397
+    Ls_phi: Annotated[float, Real("s", "gain on phi_hat, wheels slip", -0.1, 0.1)] = -0.0105
+    Ls_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, wheels slip", -10.0, 10.0)] = 1.6
+    e_slip: Annotated[float, Real("rad/s", "innovation from which the wheels slip", 0.0, 100.0)] = 1.5
+    T_slip: Annotated[float, Real("N.m", "load from which the wheels slip", 0.0, 1000.0)] = 36.0
+    t_drift: Annotated[float, Real("s", "time of the mean innovation", 0.002, 1.0)] = 0.01
+    t_grip: Annotated[float, Real("s", "time for which slip is remembered", 0.002, 5.0)] = 0.3
 
 
 class AllParameters(Parameters):
@@ -77,24 +85,34 @@ class EstimatorState(NamedTuple):
     estimate: Estimate
     past: Annotated[tuple[float, ...], Real("rad/s", "estimates of omega_2 of the last samples, newest first")]
     share: Annotated[float, Real("1", "share of the gains with wheel speed")]
+    drift: Annotated[float, Real("rad/s", "mean of the recent innovations")]
+    slip: Annotated[float, Real("1", "share of the gains for slipping wheels")]
 
 
 def start(omega_1: float, T_mot: float, wheel: bool, p: Parameters) -> EstimatorState:
     e = at_rest_with(T_mot, p)
-    return EstimatorState(omega_1, e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0))
+    return EstimatorState(omega_1, e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0), drift=0.0, slip=0.0)
 
 
 def restart(x: EstimatorState, omega_1: float, T_mot: float, p: Parameters) -> EstimatorState:
-    return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p))
+    return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p), drift=0.0, slip=0.0)
 
 
 def predict(x: EstimatorState, T_mot: float, T_s: float, p: Parameters) -> EstimatorState:
     return x._replace(estimate=integrated(x.estimate, T_mot, T_s, p))
 
 
-def take_motor_speed(x: EstimatorState, omega_1: float, p: AllParameters) -> EstimatorState:
+def take_motor_speed(x: EstimatorState, omega_1: float, T_s: float, p: AllParameters) -> EstimatorState:
     e = counted_from(omega_1 - x.base, x.estimate)
-    return x._replace(base=omega_1, estimate=bounded(corrected_by_motor_speed(e, 0.0, x.share, p), omega_1, p))
+    drift = x.drift + minimum(T_s / p.t_drift, 1.0) * (-e.omega_1 - x.drift)
+    seen = maximum(abs(drift) / p.e_slip, abs(e.T_l) / p.T_slip)
+    slip = maximum(clip(seen - 1.0, 0.0, 1.0), maximum(x.slip - T_s / p.t_grip, 0.0))
+    return x._replace(
+        base=omega_1,
+        estimate=bounded(corrected_by_motor_speed(e, 0.0, x.share, slip, p), omega_1, p),
+        drift=drift,
+        slip=slip,
+    )
 
 
 def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: Parameters) -> EstimatorState:
@@ -138,13 +156,19 @@ def integrated(e: Estimate, T_mot: float, h: float, p: Parameters) -> Estimate:
     return Estimate(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), e.T_l)
 
 
-def corrected_by_motor_speed(e: Estimate, omega_1_meas: float, share: float, p: Parameters) -> Estimate:
+def corrected_by_motor_speed(e: Estimate, omega_1_meas: float, share: float, slip: float, p: Parameters) -> Estimate:
     error = omega_1_meas - e.omega_1
+    a, b, c, d = (
+        p.L_omega_1 + share * (p.Lw_omega_1 - p.L_omega_1),
+        p.L_omega_2 + share * (p.Lw_omega_2 - p.L_omega_2),
+        p.L_phi + share * (p.Lw_phi - p.L_phi),
+        p.L_T_l + share * (p.Lw_T_l - p.L_T_l),
+    )
     return Estimate(
-        e.omega_1 + error * (p.L_omega_1 + share * (p.Lw_omega_1 - p.L_omega_1)),
-        e.omega_2 + error * (p.L_omega_2 + share * (p.Lw_omega_2 - p.L_omega_2)),
-        e.phi + error * (p.L_phi + share * (p.Lw_phi - p.L_phi)),
-        e.T_l + error * (p.L_T_l + share * (p.Lw_T_l - p.L_T_l)),
+        e.omega_1 + error * (a + slip * (p.Ls_omega_1 - a)),
+        e.omega_2 + error * (b + slip * (p.Ls_omega_2 - b)),
+        e.phi + error * (c + slip * (p.Ls_phi - c)),
+        e.T_l + error * (d + slip * (p.Ls_T_l - d)),
     )
 
 

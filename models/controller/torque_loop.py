@@ -13,12 +13,6 @@ from .supervision_interface import Parameters
 
 SQRT_2 = 2.0**0.5
 
-FAR = 0.05
-"""Distance of an estimate from the torque that the motor should have, over T_max, that noise and offset explain."""
-
-SHARE = 0.35
-"""Distance over that torque that the gain of the estimate explains beside it."""
-
 
 class LoopState(NamedTuple):
     """State of the torque loop."""
@@ -45,4 +39,4 @@ def change(x: LoopState, T_ref: float, h: float, p: Parameters) -> float:
 
 def agrees(x: LoopState, T_mot_est: float, p: Parameters) -> bool:
     """Whether an estimate (N.m) can be that of this torque; one that is no number cannot."""
-    return abs(T_mot_est - x.T_mot) <= FAR * p.T_max + SHARE * abs(x.T_mot)
+    return abs(T_mot_est - x.T_mot) <= p.T_off * p.T_max + p.g_off * abs(x.T_mot)

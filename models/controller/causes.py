@@ -1,0 +1,72 @@
+"""Causes for which the damping lets go, a row each: what is found, after how long it counts, how it heals."""
+
+from typing import NamedTuple
+
+from ..block.declaration import Enumeration
+
+NONE, SPEED_RANGE, SPEED_JUMP, SPEED_FROZEN, TORQUE_IMPLAUSIBLE, WHEEL_CONTRADICTS, WRONG_DIRECTION, FEEDS = range(1, 9)
+
+
+class Cause(NamedTuple):
+    """A row.
+
+    Attributes:
+        number, word: as the output `cause` gives them.
+        finding: what is found in a sample.
+        after: the parameter with the time for which it is found until it counts; none: it counts at once.
+        latched: good signals alone do not heal it.
+        heals: what ends it.
+    """
+
+    number: int
+    word: str
+    finding: str
+    after: str | None = "t_bad"
+    latched: bool = False
+    heals: str = "good signals for t_proof, of another direction for t_turn"
+
+
+FAILURES = (
+    Cause(SPEED_RANGE, "speed_range", "the motor speed is no number or beyond omega_max"),
+    Cause(
+        SPEED_JUMP,
+        "speed_jump",
+        "the motor speed is farther than jump from the last one, from where that was going, and from the model",
+    ),
+    Cause(SPEED_FROZEN, "speed_frozen", "the motor speed stays the same where the model moves by more than frozen"),
+    Cause(
+        TORQUE_IMPLAUSIBLE,
+        "torque_implausible",
+        "the torque estimate is not what the motor should have, by more than T_off and g_off",
+    ),
+    Cause(
+        WHEEL_CONTRADICTS,
+        "wheel_contradicts",
+        "the wheel speed is outside what the motor speed has been of late, by more than apart and g_radius",
+        after="t_apart",
+    ),
+    Cause(
+        WRONG_DIRECTION,
+        "wrong_direction",
+        "out of rest the motor turns against its torque as a free motor would turn with it",
+        after=None,
+        latched=True,
+        heals="the same, confirmed by the wheel speed; or rest",
+    ),
+)
+"""Lead to fallback. Where several are found, the first is the cause; a latched one takes its place."""
+
+FEEDING = Cause(
+    FEEDS,
+    "feeds_oscillation",
+    "half swings of the damping torque do not decay, and no change of the demand explains them",
+    after=None,
+    heals="is forgotten at one half swing a t_forget",
+)
+"""Leads to less damping, and in the end to none."""
+
+OUTPUT = Enumeration(
+    "Cause",
+    "why there is no damping, or less",
+    (("none", "nothing is wrong"), *((row.word, row.finding) for row in (*FAILURES, FEEDING))),
+)

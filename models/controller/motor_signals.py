@@ -1,0 +1,82 @@
+"""The motor signals: what is wrong with them in a sample, and what is used in their place.
+
+A motor speed is expected near the last one, near where that was going, or near what the model makes of it; it is
+frozen where it stays the same while the model moves. A torque is expected near what the motor should have
+(torque_loop). What is expected takes the place of what is wrong. A speed that is wrong for longer than t_bad is
+followed wherever it is in range, so that it can heal.
+"""
+
+from typing import Annotated, NamedTuple
+
+from ..block.declaration import Real
+from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
+from . import torque_loop
+from .causes import NONE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
+from .supervision_interface import Input, Parameters, added_speed
+from .torque_loop import LoopState
+
+
+class MotorState(NamedTuple):
+    """What was used last."""
+
+    omega_1: Annotated[float, Real("rad/s", "motor speed used last")]
+    change: Annotated[float, Real("rad/s", "its change in that sample")]
+    T_mot: Annotated[float, Real("N.m", "torque estimate used last")]
+    movement: Annotated[float, Real("rad/s", "movement that the model has expected since the speed changed")]
+    loop: LoopState
+    bad: Annotated[float, Real("s", "time since the motor signals were good")]
+
+
+def start(u: Input, p: Parameters) -> MotorState:
+    omega_1 = where(in_range(u.omega_1_meas, p.omega_max), u.omega_1_meas, 0.0)
+    T_mot = where(in_range(u.T_mot_est, 2.0 * p.T_max), u.T_mot_est, 0.0)
+    return MotorState(omega_1, 0.0, T_mot, 0.0, torque_loop.start(T_mot), 0.0)
+
+
+def in_range(signal: float, limit: float) -> bool:
+    """Finite and at most the limit in magnitude."""
+    return logical_and(is_finite(signal), abs(signal) <= limit)
+
+
+def torque(T_mot_est: float, loop: LoopState, p: Parameters) -> float:
+    """The torque estimate, or what the motor should have where it cannot be that."""
+    return where(torque_loop.agrees(loop, T_mot_est, p), T_mot_est, loop.T_mot)
+
+
+def update(
+    x: MotorState, u: Input, increment: float, T_ref: float, cause: int, T_s: float, p: Parameters
+) -> tuple[MotorState, int]:
+    """The state after the signals of one sample, and what is wrong with them.
+
+    Args:
+        u: input with omega_1_meas, T_mot_est.
+        increment: change of the model's motor speed since the last sample, rad/s.
+        T_ref: demand that the motor has, N.m.
+        cause: of the present fallback; a frozen speed stays frozen until it changes.
+    """
+    unit = added_speed(p, T_s)
+    expected = clip(x.omega_1 + increment, -p.omega_max, p.omega_max)
+    ranges = in_range(u.omega_1_meas, p.omega_max)
+    omega_1 = where(ranges, u.omega_1_meas, expected)
+    step = omega_1 - x.omega_1
+    off = minimum(minimum(abs(step - x.change), abs(step)), abs(omega_1 - expected))
+    jumps = off > p.jump * unit
+
+    stays = u.omega_1_meas == x.omega_1
+    movement = where(stays, x.movement * (1.0 - minimum(T_s / p.t_move, 1.0)) + increment, 0.0)
+    moves = logical_or(abs(movement) > p.q_omega + p.frozen * unit, cause == SPEED_FROZEN)
+    frozen = logical_and(logical_and(stays, moves), abs(omega_1) > p.omega_still)
+
+    finding = where(torque_loop.agrees(x.loop, u.T_mot_est, p), NONE, TORQUE_IMPLAUSIBLE)
+    for found, number in ((frozen, SPEED_FROZEN), (jumps, SPEED_JUMP), (logical_not(ranges), SPEED_RANGE)):
+        finding = where(found, number, finding)
+    bad = where(finding == NONE, 0.0, minimum(x.bad + T_s, p.t_bad + T_s))
+    used = where(logical_and(jumps, bad <= p.t_bad), expected, omega_1)
+    return MotorState(
+        omega_1=used,
+        change=used - x.omega_1,
+        T_mot=torque(u.T_mot_est, x.loop, p),
+        movement=movement,
+        loop=torque_loop.update(x.loop, T_ref, T_s, p),
+        bad=bad,
+    ), finding

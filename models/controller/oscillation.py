@@ -1,0 +1,69 @@
+"""Whether the damping feeds the oscillation that it should damp.
+
+Behind a signal that is late, or wrong in a way that no comparison shows, damping may push where it should pull. It
+shows in the damping torque: in a damped drive train it dies away after a change of the demand, each half swing far
+smaller than the one before. Half swings are counted that reach `swing` on both sides and GROWS of the one before.
+They are forgotten at one a t_forget, and at one for each EXCUSE by which the demand changes. Whatever shakes the
+drive train from outside (ABS, a road without grip) is counted too, and the damping can do little against it: it only
+becomes less, and there is no fallback.
+"""
+
+from typing import Annotated, NamedTuple
+
+from ..block.declaration import Real
+from ..block.operators import clip, logical_and, logical_not, maximum, minimum, where
+from .supervision_interface import Parameters
+
+GROWS = 0.7
+"""Least size of a half swing that is counted, over the one before."""
+
+EXCUSE = 0.2
+"""Change of the demand that explains a half swing, over T_max."""
+
+AHEAD = 1.0
+"""Half swings that a change of the demand can explain before they come."""
+
+USUAL, MOST, LONGEST = 1.5, 2.5, 6.0
+"""Half swings from which on there is less damping; with which there is none; that are counted."""
+
+
+class SwingState(NamedTuple):
+    """State of the count."""
+
+    side: Annotated[float, Real("1", "sign of the present half swing, 0 at first")]
+    peak: Annotated[float, Real("N.m", "largest torque of that half swing, in magnitude")]
+    enough: Annotated[float, Real("N.m", "torque with which it counts, 0 if it does not or has")]
+    count: Annotated[float, Real("1", "half swings that nothing explains")]  # pyright: ignore[reportIncompatibleMethodOverride]
+
+
+def start() -> SwingState:
+    return SwingState(side=0.0, peak=0.0, enough=0.0, count=0.0)
+
+
+def update(x: SwingState, damping: float, change: float, acting: bool, T_s: float, p: Parameters) -> SwingState:
+    """The state after a sample with this damping torque and change of the demand (N.m).
+
+    Args:
+        damping: as it would be if nothing was counted.
+        acting: there is damping.
+    """
+    size = abs(damping)
+    side = where(size > p.swing * p.T_max, where(damping > 0.0, 1.0, -1.0), x.side)
+    turned = side * x.side < 0.0
+    peak = where(side * damping > 0.0, maximum(where(turned, 0.0, x.peak), size), x.peak)
+    enough = where(turned, GROWS * x.peak, x.enough)
+    counts = logical_and(enough > 0.0, peak >= enough)
+    forgotten = x.count - clip(x.count, -T_s / p.t_forget, T_s / p.t_forget)
+    explained = abs(change) / (EXCUSE * p.T_max)
+    count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
+    return SwingState(
+        side=where(acting, side, 0.0),
+        peak=where(acting, peak, 0.0),
+        enough=where(logical_and(acting, logical_not(counts)), enough, 0.0),
+        count=where(acting, count, 0.0),
+    )
+
+
+def share(x: SwingState) -> float:
+    """Of the damping that is left."""
+    return clip((MOST - x.count) / (MOST - USUAL), 0.0, 1.0)

@@ -1,0 +1,92 @@
+"""The messages with the wheel speed: which are taken, and whether they contradict the motor speed.
+
+A message tells what the wheels did some time ago. So it is compared with the least and the largest speed that the
+motor had of late (t_late). One that has leapt out of that range since the message before, while the motor speed has
+not, is not taken. The others correct the estimate, where they are near it, and are a reference for the motor speed.
+"""
+
+from typing import Annotated, NamedTuple
+
+from ..block.declaration import Real
+from ..block.operators import is_finite, logical_and, logical_not, maximum, minimum, where
+from .motor_signals import in_range
+from .supervision_interface import Input, Parameters, added_speed
+
+
+class WheelState(NamedTuple):
+    """What came last."""
+
+    counter: Annotated[float, Real("1", "counter of the message received last")]
+    omega_2: Annotated[float, Real("rad/s", "magnitude of the speed taken last, 0 if there is none")]
+    least: Annotated[float, Real("rad/s", "least motor speed of late")]
+    largest: Annotated[float, Real("rad/s", "largest motor speed of late")]
+    silence: Annotated[float, Real("s", "time since a message was taken")]
+    contradicting: Annotated[float, Real("s", "time for which the wheel speed contradicts the motor speed")]
+
+
+def start(u: Input, omega_1: float, p: Parameters) -> WheelState:
+    known = tells_a_speed(u, p)
+    return WheelState(
+        counter=1.0 * u.counter,
+        omega_2=where(known, magnitude(u), 0.0),
+        least=omega_1,
+        largest=omega_1,
+        silence=where(known, 0.0, p.t_stale),
+        contradicting=0.0,
+    )
+
+
+def tells_a_speed(u: Input, p: Parameters) -> bool:
+    """Whether the bus has a speed; that of standing wheels is none, for they have no direction."""
+    turning = abs(u.omega_2_can) > p.omega_still
+    return logical_and(logical_and(u.valid, turning), in_range(u.omega_2_can, p.omega_max))
+
+
+def magnitude(u: Input) -> float:
+    """Of the received wheel speed in rad/s; zero where it is not finite."""
+    return where(is_finite(u.omega_2_can), abs(u.omega_2_can), 0.0)
+
+
+def update(
+    x: WheelState, u: Input, omega_1: float, strict: bool, direction: float, T_s: float, p: Parameters
+) -> tuple[WheelState, bool]:
+    """The state after one sample, and whether a message was taken in it.
+
+    Args:
+        u: input with omega_2_can, valid, counter.
+        omega_1: motor speed in use, rad/s.
+        strict: only the present motor speed counts: what it was before was not trusted.
+        direction: of the car, 1 forwards, -1 backwards; wheel sensors count teeth and have none.
+    """
+    unit, known = added_speed(p, T_s), tells_a_speed(u, p)
+    decay = minimum(T_s / p.t_late, 1.0)
+    least = where(strict, omega_1, minimum(omega_1, x.least + decay * (omega_1 - x.least)))
+    largest = where(strict, omega_1, maximum(omega_1, x.largest + decay * (omega_1 - x.largest)))
+
+    def outside(speed: float) -> float:
+        """How far a wheel speed is from what the motor speed was, beyond the error of the radius, rad/s."""
+        signed = direction * speed
+        return maximum(signed - largest, least - signed) - p.g_radius * speed
+
+    received = magnitude(u)
+    changed = logical_and(x.omega_2 > 0.0, abs(received - x.omega_2) > p.leap * unit)
+    leapt = logical_and(changed, outside(received) > p.leap * unit)
+    taken = logical_and(logical_and(u.counter != x.counter, known), logical_not(leapt))
+    omega_2 = where(taken, received, where(known, x.omega_2, 0.0))
+    silence = where(taken, 0.0, minimum(x.silence + T_s, p.t_stale))
+    contradicts = logical_and(
+        logical_and(known, silence < p.t_stale), logical_and(omega_2 > 0.0, outside(omega_2) > p.apart * unit)
+    )
+    return WheelState(
+        counter=1.0 * u.counter,
+        omega_2=omega_2,
+        least=least,
+        largest=largest,
+        silence=silence,
+        contradicting=where(contradicts, minimum(x.contradicting + T_s, p.t_apart + T_s), 0.0),
+    ), taken
+
+
+def is_reference(x: WheelState, u: Input, p: Parameters) -> bool:
+    """Whether messages keep coming that tell a speed."""
+    return logical_and(tells_a_speed(u, p), x.silence < p.t_stale)
