@@ -9,7 +9,7 @@ followed wherever it is in range, so that it can heal.
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import clip, is_finite, logical_and, logical_not, logical_or, minimum, where
+from ..block.operators import clip, is_finite, logical_and, logical_not, minimum, where
 from . import torque_loop
 from .causes import NONE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
 from .supervision_interface import Input, Parameters, added_speed
@@ -63,8 +63,9 @@ def update(
     jumps = off > p.jump * unit
 
     stays = u.omega_1_meas == x.omega_1
-    movement = where(stays, x.movement * (1.0 - minimum(T_s / p.t_move, 1.0)) + increment, 0.0)
-    moves = logical_or(abs(movement) > p.q_omega + p.frozen * unit, cause == SPEED_FROZEN)
+    moved = x.movement * (1.0 - minimum(T_s / p.t_move, 1.0)) + increment
+    movement = where(stays, where(cause == SPEED_FROZEN, x.movement, moved), 0.0)
+    moves = abs(movement) > p.q_omega + p.frozen * unit
     frozen = logical_and(logical_and(stays, moves), abs(omega_1) > p.omega_still)
 
     finding = where(torque_loop.agrees(x.loop, u.T_mot_est, p), NONE, TORQUE_IMPLAUSIBLE)

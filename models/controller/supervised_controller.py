@@ -79,12 +79,13 @@ class Supervised(Generic[E, L]):
         e = self.estimator.predict(x.estimator, 0.5 * (x.motor.T_mot + T_mot), T_S, p)
         increment = self.estimator.motion(e, p).omega_1 - self.estimator.motion(x.estimator, p).omega_1
         motor, finding = motor_signals.update(x.motor, u, increment, x.T_ref, x.trust.cause, T_S, p)
-        good = logical_and(trust.is_trusted(x.trust), finding == causes.NONE)
+        bad = finding != causes.NONE
+        good = logical_and(trust.is_trusted(x.trust), logical_not(bad))
         headed, against = direction.update(
             x.direction, u, T_driver, x.motor.loop.T_mot, motor.omega_1, was_resting, good, T_S, p
         )
         way = headed.direction
-        wheel, taken = wheel_messages.update(x.wheel, u, motor.omega_1, logical_not(good), way, T_S, p)
+        wheel, taken = wheel_messages.update(x.wheel, u, motor.omega_1, bad, way, T_S, p)
         quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, motor.omega_1, p), T_S, p)
         resting = standstill.share(quiet, p) >= 1.0
         found = {row.number: Found(finding == row.number, motor.bad) for row in causes.FAILURES}

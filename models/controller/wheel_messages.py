@@ -55,7 +55,7 @@ def update(
     Args:
         u: input with omega_2_can, valid, counter.
         omega_1: motor speed in use, rad/s.
-        strict: only the present motor speed counts: what it was before was not trusted.
+        strict: only the present motor speed counts: it is not what it was before.
         direction: of the car, 1 forwards, -1 backwards; wheel sensors count teeth and have none.
     """
     unit, known = added_speed(p, T_s), tells_a_speed(u, p)
