@@ -45,6 +45,7 @@ class Weights:
             with the vehicle. With less than 1 the estimated wheels follow the motor less, as on a slipping tyre.
         torque_error, load_error, slow_load_error: standard deviations of what the estimator's model does not know
             of the torques at the motor and at wheels and vehicle per sample, the last one added up; over T_max.
+        slip_load_error: the last one while the wheels slip.
         twist_error: the same of the twist; over T_max/C.
         message_error: standard deviation of a wheel-speed message, over the speed that T_max adds to the car
             within a cycle and the spread of the delays.
@@ -67,6 +68,7 @@ class Weights:
     torque_error: float = 1.0 / 180.0
     load_error: float = 0.3192848
     slow_load_error: float = 0.01 / 180.0
+    slip_load_error: float = 0.3 / 180.0
     twist_error: float = 6.52222e-4
     message_error: float = 0.4698217
     damping_ratio: float = 0.4978043

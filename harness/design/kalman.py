@@ -4,6 +4,8 @@ The motor speed is measured at every sample; a message with the wheel speed come
 cycle, as a delayed measurement of a periodic system.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
@@ -23,7 +25,7 @@ class DesignError(DrivelineError):
 def estimator_gains(
     plant: Plant, motor: Motor, can: Can, train: DriveTrain, weights: Weights, literal: bool = False
 ) -> dict[str, float]:
-    """Gains on the motor speed without and with the wheel speed, and on a wheel-speed message.
+    """Gains on the motor speed without and with the wheel speed and while the wheels slip, and on a message.
 
     Args:
         literal: of the paper's observer as it stands, where the vehicle takes no share of the gear torque and there is
@@ -35,7 +37,9 @@ def estimator_gains(
     Q = process_noise(plant, motor, train, weights)[own, own]
     R_1, R_2 = speed_noise(motor), message_noise(plant, motor, can, train, weights)
     Lw, L_can = both_speed_gains(A, Q, R_1, R_2, round(train.T_age / T_S), round(can.T_cyc / T_S))
-    rows = {"L": motor_speed_gains(A, Q, R_1), "Lw": Lw, "L_can": L_can}
+    Q_slip = process_noise(plant, motor, train, replace(weights, slow_load_error=weights.slip_load_error))[own, own]
+    Ls = motor_speed_gains(A, Q_slip, R_1)
+    rows = {"L": motor_speed_gains(A, Q, R_1), "Lw": Lw, "Ls": Ls, "L_can": L_can}
     return {
         f"{name}_{state}": float(gain) for name, row in rows.items() for state, gain in zip(states, row, strict=True)
     }

@@ -1,6 +1,6 @@
 """What every controller is given: its inputs, and the parameters of the supervision."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 from ..block.declaration import Boolean, Integer, Real
 from ..physics.vehicle import CAR, MotorInertia, MotorLag
@@ -37,7 +37,7 @@ class Parameters(NamedTuple):
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 3000.0
     q_omega: Annotated[float, Real("rad/s", "resolution of the measured motor speed", 0.0, 10.0)] = 0.1
-    jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.25
+    jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.8
     frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.05
     apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
@@ -46,10 +46,19 @@ class Parameters(NamedTuple):
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
-    swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 0.0, 1.0)] = 0.12
+    swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 0.0, 1.0)] = 0.03
 
 
-def added_speed(p: Parameters, T_s: float) -> float:
+class Motor(Protocol):
+    """The parameters behind the unit of the thresholds of speeds."""
+
+    @property
+    def T_max(self) -> float: ...
+    @property
+    def J_1(self) -> float: ...
+
+
+def added_speed(p: Motor, T_s: float) -> float:
     """Speed in rad/s that T_max adds to the free motor in a sample, the unit of the thresholds of speeds."""
     return p.T_max * T_s / p.J_1
 

@@ -11,6 +11,10 @@ the wheel speed when a message arrives, against the estimate of T_age before: so
 The constant gains come from a Riccati equation (harness, design), one set for each mode; `share` fades
 from the set without (0) to the set with the wheel speed (1).
 
+Wheels that spin or lock leave the vehicle behind, and the road that catches them is a load that steps. The model has
+neither, and shows it: its innovations drift, or the slow load becomes larger than any vehicle's. `slip` then fades to
+a set of gains for a load that may change fast, at once, and back within t_grip.
+
 The model looks the same from a train that rolls along: only differences of speeds are in it. So the speeds of the
 estimate are counted from the motor speed that was measured last. They are small numbers then, and single precision
 rounds them as little as the twist, which is the integral of their difference.
@@ -25,6 +29,7 @@ from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInerti
 from .fading import toward
 from .gains import GAINS
 from .interfaces import Motion
+from .supervision_interface import added_speed
 
 HISTORY = 50
 """Past estimates of omega_2 that are kept, one a sample: the age of messages every 50 ms that are late by as much."""
@@ -51,14 +56,22 @@ class Parameters(NamedTuple):
     L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = GAINS["L_can_phi"]
     L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = GAINS["L_can_T_l"]
     T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.1)] = GAINS["T_age"]
-    Ls_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, wheels slip", -2.0, 2.0)] = 0.3348
-    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, wheels slip", -2.0, 2.0)] = 0.397
-    Ls_phi: Annotated[float, Real("s", "gain on phi_hat, wheels slip", -0.1, 0.1)] = -0.0105
-    Ls_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, wheels slip", -10.0, 10.0)] = 1.6
-    e_slip: Annotated[float, Real("rad/s", "innovation from which the wheels slip", 0.0, 100.0)] = 1.5
-    T_slip: Annotated[float, Real("N.m", "load from which the wheels slip", 0.0, 1000.0)] = 36.0
-    t_drift: Annotated[float, Real("s", "time of the mean innovation", 0.002, 1.0)] = 0.01
-    t_grip: Annotated[float, Real("s", "time for which slip is remembered", 0.002, 5.0)] = 0.3
+    Ls_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, while the wheels slip", -2.0, 2.0)] = GAINS[
+        "Ls_omega_1"
+    ]
+    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, while the wheels slip", -2.0, 2.0)] = GAINS[
+        "Ls_omega_2"
+    ]
+    Ls_phi: Annotated[float, Real("s", "gain on phi_hat, while the wheels slip", -0.1, 0.1)] = GAINS["Ls_phi"]
+    Ls_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, while the wheels slip", -10.0, 10.0)] = GAINS[
+        "Ls_T_l"
+    ]
+    slip_drift: Annotated[
+        float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 0.0, 100.0)
+    ] = 0.23
+    slip_load: Annotated[float, Real("1", "slow load from which on the wheels slip, over T_max", 0.0, 4.0)] = 0.14
+    t_drift: Annotated[float, Real("s", "time over which the mean innovation is taken", 0.002, 1.0)] = 0.01
+    t_grip: Annotated[float, Real("s", "time after which slip is forgotten", 0.002, 10.0)] = 1.0
 
 
 class AllParameters(Parameters):
@@ -86,7 +99,7 @@ class EstimatorState(NamedTuple):
     past: Annotated[tuple[float, ...], Real("rad/s", "estimates of omega_2 of the last samples, newest first")]
     share: Annotated[float, Real("1", "share of the gains with wheel speed")]
     drift: Annotated[float, Real("rad/s", "mean of the recent innovations")]
-    slip: Annotated[float, Real("1", "share of the gains for slipping wheels")]
+    slip: Annotated[float, Real("1", "share of the gains for wheels that slip")]
 
 
 def start(omega_1: float, T_mot: float, wheel: bool, p: Parameters) -> EstimatorState:
@@ -104,15 +117,17 @@ def predict(x: EstimatorState, T_mot: float, T_s: float, p: Parameters) -> Estim
 
 def take_motor_speed(x: EstimatorState, omega_1: float, T_s: float, p: AllParameters) -> EstimatorState:
     e = counted_from(omega_1 - x.base, x.estimate)
-    drift = x.drift + minimum(T_s / p.t_drift, 1.0) * (-e.omega_1 - x.drift)
-    seen = maximum(abs(drift) / p.e_slip, abs(e.T_l) / p.T_slip)
-    slip = maximum(clip(seen - 1.0, 0.0, 1.0), maximum(x.slip - T_s / p.t_grip, 0.0))
-    return x._replace(
-        base=omega_1,
-        estimate=bounded(corrected_by_motor_speed(e, 0.0, x.share, slip, p), omega_1, p),
-        drift=drift,
-        slip=slip,
-    )
+    drift = x.drift - minimum(T_s / p.t_drift, 1.0) * (e.omega_1 + x.drift)
+    slip = maximum(slipping(drift, e.T_l, T_s, p), x.slip - minimum(T_s / p.t_grip, 1.0))
+    corrected = corrected_by_motor_speed(e, 0.0, x.share, slip, p)
+    return x._replace(base=omega_1, estimate=bounded(corrected, omega_1, p), drift=drift, slip=slip)
+
+
+def slipping(drift: float, T_l: float, T_s: float, p: AllParameters) -> float:
+    """How clearly the wheels slip, from 0 to 1, by the mean innovation (rad/s) and the slow load (N.m)."""
+    by_drift = abs(drift) / (p.slip_drift * added_speed(p, T_s))
+    by_load = abs(T_l) / (p.slip_load * p.T_max)
+    return clip(maximum(by_drift, by_load) - 1.0, 0.0, 1.0)
 
 
 def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: Parameters) -> EstimatorState:
@@ -158,17 +173,16 @@ def integrated(e: Estimate, T_mot: float, h: float, p: Parameters) -> Estimate:
 
 def corrected_by_motor_speed(e: Estimate, omega_1_meas: float, share: float, slip: float, p: Parameters) -> Estimate:
     error = omega_1_meas - e.omega_1
-    a, b, c, d = (
-        p.L_omega_1 + share * (p.Lw_omega_1 - p.L_omega_1),
-        p.L_omega_2 + share * (p.Lw_omega_2 - p.L_omega_2),
-        p.L_phi + share * (p.Lw_phi - p.L_phi),
-        p.L_T_l + share * (p.Lw_T_l - p.L_T_l),
-    )
+
+    def gain(without: float, with_wheel_speed: float, slipping: float) -> float:
+        L = without + share * (with_wheel_speed - without)
+        return L + slip * (slipping - L)
+
     return Estimate(
-        e.omega_1 + error * (a + slip * (p.Ls_omega_1 - a)),
-        e.omega_2 + error * (b + slip * (p.Ls_omega_2 - b)),
-        e.phi + error * (c + slip * (p.Ls_phi - c)),
-        e.T_l + error * (d + slip * (p.Ls_T_l - d)),
+        e.omega_1 + error * gain(p.L_omega_1, p.Lw_omega_1, p.Ls_omega_1),
+        e.omega_2 + error * gain(p.L_omega_2, p.Lw_omega_2, p.Ls_omega_2),
+        e.phi + error * gain(p.L_phi, p.Lw_phi, p.Ls_phi),
+        e.T_l + error * gain(p.L_T_l, p.Lw_T_l, p.Ls_T_l),
     )
 
 
