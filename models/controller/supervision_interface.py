@@ -42,7 +42,7 @@ class Parameters(NamedTuple):
     apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
     near: Annotated[float, speed("largest distance of a message that corrects the estimate")] = 6.0
-    free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.7
+    free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35

@@ -79,7 +79,7 @@ def run_with_motor(block: SampledBlock, inputs: Iterable[Input], **parameters: f
     inputs, p = list(inputs), block.Parameters(**parameters)
     states = [block.start(inputs[0], p)]
     for u in inputs:
-        states.append(block.update(states[-1], u._replace(T_mot_est=states[-1].monitor.loop.T_mot), p))
+        states.append(block.update(states[-1], u._replace(T_mot_est=states[-1].motor.loop.T_mot), p))
     return states
 
 

@@ -45,11 +45,3 @@ def test_rest_is_complete_whatever_the_rounding_of_its_times(t_rest: float, t_fa
     p = P._replace(t_rest=t_rest, t_fade=t_fade)
     assert standstill.share(standstill.longest(p), p) == 1.0
     assert standstill.share(0.0, p) == 0.0
-
-
-def test_the_time_since_rest_is_counted_no_further_than_a_launch() -> None:
-    times, since = [], standstill.LAUNCH
-    for resting in (False, True, True, False, False, False, False, False, False):
-        since = standstill.time_since(since, resting, T_S)
-        times.append(since)
-    assert times == [1.0, 0.0, 0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 1.0]

@@ -9,11 +9,11 @@ from driveline.models.block.declaration import variables
 from driveline.models.block.runner import runner
 from driveline.models.comparators import measured_speeds, speed_washout
 from driveline.models.comparators.speed_washout import Washout
-from driveline.models.controller import damping_law, standstill, supervision, torque_estimator, torque_loop
+from driveline.models.controller import causes, damping_law, supervision, torque_estimator, torque_loop
 from driveline.models.controller.interfaces import Addition, Estimator, Law, Motion
-from driveline.models.controller.signal_trust import TrustState
 from driveline.models.controller.supervised_controller import supervised
 from driveline.models.controller.supervision import T_S
+from driveline.models.controller.trust import TrustState
 from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken
 
 
@@ -32,7 +32,7 @@ def test_every_law_damps_behind_every_estimator(estimator: Estimator, law: Law) 
 
 def test_it_damps_by_its_own_law() -> None:
     inputs = shaken(0.5)
-    states, slow, p = run(OTHER, inputs), inputs[0].omega_1_meas, OTHER.Parameters()
+    states, slow, p = run(OTHER, inputs, swing=1.0), inputs[0].omega_1_meas, OTHER.Parameters()
     for x, u in zip(states[1:], inputs, strict=True):
         assert x.T_damp == pytest.approx(-p.k_v * (u.omega_1_meas - slow), abs=1e-9)
         slow += p.omega_v * T_S * (u.omega_1_meas - slow)
@@ -74,7 +74,7 @@ def test_what_is_ahead_is_the_motion_under_the_torque_that_the_motor_will_have()
     assert (before.law.change, before.T_ref, now.T_ref) == (0.0, 0.0, 50.0)
     after = block.update(now, floating._replace(T_driver=50.0), block.Parameters())
     p = block.Parameters()
-    gained = torque_loop.update(now.monitor.loop, 50.0, 0.01, p).T_mot
+    gained = torque_loop.update(now.motor.loop, 50.0, 0.01, p).T_mot
     assert after.law.change == pytest.approx(0.01 * 0.5 * gained / p.J_1, rel=0.02)
     assert gained > 40.0
 
@@ -84,42 +84,31 @@ def test_what_is_ahead_is_the_motion_under_the_torque_that_the_motor_will_have()
 def test_a_free_motor_is_compared_with_the_torque_of_the_same_sample(T_driver: float, side: float) -> None:
     """Out of rest, with a step of the demand: the motor's speed follows from the torque that it has."""
     p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
-    x = OURS.start(standing, p)._replace(since_rest=0.0)
-    omega, T_mot = 0.0, 0.0
-    while x.launch_direction.way == 0.0 and omega < 20.0:
+    x = OURS.start(standing, p)
+    x = x._replace(direction=x.direction._replace(free=0.0))
+    omega, T_mot, causes_shown = 0.0, 0.0, set()
+    while omega < 6.0:
         x = OURS.update(x, standing._replace(T_driver=T_driver, T_mot_est=T_mot, omega_1_meas=side * omega), p)
-        before, T_mot = T_mot, x.monitor.loop.T_mot
+        causes_shown.add(x.trust.cause)
+        before, T_mot = T_mot, x.motor.loop.T_mot
         omega += 0.5 * T_S * (before + T_mot) / p.J_1
-    assert x.launch_direction.way == side
+    assert (causes.WRONG_DIRECTION in causes_shown) is (side < 0.0)
 
 
-def test_a_speed_of_the_wrong_sign_does_not_heal() -> None:
-    """In fallback, while the car pulls away; however steady the speed of the other direction is."""
+def test_a_speed_of_the_other_sign_needs_longer_to_heal() -> None:
+    """However steady it is, where no wheel speed contradicts."""
     p, backwards = OURS.Parameters(), ROLLING._replace(T_driver=20.0, T_mot_est=20.0, omega_1_meas=-10.0, valid=False)
     x = OURS.start(backwards, p)
-    away = x.launch_direction._replace(pushed=True, free=4.5, way=1.0)
-    x = x._replace(
-        launch_direction=away, since_rest=0.2, trust=TrustState(heal_time=0.0, needed=p.t_proof, latched=False)
-    )
-    statuses = []
-    for k in range(round(1.2 / T_S)):
-        x = OURS.update(x, backwards._replace(omega_1_meas=-10.0 + 0.3 * (-1) ** k), p)
-        statuses.append(x.status)
-    proven = statuses.index(supervision.WITHOUT_WHEEL_SPEED) * T_S
-    assert proven == pytest.approx(standstill.LAUNCH - 0.2 + p.t_proof, abs=2.0 * T_S)
-
-
-def test_rest_clears_a_doubt_when_it_is_complete_and_no_sample_sooner() -> None:
-    """A latched failure needs no further heal time."""
-    p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
-    x = OURS.start(standing, p)._replace(
-        quiet=0.0, trust=TrustState(heal_time=0.0, needed=32.0 * p.t_proof, latched=True)
-    )
-    samples = round(standstill.longest(p) / T_S)
-    for k in range(1, samples + 2):
-        x = OURS.update(x, standing._replace(omega_1_meas=0.01 * (-1) ** k), p)
-        assert x.trust.latched == (standstill.share(x.quiet, p) < 1.0)
-    assert x.trust.needed == p.t_proof
+    for direction, needed in ((-1.0, p.t_proof), (1.0, p.t_turn)):
+        y = x._replace(
+            direction=x.direction._replace(direction=direction), trust=TrustState(causes.SPEED_JUMP, healing=0.0)
+        )
+        statuses = []
+        for k in range(round(1.2 / T_S)):
+            y = OURS.update(y, backwards._replace(omega_1_meas=-10.0 + 0.3 * (-1) ** k), p)
+            statuses.append(y.status)
+        proven = statuses.index(supervision.WITHOUT_WHEEL_SPEED) * T_S
+        assert proven == pytest.approx(needed, abs=2.0 * T_S)
 
 
 def test_a_runner_takes_it_as_it_takes_any_block() -> None:
