@@ -23,7 +23,16 @@ from driveline.models.controller.supervision import T_S, Input, State
 from driveline.models.physics.backlash import dead_zone
 from tests.models.controller.controllers import OURS, drive_inputs, run, shaken
 
-LITERAL = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0, "t_land": 0.0}
+LITERAL = {
+    "lambda_v": 0.0,
+    "k_d": 0.0,
+    "T_pred": 0.0,
+    "L_T_l": 0.0,
+    "Lw_T_l": 0.0,
+    "L_can_T_l": 0.0,
+    "Ls_T_l": 0.0,
+    "t_land": 0.0,
+}
 LINEAR = {"phi_B": 0.0, "k_gap": 0.3, **dict.fromkeys(state_feedback.NO_LANDING, 0.1)}
 
 
@@ -78,7 +87,7 @@ def test_for_a_large_damping_ratio_the_washout_is_one_of_first_order() -> None:
 def test_the_speed_difference_is_that_to_the_wheel_speed_received_last(omega_delta: float) -> None:
     inputs, slow = shaken(0.4), 0.0
     received = inputs[0].omega_1_meas
-    states = run(speed_difference.BLOCK, inputs, k_delta=1.5, omega_delta=omega_delta)
+    states = run(speed_difference.BLOCK, inputs, k_delta=1.5, omega_delta=omega_delta, swing=1.0)
     for x, before, u in zip(states[1:], [inputs[0], *inputs], inputs, strict=False):
         if u.counter != before.counter:
             received = u.omega_2_can
@@ -113,7 +122,7 @@ def test_the_paper_s_observer_is_ours_without_vehicle_and_load() -> None:
 
 
 def test_the_gear_torque_that_it_estimates_is_washed_out() -> None:
-    states = run(paper_observer.BLOCK, shaken(0.4), k_T=0.5)
+    states = run(paper_observer.BLOCK, shaken(0.4), k_T=0.5, swing=1.0)
     p, slow = paper_observer.BLOCK.Parameters(k_T=0.5), states[0].law.washout
     for x in states[1:]:
         fed_back = 0.5 * p.C * dead_zone(x.estimator.estimate.phi, p.phi_B)

@@ -27,7 +27,7 @@ from tests.models.controller.controllers import (
 
 BLOCK = damping_controller.BLOCK
 P = BLOCK.Parameters()
-DRIVEN = [u._replace(valid=k >= 50) for k, u in enumerate(drive_inputs(1.5))]
+DRIVEN = [u._replace(valid=k >= 600) for k, u in enumerate(drive_inputs(2.5))]
 T_REF_DRIVEN = run(BLOCK, DRIVEN)[-1].T_ref
 HELD = (0.0, (0.0, 0.0, 0.0, 0.0))
 """Base and estimate at rest."""
@@ -36,7 +36,7 @@ HELD = (0.0, (0.0, 0.0, 0.0, 0.0))
 @given(inputs=st.lists(any_input, min_size=1, max_size=20))
 @settings(max_examples=40)
 def test_it_recovers_from_whatever_came_in(inputs: list[Input]) -> None:
-    """Within a second and a half the torque is that of a controller that never saw it."""
+    """The torque is that of a controller that never saw it; a motor that turned backwards heals in t_turn."""
     x = run(BLOCK, [*inputs, *DRIVEN])[-1]
     assert x.status == WITH_WHEEL_SPEED
     assert x.T_ref == pytest.approx(T_REF_DRIVEN, abs=3.0)
@@ -58,18 +58,18 @@ def test_a_stationary_torque_is_unchanged(T: float, omega: float) -> None:
 
 def test_the_estimator_changes_its_mode_without_a_bump() -> None:
     inputs = shaken(2.0)
-    states = run(BLOCK, [u._replace(valid=not 300 <= k < 600) for k, u in enumerate(inputs)])
+    states = run(BLOCK, [u._replace(valid=not 300 <= k < 600) for k, u in enumerate(inputs)], swing=1.0)
     assert states[299].status == states[-1].status == WITH_WHEEL_SPEED
     assert states[599].status == WITHOUT_WHEEL_SPEED
-    assert bump(states) <= 1.1 * bump(run(BLOCK, inputs))
+    assert bump(states) <= 1.1 * bump(run(BLOCK, inputs, swing=1.0))
     assert max(abs(b.estimator.share - a.estimator.share) for a, b in pairwise(states)) <= 1.001 * T_S / P.t_fade
 
 
 def test_a_torque_that_is_not_demanded_is_found_without_a_bump() -> None:
     """The change per sample is at most that of the damping torque itself and of its fading."""
-    always = run_with_motor(BLOCK, shaken(2.0))
-    obeyed = [u._replace(T_mot_est=x.monitor.loop.T_mot) for u, x in zip(shaken(2.0), always, strict=False)]
-    states = run(BLOCK, [u._replace(T_mot_est=-50.0) if k >= 500 else u for k, u in enumerate(obeyed)])
+    always = run_with_motor(BLOCK, shaken(2.0), swing=1.0)
+    obeyed = [u._replace(T_mot_est=x.motor.loop.T_mot) for u, x in zip(shaken(2.0), always, strict=False)]
+    states = run(BLOCK, [u._replace(T_mot_est=-50.0) if k >= 500 else u for k, u in enumerate(obeyed)], swing=1.0)
     assert states[500 + round(P.t_bad / T_S) + 2].status == states[-1].status == FALLBACK
     assert bump(states) <= bump(always) + max(abs(x.T_damp) for x in always) * T_S / P.t_fade
 
@@ -92,7 +92,7 @@ def test_at_rest_the_estimator_is_held_whatever_the_times(t_rest: float, t_fade:
 
 def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None:
     x = run(BLOCK, drive_inputs(0.1))[-1]
-    ahead = estimator.integrated(x.estimator.estimate, x.monitor.T_mot, T_S, P)
+    ahead = estimator.integrated(x.estimator.estimate, x.motor.T_mot, T_S, P)
     y = BLOCK.output(x, ROLLING, P)
     assert (y.phi_hat, y.omega_2_hat) == (ahead.phi, x.estimator.base + ahead.omega_2)
     assert y.T_gear_hat == P.C * dead_zone(ahead.phi, P.phi_B)
@@ -100,7 +100,8 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
 
 def test_the_literal_form_of_the_paper_is_an_imperfect_derivative_of_the_gear_torque() -> None:
     """Observer without load, imperfect derivative of the estimated gear torque."""
-    literal = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0}
+    literal = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "Lw_T_l": 0.0, "L_can_T_l": 0.0, "Ls_T_l": 0.0}
+    literal |= {"swing": 1.0}
     literal |= {"t_land": 0.0, "k_gap": 1.0, "k_T": 0.6, "omega_w": 60.0}
     states = run(BLOCK, shaken(1.0), **literal)
     gear = [P.C * dead_zone(x.estimator.estimate.phi, P.phi_B) for x in states]
@@ -117,7 +118,7 @@ def test_the_literal_form_of_the_paper_is_an_imperfect_derivative_of_the_gear_to
 
 
 def test_nothing_is_demanded_or_known_until_somebody_says_so() -> None:
-    assert Input() == (0.0, 0.0, 0.0, 0.0, False, 0, True)
+    assert Input() == (0.0, 0.0, 0.0, 0.0, False, 0, True, 0)
     x = BLOCK.start(Input(), P)
     assert (x.T_ref, x.status) == (0.0, WITHOUT_WHEEL_SPEED)
 
@@ -134,7 +135,7 @@ def test_the_torque_is_limited_to_180_newton_metres() -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_damping_takes_and_adds_at_most_60_newton_metres(side: float) -> None:
     wild = [u._replace(omega_1_meas=150.0 + 12.0 * (u.omega_1_meas - 150.0)) for u in shaken(1.0, T_driver=side * 50.0)]
-    added = [x.T_damp - x.T_landing for x in run_with_motor(BLOCK, wild)]
+    added = [x.T_damp - x.T_landing for x in run_with_motor(BLOCK, wild, swing=1.0)]
     assert (min(added), max(added)) == pytest.approx((-60.0, 60.0), abs=1e-12)
 
 
@@ -152,7 +153,7 @@ def test_a_landing_lasts_a_tenth_of_a_second_at_most() -> None:
     """Coasting with the teeth in the middle between the flanks; the damping is too slow to matter."""
     afloat = ROLLING._replace(T_driver=100.0, T_mot_est=0.0)
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(100)]
-    states = run(BLOCK, inputs, t_frozen=10.0, T_max=2000.0, T_pred=0.0)
+    states = run(BLOCK, inputs, frozen=1000.0, T_max=2000.0, T_pred=0.0)
     T = min(100.0, P.T_gap)
     omega_land = math.sqrt((P.bounce * T) ** 2 / (P.C * P.J_1) + 2.0 * P.brake * T * P.phi_B / P.J_1)
     T_land = P.k_gap * P.k_d * omega_land
@@ -167,7 +168,6 @@ ONSET = 55
 
 LASTING: dict[str, tuple[int, Fault, float]] = {
     "bad motor signals are bridged for 20 ms": (FALLBACK, lambda u, k: u._replace(T_mot_est=math.nan), 0.02),
-    "a speed is frozen after 0.1 s": (FALLBACK, lambda u, k: u._replace(omega_1_meas=150.0), 0.12),
     "a torque that is not demanded as well": (FALLBACK, lambda u, k: u._replace(T_mot_est=20.0), 0.02),
     "a message is used for 0.1 s": (WITHOUT_WHEEL_SPEED, lambda u, k: u._replace(counter=5), 0.09),
 }
@@ -182,16 +182,16 @@ def test_a_fault_has_its_time(status: int, fault: Fault, time: float) -> None:
     assert found * T_S == pytest.approx(time, abs=1.5 * T_S)
 
 
-@pytest.mark.parametrize(("jump", "used"), [(7.5, True), (8.5, False)])
-def test_a_speed_that_jumps_by_8_radians_per_second_is_not_used(jump: float, used: bool) -> None:
+@pytest.mark.parametrize(("jump", "used"), [(11.5, True), (12.0, False)])
+def test_a_speed_that_jumps_by_12_radians_per_second_is_not_used(jump: float, used: bool) -> None:
     x, bad = run(BLOCK, drive_inputs(0.1))[-1], ROLLING._replace(omega_1_meas=150.0 + jump)
-    assert (BLOCK.update(x, bad, P).monitor.bad == 0.0) == used
+    assert (BLOCK.update(x, bad, P).motor.bad == 0.0) == used
 
 
 @pytest.mark.parametrize(("omega", "used"), [(2999.0, True), (3001.0, False)])
 def test_no_motor_turns_faster_than_3000_radians_per_second(omega: float, used: bool) -> None:
     x = BLOCK.start(ROLLING._replace(omega_1_meas=omega, omega_2_can=omega), P)
-    assert (x.monitor.omega_1 == omega) == (x.status == WITH_WHEEL_SPEED) == used
+    assert (x.motor.omega_1 == omega) == (x.status == WITH_WHEEL_SPEED) == used
 
 
 def time_to_rest(u: Input) -> float:
@@ -230,10 +230,11 @@ def test_good_signals_stay_good_with_half_of_every_threshold(
     plant: ContinuousBlock, v_0: float, before: float, after: float
 ) -> None:
     """When the teeth cross the gap and back, with noise and delays, no signal is near to being found bad."""
-    half = {name: 0.5 * getattr(P, name) for name in ("e_max", "e_jump", "e_wheel", "t_frozen", "t_stale", "omega_max")}
+    names = ("near", "jump", "apart", "leap", "frozen", "t_stale", "omega_max", "t_bad", "t_apart")
+    half = {name: 0.5 * getattr(P, name) for name in names}
     parameters = {
         "plant": {"v_0": v_0, "T_0": before},
-        "controller": {**half, "t_bad": 0.0, "t_apart": 0.5 * P.t_apart},
+        "controller": half,
     }
     y = monolithic.run(plant, step(before, after), 1.5, parameters)
     assert set(y["controller.status"]) == {WITH_WHEEL_SPEED}

@@ -63,7 +63,7 @@ def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float
     """All inertias, stiffness and torques larger by one factor: the same motions, torques larger by that factor."""
     plant = PLANT._replace(J_1=scale * PLANT.J_1, J_2=scale * PLANT.J_2, C=scale * PLANT.C, m=scale * PLANT.m)
     gains, default = gains_of(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
-    with_torque = {"k_d", "T_gap", *(f"{L}_T_l" for L in ("L", "Lw", "L_can"))}
+    with_torque = {"k_d", "T_gap", *(f"{L}_T_l" for L in ("L", "Lw", "Ls", "L_can"))}
     for name, value in gains.items():
         assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
 

@@ -19,7 +19,7 @@ IN_CONTACT = Estimate(omega_1=150.0, omega_2=148.0, phi=P.phi_B + 50.0 / P.C, T_
 
 def estimating(e: Estimate, share: float = 1.0) -> EstimatorState:
     """With the speeds of the estimate counted from 0."""
-    return EstimatorState(0.0, e, past=(e.omega_2,) * HISTORY, share=share)
+    return EstimatorState(0.0, e, past=(e.omega_2,) * HISTORY, share=share, drift=0.0, slip=0.0)
 
 
 def estimate(x: EstimatorState) -> Estimate:
@@ -74,14 +74,17 @@ def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
 
 
 def test_a_new_start_forgets_the_estimate_alone() -> None:
-    x = EstimatorState(140.0, IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25)
+    x = EstimatorState(140.0, IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25, drift=1.0, slip=0.5)
     repeated = estimator.restart(x, 90.0, -20.0, P)
-    assert repeated == x._replace(base=90.0, estimate=estimator.start(90.0, -20.0, True, P).estimate)
+    assert repeated == x._replace(
+        base=90.0, estimate=estimator.start(90.0, -20.0, True, P).estimate, drift=0.0, slip=0.0
+    )
 
 
 GAINS = P._replace(
     L_omega_1=0.5, L_omega_2=0.25, L_phi=-0.0625, L_T_l=1.0,
     Lw_omega_1=1.0, Lw_omega_2=0.5, Lw_phi=-0.03125, Lw_T_l=2.0,
+    Ls_omega_1=0.25, Ls_omega_2=1.0, Ls_phi=-0.125, Ls_T_l=8.0, slip_drift=100.0, slip_load=4.0,
     L_can_omega_1=0.0625, L_can_omega_2=0.75, L_can_phi=-0.015625, L_can_T_l=4.0,
 )  # fmt: skip
 """Gains whose products have no rounding."""
@@ -98,10 +101,45 @@ E_0 = Estimate(omega_1=150.0, omega_2=148.0, phi=0.5, T_l=-3.0)
 )
 def test_the_motor_speed_corrects_with_the_gains_of_the_mode(share: float, correction: tuple[float, ...]) -> None:
     """4 rad/s above the estimate."""
-    x = estimator.take_motor_speed(estimating(E_0, share), 154.0, GAINS)
+    x = estimator.take_motor_speed(estimating(E_0, share), 154.0, T_S, GAINS)
     assert x.base == 154.0
     corrected = estimating(advanced(E_0, 1.0, Estimate(*correction)), share)
-    assert x._replace(base=0.0, estimate=estimate(x)) == corrected._replace(past=x.past)
+    assert x._replace(base=0.0, estimate=estimate(x)) == corrected._replace(past=x.past, drift=x.drift)
+
+
+@pytest.mark.parametrize(("slip", "correction"), [(1.0, (1.0, 4.0, -0.5, 32.0)), (0.5, (2.5, 3.0, -0.3125, 20.0))])
+def test_while_the_wheels_slip_the_load_may_change_fast(slip: float, correction: tuple[float, ...]) -> None:
+    """With the gains for slip, half of them when half of it is forgotten; 4 rad/s above the estimate."""
+    x = estimating(E_0)._replace(slip=slip)
+    y = estimator.take_motor_speed(x, 154.0, T_S, GAINS._replace(t_grip=1e9))
+    assert estimate(y) == pytest.approx(advanced(E_0, 1.0, Estimate(*correction)))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_wheels_slip_where_the_innovations_drift_or_the_load_is_larger_than_any_vehicle_s(side: float) -> None:
+    """From a threshold to twice of it."""
+    p = P._replace(T_max=100.0, J_1=0.1, slip_drift=0.5, slip_load=0.25)
+    for drift, T_l, slip in ((1.0, 25.0, 0.0), (1.5, 0.0, 0.5), (0.0, 37.5, 0.5), (2.0, 0.0, 1.0), (9.0, 400.0, 1.0)):
+        assert estimator.slipping(side * drift, side * T_l, T_S, p) == pytest.approx(slip)
+
+
+def test_slip_is_seen_at_once_and_forgotten_in_t_grip() -> None:
+    p, slips = P._replace(t_grip=1.0, t_drift=0.25, slip_drift=0.01, slip_load=4.0), []
+    x = estimating(E_0)
+    for k in range(5):
+        speed = estimator.motion(x, p).omega_1 + (100.0 if k == 0 else 0.0)
+        x = estimator.take_motor_speed(x, speed, 0.25, p)
+        slips.append(x.slip)
+    assert slips == [1.0, 0.75, 0.5, 0.25, 0.0]
+
+
+def test_the_drift_is_the_mean_of_the_recent_innovations() -> None:
+    p, drifts = P._replace(t_drift=1.0), []
+    x = estimating(E_0)
+    for _ in range(3):
+        x = estimator.take_motor_speed(x, estimator.motion(x, p).omega_1 + 4.0, 0.25, p)
+        drifts.append(x.drift)
+    assert drifts == pytest.approx([1.0, 1.75, 2.3125])
 
 
 @pytest.mark.parametrize("base", [-64.0, 0.0, 150.0, 4096.0])
@@ -109,15 +147,15 @@ def test_what_the_speeds_are_counted_from_is_of_no_account(base: float) -> None:
     x = estimating(E_0)
     moved = x._replace(base=base, estimate=estimator.counted_from(base, E_0))
     assert estimator.motion(moved, GAINS) == estimator.motion(x, GAINS)
-    assert estimator.take_motor_speed(moved, 154.0, GAINS) == estimator.take_motor_speed(x, 154.0, GAINS)
+    assert estimator.take_motor_speed(moved, 154.0, T_S, GAINS) == estimator.take_motor_speed(x, 154.0, T_S, GAINS)
     assert estimator.finish(moved, True, T_S, GAINS).past == estimator.finish(x, True, T_S, GAINS).past
 
 
 def test_after_a_sample_the_speeds_are_counted_from_the_measured_one() -> None:
     """So they are small numbers, however fast the car is."""
-    x = estimator.take_motor_speed(estimating(E_0), 1000.0 + E_0.omega_1, P)
+    x = estimator.take_motor_speed(estimating(E_0), 1000.0 + E_0.omega_1, T_S, P)
     assert x.base == 1000.0 + E_0.omega_1
-    close = estimator.take_motor_speed(estimating(E_0), E_0.omega_1 + 0.5, P).estimate
+    close = estimator.take_motor_speed(estimating(E_0), E_0.omega_1 + 0.5, T_S, P).estimate
     assert max(abs(close.omega_1), abs(close.omega_2)) < 3.0
 
 
@@ -202,7 +240,7 @@ def test_the_estimate_stays_within_what_the_drive_train_can_bear(name: str, side
 
 def test_a_correction_by_the_motor_speed_stays_within_the_bounds() -> None:
     """A message cannot leave them: it is near the estimate."""
-    x = estimator.take_motor_speed(estimating(E_0._replace(T_l=4.0 * P.T_max)), 151.0, GAINS)
+    x = estimator.take_motor_speed(estimating(E_0._replace(T_l=4.0 * P.T_max)), 151.0, T_S, GAINS)
     assert x.estimate.T_l == 4.0 * P.T_max
 
 
