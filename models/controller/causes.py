@@ -31,7 +31,7 @@ FAILURES = (
     Cause(
         SPEED_JUMP,
         "speed_jump",
-        "the motor speed is farther than jump from the last one, from where that was going, and from the model",
+        "the motor speed is farther than jump from the last one and from the model, and no fast change goes on",
     ),
     Cause(SPEED_FROZEN, "speed_frozen", "the motor speed stays the same where the model moves by more than frozen"),
     Cause(

@@ -1,6 +1,6 @@
 """The motor signals: what is wrong with them in a sample, and what is used in their place.
 
-A motor speed is expected near the last one, near where that was going, or near what the model makes of it; it is
+A motor speed is expected near the last one, near what the model makes of it, or where a fast change goes on; it is
 frozen where it stays the same while the model moves. A torque is expected near what the motor should have
 (torque_loop). What is expected takes the place of what is wrong. A speed that is wrong for longer than t_bad is
 followed wherever it is in range, so that it can heal.
@@ -20,7 +20,8 @@ class MotorState(NamedTuple):
     """What was used last."""
 
     omega_1: Annotated[float, Real("rad/s", "motor speed used last")]
-    change: Annotated[float, Real("rad/s", "its change in that sample")]
+    received: Annotated[float, Real("rad/s", "motor speed received last, where it was in range")]
+    change: Annotated[float, Real("rad/s", "change of what was received, in that sample")]
     T_mot: Annotated[float, Real("N.m", "torque estimate used last")]
     movement: Annotated[float, Real("rad/s", "movement that the model has expected since the speed changed")]
     loop: LoopState
@@ -30,7 +31,7 @@ class MotorState(NamedTuple):
 def start(u: Input, p: Parameters) -> MotorState:
     omega_1 = where(in_range(u.omega_1_meas, p.omega_max), u.omega_1_meas, 0.0)
     T_mot = where(in_range(u.T_mot_est, 2.0 * p.T_max), u.T_mot_est, 0.0)
-    return MotorState(omega_1, 0.0, T_mot, 0.0, torque_loop.start(T_mot), 0.0)
+    return MotorState(omega_1, omega_1, 0.0, T_mot, 0.0, torque_loop.start(T_mot), 0.0)
 
 
 def in_range(signal: float, limit: float) -> bool:
@@ -58,9 +59,10 @@ def update(
     expected = clip(x.omega_1 + increment, -p.omega_max, p.omega_max)
     ranges = in_range(u.omega_1_meas, p.omega_max)
     omega_1 = where(ranges, u.omega_1_meas, expected)
-    step = omega_1 - x.omega_1
-    off = minimum(minimum(abs(step - x.change), abs(step)), abs(omega_1 - expected))
-    jumps = off > p.jump * unit
+    change, most = omega_1 - x.received, p.jump * unit
+    leaps = minimum(abs(omega_1 - x.omega_1), abs(omega_1 - expected)) > most
+    goes_on = logical_and(abs(x.change) > most, abs(change - x.change) <= most)
+    jumps = logical_and(leaps, logical_not(goes_on))
 
     stays = u.omega_1_meas == x.omega_1
     moved = x.movement * (1.0 - minimum(T_s / p.t_move, 1.0)) + increment
@@ -75,7 +77,8 @@ def update(
     used = where(logical_and(jumps, bad <= p.t_bad), expected, omega_1)
     return MotorState(
         omega_1=used,
-        change=used - x.omega_1,
+        received=omega_1,
+        change=change,
         T_mot=torque(u.T_mot_est, x.loop, p),
         movement=movement,
         loop=torque_loop.update(x.loop, T_ref, T_s, p),

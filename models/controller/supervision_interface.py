@@ -37,7 +37,7 @@ class Parameters(NamedTuple):
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
     omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 3000.0
     q_omega: Annotated[float, Real("rad/s", "resolution of the measured motor speed", 0.0, 10.0)] = 0.1
-    jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.8
+    jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.25
     frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.15
     apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0

@@ -89,12 +89,24 @@ def test_a_motor_speed_may_jump_by_jump_from_the_last_one_or_from_what_is_expect
 
 
 @each_side
-def test_a_motor_speed_may_go_on_as_it_was_going(side: float) -> None:
-    """As it does when wheels lock and the model does not know."""
-    going = last(0.0, change=side * 60.0)
-    for jump, finding in ((100.0, NONE), (above(100.0), SPEED_JUMP)):
-        x, found = after([U._replace(omega_1_meas=side * jump)], going)
-        assert (found, x.change) == (finding, side * jump if finding == NONE else 0.0)
+def test_a_fast_change_may_go_on(side: float) -> None:
+    """Wheels that lock take the motor along, and the model does not know: it is bad for a sample."""
+    most = P.jump * UNIT
+    x = last(0.0, received=side * 60.0, change=side * 60.0)
+    for change, finding in ((60.0 + most, NONE), (60.0 + most + 1e-9, SPEED_JUMP), (60.0 - most - 1e-9, SPEED_JUMP)):
+        y, found = after([U._replace(omega_1_meas=side * (60.0 + change))], x)
+        assert (found, y.change) == (finding, pytest.approx(side * change))
+    slow = last(-side * 60.0, received=side * 60.0, change=side * most)
+    assert after([U._replace(omega_1_meas=side * 90.0)], slow)[1] == SPEED_JUMP, "one that was not fast is none"
+
+
+@each_side
+def test_a_speed_that_has_jumped_and_stays_is_bad(side: float) -> None:
+    x, findings = last(0.0, received=0.0), []
+    for k in range(3):
+        x, finding = after([U._replace(omega_1_meas=side * (60.0 + k))], x)
+        findings.append(finding)
+    assert findings == [SPEED_JUMP] * 3
 
 
 def test_a_motor_speed_that_has_jumped_is_followed_after_t_bad() -> None:
@@ -151,7 +163,7 @@ def test_bad_signals_count_their_time_no_further_than_needed() -> None:
 
 
 def test_at_the_start_all_that_is_in_range_is_believed() -> None:
-    assert motor_signals.start(U, P) == MotorState(150.0, 0.0, 50.0, 0.0, LoopState(50.0, 0.0), 0.0)
+    assert motor_signals.start(U, P) == MotorState(150.0, 150.0, 0.0, 50.0, 0.0, LoopState(50.0, 0.0), 0.0)
     x = motor_signals.start(Input(omega_1_meas=math.nan, T_mot_est=300.0), P)
     assert (x.omega_1, x.T_mot) == (0.0, 0.0)
     assert motor_signals.start(Input(T_mot_est=200.0), P).T_mot == 200.0, "twice T_max"
