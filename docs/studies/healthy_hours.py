@@ -10,6 +10,7 @@ plants and on ice, where wheels spin and lock. The residuals of the monitors are
 import argparse
 from collections.abc import Iterable
 from functools import partial
+from math import copysign
 from typing import NamedTuple
 
 import numpy as np
@@ -23,9 +24,9 @@ from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.terminal import print_table
-from driveline.models.controller import launch_direction, oscillation_monitor, torque_loop, wheel_monitor
-from driveline.models.controller.signal_monitor import STILL
+from driveline.models.controller import oscillation, torque_loop, wheel_messages
 from driveline.models.controller.supervision import FALLBACK, T_S, Input
+from driveline.models.controller.supervision_interface import added_speed
 from driveline.models.damping_controller import BLOCK
 
 P = BLOCK.Parameters()
@@ -117,16 +118,16 @@ def found(road: Road, seed: int) -> Found:
     return Found(
         samples=len(rows),
         fallback=int(np.count_nonzero(rows["controller.status"] == FALLBACK)),
-        jump=float(jumps(omega_1).max()) / P.e_jump,
+        jump=float(jumps(omega_1).max()) / (P.jump * added_speed(P, T_S)),
         contradiction=contradiction(rows) / P.t_apart,
-        half_swings=half_swings(rows) / oscillation_monitor.MOST,
+        half_swings=half_swings(rows) / oscillation.MOST,
         torque=longest_run(disobeyed(rows))[1] * T_S / P.t_bad,
-        frozen=longest_run((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > STILL))[1] * T_S / P.t_frozen,
+        frozen=longest_run((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > P.omega_still))[1] * T_S / P.t_bad,
     )
 
 
 def jumps(omega_1: np.ndarray) -> np.ndarray:
-    """How far a speed is from that of the last sample, or from where that was going, in rad/s (signal_monitor)."""
+    """How far a speed is from that of the last sample, or from where that was going, in rad/s (motor_signals)."""
     return np.minimum(abs(np.diff(omega_1))[1:], abs(np.diff(omega_1, n=2)))
 
 
@@ -137,26 +138,27 @@ SIGNALS = {
     "valid": "can.valid",
     "counter": "can.counter",
 }
-"""What the wheel monitor reads, and where it is in the results."""
+"""What the messages are compared by, and where it is in the results."""
 
 
 def contradiction(rows: np.ndarray) -> float:
-    """Longest time in s for which the messages contradict the motor speed (wheel_monitor)."""
+    """Longest time in s for which the messages contradict the motor speed (wheel_messages)."""
     columns = (rows[column].tolist() for column in SIGNALS.values())
     inputs = [Input(**dict(zip(SIGNALS, row, strict=True))) for row in zip(*columns, strict=True)]
-    x, most = wheel_monitor.start(inputs[0], inputs[0].omega_1_meas, inputs[0].T_mot_est, P), 0.0
-    for u, omega_2_hat in zip(inputs, rows["controller.omega_2_hat"].tolist(), strict=True):
-        x = wheel_monitor.update(x, u, u.omega_1_meas, u.T_mot_est, 0.0, launch_direction.start(), omega_2_hat, T_S, P)
-        most = max(most, x.mismatch_time)
+    x, most, way = wheel_messages.start(inputs[0], inputs[0].omega_1_meas, P), 0.0, 1.0
+    for u in inputs:
+        way = copysign(1.0, u.omega_1_meas) if abs(u.omega_1_meas) > P.omega_still else way
+        x, _ = wheel_messages.update(x, u, u.omega_1_meas, False, way, T_S, P)
+        most = max(most, x.contradicting)
     return most
 
 
 def half_swings(rows: np.ndarray) -> float:
-    """Most half swings of the damping torque that nothing explains (swings)."""
+    """Most half swings of the damping torque that nothing explains (oscillation)."""
     damping, T_driver = rows["controller.T_damp"] - rows["controller.T_landing"], rows["controller.T_driver"]
-    x, most = oscillation_monitor.start(float(T_driver[0])), 0.0
-    for torque, demand in zip(damping.tolist(), T_driver.tolist(), strict=True):
-        x = oscillation_monitor.update(x, torque, demand, True, T_S, P)
+    x, most, changes = oscillation.start(), 0.0, np.diff(T_driver, prepend=T_driver[0])
+    for torque, change in zip(damping.tolist(), changes.tolist(), strict=True):
+        x = oscillation.update(x, torque, change, True, T_S, P)
         most = max(most, x.count)
     return most
 

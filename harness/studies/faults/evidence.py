@@ -20,7 +20,7 @@ RIGHT_SPEED = 20.0
 """Error of the wheel speed in rad/s up to which it shows that the motor speed is wrong."""
 
 MISMATCH, SHARE = 30.0, 0.06
-"""What the controller takes for a contradiction: rad/s between motor and wheel speed, and a share beside it."""
+"""What parts motor and wheel speed as no healthy car does: rad/s, and a share of the speed beside it."""
 
 LEAP = 20.0
 """Change of the error in rad/s from one message to the next that shows that it is the messages that are wrong."""

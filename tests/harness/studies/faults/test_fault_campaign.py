@@ -21,7 +21,7 @@ from driveline.harness.studies.faults.fault_catalogue import KINDS, LOCK, SPIN
 from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
 from driveline.harness.studies.faults.fault_report import page
 from driveline.models import signal_faults
-from driveline.models.controller import supervision, wheel_monitor
+from driveline.models.controller import supervision
 from tests.foreign import tampered
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
@@ -55,11 +55,6 @@ def test_faults_and_states_are_numbered_as_in_the_models():
         assert getattr(fault_catalogue, name) == getattr(signal_faults, name)
     for name in ("WITH_WHEEL_SPEED", "WITHOUT_WHEEL_SPEED", "FALLBACK"):
         assert getattr(evidence, name) == getattr(supervision, name)
-
-
-def test_a_contradiction_and_a_leap_are_what_the_controller_takes_for_them():
-    assert supervision.Parameters().e_wheel == evidence.MISMATCH
-    assert (wheel_monitor.SHARE, wheel_monitor.LEAP) == (evidence.SHARE, evidence.LEAP)
 
 
 def test_plants_of_the_same_name_are_refused(tmp_path):
