@@ -21,19 +21,21 @@ GAINS = {
     "Lw_omega_1": 0.2996,
     "Lw_omega_2": 0.130838,
     "Lw_phi": -0.00689257,
-    "Ls_omega_1": 0.299725,
-    "Ls_omega_2": 0.131277,
-    "Ls_phi": -0.00690267,
     "L_can_omega_1": 0.000864739,
     "L_can_omega_2": 0.00368111,
     "L_can_phi": -7.63251e-05,
 }
 """Of the Riccati equations that ours come from, for this model (harness.design.design, literal_observer)."""
 
+NO_SLIP = {"slip_drift": 100.0, "slip_load": 4.0, "t_drift": 1.0, "t_grip": 1.0} | dict.fromkeys(
+    ("Ls_omega_1", "Ls_omega_2", "Ls_phi", "Ls_T_l"), 0.0
+)
+"""Slip is never seen, and there are no gains for it."""
+
 BLOCK = supervised(
     name="PaperObserver",
     description="Comparator: damping by the derivative of the gear torque that the paper's observer estimates",
     module=__name__,
-    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, Lw_T_l=0.0, Ls_T_l=0.0, L_can_T_l=0.0),
+    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, Lw_T_l=0.0, L_can_T_l=0.0, **NO_SLIP),
     law=fixed(damping_law, {"k_T": 4.32, "omega_w": 293.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, **NO_LANDING),
 )

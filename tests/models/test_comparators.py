@@ -30,8 +30,8 @@ LITERAL = {
     "L_T_l": 0.0,
     "Lw_T_l": 0.0,
     "L_can_T_l": 0.0,
-    "Ls_T_l": 0.0,
     "t_land": 0.0,
+    **paper_observer.NO_SLIP,
 }
 LINEAR = {"phi_B": 0.0, "k_gap": 0.3, **dict.fromkeys(state_feedback.NO_LANDING, 0.1)}
 

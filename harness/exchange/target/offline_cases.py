@@ -63,9 +63,10 @@ def recorded(manoeuvre: Manoeuvre, system: System, names: Sequence[str], setting
 
 
 def fed(manoeuvre: Manoeuvre, results: np.ndarray, system: System, names: Sequence[str]) -> Case:
-    """What it got in a run, of which these are the results at its samples."""
+    """What it got in a run, of which these are the results at its samples; 0 where the loop gives it nothing."""
     sources = {name: name for name in signals(manoeuvre)} | {target: source for source, target, _ in system.connections}
-    columns = [np.asarray(results[sources[f"controller.{name}"]], float) for name in names]
+    sent = [sources.get(f"controller.{name}") for name in names]
+    columns = [np.zeros(len(results)) if source is None else np.asarray(results[source], float) for source in sent]
     return Case(manoeuvre.name, tuple(names), np.column_stack(columns))
 
 

@@ -74,7 +74,7 @@ def test_our_fmus_have_all_that_is_optional_and_take_their_inputs_from_the_loop(
         assert variable in interfaces[instance].variables
     fed = {connection.target for connection in CONNECTIONS} | {port.name for port in system.inputs}
     have = {f"{name}.{v.name}" for name, interface in interfaces.items() for v in interface.of_causality("input")}
-    assert have - fed == {"plant.T_load_rec"}
+    assert have - fed == {"plant.T_load_rec", "controller.direction"}, "our bus tells no direction"
 
 
 def test_a_controller_need_not_use_every_signal(built, relay, caplog):
