@@ -2,9 +2,9 @@
 
 A motor speed of the wrong sign would tell the wrong one. It is found when a demand ends the rest. The motor meets
 nothing but its inertia then, until the teeth touch. With s the speed that the demanded torque gives a free motor,
-J_1 ds/dt = T, one that turns against it has the speed -s. How far the motor speed is from that is integrated over s
-up to `free`; the integral of s itself is half the square of `free`. On the flank of a tooth, thrown back by one, or
-rocking on ice the motor is too fast or too slow for that.
+J_1 ds/dt = T, one that turns against it has the speed -s; at the end of the rest it has either. How far the motor
+speed is from that is integrated over s up to `free`; the integral of s itself is half the square of `free`. On the
+flank of a tooth, thrown back by one, or rocking on ice the motor is too fast or too slow for that.
 """
 
 from typing import Annotated, NamedTuple
@@ -64,7 +64,7 @@ def update(
     direction = where(against, sign(free), where(turning, sign(omega_1), x.direction))
     return DirectionState(
         direction=where(u.direction == 0, direction, sign(1.0 * u.direction)),
-        free=where(resting, where(abs(T_driver) > p.T_still, 0.0, far), free),
+        free=where(resting, where(abs(T_driver) > p.T_still, sign(T_driver) * minimum(abs(omega_1), far), far), free),
         off=where(resting, 0.0, off),
     ), against
 

@@ -61,7 +61,7 @@ def update(
     omega_1 = where(ranges, u.omega_1_meas, expected)
     change, most = omega_1 - x.received, p.jump * unit
     leaps = minimum(abs(omega_1 - x.omega_1), abs(omega_1 - expected)) > most
-    goes_on = logical_and(abs(x.change) > most, abs(change - x.change) <= most)
+    goes_on = logical_and(x.bad > 0.0, logical_and(abs(x.change) > most, abs(change - x.change) <= most))
     jumps = logical_and(leaps, logical_not(goes_on))
 
     stays = u.omega_1_meas == x.omega_1

@@ -81,6 +81,13 @@ def test_it_is_the_demand_that_ends_the_rest(side: float) -> None:
 
 
 @each_side
+@pytest.mark.parametrize("omega_1", [0.0, 1.25, -1.25])
+def test_a_slow_demand_has_given_a_free_motor_some_speed_before_it_ends_the_rest(side: float, omega_1: float) -> None:
+    x, _ = after([omega_1], T_driver=side * 0.3, resting=True)
+    assert (x.free, x.off) == (side * abs(omega_1), 0.0)
+
+
+@each_side
 def test_torque_beyond_the_demand_or_against_it_does_not_count(side: float) -> None:
     assert after([0.0], T_driver=side * 0.25, T_mot=side * 2.0)[0].free == side * 0.25
     assert after([0.0], T_driver=side * 0.25, T_mot=-side * 2.0)[0].free == 0.0

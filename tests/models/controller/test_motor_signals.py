@@ -92,11 +92,13 @@ def test_a_motor_speed_may_jump_by_jump_from_the_last_one_or_from_what_is_expect
 def test_a_fast_change_may_go_on(side: float) -> None:
     """Wheels that lock take the motor along, and the model does not know: it is bad for a sample."""
     most = P.jump * UNIT
-    x = last(0.0, received=side * 60.0, change=side * 60.0)
+    x = last(0.0, received=side * 60.0, change=side * 60.0, bad=T_S)
     for change, finding in ((60.0 + most, NONE), (60.0 + most + 1e-9, SPEED_JUMP), (60.0 - most - 1e-9, SPEED_JUMP)):
         y, found = after([U._replace(omega_1_meas=side * (60.0 + change))], x)
         assert (found, y.change) == (finding, pytest.approx(side * change))
-    slow = last(-side * 60.0, received=side * 60.0, change=side * most)
+    back = last(side * 60.0, received=side * 60.0, change=side * 60.0)
+    assert after([U._replace(omega_1_meas=side * 120.0)], back)[1] == SPEED_JUMP, "nor one back from a spike"
+    slow = last(-side * 60.0, received=side * 60.0, change=side * most, bad=T_S)
     assert after([U._replace(omega_1_meas=side * 90.0)], slow)[1] == SPEED_JUMP, "one that was not fast is none"
 
 
