@@ -68,8 +68,8 @@ class Parameters(NamedTuple):
     ]
     slip_drift: Annotated[
         float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 0.0, 100.0)
-    ] = 0.23
-    slip_load: Annotated[float, Real("1", "slow load from which on the wheels slip, over T_max", 0.0, 4.0)] = 0.14
+    ] = 0.45
+    slip_load: Annotated[float, Real("1", "slow load from which on the wheels slip, over T_max", 0.0, 4.0)] = 0.11
     t_drift: Annotated[float, Real("s", "time over which the mean innovation is taken", 0.002, 1.0)] = 0.01
     t_grip: Annotated[float, Real("s", "time after which slip is forgotten", 0.002, 10.0)] = 1.0
 
