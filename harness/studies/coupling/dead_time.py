@@ -24,11 +24,13 @@ OPEN = NOISELESS | {
     "controller.k_d": 0.0,
     "controller.k_T": 0.0,
     "controller.t_land": 0.0,
-    "controller.e_max": 1000.0,
+    **{f"controller.{name}": 1000.0 for name in ("near", "jump", "apart", "leap", "frozen")},
+    "controller.slip_drift": 100.0,
+    "controller.slip_load": 4.0,
 }
 """The estimator takes its signals however far off they are, and nothing is done with what it finds."""
 
-NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw") for state in Estimate._fields}
+NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw", "Ls") for state in Estimate._fields}
 NO_WHEEL_SPEED = {f"controller.L_can_{state}": 0.0 for state in Estimate._fields}
 NO_TORQUE = {"controller.J_1": 10.0}
 WHEEL_SPEED_HELD = NO_WHEEL_SPEED | {

@@ -24,9 +24,11 @@ def torque(point: Point, step: float = 0.1, gain: float = 1.0, duration: float =
         gain: factor on what the controller adds.
         duration: in s.
     """
-    given = point.with_parameters(motor=NOISELESS, can=EVEN, plant={"v_0": point.v, "T_0": point.T})
+    given = point.with_parameters(
+        motor=NOISELESS, can=EVEN, plant={"v_0": point.v, "T_0": point.T}, controller={"swing": 1.0}
+    )
     block, p = motor_and_plant(point.plant), (given.of("motor", MOTOR), given.of("plant", point.plant))
-    demand = {"T_driver": point.T, "enable": True}
+    demand = {"T_driver": point.T, "enable": True, "direction": 0}
     drive = runner(block, point.plant.Input(T_mot=point.T), p)
 
     def wheels(plant: Any) -> Any:
