@@ -128,8 +128,8 @@ K_D = float(PARAMETERS["k_d"].start)
 SUSPECTS = (
     Suspect("nothing", (), ""),
     Suspect("noise of the motor speed, 2 rad/s rms", (("motor.sigma_omega", 2.0),), ""),
-    Suspect("noise of the motor speed, 3 rad/s rms", (("motor.sigma_omega", 3.0),), "a larger `e_jump`"),
-    Suspect("the same, `e_jump` 12 rad/s", (("motor.sigma_omega", 3.0), ("controller.e_jump", 12.0)), ""),
+    Suspect("noise of the motor speed, 3 rad/s rms", (("motor.sigma_omega", 3.0),), "a larger `jump`"),
+    Suspect("the same, `jump` 1.9", (("motor.sigma_omega", 3.0), ("controller.jump", 1.9)), ""),
     Suspect("torque estimate x1.4", (("motor.g_T", 1.4),), ""),
     Suspect("torque estimate x1.5", (("motor.g_T", 1.5),), "a better estimate"),
     Suspect("torque estimate + 9 N.m", (("motor.o_T", 9.0),), ""),
@@ -140,8 +140,8 @@ SUSPECTS = (
     Suspect("the same, `tau` known", _slow_motor(5.0, tau=5.0 * MOTOR.tau), "less `k_d`"),
     Suspect("the same, `tau` known and `k_d` / 2", _slow_motor(5.0, tau=5.0 * MOTOR.tau, k_d=0.5 * K_D), ""),
     Suspect("wheel speed x1.1", (("can.g_w2", 1.1),), ""),
-    Suspect("wheel speed x1.15", (("can.g_w2", 1.15),), "the true radius; a larger `e_wheel`"),
-    Suspect("the same, `e_wheel` 60 rad/s", (("can.g_w2", 1.15), ("controller.e_wheel", 60.0)), ""),
+    Suspect("wheel speed x1.15", (("can.g_w2", 1.15),), "the true radius; a larger `g_radius`"),
+    Suspect("the same, `g_radius` 0.15", (("can.g_w2", 1.15), ("controller.g_radius", 0.15)), ""),
 )
 
 NOISES = (0.15, 0.6, 1.0, 1.5)

@@ -118,7 +118,7 @@ def symptoms(found: Found) -> str:
         rows.append([remedy.symptom, turn, effected(remedy.does, given), effected(remedy.costs, given)])
     rows += [
         ["rattle at standstill", "`omega_still`, `T_still`", "[below](#rattle-at-standstill)", ""],
-        ["fallback without a fault", "`tau`, `e_jump`, `e_wheel`", "[below](#fallback-without-a-fault)", ""],
+        ["fallback without a fault", "`tau`, `jump`, `g_radius`", "[below](#fallback-without-a-fault)", ""],
     ]
     return markdown_table(["symptom", "turn", "what it does", "what it costs"], rows, labels=4)
 

@@ -118,9 +118,10 @@ def pulses(frequency: float, T_brake: float, v_0: float = 22.0) -> Manoeuvre:
     return Manoeuvre(f"{T_brake:g} N.m at {frequency:g} Hz", "", 6.0, v_0, lines((0.0, 0.0)), course)
 
 
-def hill_start(grade: float) -> Manoeuvre:
+def hill_start(grade: float, T_driver: float = 100.0) -> Manoeuvre:
     T_brake, slope = lines((1.0, HOLDING), (1.1, 0.0)), lines((0.2, 0.0), (0.7, grade))
-    return Manoeuvre("hill start", "", 6.0, 0.0, lines((1.0, 0.0), (1.1, 100.0)), T_brake, slope)
+    name = f"{T_driver:g} N.m on a grade of {grade:g}"
+    return Manoeuvre(name, "", 6.0, 0.0, lines((1.0, 0.0), (1.1, T_driver)), T_brake, slope)
 
 
 def on_slippery_roads() -> Iterator[Run]:
@@ -131,6 +132,8 @@ def on_slippery_roads() -> Iterator[Run]:
         yield Run("80 N.m on ice, then back", rocking(T_driver, turns), 1.0, {"mu": mu})
     for mu, T_driver in product((*grips, 0.3, 0.5, 1.0), (60.0, 120.0, 180.0)):
         yield Run("pulls away", Manoeuvre("launch", "", 5.0, 0.0, lines((1.0, 0.0), (1.1, T_driver))), 1.0, {"mu": mu})
+    for side, grade, T_driver in product(("g_muL", "g_muR"), (0.0, 0.12), (60.0, 120.0, 180.0)):
+        yield Run("pulls away on split grip", hill_start(grade, T_driver), 1.0, {"mu": 0.8, side: 0.125})
     for mu, v_0, T_driver in product((*grips, 0.5), (4.0, 15.0), (100.0, -60.0)):
         yield Run("tip-in and back", tip_in(v_0, T_driver), 1.0, {"mu": mu})
 

@@ -45,7 +45,7 @@ PATIENT = {"swing": 1.0}
 """With it no half swing is counted: what shakes the motor here does not die away."""
 
 DOCUMENTED = re.compile(r"`(T_take_max|T_add_max|[te]_[a-z]+)`,? \(?([0-9.]+) (ms|s|rad/s|N\.m)\b")
-"""A parameter with its default, as in "`e_jump`, 8 rad/s" or "`t_proof` (0.15 s)"."""
+"""A parameter with its default, as in "`t_late`, 0.08 s" or "`t_proof` (0.15 s)"."""
 
 
 def test_the_docs_tell_the_defaults() -> None:
