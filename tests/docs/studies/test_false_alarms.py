@@ -1,4 +1,4 @@
-"""What docs/control.md says of healthy drives that come near to a fault: which is taken for one, and which are not."""
+"""What docs/control.md says of healthy drives that come near to a fault: none is taken for one."""
 
 import pytest
 
@@ -7,15 +7,13 @@ from driveline.harness.loop.places import PLANTS
 
 
 @pytest.mark.parametrize(
-    ("drive", "taken"),
+    "drive",
     [
-        (rolling_back(60.0, 0.2), True),
-        (rolling_back(60.0, 0.5), False),
-        (cruising(8.56, sigma_omega=0.0), False),
-        (cruising(8.56, q_omega=1.0), False),
+        rolling_back(60.0, 0.2),
+        rolling_back(60.0, 0.5),
+        cruising(8.56, sigma_omega=0.0),
+        cruising(8.56, q_omega=1.0),
     ],
 )
-def test_who_pushes_long_after_the_car_rolls_back_and_a_speed_without_noise_are_not_taken_for_faults(
-    native, drive, taken
-):
-    assert (share_in_fallback(PLANTS[0], drive, native.parent) > 0.0) == taken
+def test_a_car_that_rolls_back_and_a_speed_without_noise_are_not_taken_for_faults(native, drive):
+    assert share_in_fallback(PLANTS[0], drive, native.parent) == 0.0
