@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
@@ -304,6 +304,8 @@ def ends_with_moving_input(
 ) -> tuple[list[float], list[float]]:
     """Are the same in C, whose input moves from start.beyond at that rate, and in Python, where it is the third state.
 
+    A step may be off by TOLERANCE of the size of a state, so a fast body may be off by more.
+
     Returns:
         What the indicator answered, in both.
     """
@@ -313,7 +315,7 @@ def ends_with_moving_input(
     )
     end = integrator(with_input).advance(start._replace(beyond=0.0), start.beyond, Nothing(), 0.1, slope)
     expected = Integrator(as_state).advance(start, 0.0, Nothing(), 0.1)
-    assert end[:2] == pytest.approx(expected[:2], abs=20.0 * TOLERANCE)
+    assert end[:2] == pytest.approx(expected[:2], rel=TOLERANCE, abs=20.0 * TOLERANCE)
     assert len(requested) <= 1.5 * len(asked_in_python) + 20
     return zeros, zeros_in_python
 
@@ -331,6 +333,8 @@ def test_an_input_that_moves_is_followed_like_a_state(
     ends_with_moving_input(integrator, follows, Body(math.sin(u), u * u, u), slope)
 
 
+@example(at=0.08203125, slope=5.0, v=0.09375)
+@example(at=0.02673431332317037, slope=77.921875, v=0.10546875)
 @given(at=st.floats(0.001, 0.099), slope=st.floats(-100.0, 100.0), v=st.floats(-10.0, 10.0))
 def test_a_zero_that_moves_with_an_input_is_located(
     integrator: MakeIntegrator, at: float, slope: float, v: float
