@@ -22,7 +22,7 @@ from rich.table import Table
 from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
-from driveline.harness.loop.built_fmus import made_if_missing
+from driveline.harness.loop.built_fmus import built, made_if_missing
 from driveline.harness.loop.places import BUILD, COMPARATORS, NATIVE, T_S
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -166,23 +166,20 @@ def with_wrong_frames() -> Iterator[Run]:
 STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
 
 
-def gear_torque(
-    each: Run, controller: str | Path, control: bool, folder: Path, injector: Path
-) -> tuple[np.ndarray, float]:
+def gear_torque(each: Run, settings: Settings, injector: Path) -> tuple[np.ndarray, float]:
     """In N.m at the samples that count, and the time in fallback in s."""
-    settings = Settings(PLANT, controller, folder=folder, build=NATIVE, control=control)
     system = with_faults(loop(settings), injector)
     parameters = start(each.manoeuvre, each.seed) | {f"plant.{name}": value for name, value in each.plant.items()}
     parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
-    inputs = signals(each.manoeuvre, control, settings.step_size)
+    inputs = signals(each.manoeuvre, settings.control, settings.step_size)
     rows = at_samples(run(system, Experiment(each.manoeuvre.duration, inputs=inputs, parameters=parameters)))
     fallback = T_S * float(np.count_nonzero(rows["controller.status"] == FALLBACK))
     return rows["plant.T_gear"][rows["time"] >= each.seen_from], fallback
 
 
-def ratios(each: Run, controller: str | Path, folder: Path, injector: Path) -> Ratios:
-    off, _ = gear_torque(each, OURS, False, folder, injector)
-    on, fallback = gear_torque(each, controller, True, folder, injector)
+def ratios(each: Run, settings: Settings, injector: Path) -> Ratios:
+    off, _ = gear_torque(each, settings.replace(control=False), injector)
+    on, fallback = gear_torque(each, settings, injector)
     return Ratios(
         peak=float(np.abs(on).max() / max(np.abs(off).max(), QUIET_PEAK)),
         rms=band_rms(on, T_S) / max(band_rms(off, T_S), QUIET_RMS),
@@ -210,11 +207,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--fmus", type=Path, default=BUILD, help="folder of the FMUs")
     parser.add_argument("--workers", type=int, help="processes (default: one a core)")
     options = parser.parse_args(arguments)
-    with made_if_missing(FMU, options.fmus, NATIVE) as injector:
-        for controller, study in product(options.controller or [OURS], options.study or STUDIES):
-            runs = list(STUDIES[study]())
-            measure = partial(ratios, controller=controller, folder=options.fmus, injector=injector.absolute())
-            show(runs, run_many(measure, runs, options.workers, study), f"{controller}: {study}")
+    injector = made_if_missing(FMU, options.fmus, NATIVE).absolute()
+    for controller, study in product(options.controller or [OURS], options.study or STUDIES):
+        runs, settings = list(STUDIES[study]()), built(PLANT, controller=controller, folder=options.fmus, build=NATIVE)
+        measure = partial(ratios, settings=settings, injector=injector)
+        show(runs, run_many(measure, runs, options.workers, study), f"{controller}: {study}")
 
 
 if __name__ == "__main__":
