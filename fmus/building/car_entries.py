@@ -62,10 +62,10 @@ def car(entries: Mapping[str, Any] | None = None) -> dict[str, Any]:
     Raises:
         ParameterFileError: one is not known, no number or out of range; they disagree, or there is no such car.
     """
-    return {entry.name: entry.value for entry in car_entries(entries or {})}
+    return {entry.name: entry.value for entry in car_entries(entries)}
 
 
-def car_entries(entries: Mapping[str, Any]) -> list[Entry]:
+def car_entries(entries: Mapping[str, Any] | None) -> list[Entry]:
     """The entries of a car: first those that are set, then those that follow, then the others.
 
     Raises:

@@ -5,9 +5,10 @@ is one for every block that declares the name: plant, motor, bus and the control
 file names follows (one_car) or keeps its start value.
 """
 
+import numbers
 import re
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -32,8 +33,8 @@ OF_CAR = "it is one of the car, for the file of --vehicle"
 OF_CONTROLLER = "it is one of the controller, for the file of --parameters"
 
 KINDS: Mapping[str, tuple[Any, str]] = {
-    "Real": (int | float, "a finite number"),
-    "Integer": (int, "a whole number"),
+    "Real": (numbers.Real, "a finite number"),
+    "Integer": (numbers.Integral, "a whole number"),
     "Boolean": (bool, "true or false"),
 }
 """By FMI type the Python type of an entry, and what it is called."""
@@ -77,14 +78,21 @@ def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = 
     return values
 
 
-def of_vehicle(entries: Mapping[str, Any]) -> dict[str, Any]:
-    """Entries that a program gives as those of a vehicle file, each as it would stand there.
+def of_vehicle(entries: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Entries that a program gives as those of a vehicle file, each as it would stand there; None: none.
 
     Raises:
-        ParameterFileError: one is not known, no number or out of range.
+        ParameterFileError: they are no mapping; or names those that are not known, no number or out of range.
     """
+    if entries is None:
+        return {}
+    if not isinstance(entries, Mapping):
+        raise ParameterFileError(
+            f"the car {entries!r:.60} must be the entries of a vehicle file, as {{'m': 1900.0}}, or what read_vehicle "
+            "gives"
+        )
     known, set_elsewhere = _of_vehicle()
-    return {name: _checked(str(name), entry, known, (), set_elsewhere) for name, entry in entries.items()}
+    return _values({str(name): entry for name, entry in entries.items()}, known, (), set_elsewhere)
 
 
 def _of_vehicle(own: Iterable[Fmu] = ()) -> tuple[Owners, Mapping[str, str]]:
@@ -178,15 +186,26 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
         entries = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, brackets in brackets
         raise ParameterFileError(f"{path} is not TOML: {error}") from error
+    return _values(entries, known, others, set_elsewhere, lambda name: f"{path}, line {_line(text, name)}: ")
+
+
+def _values(
+    entries: Mapping[str, Any],
+    known: Owners,
+    others: Collection[str],
+    set_elsewhere: Mapping[str, str],
+    where: Callable[[str], str] = lambda name: "",
+) -> dict[str, Any]:
+    """The values of entries; `where` an entry stands is said before what is wrong with it."""
     values: dict[str, Any] = {}
     problems: list[str] = []
     for name, entry in entries.items():
         try:
             values[name] = _checked(name, entry, known, others, set_elsewhere)
         except ParameterFileError as problem:
-            problems.append(f"{path}, line {_line(text, name)}: {problem}")
+            problems.append(f"{where(name)}{problem}")
             if len(problems) == MOST_PROBLEMS:
-                problems.append(f"{path}: there may be more")
+                problems.append("there may be more")
                 break
     if problems:
         raise ParameterFileError("\n".join(problems))
@@ -231,7 +250,7 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
     if (
         not isinstance(entry, python_type)
         or isinstance(entry, bool) != (kind == "Boolean")
-        or not abs(entry) <= LARGEST
+        or not abs(entry if isinstance(entry, int) else float(entry)) <= LARGEST
     ):
         raise ParameterFileError(f"{name} = {entry!r:.40}: it must be {meant}")
     for fmu, variable in owners:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from math import sqrt
 from typing import Any
 
+from ...fmus.building.parameter_files import of_vehicle
 from ...fmus.description.variables import Variable
 from .design_weights import (
     CAN,
@@ -35,14 +36,14 @@ def design(vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS)
 
     Args:
         vehicle: entries of a vehicle file, in SI units, as `read_vehicle` gives them; what they do not name follows
-            from them or is that of the default car, and entries of other blocks are passed over.
+            from them or is that of the default car.
         weights: what the designer decides.
 
     Raises:
-        ParameterFileError: the entries disagree, or there is no such car.
+        ParameterFileError: one is not known, no number or out of range; they disagree, or there is no such car.
         DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
     """
-    return gains_of(*records(vehicle or {}), weights)
+    return gains_of(*records(of_vehicle(vehicle)), weights)
 
 
 def gains_of(

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from driveline.fmus.building.car_entries import DEFAULT, FOLLOWS, SET, SOURCES, car, car_entries, template
@@ -62,6 +63,25 @@ def test_what_no_vehicle_file_could_have_is_refused(entries: dict[str, Any], mes
     with pytest.raises(ParameterFileError) as refused:
         car(entries)
     assert str(refused.value).startswith(message)
+
+
+@pytest.mark.parametrize("given", [3, 0, "van.toml", [("m", 1900.0)]])
+def test_a_car_that_is_no_mapping_is_refused(given: Any) -> None:
+    with pytest.raises(ParameterFileError) as refused:
+        car(given)
+    assert str(refused.value).startswith(
+        f"the car {given!r} must be the entries of a vehicle file, as {{'m': 1900.0}}, or what "
+    )
+
+
+def test_all_that_is_wrong_with_a_car_is_said_at_once() -> None:
+    with pytest.raises(ParameterFileError) as refused:
+        car({"ks": 30000.0, "m": 1900.0, "T_max": -5.0})
+    assert [line.split()[0] for line in str(refused.value).splitlines()] == ["ks", "T_max"]
+
+
+def test_the_numbers_of_numpy_are_numbers() -> None:
+    assert car({"m": np.float32(1900.0), "i": np.int64(9)}) == car({"m": 1900.0})
 
 
 def test_the_template_is_the_default_car(tmp_path: Path) -> None:

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
 
+from driveline.fmus.errors import ParameterFileError
 from driveline.harness.commands.design import designed
 from driveline.harness.design.design import design, gains_of, literal_observer
 from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
@@ -141,6 +143,18 @@ def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
 )
 def test_what_the_controller_cannot_be_set_to_is_said(car: dict[str, float], message: str) -> None:
     with pytest.raises(DesignError, match=message):
+        design(car)
+
+
+@pytest.mark.parametrize(
+    ("car", "message"),
+    [
+        ({"mm": 1900.0, "J1": 0.1}, r"mm is not known; did you mean m\?\nJ1 is not known; did you mean J_1"),
+        (3, "the car 3 must be the entries of a vehicle file"),
+    ],
+)
+def test_a_design_takes_what_a_vehicle_file_may_have(car: Any, message: str) -> None:
+    with pytest.raises(ParameterFileError, match=message):
         design(car)
 
 
