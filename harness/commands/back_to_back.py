@@ -11,8 +11,9 @@ import argparse
 import sys
 from itertools import product
 
-from ..loop.built_fmus import build_missing
+from ..loop.built_fmus import built_together
 from ..loop.places import BUILDS, PLANTS
+from ..loop.settings import Settings
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
@@ -29,14 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    for plant, build in product(PLANTS, BUILDS):
-        build_missing(plant, folder=args.fmus, build=build)
+    made, *_ = built_together(Settings(p, folder=args.fmus, build=b) for p, b in product(PLANTS, BUILDS))
     # here and not above: only this measurement needs the models
     from ..base.atomic_files import write_text
     from ..studies.back_to_back.back_to_back import compare_all
     from ..studies.back_to_back.back_to_back_page import page
 
-    random, loops = compare_all(RANDOM_STEPS, args.fmus)
+    random, loops = compare_all(RANDOM_STEPS, made.folder)
     path, out = args.output / "back_to_back.md", Printer(args)
     write_text(page(random, RANDOM_STEPS, loops), path)
     largest = max(max(d) for row in (random, *(row.blocks for row in loops)) for d in row.values())

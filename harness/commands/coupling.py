@@ -11,9 +11,9 @@ examples:
 
 import argparse
 
-from ..loop.built_fmus import build_missing
+from ..loop.built_fmus import built_together
 from ..loop.places import PLANTS, STEP_SIZE
-from ..loop.settings import loop
+from ..loop.settings import Settings, loop
 from .options import add_fmus, add_output, add_printing
 from .printing import Printer
 
@@ -25,8 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    for plant in PLANTS:
-        build_missing(plant, folder=args.fmus)
+    folder = built_together(Settings(plant, folder=args.fmus) for plant in PLANTS)[0].folder
     # here and not above: only this measurement needs the models
     from ..base.atomic_files import write_text
     from ..cosimulation.schedule import transfers
@@ -36,9 +35,9 @@ def run(args: argparse.Namespace) -> int:
     from ..studies.coupling.dead_time import all_dead_times
     from ..studies.coupling.step_dependence import compare_all as compare_steps
 
-    path, fitted = args.output / "coupling.md", fit(loop(folder=args.fmus))
+    path, fitted = args.output / "coupling.md", fit(loop(folder=folder))
     moving, order = transfers(fitted.system, fitted.interfaces), list(fitted.interfaces)
-    comparisons, late, metrics = compare_all(args.fmus), all_dead_times(args.fmus), compare_steps(args.fmus)
+    comparisons, late, metrics = compare_all(folder), all_dead_times(folder), compare_steps(folder)
     write_text(page(comparisons, late, moving, order, STEP_SIZE, metrics), path)
     Printer(args).files([path])
     return 0

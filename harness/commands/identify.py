@@ -43,7 +43,7 @@ from .course import job
 from .options import add_figures, add_printing, add_replace, add_report, figure_options
 from .printing import Printer
 from .recording_options import add_recording, of_files
-from .redesign import redesign, require_fmus
+from .redesign import compared_in, redesign
 
 if TYPE_CHECKING:
     from ..identification.identify import Identified
@@ -96,8 +96,7 @@ def run(args: argparse.Namespace) -> int:
     recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
     options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "native")
-    if args.design:
-        require_fmus()
+    runs = compared_in() if args.design else None
     from ..base.atomic_files import write_text
     from ..identification import car_file
     from ..identification.prior_knowledge import identify
@@ -121,8 +120,8 @@ def run(args: argparse.Namespace) -> int:
             from ..identification import identification_report_html
 
             identification_report_html.report(identified, recording, provenance, path)
-        if args.design:
-            made.wrote(*redesign(output, vehicle, args.replace, made.out))
+        if runs:
+            made.wrote(*redesign(output, vehicle, runs, args.replace, made.out))
     return 0
 
 

@@ -7,30 +7,31 @@ from typing import Any
 
 from rich.table import Table
 
-from ..loop.built_fmus import build_missing
+from ..loop.built_fmus import built_together
 from ..loop.places import PLACES, PLANTS
+from ..loop.settings import Settings
 from .design import designed
 from .printing import Printer
 from .search_options import write_toml
 
 
-def require_fmus() -> None:
-    """Builds the FMUs in which controllers are compared, where they are missing or stale.
+def compared_in() -> Settings:
+    """Settings of the runs in which controllers are compared, whose FMUs are there then.
 
     Raises:
         DrivelineError: they cannot be built.
     """
-    for plant in PLANTS:
-        build_missing(plant)
+    return built_together(Settings(plant) for plant in PLANTS)[0]
 
 
-def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer) -> Iterator[Path]:
+def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace: bool, out: Printer) -> Iterator[Path]:
     """Gains for the car of a vehicle file and the controller built with both, beside it; yields the paths.
 
     What the controller was before and what it is now on that car is printed.
 
     Args:
         vehicle: entries of the vehicle file that was known before.
+        settings: of the runs in which controllers are compared.
         replace: whether other gains may be replaced.
 
     Raises:
@@ -44,7 +45,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
     from ..design.redesign import softened
 
     gains = car.with_name(f"{car.stem}_gains.toml")
-    weights = softened(read_vehicle(car), vehicle)
+    weights = softened(read_vehicle(car), vehicle, settings)
     if weights != WEIGHTS:
         share = weights.washout / WEIGHTS.washout
         out.say(
@@ -58,10 +59,10 @@ def redesign(car: Path, vehicle: Mapping[str, Any], replace: bool, out: Printer)
     if not out.silent:
         from ..views.terminal import print_table
 
-        print_table(_compared(read_files(car, None), vehicle, read_files(car, gains)))
+        print_table(_compared(read_files(car, None), vehicle, read_files(car, gains), settings))
 
 
-def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]) -> Table:
+def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any], settings: Settings) -> Table:
     """The car, by the entries of its vehicle file, with what the controller assumed before and after."""
     from ..design.redesign import MANOEUVRES, worth
 
@@ -73,7 +74,7 @@ def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[
             table.add_column(f"{what}\n{when}", justify="right")
     for plant in PLANTS:
         for manoeuvre in MANOEUVRES:
-            both = [worth(plant, manoeuvre, car, assumed) for assumed in (before, after)]
+            both = [worth(plant, manoeuvre, car, assumed, settings) for assumed in (before, after)]
             cells = [f"{1e3 * settling:.0f}" for settling, _ in both] + [f"{1e2 * over:.1f}" for _, over in both]
             table.add_row(plant, manoeuvre, *cells)
     return table

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Sequence
 from importlib.metadata import version
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ from ...fmus.building.options import output_folder
 from ..base.errors import DrivelineError
 from ..base.plain_text import quoted
 from ..base.written_numbers import real
-from ..loop.built_fmus import build_missing
+from ..loop.built_fmus import built_together
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..loop.settings import Settings
 from .options import add_fmus, count, experts, seed
@@ -89,7 +90,7 @@ def run_search(args: argparse.Namespace) -> int:
     )
     car = read_vehicle(args.vehicle) if args.vehicle else {}
     where = space(controller, car)
-    evaluation = CostEvaluation(Settings(controller=controller, folder=args.fmus, build=_build(args, controller)), car)
+    evaluation = CostEvaluation(_settings(args, controller), car)
     gains = args.search / "gains.toml" if args.output is None else args.output
     visited = tune(
         evaluation, where, evaluations, number, args.search, args.replace, [args.vehicle], scheduler=args.scheduler
@@ -108,15 +109,12 @@ def run_search(args: argparse.Namespace) -> int:
     return 0
 
 
-def _build(args: argparse.Namespace, controller: str) -> str:
-    """The build that runs with both plants, for this controller and the one that it is measured by."""
-    names = {DEFAULTS["controller"], controller}
-    builds = {
-        build_missing(plant, folder=args.fmus, build=args.build, controller=name)
-        for plant in PLANTS
-        for name in sorted(names)
-    }
-    return BUILDS[1] if builds == {BUILDS[1]} else BUILDS[0]
+def _settings(args: argparse.Namespace, controller: str) -> Settings:
+    """Of the runs of a controller, with FMUs for both plants and for the controller that it is measured by."""
+    given = Settings(folder=args.fmus, build=args.build)
+    names = dict.fromkeys((controller, DEFAULTS["controller"]))
+    first, *_ = built_together(given.replace(plant=p, controller=c) for c, p in product(names, PLANTS))
+    return first
 
 
 def chosen(

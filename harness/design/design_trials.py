@@ -68,10 +68,13 @@ def controller_parameters(values: Mapping[str, Any], plant: str) -> dict[str, An
     return {name: value for name, value in loop_parameters(values, plant).items() if name.startswith("controller.")}
 
 
-def settled(plant: str, manoeuvre: str, parameters: Mapping[str, Any], seed: int = 1) -> tuple[float, float]:
-    """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value."""
-    course = MANOEUVRES[manoeuvre]
-    metrics = evaluate(simulate(course, plant, parameters=parameters, seed=seed), course)
+def settled(
+    plant: str, manoeuvre: str, parameters: Mapping[str, Any], seed: int = 1, settings: Settings | None = None
+) -> tuple[float, float]:
+    """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value; settings of
+    the run beside those."""
+    course, made = MANOEUVRES[manoeuvre], settings_of(settings, plant=plant, parameters=parameters, seed=seed)
+    metrics = evaluate(simulate(course, made), course)
     return metrics.settling_time, metrics.overshoot
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..loop.places import PLANTS
+from ..loop.settings import Settings
 from .design import design
 from .design_trials import controller_parameters, loop_parameters, settled
 from .design_weights import WEIGHTS, Weights
@@ -21,38 +22,43 @@ MARGIN = 0.95
 """Of the overshoot before, at which it is surely no worse: noise and sensors of the true car are not known."""
 
 
-def worth(plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[str, Any]) -> tuple[float, float]:
+def worth(
+    plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[str, Any], settings: Settings | None = None
+) -> tuple[float, float]:
     """Settling time in s and overshoot (1) of a car whose controller assumes another one.
 
     Args:
         car: entries of a vehicle file, for plant, motor and bus.
         assumed: entries of a vehicle file and of gains, for the controller.
+        settings: of the run beside plant and parameters.
     """
     true, of_car = loop_parameters(car, plant), controller_parameters(car, plant)
     others = {name: value for name, value in true.items() if name not in of_car}
-    return settled(plant, manoeuvre, others | controller_parameters(assumed, plant))
+    return settled(plant, manoeuvre, others | controller_parameters(assumed, plant), settings=settings)
 
 
-def softened(car: Mapping[str, Any], before: Mapping[str, Any]) -> Weights:
+def softened(car: Mapping[str, Any], before: Mapping[str, Any], settings: Settings | None = None) -> Weights:
     """Weights of a design with which the car swings over less than before on both plants, in the mean over MANOEUVRES.
     A lower washout does that; its price is torque that is withheld for longer.
 
     Args:
         car: entries of the vehicle file of the car as it is known now.
         before: entries of what its controller assumed until now.
+        settings: of the runs beside plant and parameters.
 
     Raises:
         DesignError: there is no controller for this car.
     """
-    bearable = MARGIN * _overshoots(car, before)
+    bearable = MARGIN * _overshoots(car, before, settings)
     weights = WEIGHTS
-    while np.any(_overshoots(car, {**car, **design(car, weights)}) > bearable):
+    while np.any(_overshoots(car, {**car, **design(car, weights)}, settings) > bearable):
         if weights.washout * SOFTER < WEIGHTS.washout * SOFTEST:
             break
         weights = replace(weights, washout=SOFTER * weights.washout)
     return weights
 
 
-def _overshoots(car: Mapping[str, Any], assumed: Mapping[str, Any]) -> np.ndarray:
+def _overshoots(car: Mapping[str, Any], assumed: Mapping[str, Any], settings: Settings | None) -> np.ndarray:
     """Of each plant."""
-    return np.mean([[worth(plant, name, car, assumed)[1] for plant in PLANTS] for name in MANOEUVRES], axis=0)
+    found = [[worth(plant, name, car, assumed, settings)[1] for plant in PLANTS] for name in MANOEUVRES]
+    return np.mean(found, axis=0)

@@ -1,6 +1,6 @@
 """The FMUs that a command or a notebook runs: those of the project are built where they are missing or stale."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Unpack
@@ -27,13 +27,26 @@ def built(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
         WiringError: there is no such block.
         DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
     """
-    return _checked(settings(given, **changes), _in_cache)
+    return built_together([settings(given, **changes)])[0]
 
 
-def _checked(made: Settings, build_in: "Place") -> Settings:
-    if made.folder == BUILD:
-        made = _refreshed(made, build_in)
-    made = made.replace(build=made.build or chosen_build(made))
+def built_together(loops: Iterable[Settings]) -> list[Settings]:
+    """What `built` makes of each of several loops that are given the same folder; their FMUs are in one folder then,
+    and of one build where none is asked for. The errors are those of `built`."""
+    return _checked(list(loops), _in_cache)
+
+
+def _checked(loops: list[Settings], build_in: "Place") -> list[Settings]:
+    if loops[0].folder == BUILD:
+        loops = _refreshed(loops, build_in)
+    common = NATIVE if all(chosen_build(made) == NATIVE for made in loops) else BUILDS[0]
+    loops = [made.replace(build=made.build or common) for made in loops]
+    for made in loops:
+        _require_there(made)
+    return loops
+
+
+def _require_there(made: Settings) -> None:
     system = loop(made)
     missing = [path for name, path in system.instances.items() if name in system.own and not path.is_file()]
     if missing:
@@ -42,49 +55,59 @@ def _checked(made: Settings, build_in: "Place") -> Settings:
         name = f" {missing[0].stem}" if missing[0].stem in COMPARATORS else ""
         raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{name}{only}{where}` makes it")
     warn_of_stale(system)
-    return made
 
 
-Place = Callable[[Sequence[str], str], tuple[Path, list[Path]]]
-"""Builds FMUs, by name, that are missing or stale in BUILD; gives the folder that has them all, and what was built."""
+Needed = Mapping[str, Collection[str]]
+"""Names of FMUs by the build that is needed of them."""
+
+Place = Callable[[Needed], tuple[Path, list[Path]]]
+"""Builds FMUs that are missing or stale in BUILD; gives the folder that has them all, and what was built."""
 
 
-def _in_cache(names: Sequence[str], build: str) -> tuple[Path, list[Path]]:
+def _in_cache(needed: Needed) -> tuple[Path, list[Path]]:
     from ...fmus.building.builds import located
     from ...fmus.origin import is_stale
 
-    if not any(is_stale(located(name, BUILD, build)) for name in names):
+    if not any(is_stale(located(name, BUILD, build)) for build, names in needed.items() for name in names):
         return BUILD, []
     from ...fmus.catalogue import EVERY  # what is up to date is found to be so without
     from .fmu_cache import refreshed_copy
 
-    return refreshed_copy([EVERY[name] for name in names], BUILD, build)
+    found = [refreshed_copy([EVERY[name] for name in names], BUILD, build) for build, names in needed.items()]
+    return found[0][0], [path for _, new in found for path in new]
 
 
-def _in_place(names: Sequence[str], build: str) -> tuple[Path, list[Path]]:
+def _in_place(needed: Needed) -> tuple[Path, list[Path]]:
     from ...fmus.building.builds import refreshed
 
-    return BUILD, refreshed(names, BUILD, build)
+    return BUILD, [path for build, names in needed.items() for path in refreshed(list(names), BUILD, build)]
 
 
-def _refreshed(made: Settings, build_in: Place) -> Settings:
-    """Builds what is missing or stale in BUILD for a loop; with another build where the native one is not possible."""
+def _refreshed(loops: list[Settings], build_in: Place) -> list[Settings]:
+    """Builds what is missing or stale in BUILD for loops; with another build where the native one is not possible."""
     from ...fmus.building.builds import NotPossible
 
-    build = made.build or NATIVE
-    system = loop(made, build=build)
-    names = [path.stem for name, path in system.instances.items() if name in system.own]
     try:
-        folder, new = build_in(names, build)
+        folder, new = build_in(_needed(loops))
     except NotPossible as reason:
-        if made.build is not None:
+        if all(made.build is not None for made in loops):
             raise DrivelineError(str(reason)) from reason
         warn_once(f"no native FMUs: {reason}")
-        return _refreshed(made.replace(build=BUILDS[0]), build_in)
+        return _refreshed([made.replace(build=made.build or BUILDS[0]) for made in loops], build_in)
     except BuildError as reason:
         raise DrivelineError(str(reason)) from reason
     _say(new)
-    return made.replace(folder=folder)
+    return [made.replace(folder=folder) for made in loops]
+
+
+def _needed(loops: Iterable[Settings]) -> Needed:
+    needed: dict[str, dict[str, None]] = {}
+    for made in loops:
+        build = made.build or NATIVE
+        system = loop(made, build=build)
+        own = (path.stem for name, path in system.instances.items() if name in system.own)
+        needed.setdefault(build, {}).update(dict.fromkeys(own))
+    return needed
 
 
 def _say(new: Sequence[Path]) -> None:
@@ -128,4 +151,4 @@ def build_missing(given: Settings | NameOrFile | None = None, **changes: Unpack[
         WiringError: there is no such block.
         DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
     """
-    return _checked(settings(given, **changes), _in_place).build or NATIVE
+    return _checked([settings(given, **changes)], _in_place)[0].build or NATIVE

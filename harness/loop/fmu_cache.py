@@ -13,7 +13,7 @@ from ...fmus.building.builds import located, rebuilt
 from ...fmus.origin import is_stale, origin_of, sources_digest
 from ..base.atomic_files import alone, complete
 from ..base.user_cache import user_cache
-from .places import BUILD
+from .places import BUILD, BUILDS
 
 if TYPE_CHECKING:
     from ...fmus.fmu import Fmu
@@ -40,7 +40,7 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
         OSError: the cache cannot be written.
     """
     cache = _cache()
-    kept, new = cache / _key(folder, build), list[Path]()
+    kept, new = cache / _key(folder), list[Path]()
     with alone(kept):
         os.utime(kept)  # at once: another run that ends meanwhile forgets what was used longest ago
         for fmu in fmus:
@@ -66,10 +66,11 @@ def _cache() -> Path:
     return user_cache() / "fmus"
 
 
-def _key(folder: Path, build: str) -> str:
+def _key(folder: Path) -> str:
     """Digest of what the FMUs are made from: sources, start values of those in the folder, and for which machine."""
-    found = {path.stem: origin_of(path) for path in sorted(located("*", folder, build).parent.glob("*.fmu"))}
-    cars = {name: origin.start_values for name, origin in found.items() if origin and origin.start_values}
+    files = {build: sorted(located("*", folder, build).parent.glob("*.fmu")) for build in BUILDS}
+    found = [(build, path.stem, origin_of(path)) for build, paths in files.items() for path in paths]
+    cars = [(build, name, origin.start_values) for build, name, origin in found if origin and origin.start_values]
     made_from = [sources_digest(), cars, platform.system(), platform.machine()]
     return sha256(json.dumps(made_from, sort_keys=True).encode()).hexdigest()[:32]
 

@@ -15,6 +15,7 @@ from driveline.harness.commands.cli import main
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import PLANT
+from driveline.harness.loop.settings import Settings
 
 FIGURES = {
     f"car_{name}.{ending}" for name in ("simulation", "innovations", "cost", "response") for ending in ("png", "pdf")
@@ -169,12 +170,13 @@ def test_design_writes_gains_and_both_builds_and_compares(
 ) -> None:
     calls = []
 
-    def worth(plant: str, manoeuvre: str, car: dict, assumed: dict) -> tuple[float, float]:
-        calls.append((plant, manoeuvre, car, assumed))
+    def worth(plant: str, manoeuvre: str, car: dict, assumed: dict, settings: Settings) -> tuple[float, float]:
+        calls.append((car, settings))
         return (0.123, 0.045) if "k_d" in assumed else (0.234, 0.056)
 
     monkeypatch.setattr(redesign, "worth", worth)
-    monkeypatch.setattr("driveline.harness.commands.redesign.build_missing", lambda *_: None)
+    kept = Settings(folder=tmp_path / "kept")
+    monkeypatch.setattr("driveline.harness.commands.redesign.built_together", lambda _: [kept])
     assert identify("--design") == 0
     folder = tmp_path / "out"
     car, gains = read_vehicle(folder / "car.toml"), read_parameters(folder / "car_gains.toml")
@@ -189,7 +191,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
     lines = capsys.readouterr().out.splitlines()
     message = "\n".join(line for line in lines if any(f" {name} " in line for name in redesign.MANOEUVRES))
     assert message.count("234") == message.count("123") == message.count("5.6") == message.count("4.5") == 8
-    assert all(of == car for _, _, of, _ in calls)
+    assert all(of == car and settings is kept for of, settings in calls)
 
 
 @pytest.mark.parametrize(

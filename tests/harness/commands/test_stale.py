@@ -10,9 +10,12 @@ from driveline.fmus import origin
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
 from driveline.harness.loop import built_fmus, fmu_cache, stale_fmus
+from driveline.harness.loop.places import BUILDS, PLANTS
+from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from tests import ROOT
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 
@@ -84,6 +87,38 @@ def test_a_run_with_an_fmu_of_the_cache_is_the_same_run(
     assert not origin.is_stale(stale / "TwoMassDriveline.fmu")
     assert main(given) == 0
     assert len(list(cache.iterdir())) == 1
+
+
+def test_loops_of_both_builds_get_one_folder_of_the_cache(
+    both_built: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also if FMUs of one build alone are missing."""
+    given = tmp_path / "given"
+    copytree(both_built, given)
+    (given / "native" / "ValidationVehicle.fmu").unlink()
+    before = sorted(given.rglob("*"))
+    for module in (built_fmus, fmu_cache):
+        monkeypatch.setattr(module, "BUILD", given)
+    loops = [Settings(plant, folder=given, build=build) for plant in PLANTS for build in BUILDS]
+    made = built_fmus.built_together(loops)
+    assert {each.folder for each in made} == set(cache.iterdir())
+    assert [(each.plant, each.build) for each in made] == [(each.plant, each.build) for each in loops]
+    assert all(path.is_file() for each in made for path in loop(each).instances.values())
+    assert sorted(given.rglob("*")) == before
+
+
+def test_loops_run_native_fmus_only_if_all_have_them(both_built: Path, tmp_path: Path) -> None:
+    given = tmp_path / "given"
+    copytree(both_built, given)
+    loops = [Settings(plant, folder=given) for plant in PLANTS]
+    assert {each.build for each in built_fmus.built_together(loops)} == {"native"}
+    (given / "native" / "ValidationVehicle.fmu").unlink()
+    assert {each.build for each in built_fmus.built_together(loops)} == {"python"}
+
+
+def test_no_command_but_build_writes_into_the_folder_of_fmus() -> None:
+    asking = [path.stem for path in (ROOT / "harness").rglob("*.py") if "build_missing(" in path.read_text()]
+    assert asking == ["built_fmus"]
 
 
 def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeypatch: pytest.MonkeyPatch) -> None:

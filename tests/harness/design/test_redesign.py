@@ -11,6 +11,8 @@ from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import WEIGHTS
 from driveline.harness.design.redesign import MANOEUVRES, MARGIN, SOFTER, SOFTEST, softened, worth
 from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.settings import Settings
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.simulation.simulate import simulate
 
 CAR = {"C": 90.0}
@@ -22,7 +24,7 @@ def overshoot(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
     of = {"before": 0.1, **dict.fromkeys(PLANTS, 0.0)}
 
     def pretended(
-        plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[str, Any]
+        plant: str, manoeuvre: str, car: Mapping[str, Any], assumed: Mapping[str, Any], settings: Settings | None
     ) -> tuple[float, float]:
         assert car == CAR
         return 0.1, (of["before"] if "omega_w" not in assumed else of[plant] * assumed["omega_w"]) * (
@@ -58,17 +60,18 @@ def test_what_a_controller_is_worth_depends_on_the_car_and_on_what_it_is_told(
 ) -> None:
     given = []
 
-    def quick(*args: Any, **options: Any) -> Any:
-        given.append(options["parameters"])
-        return simulate(*args, **options, folder=both_built)
+    def noted(manoeuvre: Manoeuvre, settings: Settings) -> Any:
+        given.append(settings)
+        return simulate(manoeuvre, settings)
 
-    monkeypatch.setattr("driveline.harness.design.design_trials.simulate", quick)
-    car, gains = {"C": 90.0}, design({"C": 90.0})
-    settling, overshoot = worth("TwoMassDriveline", "tipin15", car, {})
-    assert worth("TwoMassDriveline", "tipin15", car, {**car, **gains}) != (settling, overshoot)
-    assert [parameters["plant.C"] for parameters in given] == [90.0, 90.0]
-    assert given[1]["controller.C"] == 90.0
-    assert given[1]["controller.k_d"] == gains["k_d"]
-    assert given[0].get("controller.C") != 90.0
+    monkeypatch.setattr("driveline.harness.design.design_trials.simulate", noted)
+    car, gains, settings = {"C": 90.0}, design({"C": 90.0}), Settings(folder=both_built)
+    settling, overshoot = worth("TwoMassDriveline", "tipin15", car, {}, settings)
+    assert worth("TwoMassDriveline", "tipin15", car, {**car, **gains}, settings) != (settling, overshoot)
+    assert [made.folder for made in given] == [both_built, both_built]
+    first, second = (made.parameters for made in given)
+    assert first["plant.C"] == second["plant.C"] == second["controller.C"] == 90.0
+    assert second["controller.k_d"] == gains["k_d"]
+    assert first.get("controller.C") != 90.0
     assert 0.02 < settling < 0.5
     assert 0.0 <= overshoot < 0.5
