@@ -1,6 +1,19 @@
 """What is made once and kept for the next time, in the user's folder for that."""
 
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from shutil import rmtree
+
+from .errors import DrivelineError
+from .plain_text import plain
+
+MOST_KEPT = 20
+"""Folders of a kind that are kept, those that were used last."""
+
+MOVED_BY = "LOCALAPPDATA" if sys.platform == "win32" else "XDG_CACHE_HOME"
+"""The environment variable that names another place for it."""
 
 
 def user_cache() -> Path:
@@ -8,3 +21,36 @@ def user_cache() -> Path:
     import platformdirs  # only what makes something asks for it
 
     return platformdirs.user_cache_path("driveline-damping")
+
+
+@contextmanager
+def named_as_cache(folder: Path) -> Iterator[None]:
+    """Within it a folder of the cache is written to.
+
+    Raises:
+        DrivelineError: it cannot be; says that it is the cache, and what moves it.
+    """
+    try:
+        yield
+    except OSError as error:
+        at = Path(error.filename or folder)
+        if not (at.is_relative_to(folder) or folder.is_relative_to(at)):
+            raise
+        raise DrivelineError(
+            f"the cache {folder} cannot be written: {plain(error.strerror or error)}; "
+            f"the environment variable {MOVED_BY} names another place"
+        ) from error
+
+
+def forget(folders: Iterable[Path]) -> None:
+    """Removes all but the MOST_KEPT of the folders that were used last, by the time of their last change."""
+    for folder in sorted(folders, key=_last_used)[:-MOST_KEPT]:
+        rmtree(folder, ignore_errors=True)
+
+
+def _last_used(folder: Path) -> float:
+    """Instant in s; 0 of a folder that another process has just forgotten."""
+    try:
+        return folder.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 import casadi as ca
 
 from ...fmus.child_process import run
-from ..base.user_cache import user_cache
+from ..base.user_cache import forget, user_cache
 
 FLAGS = ("-shared", "-fPIC", "-O1", "-ffp-contract=off")
 """Each operation rounds on its own, as in CasADi."""
@@ -30,10 +30,13 @@ def compiled(function: ca.Function) -> ca.Function:
     generator.add(function)
     source = generator.dump()
     key = sha256("\n".join([source, compiler, *FLAGS]).encode()).hexdigest()
-    library = user_cache() / f"{function.name()}-{key[:32]}.so"
+    folder = user_cache() / "functions" / key[:32]
+    library = folder / f"{function.name()}.so"
     try:
         if not _whole(library):
             _compile(source, compiler, library)
+        os.utime(folder)  # it has been used
+        forget(folder.parent.iterdir())
         return ca.external(function.name(), str(library))
     except (OSError, subprocess.CalledProcessError, RuntimeError) as error:
         _log.info("%s is not compiled, which makes it slower: %s", function.name(), error)

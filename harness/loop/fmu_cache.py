@@ -6,25 +6,22 @@ import platform
 from collections.abc import Sequence
 from hashlib import sha256
 from pathlib import Path
-from shutil import copyfile, rmtree
+from shutil import copyfile
 from typing import TYPE_CHECKING
 
 from ...fmus.building.builds import located, rebuilt
 from ...fmus.origin import is_stale, origin_of, sources_digest
 from ..base.atomic_files import alone, complete
-from ..base.user_cache import user_cache
+from ..base.user_cache import forget, named_as_cache, user_cache
 from .places import BUILD, BUILDS
 
 if TYPE_CHECKING:
     from ...fmus.fmu import Fmu
 
-MOST_FOLDERS = 20
-"""That are kept, those that were used last; one is for one state of the sources and one car."""
-
 
 def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Path, list[Path]]:
     """A folder of the cache that has FMUs of the project, made from the sources that are installed, with the start
-    values of those in another folder, which is only read.
+    values of those in another folder, which is only read. There is a folder for each state of the sources and each car.
 
     Args:
         fmus: that are needed.
@@ -37,11 +34,11 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
     Raises:
         NotPossible: there is something to build, and it is not possible here.
         BuildError: start values that one was built with are refused by what it is now.
-        OSError: the cache cannot be written.
+        DrivelineError: the cache cannot be written.
     """
     cache = _cache()
     kept, new = cache / _key(folder), list[Path]()
-    with alone(kept):
+    with named_as_cache(cache), alone(kept):
         os.utime(kept)  # at once: another run that ends meanwhile forgets what was used longest ago
         for fmu in fmus:
             there, here = (located(fmu.name, each, build) for each in (folder, kept))
@@ -52,7 +49,7 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
             else:
                 with complete(here) as unfinished:
                     copyfile(there, unfinished)
-    _forget(sorted(cache.iterdir(), key=_last_used)[:-MOST_FOLDERS])
+    forget(cache.iterdir())
     return kept, new
 
 
@@ -73,16 +70,3 @@ def _key(folder: Path) -> str:
     cars = [(build, name, origin.start_values) for build, name, origin in found if origin and origin.start_values]
     made_from = [sources_digest(), cars, platform.system(), platform.machine()]
     return sha256(json.dumps(made_from, sort_keys=True).encode()).hexdigest()[:32]
-
-
-def _last_used(folder: Path) -> float:
-    """Instant in s; 0 of a folder that another process has just forgotten."""
-    try:
-        return folder.stat().st_mtime
-    except FileNotFoundError:
-        return 0.0
-
-
-def _forget(folders: Sequence[Path]) -> None:
-    for folder in folders:
-        rmtree(folder, ignore_errors=True)

@@ -1,11 +1,13 @@
 """A function of CasADi becomes machine code that gives the same; it is kept, or done without."""
 
+import os
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
 
+from driveline.harness.base.user_cache import MOST_KEPT
 from driveline.harness.identification import compiled_functions
 from driveline.harness.identification.compiled_functions import compiled
 
@@ -18,7 +20,7 @@ GIVEN = np.random.default_rng(1).normal(size=(3, 100))
 def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where libraries are kept."""
     monkeypatch.setattr(compiled_functions, "user_cache", lambda: tmp_path / "cache")
-    return tmp_path / "cache"
+    return tmp_path / "cache" / "functions"
 
 
 def same(function: ca.Function) -> bool:
@@ -30,7 +32,7 @@ def test_it_gives_the_same_bits(kept: Path) -> None:
     made = compiled(FUNCTION)
     assert made.class_name() == "External"
     assert same(made)
-    assert sorted(path.suffix for path in kept.iterdir()) == [".sha256", ".so"]
+    assert sorted(path.suffix for path in kept.rglob("f.*")) == [".sha256", ".so"]
 
 
 def test_it_is_compiled_once(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -43,7 +45,7 @@ def test_another_function_of_that_name_is_another_library(kept: Path) -> None:
     compiled(FUNCTION)
     other = compiled(ca.Function("f", [X], [2.0 * X]))
     np.testing.assert_array_equal(np.asarray(other(GIVEN[:, 0])).ravel(), 2.0 * GIVEN[:, 0])
-    assert len(list(kept.glob("*.so"))) == 2
+    assert len(list(kept.glob("*/*.so"))) == 2
 
 
 @pytest.mark.parametrize("compiler", ["no-such-compiler", "false"])
@@ -52,11 +54,11 @@ def test_without_a_compiler_that_works_it_remains_as_it_is(
 ) -> None:
     monkeypatch.setenv("CC", compiler)
     assert compiled(FUNCTION) is FUNCTION
-    assert not kept.exists() or not list(kept.iterdir())
+    assert not list(kept.rglob("f.*"))
 
 
 def test_where_nothing_can_be_kept_it_remains_as_it_is(kept: Path) -> None:
-    kept.write_text("a file where a folder would be")
+    kept.parent.write_text("a file where a folder would be")
     assert compiled(FUNCTION) is FUNCTION
 
 
@@ -64,9 +66,21 @@ def test_where_nothing_can_be_kept_it_remains_as_it_is(kept: Path) -> None:
 def test_a_library_that_is_cut_off_is_made_again(kept: Path, share: float) -> None:
     """Loaded, it would end the process with a bus error."""
     compiled(FUNCTION)
-    (library,) = kept.glob("*.so")
+    (library,) = kept.glob("*/*.so")
     whole = library.read_bytes()
     library.unlink()  # this process has it in its memory
     library.write_bytes(whole[: int(share * len(whole))])
     assert same(compiled(FUNCTION))
     assert library.read_bytes() == whole
+
+
+def test_libraries_that_were_used_last_are_kept(kept: Path) -> None:
+    for age in range(MOST_KEPT + 5):
+        (kept / str(age)).mkdir(parents=True)
+        os.utime(kept / str(age), (1e9 - age, 1e9 - age))
+    compiled(FUNCTION)
+    (of_f,) = (path.parent.name for path in kept.glob("*/*.so"))
+    assert {path.name for path in kept.iterdir()} == {of_f, *map(str, range(MOST_KEPT - 1))}
+    os.utime(kept / of_f, (1.0, 1.0))
+    compiled(FUNCTION)
+    assert (kept / of_f).stat().st_mtime > 1e9

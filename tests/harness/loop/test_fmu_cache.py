@@ -11,8 +11,10 @@ from driveline.fmus import origin
 from driveline.fmus.catalogue import EVERY
 from driveline.fmus.origin import is_stale, origin_of
 from driveline.fmus.python.packaging import build
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.base.user_cache import MOST_KEPT
 from driveline.harness.loop import fmu_cache
-from driveline.harness.loop.fmu_cache import MOST_FOLDERS, as_built, refreshed_copy
+from driveline.harness.loop.fmu_cache import as_built, refreshed_copy
 from driveline.harness.loop.places import BUILD
 from tests import ROOT
 
@@ -81,13 +83,13 @@ def test_two_processes_at_once_build_it_once_and_nothing_unfinished_is_left(give
 
 
 def test_folders_that_were_used_last_are_kept(given: Path, cache: Path) -> None:
-    for age in range(MOST_FOLDERS + 5):
+    for age in range(MOST_KEPT + 5):
         folder = cache / str(age)
         folder.mkdir(parents=True)
         (folder / "an.fmu").write_bytes(b"")
         os.utime(folder, (1e9 - age, 1e9 - age))
     kept, _ = refreshed_copy([CAN], given, "python")
-    assert {path.name for path in cache.iterdir()} == {kept.name, *map(str, range(MOST_FOLDERS - 1))}
+    assert {path.name for path in cache.iterdir()} == {kept.name, *map(str, range(MOST_KEPT - 1))}
 
 
 def test_a_folder_that_another_process_forgets_meanwhile_is_no_fault(given: Path, cache: Path) -> None:
@@ -114,3 +116,26 @@ def test_a_folder_counts_as_used_before_it_is_looked_through(given: Path, monkey
 def test_a_file_of_the_cache_stands_for_one_that_is_built(given: Path, cache: Path) -> None:
     assert as_built(cache / "key" / "native" / "WheelSpeedCan.fmu") == BUILD / "native" / "WheelSpeedCan.fmu"
     assert as_built(given / "WheelSpeedCan.fmu") == given / "WheelSpeedCan.fmu"
+
+
+def test_a_cache_that_cannot_be_written_is_named_with_what_moves_it(given: Path, cache: Path) -> None:
+    cache.parent.parent.write_text("a file where a folder would be")
+    with pytest.raises(DrivelineError) as refused:
+        refreshed_copy([CAN], given, "python")
+    assert str(refused.value) == (
+        f"the cache {cache} cannot be written: Not a directory; "
+        "the environment variable XDG_CACHE_HOME names another place"
+    )
+
+
+def test_what_cannot_be_read_elsewhere_is_no_fault_of_the_cache(
+    given: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def copyfile(source: Path, _: Path) -> None:
+        raise PermissionError(13, "Permission denied", str(source))
+
+    path = build(CAN, given)
+    monkeypatch.setattr(fmu_cache, "copyfile", copyfile)
+    with pytest.raises(PermissionError) as refused:
+        refreshed_copy([CAN], given, "python")
+    assert refused.value.filename == str(path)
