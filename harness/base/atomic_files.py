@@ -42,29 +42,44 @@ def complete(path: Path) -> Iterator[Path]:
     with naming(path, unfinished), _noted(unfinished):
         try:
             yield unfinished
+            _set_aside(path)
             os.replace(unfinished, path)
-            if (written := _written.get()) is not None:
-                written.append(path)
         finally:
             unfinished.unlink(missing_ok=True)
 
 
-_written: ContextVar[list[Path] | None] = ContextVar("written", default=None)
+_before: ContextVar[dict[Path, Path | None] | None] = ContextVar("before", default=None)
+"""Files that were completed or removed, each with where the one stands that was there before, if there was one."""
 
 
 @contextmanager
-def none_if_stopped() -> Iterator[None]:
-    """Files that were completed within it are removed again when it is stopped."""
-    written: list[Path] = []
-    outer = _written.set(written)
+def all_or_nothing() -> Iterator[None]:
+    """Files that were completed or removed within it are as they were before when it is stopped or fails."""
+    before: dict[Path, Path | None] = {}
+    outer = _before.set(before)
     try:
         yield
-    except KeyboardInterrupt:
-        for path in written:
-            remove(path)
+    except BaseException:
+        for path, old in before.items():
+            if old is None:
+                path.unlink(missing_ok=True)
+            elif old.is_file():
+                os.replace(old, path)
         raise
     finally:
-        _written.reset(outer)
+        for old in before.values():
+            if old is not None:
+                old.unlink(missing_ok=True)
+        _before.reset(outer)
+
+
+def _set_aside(path: Path) -> None:
+    """Keeps a file that will be replaced or removed, see `all_or_nothing`."""
+    if (before := _before.get()) is None or path in before:
+        return
+    before[path] = old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None
+    if old is not None:
+        os.replace(path, old)
 
 
 @contextmanager
@@ -109,9 +124,10 @@ def replaceable(path: Path) -> bool:
 
 
 def remove(path: Path) -> None:
-    """Removes a file; a link stays one, and so does what is not to be replaced."""
-    if replaceable(path):
-        destination(path).unlink()
+    """Removes a file if it is there; a link stays one, and so does what is not to be replaced."""
+    if replaceable(path) or not path.exists():
+        _set_aside(destination(path))
+        destination(path).unlink(missing_ok=True)
 
 
 @contextmanager

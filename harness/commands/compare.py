@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     first = [args.output / name for name in ("table.md", "metrics.csv")]
     with job(args, args.output / "compare.json", same, by_name, first, read) as made:
         requested.require_drivable(made.fits, by_name)
-        made.begin(*(path.with_suffix(".json") for path in signals.values()))
+        made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
         made.wrote(*write_tables(outcomes, args.output), *write_figures(outcomes, args.output, options, manoeuvres))
         for case, path in signals.items():

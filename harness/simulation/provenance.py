@@ -12,7 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..base.atomic_files import alone, none_if_stopped, remove, replaceable, write_text
+from ..base.atomic_files import all_or_nothing, alone, remove, replaceable, write_text
 from ..base.errors import DrivelineError
 from ..cosimulation import row_layout
 from ..cosimulation.system import System
@@ -52,12 +52,12 @@ class Made:
         return {name: fit(system) for name, system in self._systems.items()}
 
     def begin(self, *others: Path) -> None:
-        """From now on files are replaced, so their records go: a run that stops leaves none that is not theirs.
+        """From now on files are replaced. Their records go first: one that is killed leaves none that is not theirs.
 
         Other runs into the folder wait until the record is written.
 
         Args:
-            others: records of parts of the results.
+            others: files that other processes will write, and records of parts of the results.
 
         Raises:
             DrivelineError: another run has written its results in the meantime.
@@ -66,8 +66,8 @@ class Made:
             self._kept.enter_context(alone(self._record.parent))
             self._require()
             self.begun = True
-        for record in (self._record, *others):
-            remove(record)
+        for path in (self._record, *others):
+            remove(path)
 
 
 @contextmanager
@@ -79,8 +79,8 @@ def recorded(
     results: Sequence[Path] = (),
     replace: bool = False,
 ) -> Iterator[Made]:
-    """Within it a run is made and written; at its end the record tells what made the files. Of a run that is stopped no
-    file is left.
+    """Within it a run is made and written; at its end the record tells what made the files. When it is
+    stopped or fails, the files are as they were before.
 
     Args:
         record: the JSON file beside the results.
@@ -103,12 +103,10 @@ def recorded(
     with ExitStack() as kept:
         made = Made(record, systems, require, kept)
         try:
-            with none_if_stopped():
+            with all_or_nothing():
                 yield made
                 write_record(record, run, made.fits, made.files, inputs)
         except KeyboardInterrupt as stop:
-            for path in results if made.begun else ():
-                remove(path)
             stop.add_note(BEGINS_ANEW)
             raise
 

@@ -105,25 +105,30 @@ def test_the_same_run_replaces_its_own_and_another_if_that_is_wanted(
         assert "does not tell of which run it is" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("there", [True, False])
 @pytest.mark.parametrize("replaced", [["--seed", "2", "--replace"], []])
-def test_a_run_that_stops_while_it_writes_leaves_nothing_and_the_same_command_begins_anew(
+def test_a_run_that_stops_while_it_writes_leaves_all_as_it_was_and_the_same_command_begins_anew(
     both_built: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     replaced: list[str],
+    there: bool,
 ) -> None:
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
     given = [*RUN, "--fmus", str(both_built), "--output", str(tmp_path)]
-    assert main(given) == 0
+    if there:
+        assert main(given) == 0
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     with monkeypatch.context() as patched:
         patched.setattr(provenance, "write_record", stopped)
         assert main([*given, *replaced]) == 130
     assert capsys.readouterr().err.endswith(f"stopped; {provenance.BEGINS_ANEW}\n")
-    assert list(tmp_path.iterdir()) == []
-    assert main([*given, "--seed", "2"]) == 0
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert main([*given, *replaced]) == 0
+    assert {path.suffix for path in tmp_path.iterdir()} == {".csv", ".json"}
 
 
 def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(

@@ -1,0 +1,62 @@
+"""Files are complete or absent, and as they were before where what writes several is stopped."""
+
+import multiprocessing
+from pathlib import Path
+
+import pytest
+
+from driveline.harness.base.atomic_files import all_or_nothing, remove, write_text
+
+
+def files(folder: Path) -> dict[str, str]:
+    return {path.name: path.read_text() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("reason", [KeyboardInterrupt, OSError])
+def test_what_is_stopped_leaves_all_as_it_was(tmp_path: Path, reason: type[BaseException]) -> None:
+    """New files, files that were replaced, twice too, that were removed, and those that another process wrote."""
+    before = {name: f"old {name}" for name in ("replaced", "twice", "removed", "theirs")}
+    for name, text in before.items():
+        write_text(text, tmp_path / name)
+
+    @all_or_nothing()
+    def stopped() -> None:
+        for name in ("removed", "theirs", "theirs_new"):
+            remove(tmp_path / name)
+        for name in ("new", "replaced", "twice", "twice"):
+            write_text("new", tmp_path / name)
+        for name in ("theirs", "theirs_new"):
+            other = multiprocessing.Process(target=write_text, args=("new", tmp_path / name))
+            other.start()
+            other.join()
+        assert files(tmp_path)["theirs_new"] == "new"
+        raise reason
+
+    with pytest.raises(reason):
+        stopped()
+    assert files(tmp_path) == before
+
+
+def test_what_ends_well_leaves_what_it_wrote(tmp_path: Path) -> None:
+    for name in ("replaced", "removed"):
+        write_text("old", tmp_path / name)
+    with all_or_nothing():
+        remove(tmp_path / "removed")
+        write_text("new", tmp_path / "replaced")
+        write_text("new", tmp_path / "new")
+    assert files(tmp_path) == {"replaced": "new", "new": "new"}
+
+
+def test_a_link_stays_one(tmp_path: Path) -> None:
+    write_text("old", tmp_path / "target")
+    (tmp_path / "link").symlink_to(tmp_path / "target")
+
+    @all_or_nothing()
+    def stopped() -> None:
+        write_text("new", tmp_path / "link")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert (tmp_path / "link").is_symlink()
+    assert files(tmp_path) == {"link": "old", "target": "old"}
