@@ -130,6 +130,25 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
         signal.signal(number, before)
 
 
+@pytest.mark.parametrize("last", ["driveline.harness.base.errors", "driveline.harness.commands.options"])
+def test_stopped_while_it_is_imported_it_says_so_in_one_line(last: str) -> None:
+    """Nothing of the command line is imported before the place that does."""
+    program = f"""
+import sys
+class Stopping:
+    def find_spec(self, name, *_):
+        if name.startswith("driveline.harness") and "main" not in globals():
+            sys.exit("imported before")
+        if name == {last!r}:
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Stopping())
+from driveline.__main__ import main
+sys.exit(main())
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "driveline: stopped\n")
+
+
 def test_a_signal_that_is_ignored_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
