@@ -25,7 +25,7 @@ from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.drive import Drive
 from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.plausibility import Balance, Finding, balance, not_followed, of_drive
+from driveline.harness.recordings.plausibility import Balance, Finding, balance, forces, not_followed, of_drive
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.drives.replay import car_of, followed, speed_error
 from driveline.harness.studies.robustness.case_runs import CaseRunner
@@ -90,7 +90,7 @@ def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) ->
             signals = followed(track, load, settings)[1]
             findings += not_followed(drive, signals["time"], signals["plant.v"])
             error = max(error, speed_error(signals, track))
-    return Judged(case, findings, balance(drives[0].time, drives[0].v, drives[0].T_mot, load), error)
+    return Judged(case, findings, balance(forces(drives[0].time, drives[0].v, drives[0].T_mot, load)), error)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -4,7 +4,7 @@ gives at most one finding a channel: column, time, and what is odd. Nothing is r
 The balance of forces along the road is that of `harness.manoeuvres.speed_following`: what the motion takes,
 1.09 m dv/dt + m g c_rr + c_wa v^2, follows what the motor gives, i T_mot/r. Brakes and grade blur it. So it is compared
 without the parts that are faster than SMOOTHING, over all that moves for the sign, and for the size where the motor
-pushes harder than FORCE, when no driver brakes.
+pushes harder than FORCE, when no driver brakes. Means over EVERY are enough for that.
 """
 
 from collections.abc import Iterable, Iterator
@@ -48,6 +48,7 @@ class Finding:
         time: of the recording, in s.
         odd: what, to stand after column and time.
         place: in the file, as in "line 12"; empty where no single one is meant.
+        samples: times in s of all samples that are odd so, or MOST_MARKED of them.
     """
 
     rule: Rule
@@ -55,6 +56,7 @@ class Finding:
     time: float
     odd: str
     place: str = ""
+    samples: tuple[float, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.place}{self.place and ': '}{self.column} at {self.time:.6g} s {self.odd}"
@@ -99,6 +101,12 @@ SMOOTHING, FORCE, ROLLING = 0.5, 300.0, 1.0
 """Standard deviation in s of the Gaussian; force in N up to which the balance cannot tell a force from an error; speed
 in m/s above which a car rolls."""
 
+EVERY = 0.02
+"""Interval in s that is enough for the balance, a twenty-fifth of the Gaussian."""
+
+MOST_MARKED = 200
+"""Samples of a finding that a figure marks."""
+
 SIGNED, TOGETHER = 0.5, 0.7
 """Correlations of the forces from which on the sign, and the size, mean something."""
 
@@ -106,8 +114,7 @@ SMALLEST, LARGEST = 0.5, 2.5
 """What a motion takes over what the motor gives."""
 
 SHORTEST = 2e-4
-"""Interval in s of the fastest recordings. What would be faster in ms is not tried in them: the smoothing would go over
-millions of samples, which takes hours."""
+"""Interval in s of the fastest recordings. What would be faster in ms is not tried in them."""
 
 KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
 """Factors on speed, time and torque that are tried. Those on a torque that never reaches FORCE leave no ratio out."""
@@ -198,17 +205,14 @@ def of_channels(channels: Iterable[Channel]) -> list[Finding]:
 
 
 def of_drive(drive: Drive, car: Car, T_max: float) -> list[Finding]:
-    """What is odd in a drive that a car is to follow.
+    """What is odd in a drive that a car is to follow. Its rate is not judged where its times are wrong.
 
     Args:
         T_max: largest torque of its motor in N.m.
     """
-    return [
-        *of_channels(drive.channels.values()),
-        *slow_sampling(drive),
-        *beyond_T_max(drive, T_max),
-        *unbalanced(drive, car),
-    ]
+    motion = list(unbalanced(drive, car))
+    rate = [] if any(finding.rule is SLOW_TIME for finding in motion) else slow_sampling(drive)
+    return [*of_channels(drive.channels.values()), *rate, *beyond_T_max(drive, T_max), *motion]
 
 
 def codes(channel: Channel) -> Iterator[Finding]:
@@ -220,7 +224,7 @@ def codes(channel: Channel) -> Iterator[Finding]:
         others = written[written != value]
         if len(others) and np.abs(others - value).min() > ALONE * np.ptp(others):
             odd = f"is {value:g}, which loggers write where there is no value{_more(len(at))}"
-            yield _of(channel, SENTINEL, int(at[0]), odd)
+            yield _of(channel, SENTINEL, at, odd)
 
 
 def cut_off(channel: Channel) -> Iterator[Finding]:
@@ -237,7 +241,7 @@ def cut_off(channel: Channel) -> Iterator[Finding]:
                 f"stays at its {word} value, {bound:g} {channel.unit}, for {length} samples; it may have been cut off "
                 "there"
             )
-            yield _of(channel, CLIPPED, first, odd)
+            yield _of(channel, CLIPPED, np.arange(first, first + length), odd)
             return
 
 
@@ -256,7 +260,7 @@ def spikes(channel: Channel) -> Iterator[Finding]:
     if len(at):
         k, unit = int(at[0]), channel.file_unit
         off = (v[k] - np.median(v[max(k - WIDEST, 0) : k + WIDEST + 1])) / unit.factor
-        yield _of(channel, SPIKED, k, f"is {off:+.3g} {unit.printed} off its neighbours, a spike{_more(len(at))}")
+        yield _of(channel, SPIKED, at, f"is {off:+.3g} {unit.printed} off its neighbours, a spike{_more(len(at))}")
 
 
 def jumps(channel: Channel) -> Iterator[Finding]:
@@ -268,7 +272,7 @@ def jumps(channel: Channel) -> Iterator[Finding]:
     if len(at):
         k = int(at[0])
         odd = f"jumps by {rise[k]:+.4g} m within {steps[k]:.3g} s, as no road does{_more(len(at), 'jump')}"
-        yield _of(channel, JUMP, k + 1, odd)
+        yield _of(channel, JUMP, at + 1, odd)
 
 
 def slow_sampling(drive: Drive) -> Iterator[Finding]:
@@ -298,21 +302,50 @@ def beyond_T_max(drive: Drive, T_max: float) -> Iterator[Finding]:
             float(drive.time[k]),
             f"is {drive.T_mot[k]:.4g} N.m; {beyond.mean():.1%} of the samples lie beyond T_max = {T_max:g} N.m of the "
             "motor and are cut off there (--set motor.T_max=...)",
+            samples=_marked(drive.time[beyond]),
         )
+
+
+class Forces(NamedTuple):
+    """Along the road, smoothed, in N.
+
+    Attributes:
+        time: in s.
+        takes: what the motion takes.
+        gives: what the motor gives.
+        rolls: whether the car rolls.
+    """
+
+    time: np.ndarray
+    takes: np.ndarray
+    gives: np.ndarray
+    rolls: np.ndarray
+
+
+def forces(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Forces:
+    """Those of a motion (m/s over s) and the torque of the motor (N.m)."""
+    from scipy.ndimage import gaussian_filter1d
+
+    count = max(1, min(int(EVERY / _interval(time)), len(time) // LEAST))
+    time, v, T_mot = (x[: len(x) // count * count].reshape(-1, count).mean(axis=1) for x in (time, v, T_mot))
+    interval = _interval(time)
+    signals = (car.motion(v, interval), car.motor_force(T_mot), np.abs(v))
+    takes, gives, speed = (gaussian_filter1d(x, SMOOTHING / interval, mode="nearest") for x in signals)
+    return Forces(time, takes, gives, speed > ROLLING)
 
 
 class Balance(NamedTuple):
     """Of the forces along the road.
 
     Attributes:
-        worst: index of the sample at which they are furthest apart.
+        worst: time in s at which they are furthest apart.
         correlation: of what the motion takes with what the motor gives, while the car rolls; 0 if too little happens.
         judged: whether enough happens while the motor pushes.
         together, ratio: correlation and ratio of standard deviations then.
         moved: standard deviation in N of what the motion takes then.
     """
 
-    worst: int
+    worst: float
     correlation: float = 0.0
     judged: bool = False
     together: float = 0.0
@@ -324,18 +357,11 @@ class Balance(NamedTuple):
         return self.judged and self.together >= TOGETHER and SMALLEST <= self.ratio <= LARGEST
 
 
-def balance(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Balance:
-    """How the motion (m/s over s) and the torque of the motor (N.m) fit together."""
-    from scipy.ndimage import gaussian_filter1d
-
-    interval = _interval(time)
-    width = SMOOTHING / interval
-    takes = gaussian_filter1d(car.motion(v, interval), width, mode="nearest")
-    gives = gaussian_filter1d(car.motor_force(T_mot), width, mode="nearest")
-    rolls = gaussian_filter1d(np.abs(v), width, mode="nearest") > ROLLING
+def balance(along: Forces, torque: float = 1.0) -> Balance:
+    """How what the motion takes and what the motor gives fit together, with a factor on the torque."""
+    takes, gives, rolls = along.takes, torque * along.gives, along.rolls
     pushes = rolls & (gives > FORCE)
-    worst = int(np.argmax(np.where(rolls, np.abs(takes - gives), 0.0)))
-    found = Balance(worst=worst)
+    found = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
     if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:
         found = found._replace(correlation=compared(takes[rolls], gives[rolls])[0])
     if pushes.sum() >= LEAST and max(np.std(gives[pushes]), np.std(takes[pushes])) > FORCE:
@@ -347,29 +373,30 @@ def balance(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Bal
 def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
     """A motion that is not that of this torque and this car: one finding, of what explains it best."""
 
-    def tried(time: float = 1.0, v: float = 1.0, T_mot: float = 1.0) -> Balance:
-        return balance(time * drive.time, v * drive.v, T_mot * drive.T_mot, car)
+    def fits(time: float = 1.0, v: float = 1.0) -> bool:
+        return balance(forces(time * drive.time, v * drive.v, drive.T_mot, car)).fits
 
     def is_weak(factor: float) -> bool:
-        found = tried(T_mot=factor)
-        return found.fits and found.moved > FORCE
+        weak = balance(along, factor)
+        return weak.fits and weak.moved > FORCE
 
-    found = tried()
-    at, torque = float(drive.time[found.worst]), drive.heading("T_mot")
+    along = forces(drive.time, drive.v, drive.T_mot, car)
+    found, torque = balance(along), drive.heading("T_mot")
+    at = found.worst
     if found.correlation < -SIGNED:
         odd = (
             f"pushes when the car slows down, and the reverse (correlation {found.correlation:.2f}): its sign looks "
             f"wrong; {_given('T_mot', f'-{torque}')} turns it"
         )
         yield Finding(SIGN, torque, at, odd)
-    elif found.judged and found.together < TOGETHER and MS * _interval(drive.time) >= SHORTEST and tried(time=MS).fits:
+    elif found.judged and found.together < TOGETHER and MS * _interval(drive.time) >= SHORTEST and fits(time=MS):
         clock = drive.clock
         odd = (
             f"goes on by {_interval(drive.time):.4g} s a sample, and motion and torque fit if that is ms: its unit "
             f"looks wrong; {_given('time', f'{split(clock)[0]} [ms]')} gives it"
         )
         yield Finding(SLOW_TIME, clock, float(drive.time[0]), odd)
-    elif found.judged and found.together >= TOGETHER and found.ratio > LARGEST and tried(v=1.0 / KMH).fits:
+    elif found.judged and found.together >= TOGETHER and found.ratio > LARGEST and fits(v=1.0 / KMH):
         speed = drive.heading("v")
         odd = (
             f"changes as if the motor had {found.ratio:.2g} times its torque, and fits if it is {KMH:g} times too "
@@ -408,8 +435,15 @@ def not_followed(drive: Drive, time: np.ndarray, v: np.ndarray) -> list[Finding]
     return [Finding(FOLLOWING, drive.heading("v"), float(drive.time[0] + time[k]), odd)]
 
 
-def _of(channel: Channel, rule: Rule, k: int, odd: str) -> Finding:
-    return Finding(rule, channel.heading, float(channel.time[k]), odd, channel.where(k))
+def _of(channel: Channel, rule: Rule, at: np.ndarray, odd: str) -> Finding:
+    """Samples of a channel, by their indices, of which the first is named."""
+    first, times = int(at[0]), _marked(channel.time[at])
+    return Finding(rule, channel.heading, float(channel.time[first]), odd, channel.where(first), times)
+
+
+def _marked(times: np.ndarray) -> tuple[float, ...]:
+    few = np.linspace(0, len(times) - 1, min(len(times), MOST_MARKED)).round().astype(int)
+    return tuple(times[few].tolist())
 
 
 def _given(quantity: str, heading: str) -> str:

@@ -47,7 +47,7 @@ def _column(channel: Channel) -> dict[str, Any]:
 
 
 def plot_recording(drive: Drive, findings: Sequence[Finding], stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
-    """Draws the columns of a recording in their units, with a dot where something is odd; returns the files."""
+    """Draws the columns of a recording in their units, with a dot at each sample that is odd; returns the files."""
     panels = [
         Panel(f"{channel.quantity} {channel.file_unit}", list(_parts(channel, findings)))
         for channel in drive.channels.values()
@@ -59,6 +59,7 @@ def plot_recording(drive: Drive, findings: Sequence[Finding], stem: Path, option
 def _parts(channel: Channel, findings: Sequence[Finding]) -> Iterator[Part]:
     written = channel.values / channel.file_unit.factor
     yield Curve(channel.time, written, color=BLUE)
-    times = np.array([finding.time for finding in findings if finding.column == channel.heading])
+    of_channel = (finding for finding in findings if finding.column == channel.heading)
+    times = np.array([time for finding in of_channel for time in finding.samples or (finding.time,)])
     if len(times):
         yield Points(times, np.interp(times, channel.time, written), "odd", VERMILION)

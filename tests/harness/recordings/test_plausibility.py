@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,8 +22,10 @@ from driveline.harness.recordings.plausibility import (
     ACCELERATION,
     BEYOND,
     CLIMB,
+    EVERY,
     FOLLOWED,
     LARGEST,
+    MOST_MARKED,
     MS,
     OSCILLATION,
     RULES,
@@ -33,8 +36,10 @@ from driveline.harness.recordings.plausibility import (
     STEP,
     Balance,
     Finding,
+    Forces,
     balance,
     codes,
+    forces,
     jumps,
     not_followed,
     of_channels,
@@ -112,7 +117,7 @@ def test_what_is_wrong_with_a_drive_is_named_with_column_and_time(tmp_path: Path
         "rule": rule, "column": finding.column, "time_s": finding.time, "text": str(finding)
     }  # fmt: skip
     others = {each.rule.name for each in found(path)} - {rule}
-    assert others <= {"wheel side": {"T_max"}, "ms called s": {"rate"}, "code of height": {"jump"}}.get(case, set())
+    assert others <= {"wheel side": {"T_max"}, "code of height": {"jump"}}.get(case, set())
 
 
 def test_what_is_said_to_mend_it_mends_it(tmp_path: Path) -> None:
@@ -133,11 +138,12 @@ def test_ms_are_not_tried_where_no_recording_is_that_fast(
 ) -> None:
     durations: list[float] = []
 
-    def unlike(time: np.ndarray, *_: object) -> Balance:
+    def noted(time: np.ndarray, *others: Any) -> Forces:
         durations.append(float(time[-1]))
-        return Balance(0, judged=True, together=0.0)
+        return forces(time, *others)
 
-    monkeypatch.setattr(plausibility, "balance", unlike)
+    monkeypatch.setattr(plausibility, "forces", noted)
+    monkeypatch.setattr(plausibility, "balance", lambda *_: Balance(0.0, judged=True, together=0.0))
     time = longer * SHORTEST / MS * np.arange(20.0)
     assert not list(plausibility.unbalanced(Drive("drive", time, time, None, time, {}), CAR))
     assert (pytest.approx(MS * time[-1]) in durations) == tried
@@ -240,7 +246,7 @@ def test_a_share_of_torques_beyond_the_motor() -> None:
 
 
 def test_the_ratio_of_the_forces_and_its_bounds() -> None:
-    assert balance(drive().time, drive().v, drive().T_mot, CAR).ratio == pytest.approx(1.0, abs=0.02)
+    assert balance(forces(drive().time, drive().v, drive().T_mot, CAR)).ratio == pytest.approx(1.0, abs=0.02)
     for ratio, expected in (
         (0.95 * LARGEST, []),
         (1.05 * LARGEST, ["unit of speed"]),
@@ -251,6 +257,35 @@ def test_the_ratio_of_the_forces_and_its_bounds() -> None:
     ):
         one = drive(T_peak=170.0)
         assert [f.rule.name for f in of_drive(replace(one, T_mot=one.T_mot / ratio), CAR, 1e4)] == expected, ratio
+
+
+@pytest.mark.parametrize("interval", [0.49 * EVERY, 0.001])
+def test_the_balance_of_a_fast_recording_is_that_of_its_means(interval: float) -> None:
+    """Every so many samples alone would take what is faster for slow: here 50 Hz of 500 N.m."""
+    slow, fast = drive(0.1), drive(interval)
+    disturbed = replace(fast, T_mot=fast.T_mot + 500.0 * np.cos(2.0 * pi * fast.time / EVERY))
+    along = forces(disturbed.time, disturbed.v, disturbed.T_mot, CAR)
+    assert EVERY / 2.0 < np.diff(along.time).max() <= 1.001 * EVERY
+    expected = balance(forces(slow.time, slow.v, slow.T_mot, CAR))
+    found = balance(along)
+    assert (found.ratio, found.together) == pytest.approx((expected.ratio, expected.together), abs=0.03)
+
+
+def test_the_forces_of_a_drive_are_computed_once_and_once_more_for_another_unit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made: list[int] = []
+
+    def noted(time: np.ndarray, *others: Any) -> Forces:
+        made.append(len(time))
+        return forces(time, *others)
+
+    monkeypatch.setattr(plausibility, "forces", noted)
+    for torque, v, count in ((1.0, 1.0, 1), (1e-3, 1.0, 1), (1.0, 3.6, 2)):
+        made.clear()
+        one = drive(T_peak=170.0)
+        list(plausibility.unbalanced(replace(one, T_mot=torque * one.T_mot, v=v * one.v), CAR))
+        assert len(made) == count
 
 
 def test_a_car_that_stands_or_coasts_tells_nothing_of_the_torque() -> None:
@@ -276,6 +311,18 @@ def test_a_speed_that_is_not_followed() -> None:
         assert all(
             "v at" in str(f) and f.time == pytest.approx(one.time[np.argmax(np.abs(v - one.v))]) for f in findings
         )
+
+
+@pytest.mark.parametrize("count", [3, MOST_MARKED, MOST_MARKED + 1, 5000])
+def test_all_samples_that_are_odd_are_marked_or_many_of_them(count: int) -> None:
+    values = np.zeros(10_000)
+    at = np.linspace(500, 9_500, count).astype(int)
+    values[at] = -999.0
+    (finding,) = codes(channel("T_mot", values))
+    assert (finding.samples[0], finding.samples[-1]) == pytest.approx((50.0, 950.0))
+    assert finding.samples[0] == finding.time
+    assert len(set(finding.samples)) == min(count, MOST_MARKED)
+    assert set(np.round(10.0 * np.array(finding.samples)).astype(int)) <= {*at}
 
 
 def test_every_rule_is_found_by_something_and_has_a_name_of_its_own() -> None:
