@@ -13,6 +13,7 @@ from time import monotonic
 from typing import Any
 
 from .interruption import end_if_abandoned, uninterrupted_children
+from .plain_text import plain
 from .status_line import is_terminal
 
 QUIET = 1.0
@@ -36,9 +37,12 @@ def progress(total: int, label: str) -> Iterator[Callable[[float], None]]:
     """What is called with the number of pieces that are done shows the share and the time that is left, from the first
     second on: as a bar on a terminal or in a notebook, else as a line on stderr now and then.
 
+    Args:
+        label: in words, or the name of a file of anybody.
+
     Within it nothing else shows progress, but what is a part of it, see `part`.
     """
-    outer = _outer.get()
+    outer, label = _outer.get(), plain(label)
     with hidden(), ExitStack() as stack:
         if outer is not None:
             show = partial(_pass_on, outer, total)
@@ -111,13 +115,14 @@ def _attend(total: int, label: str, counts: Sequence[float], ended: Event) -> No
     """Shows the count until it is ended, whether it changes or not."""
     if ended.wait(QUIET):
         return
-    from rich.console import Console  # only a long run needs it
+    from rich import markup  # only a long run needs it
+    from rich.console import Console
     from rich.progress import Progress
 
     animated = is_terminal(sys.stderr)
     console = Console(file=sys.stderr)
     with Progress(console=console, transient=True, speed_estimate_period=inf, disable=not animated) as bar:
-        bar.add_task(label, total=total)
+        bar.add_task(markup.escape(label), total=total)
         (task,) = bar.tasks
         pause, due = LEAST_PAUSE, monotonic() + LEAST_PAUSE
         while True:

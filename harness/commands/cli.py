@@ -13,6 +13,7 @@ from errno import ENOSPC
 from functools import partial
 from io import TextIOWrapper
 from typing import Any, NoReturn
+from unicodedata import category
 
 from ..base.errors import DrivelineError
 from ..base.interruption import forget_stdout, reopen_closed_streams, stoppable
@@ -220,7 +221,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with stoppable():
             try:
-                _require_one_line(words)
+                _require_printable(words)
                 args = parser().parse_args(words)
                 name = args.program
                 silent = getattr(args, "quiet", False) or getattr(args, "json", False)
@@ -248,11 +249,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return getattr(stop, "exit_code", 130)
 
 
-def _require_one_line(words: Sequence[str]) -> None:
+UNPRINTABLE = {"Cc": "control characters", "Zl": "line ends", "Zp": "line ends", "Cs": "bytes that are no text"}
+"""Categories of Unicode that no argument may have, but for the tabulator."""
+
+
+def _require_printable(words: Sequence[str]) -> None:
     """
     Raises:
-        DrivelineError: a word would make two lines of a message that repeats it, as the path of a file may.
+        DrivelineError: a word, as the path of a file, would be no plain line in the messages, tables and names of files
+            that repeat it.
     """
     for word in words:
-        if len(f"{word}.".splitlines()) > 1:
-            raise DrivelineError(f"the argument {word[:60]!r} has more than one line; rename the file")
+        if found := next((UNPRINTABLE[c] for c in map(category, word.replace("\t", "")) if c in UNPRINTABLE), None):
+            raise DrivelineError(f"the argument {word[:60]!r} has {found}; rename the file")

@@ -172,7 +172,7 @@ RATIO = Rule(
     "ratio of torque",
     "a motion that takes another force than the motor gives: wrong unit, side of the gear, car",
     f"below {SMALLEST:g} or above {LARGEST:g}, correlation {TOGETHER:g} and more",
-    "0.84 and 0.92 in the recorded trips; 0.61 to 1.81 in 200 simulated drives of cars with half to one and a half of "
+    "0.84 and 0.92 in the recorded trips; 0.61 to 1.82 in 200 simulated drives of cars with half to one and a half of "
     "the mass",
 )
 FAST = Rule(

@@ -36,7 +36,7 @@ STANDARD_GRAVITY = 9.80665
 
 def spelled(unit: str) -> str:
     """The unit as in Modelica."""
-    text = unit.translate(SIGNS).strip()
+    text = unit.replace("**", "^").translate(SIGNS).strip()
     text = SPELLED.get(text, text)
     torque = TORQUE.fullmatch(text)
     if torque:

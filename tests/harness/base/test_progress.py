@@ -55,6 +55,15 @@ def test_a_long_run_shows_its_share_and_the_time_left_on_a_terminal_before_its_f
         eventually(shown, "0:00:0")
 
 
+@pytest.mark.parametrize("terminal", ["xterm", "dumb"])
+def test_the_name_of_a_file_is_shown_as_it_is_but_for_what_a_terminal_obeys(terminal, monkeypatch):
+    monkeypatch.setenv("TERM", terminal)
+    with redirect_stderr(Terminal()) as shown, progress(2, "a[/b]\x1b]0;c") as done:
+        done(1)
+        eventually(shown, "a[/b] ]0;c")
+        eventually(shown, "50")
+
+
 def test_nothing_is_left_of_it():
     before = set(threads())
     with redirect_stderr(Terminal()) as shown, progress(2, "tip-in"):

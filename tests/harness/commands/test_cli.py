@@ -77,10 +77,23 @@ def test_the_manoeuvres_are_listed_as_one_document_for_tools(capsys, words):
     assert [first["name"], *(other["name"] for other in others)] == list(MANOEUVRES)
 
 
-@pytest.mark.parametrize("name", ["a\nb.csv", "a\rb.csv", "a\u2028b.csv", "a.csv\n"])
-def test_an_argument_of_two_lines_is_refused_in_one(capsys, name):
-    expected = f"driveline: the argument {name!r} has more than one line; rename the file\n"
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        *((name, "control characters") for name in ("a\nb.csv", "a\rb.csv", "a.csv\n", "a\x1b[31mb.csv", "a\x9bb.csv")),
+        ("a\u2028b.csv", "line ends"),
+        ("a\udcffb.csv", "bytes that are no text"),
+    ],
+)
+def test_an_argument_that_is_no_printable_line_is_shown_in_one_and_refused(capsys, name, found):
+    expected = f"driveline: the argument {name!r} has {found}; rename the file\n"
     assert answer(capsys, "replay", name) == (2, "", expected)
+    assert expected.rstrip().isprintable()
+
+
+@pytest.mark.parametrize("name", ["Fahrt 1 ä [km/h].csv", "走行\u3000.csv", "a\tb.csv"])
+def test_all_that_can_be_printed_may_be_an_argument(capsys, name):
+    assert ": No such file or directory" in answer(capsys, "replay", name)[2]
 
 
 @pytest.mark.parametrize("command", ["bound", "coupling", "back-to-back"])

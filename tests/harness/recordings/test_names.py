@@ -66,6 +66,7 @@ def test_a_unit_without_brackets(heading: str, readings: list[tuple[str, str]]) 
         ("kNm", "N.m", 1e3),
         ("g", "m/s2", 9.80665),
         ("m/s²", "m/s2", 1.0),
+        ("m/s**2", "m/s2", 1.0),
         ("g", "kg", 1e-3),
         ("%", "1", 0.01),
         ("-", "1", 1.0),
@@ -98,6 +99,11 @@ def test_units_as_files_write_them(unit: str, wanted: str, factor: float) -> Non
 def test_a_unit_that_does_not_convert_is_refused(unit: str, wanted: str) -> None:
     with pytest.raises(ValueError, match=f"wanted is {wanted}"):
         factor_to(wanted, unit)
+
+
+def test_a_power_that_is_refused_is_shown_as_one() -> None:
+    with pytest.raises(ValueError, match=r"^is in m\^9, which does not convert into m;"):
+        factor_to("m", "m**9")
 
 
 def test_every_quantity_has_a_name_of_ours() -> None:
