@@ -7,7 +7,6 @@ file names follows (one_car) or keeps its start value.
 
 import numbers
 import re
-import tomllib
 from collections.abc import Callable, Collection, Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
@@ -19,6 +18,7 @@ from ..catalogue import EVERY, FMUS
 from ..description.variables import LARGEST, Variable, interface
 from ..errors import ParameterFileError
 from ..fmu import Fmu
+from ..toml_file import toml_entries
 from .one_car import of_one_car
 
 OF_A_RUN = {
@@ -39,9 +39,8 @@ KINDS: Mapping[str, tuple[Any, str]] = {
 }
 """By FMI type the Python type of an entry, and what it is called."""
 
-LARGEST_FILE, LONGEST_LINE, MOST_PROBLEMS = 100_000, 1000, 20
-"""Bytes of a file, characters of a line and lines of a refusal. Files of cars have some kilobytes; a key of 20 000
-parts takes the square of that in time and memory, and a name that is not known is compared with all that are."""
+MOST_PROBLEMS = 20
+"""Lines of a refusal. A name that is not known is compared with all that are, which takes its time."""
 
 LONGEST_NAME = 60
 """Characters of a name that is not known, as a message shows it."""
@@ -178,15 +177,11 @@ def declarations(fmus: Iterable[Fmu]) -> dict[str, list[tuple[str, Variable]]]:
 
 
 def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Mapping[str, str]) -> dict[str, Any]:
-    path = Path(path)
-    if not path.is_file():
-        raise ParameterFileError(f"there is no file {path}")
     try:
-        text = _text(path)
-        entries = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, brackets in brackets
-        raise ParameterFileError(f"{path} is not TOML: {error}") from error
-    return _values(entries, known, others, set_elsewhere, lambda name: f"{path}, line {_line(text, name)}: ")
+        entries = toml_entries(Path(path))
+    except ValueError as reason:
+        raise ParameterFileError(f"{path}: {reason}") from reason
+    return _values(entries, known, others, set_elsewhere, lambda name: f"{path}, line {_line(path, name)}: ")
 
 
 def _values(
@@ -210,21 +205,6 @@ def _values(
     if problems:
         raise ParameterFileError("\n".join(problems))
     return values
-
-
-def _text(path: Path) -> str:
-    """
-    Raises:
-        ParameterFileError: it is longer than any file of a car.
-        ValueError: it is no text.
-    """
-    if (size := path.stat().st_size) > LARGEST_FILE:
-        raise ParameterFileError(f"{path} has {size} bytes; at most {LARGEST_FILE}")
-    text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
-    for number, line in enumerate(text.splitlines(), 1):
-        if len(line) > LONGEST_LINE:
-            raise ParameterFileError(f"{path}, line {number} has {len(line)} characters; at most {LONGEST_LINE}")
-    return text
 
 
 def _checked(name: str, entry: Any, known: Owners, others: Collection[str], set_elsewhere: Mapping[str, str]) -> Any:
@@ -265,7 +245,8 @@ def _nearest(name: str, known: Collection[str]) -> str:
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
-def _line(text: str, name: str) -> int:
-    """Number of the line where the entry or table of that name begins."""
+def _line(path: Path, name: str) -> int:
+    """Number of the line of a file where the entry or table of that name begins."""
     begins = re.compile(rf"""\s*\[*\s*["']?{re.escape(name)}["']?\s*[=.\]]""")
-    return next((k for k, line in enumerate(text.splitlines(), 1) if begins.match(line)), 1)
+    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    return next((k for k, line in enumerate(lines, 1) if begins.match(line)), 1)

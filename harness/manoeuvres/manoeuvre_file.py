@@ -16,9 +16,9 @@ from math import atan, isfinite
 from pathlib import Path
 from typing import Any
 
+from ...fmus.toml_file import toml_entries
 from ..base.known_names import nearest
 from ..base.plain_text import plain
-from ..base.toml_file import toml_entries
 from ..loop.places import STEP_SIZE
 from .composed import composed
 from .manoeuvre import Manoeuvre
@@ -73,8 +73,6 @@ def _from_toml(path: Path) -> Manoeuvre:
 
 
 def _entries(path: Path) -> dict[str, Any]:
-    if not path.is_file():
-        raise ManoeuvreError("it is a folder, not a file" if path.is_dir() else "there is no such file")
     try:
         entries = toml_entries(path)
     except ValueError as reason:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
+from ...fmus.toml_file import toml_entries
 from ..base.known_names import nearest
 from ..base.plain_text import plain
-from ..base.toml_file import toml_entries
 from .headings import key
 from .source import RecordingError
 
@@ -104,8 +104,6 @@ def aliases(*others: Path) -> Aliases:
 
 
 def _read(path: Path) -> dict[str, list[str]]:
-    if not path.is_file():
-        raise RecordingError(f"there is no file of names {path}")
     try:
         content = toml_entries(path)
     except ValueError as reason:

@@ -7,8 +7,6 @@ from typing import Any
 import pytest
 
 from driveline.fmus.building.parameter_files import (
-    LARGEST_FILE,
-    LONGEST_LINE,
     MOST_PROBLEMS,
     OF_A_RUN,
     for_instances,
@@ -79,7 +77,6 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("J_1 = [0.09]", "J_1 = [0.09]: it must be a finite number"),
         ("J_1 = nan", "J_1 = nan: it must be a finite number"),
         ("J_1 = -inf", "J_1 = -inf: it must be a finite number"),
-        (f"m = 1{400 * '0'}", "m = 1000000000000000000000000000000000000000: it must be a finite number"),
         ("m = 299.9", "m = 299.9: TwoMassDriveline takes 300 to 40000 kg"),
         ("m = 40001", "m = 40001: TwoMassDriveline takes 300 to 40000 kg"),
         ("T_max = 0.5", "T_max = 0.5: MotorTorqueLoop takes 1 to 2000 N.m"),
@@ -115,27 +112,21 @@ def test_all_that_is_wrong_is_said_at_once(written: Callable[[str], Path]) -> No
 @pytest.mark.parametrize("text", ["J_1 = 0.09\nJ_1 = 0.1\n", "J_1 0.09\n", "J_1 =\n"])
 def test_what_is_no_toml_is_said_with_its_line(written: Callable[[str], Path], text: str) -> None:
     message = refusal(read_vehicle, written(text))
-    assert "is not TOML" in message
+    assert "not TOML: " in message
     assert "line" in message
 
 
 def test_a_file_that_is_absent_or_no_text_is_named(tmp_path: Path) -> None:
-    assert refusal(read_vehicle, tmp_path / "car.toml") == f"there is no file {tmp_path / 'car.toml'}"
+    assert refusal(read_vehicle, tmp_path / "car.toml") == f"{tmp_path / 'car.toml'}: there is no such file"
     (tmp_path / "car.toml").write_bytes(b"\xff\xfe")
-    assert "is not TOML" in refusal(read_vehicle, tmp_path / "car.toml")
+    assert "not TOML: " in refusal(read_vehicle, tmp_path / "car.toml")
 
 
-def test_brackets_in_brackets_are_no_toml_either(written: Callable[[str], Path]) -> None:
-    assert "is not TOML" in refusal(read_vehicle, written(f"J_1 = {'[' * 990}\n"))
-
-
-def test_a_file_is_no_longer_than_those_of_cars_are(written: Callable[[str], Path]) -> None:
-    longest_line = "m = 1500 #".ljust(LONGEST_LINE, "x")
-    assert read_vehicle(written(longest_line)) == {"m": 1500.0}
-    assert refusal(read_vehicle, written(f"{longest_line}x")).endswith("line 1 has 1001 characters; at most 1000")
-    largest = "m = 1500".ljust(LARGEST_FILE, "\n")
-    assert read_vehicle(written(largest)) == {"m": 1500.0}
-    assert refusal(read_vehicle, written(f"{largest}\n")).endswith("has 100001 bytes; at most 100000")
+def test_a_file_is_no_more_than_anybody_writes(written: Callable[[str], Path]) -> None:
+    path = written(f"J_1 = {'[' * 990}\n")
+    assert refusal(read_vehicle, path) == f"{path}: line 1 has brackets in brackets, more than 10 deep"
+    assert refusal(read_vehicle, written(f"m = 1{400 * '0'}")).endswith("... has more than 300 digits")
+    assert refusal(read_vehicle, Path("/dev/null")) == "/dev/null: it is no regular file"
 
 
 def test_a_refusal_has_no_more_lines_than_somebody_reads(written: Callable[[str], Path]) -> None:

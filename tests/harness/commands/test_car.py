@@ -64,7 +64,7 @@ def test_the_template_is_printed_or_written_and_no_other_file_is_replaced(
     [
         (["--template", VAN], "--template writes the default car"),
         (["--output", "car.toml"], "--output is for a template"),
-        (["no.toml"], "there is no file no.toml"),
+        (["no.toml"], "no.toml: there is no such file"),
     ],
 )
 def test_what_does_not_go_together_is_refused(

@@ -1,10 +1,11 @@
 """TOML files of anybody: read as they are, or refused before they take long."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.toml_file import DEEPEST, LARGEST, MOST_DIGITS, toml_entries
+from driveline.fmus.toml_file import DEEPEST, LARGEST, MOST_DIGITS, toml_entries
 
 
 def read(folder: Path, text: str) -> dict:
@@ -41,8 +42,35 @@ def test_a_file_has_a_megabyte_at_the_most(tmp_path: Path) -> None:
         read(tmp_path, "x = 1".ljust(LARGEST + 1))
 
 
-@pytest.mark.parametrize("text", ["x", "x = " + 10_000 * "[", "x = " + 10_000 * "{a = ", "\ud800"])
+@pytest.mark.parametrize("text", ["x", "x = [", "x = '[", "\ud800"])
 def test_what_is_no_toml_is_said(tmp_path: Path, text: str) -> None:
     (tmp_path / "file.toml").write_bytes(text.encode("utf-8", "surrogatepass"))
     with pytest.raises(ValueError, match=r"^not TOML: "):
         toml_entries(tmp_path / "file.toml")
+
+
+@pytest.mark.parametrize(("opens", "closes"), [("[", "]"), ("{a = ", "}"), ("[{a = ", "}]")])
+def test_brackets_are_ten_deep_at_the_most(tmp_path: Path, opens: str, closes: str) -> None:
+    pairs = DEEPEST // len(closes)
+    assert read(tmp_path, f"x = {opens * pairs}{closes[:0] if '=' not in opens else '1'}{closes * pairs}")
+    for count in (pairs + 1, 20_000):
+        with pytest.raises(ValueError, match=r"^line 2 has brackets in brackets, more than 10 deep$"):
+            read(tmp_path, f"y = 1\nx = {opens * count}")
+
+
+@pytest.mark.parametrize("text", ['"""\n{}\\""" {}"""', "'''{}\\'''", '"{}\\""', "'{}'", '1 # " {}', "1 # {}"])
+def test_brackets_in_texts_and_comments_are_none(tmp_path: Path, text: str) -> None:
+    brackets = "[" * (DEEPEST + 1)
+    assert "x" in read(tmp_path, f"x = {text.replace('{}', brackets)}\ny = [1]")
+
+
+def test_what_is_no_file_is_said(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path, message in (
+        (tmp_path, "it is a folder, not a file"),
+        (tmp_path / "absent.toml", "there is no such file"),
+        (pipe, "it is no regular file"),
+    ):
+        with pytest.raises(ValueError, match=f"^{message}$"):
+            toml_entries(path)

@@ -1,0 +1,63 @@
+"""TOML files of anybody."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+LARGEST = 1_000_000
+"""Bytes of a file: those of a hundred thousand points, which are read in a second."""
+
+DEEPEST = 10
+"""Parts of a key, and brackets in brackets. No key that is read has more than three, no value more than two; time and
+memory grow with the square of the parts, and Python does not follow hundreds of brackets."""
+
+MOST_DIGITS = 300
+"""Of a number. Those of a thousand digits are no floating-point numbers, and Python does not print them."""
+
+SHOWN = 40
+"""Characters of what is refused, as a message shows them."""
+
+PART = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')[ \t]*\.[ \t]*"""
+TOO_DEEP = re.compile(rf"(?<![\w-])(?:{PART}){{{DEEPEST}}}", re.ASCII)
+TOO_LONG = re.compile(rf"\b[0-9](?:[xob]?[0-9A-Fa-f_]){{{MOST_DIGITS}}}", re.ASCII)
+
+TEXT = r'''"""(?:[^\\]|\\.)*?"""|\'\'\'.*?\'\'\'|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|#[^\n]*'''
+BRACKET = re.compile(rf"{TEXT}|(?P<opens>[\[{{])|(?P<closes>[\]}}])", re.DOTALL)
+"""A bracket, or a text or comment, in which brackets are none."""
+
+
+def toml_entries(path: Path) -> dict[str, Any]:
+    """The entries of a file.
+
+    Raises:
+        ValueError: there is no such file, it is no TOML, or more than anybody writes; the message says which.
+        OSError: it cannot be read.
+    """
+    if not path.is_file():
+        lacks = "it is no regular file" if path.exists() else "there is no such file"
+        raise ValueError("it is a folder, not a file" if path.is_dir() else lacks)
+    if (size := path.stat().st_size) > LARGEST:
+        raise ValueError(f"{size / 1e6:.1f} MB is too long; at most {LARGEST / 1e6:g} MB")
+    try:
+        text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+    except UnicodeDecodeError as error:
+        raise ValueError(f"not TOML: {error}") from error
+    if found := TOO_DEEP.search(text):
+        raise ValueError(f"the key {found[0]!r:.{SHOWN}} has more than {DEEPEST} parts")
+    if found := TOO_LONG.search(text):
+        raise ValueError(f"the number {found[0]:.{SHOWN}} ... has more than {MOST_DIGITS} digits")
+    _require_shallow(text)
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:
+        raise ValueError(f"not TOML: {error}") from error
+
+
+def _require_shallow(text: str) -> None:
+    depth = 0
+    for found in BRACKET.finditer(text):
+        depth += bool(found["opens"]) - bool(found["closes"])
+        if depth > DEEPEST:
+            line = text.count("\n", 0, found.start()) + 1
+            raise ValueError(f"line {line} has brackets in brackets, more than {DEEPEST} deep")
