@@ -99,7 +99,11 @@ class Abandoned(BaseException):
     """Nobody waits any more for what a thread is at."""
 
 
-_is_abandoned: ContextVar[Callable[[], bool]] = ContextVar("is_abandoned", default=bool)
+def _never() -> bool:
+    return False
+
+
+_is_abandoned: ContextVar[Callable[[], bool]] = ContextVar("is_abandoned", default=_never)
 """Each thread has its own."""
 
 

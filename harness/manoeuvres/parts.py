@@ -200,6 +200,7 @@ def _added(drawn: Sequence[Lines]) -> Lines:
     """The sum of straight lines, with a corner where one of them has one and a jump where one jumps."""
     import numpy as np
 
+    drawn = [Lines(nanoseconds(one.times), one.values) for one in drawn]  # as they are evaluated
     times = np.unique(np.concatenate([one.times for one in drawn]))
     before, after = (np.sum([side(one, times) for one in drawn], axis=0) for side in (Lines.before, Lines.__call__))
     jumps = np.abs(after - before) > ROUNDING * np.maximum(np.abs(after), 1.0)

@@ -90,3 +90,12 @@ def test_a_part_that_cannot_be_is_refused(part, message):
 def test_what_is_just_allowed_is_taken():
     for part in (sine(1.0, 250.0), prbs(1.0, clock=0.002), step(0.0, 1.0), step(3600.0, 1.0)):
         assert np.isfinite(part(T)).all()
+
+
+@pytest.mark.parametrize("begin", [1.0 / 3.0, 0.1 + 0.2, 1.0 + 4e-10, 1.0 + 6e-10])
+def test_a_sum_jumps_where_its_parts_do_at_instants_that_are_no_whole_nanoseconds(begin: float) -> None:
+    end = begin + 2.0 / 3.0
+    both = summed([pulse(begin, end, 10.0), pulse(begin, end, -4.0), constant(1.0)])
+    assert isinstance(both, Lines)
+    instants = [begin - 2e-9, begin + 2e-9, 0.5 * (begin + end), end - 2e-9, end + 2e-9, end + 1.0]
+    assert both(instants).tolist() == [1.0, 7.0, 7.0, 7.0, 1.0, 1.0]
