@@ -18,7 +18,7 @@ from driveline.harness.views.markdown import markdown_table
 from driveline.harness.views.metrics_table import number
 
 CARS = (None, *sorted((ROOT / "examples" / "cars").glob("*.toml")))
-MANOEUVRES = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "drive", "creep")
+SHOWN_MANOEUVRES = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "drive", "creep")
 COLUMNS = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "response_delay", "withheld_time")
 SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column and metric.name in COLUMNS]
 
@@ -48,7 +48,7 @@ def _car(vehicle: Path | None, found: Found) -> str:
 
 
 def _rows(vehicle: Path | None, found: Found) -> Iterator[list[str]]:
-    for plant, manoeuvre in product(PLANTS, MANOEUVRES):
+    for plant, manoeuvre in product(PLANTS, SHOWN_MANOEUVRES):
         results = [found[Trial(vehicle, plant, manoeuvre, gains)] for gains in _shown(vehicle)]
         cells = (" / ".join(number(metric.of(each), column) for each in results) for metric, column in SHOWN)
         yield [plant, manoeuvre, *cells]
@@ -64,7 +64,7 @@ def make(folder: Path) -> None:
         Trial(vehicle, plant, manoeuvre, gains)
         for plant in PLANTS
         for vehicle in CARS
-        for manoeuvre in MANOEUVRES
+        for manoeuvre in SHOWN_MANOEUVRES
         for gains in _shown(vehicle)
     ]
     found = dict(zip(trials, run_many(measured, trials), strict=True))

@@ -19,7 +19,7 @@ from driveline.harness.design.design import design
 from driveline.harness.design.design_trials import controller_parameters, loop_records, settled
 from driveline.harness.design.design_weights import MOTOR, PLANT
 from driveline.harness.design.kalman import DesignError
-from driveline.harness.design.redesign import MANOEUVRES, softened
+from driveline.harness.design.redesign import REDESIGN_MANOEUVRES, softened
 from driveline.harness.design.uncertainty_box import Deviation, changed
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train import Parameters
@@ -338,11 +338,11 @@ def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
         assumed = identified_car(identified(recorded))
     except RecordingError as reason:
         return Redesigned(plant, number, {}, {}, {}, str(reason))
-    before = {name: settled(plant, name, true, seed) for name in MANOEUVRES}
+    before = {name: settled(plant, name, true, seed) for name in REDESIGN_MANOEUVRES}
     try:
         gains = design(assumed, weights=softened(assumed, {}))
     except DesignError as reason:
         return Redesigned(plant, number, before, {}, assumed, str(reason))
     controller = controller_parameters({**assumed, **gains}, plant)
-    after = {name: settled(plant, name, true | controller, seed) for name in MANOEUVRES}
+    after = {name: settled(plant, name, true | controller, seed) for name in REDESIGN_MANOEUVRES}
     return Redesigned(plant, number, before, after, assumed)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from rich.table import Table
 
 from docs.studies.imports import ROOT
-from driveline.fmus.building.one_car import DESIGN, DETAILED, FOLLOW, USUAL, of_one_car
+from driveline.fmus.building.one_car import DEFAULT_CAR, DESIGN, DETAILED, FOLLOW, of_one_car
 from driveline.fmus.building.oscillation import oscillation
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.base.interruption import script
@@ -49,7 +49,7 @@ def frequencies(car: Car) -> Frequencies:
         oscillation(plant, plant.Parameters(**{name: full[name] for name in plant.Parameters._fields if name in full}))
         for plant in (DESIGN, DETAILED)
     ]
-    J_1, J_2, C = (full.get(name, USUAL[name]) for name in ("J_1", "J_2", "C"))
+    J_1, J_2, C = (full.get(name, DEFAULT_CAR[name]) for name in ("J_1", "J_2", "C"))
     return Frequencies(sqrt(C * (1.0 / J_1 + 1.0 / J_2)) / (2.0 * pi), *(each.frequency for each in swings))
 
 
@@ -85,7 +85,7 @@ def main() -> None:
     usual = frequencies({}).apart
     for name, car in cars().items():
         found = frequencies(car)
-        k_s = of_one_car(car, FOLLOW).get("k_s", USUAL["k_s"])
+        k_s = of_one_car(car, FOLLOW).get("k_s", DEFAULT_CAR["k_s"])
         cells = [*(f"{f:.2f}" for f in found), *(f"{x:.4f}" for x in (found.apart, found.apart / usual)), f"{k_s:.0f}"]
         table.add_row(name, *cells)
     print_table(table)

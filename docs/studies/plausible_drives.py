@@ -19,7 +19,7 @@ from driveline.harness.base.interruption import script
 from driveline.harness.loop.built_fmus import built
 from driveline.harness.loop.places import BUILD, PLACES, PLANTS, T_S
 from driveline.harness.loop.settings import Settings
-from driveline.harness.manoeuvres.catalogue import USUAL
+from driveline.harness.manoeuvres.catalogue import USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.recordings.channels import Channel
@@ -48,7 +48,7 @@ class Judged(NamedTuple):
 
 def cases(count: int) -> list[tuple[Case, bool]]:
     """The drives, and whether they are damped."""
-    pairs = list(product(PLANTS, (manoeuvre.name for manoeuvre in USUAL)))
+    pairs = list(product(PLANTS, (manoeuvre.name for manoeuvre in USUAL_MANOEUVRES)))
     controller = PLACES["controller"][0]
     return [
         (Case(plant, controller, k + 1, manoeuvre), bool(k // len(pairs) % 2))

@@ -57,7 +57,7 @@ DECLARED = {
 }
 """The parameters of a car in both plants: who has it, and how it is declared."""
 
-USUAL: Mapping[str, float] = {name: variable.start for name, (_, variable) in DECLARED.items()}
+DEFAULT_CAR: Mapping[str, float] = {name: variable.start for name, (_, variable) in DECLARED.items()}
 """The default car."""
 
 
@@ -95,7 +95,7 @@ def differences(entries: Mapping[str, Any], others: Mapping[str, Any], taken: Co
     """
     before, after = of_one_car(entries, taken), of_one_car(others, taken)
     changed = {name: value for name, value in after.items() if before.get(name) != value}
-    return changed | {name: USUAL[name] for name in before.keys() - after.keys()}
+    return changed | {name: DEFAULT_CAR[name] for name in before.keys() - after.keys()}
 
 
 @cache
@@ -126,7 +126,7 @@ def _detailed(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     factor = 1.0
     if given and "k_s" not in car and ("C" in car or not any(name in car for name in SHAFTS)):
         wanted = _frequency(DESIGN, car) * _apart()
-        what = f"{_told(car | {'C': car.get('C', USUAL['C'])}, 'C', 'c_slip', 'k_g', 'k_p')}: k_s"
+        what = f"{_told(car | {'C': car.get('C', DEFAULT_CAR['C'])}, 'C', 'c_slip', 'k_g', 'k_p')}: k_s"
         factor = _solved(
             lambda factor: _frequency(DETAILED, _with_details(car, factor)), wanted, 1.0 / FURTHEST, FURTHEST, what
         )
@@ -144,7 +144,7 @@ def _with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
     """
 
     def over_usual(name: str) -> float:
-        return found.get(name, USUAL[name]) / USUAL[name]
+        return found.get(name, DEFAULT_CAR[name]) / DEFAULT_CAR[name]
 
     found = dict(car)
     factor = over_usual("k_s") if "k_s" in car else factor
@@ -154,14 +154,14 @@ def _with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
         **dict.fromkeys(WHEELS, over_usual("J_2") * ratio * ratio),
         **dict.fromkeys(WITH_MASS, over_usual("m")),
     }
-    found |= {name: USUAL[name] * by for name, by in scaled.items() if name not in car}
+    found |= {name: DEFAULT_CAR[name] * by for name, by in scaled.items() if name not in car}
     dampers = {name: sqrt(over_usual(k) * over_usual(J)) for name, (k, J) in DAMPERS.items()}
-    return found | {name: USUAL[name] * by for name, by in dampers.items() if name not in car}
+    return found | {name: DEFAULT_CAR[name] * by for name, by in dampers.items() if name not in car}
 
 
 def _require_agreeing(car: Mapping[str, float]) -> None:
     """Refuses wheels that are heavier than J_2, and an axle that carries more than the car or less than its hubs."""
-    full = {**USUAL, **_with_details(car, 1.0)}
+    full = {**DEFAULT_CAR, **_with_details(car, 1.0)}
     wheels, of_J_2 = full["J_w"] + full["J_g"], full["J_2"] * full["i"] ** 2
     if wheels > (1.0 + APART) * of_J_2:
         raise ParameterFileError(
@@ -219,7 +219,7 @@ def _close(frequency: float, other: float) -> bool:
 def _others_than_usual(found: Mapping[str, float]) -> dict[str, float]:
     """What has followed, rounded, where it is not that of the default car."""
     rounded = {name: float(f"{value:.{DIGITS}g}") for name, value in found.items()}
-    return {name: value for name, value in rounded.items() if value != USUAL[name]}
+    return {name: value for name, value in rounded.items() if value != DEFAULT_CAR[name]}
 
 
 def _told(car: Mapping[str, float], *names: str) -> str:

@@ -10,10 +10,9 @@ from ...fmus.building.options import add_parameter_files, folder, output_folder
 from ..base.errors import DrivelineError
 from ..base.plain_text import quoted
 from ..base.written_numbers import real, whole
-from ..cosimulation.limits import USUAL
+from ..cosimulation.limits import USUAL_LIMITS
 from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
-from ..views.figure_options import KINDS, FigureOptions
-from ..views.figure_options import USUAL as USUAL_KINDS
+from ..views.figure_options import KINDS, USUAL_KINDS, FigureOptions
 from ..views.signals_file import FORMATS
 
 OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
@@ -160,16 +159,16 @@ def add_limits(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--time-limit",
         type=seconds,
-        default=USUAL.call,
+        default=USUAL_LIMITS.call,
         metavar="SECONDS",
         help="how long a call of an FMU that is given by its path may last (default: %(default)g)",
     )
     group.add_argument(
         "--unpacked-limit",
         type=megabytes,
-        default=USUAL.unpacked,
+        default=USUAL_LIMITS.unpacked,
         metavar="MB",
-        help=f"how much it may unpack to (default: {USUAL.unpacked / 1e6:.0f})",
+        help=f"how much it may unpack to (default: {USUAL_LIMITS.unpacked / 1e6:.0f})",
     )
 
 

@@ -64,7 +64,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace:
 
 def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any], settings: Settings) -> Table:
     """The car, by the entries of its vehicle file, with what the controller assumed before and after."""
-    from ..design.redesign import MANOEUVRES, worth
+    from ..design.redesign import REDESIGN_MANOEUVRES, worth
 
     table = Table(title="settling time in ms and overshoot in %; each plant with what the vehicle file has of it")
     table.add_column("plant")
@@ -73,7 +73,7 @@ def _compared(car: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[
         for when in ("before", "after"):
             table.add_column(f"{what}\n{when}", justify="right")
     for plant in PLANTS:
-        for manoeuvre in MANOEUVRES:
+        for manoeuvre in REDESIGN_MANOEUVRES:
             both = [worth(plant, manoeuvre, car, assumed, settings) for assumed in (before, after)]
             cells = [f"{1e3 * settling:.0f}" for settling, _ in both] + [f"{1e2 * over:.1f}" for _, over in both]
             table.add_row(plant, manoeuvre, *cells)

@@ -14,14 +14,14 @@ from fmpy.model_description import ModelDescription
 from ..base.errors import WiringError
 from ..base.plain_text import plain
 from .fmu_archive import described
-from .limits import USUAL, Limits
+from .limits import USUAL_LIMITS, Limits
 
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 
 WHOLE = re.compile(r"[+-]?[0-9]{1,19}")
 
 
-def read(path: Path, limits: Limits = USUAL) -> ModelDescription:
+def read(path: Path, limits: Limits = USUAL_LIMITS) -> ModelDescription:
     """The model description of an FMU.
 
     Raises:

@@ -8,7 +8,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from ..base.errors import UnpackingError, WiringError
 from ..base.plain_text import plain, reason
-from .limits import USUAL, Limits
+from .limits import USUAL_LIMITS, Limits
 
 DESCRIPTION = "modelDescription.xml"
 
@@ -69,7 +69,7 @@ def entries(path: Path) -> list[ZipInfo]:
         raise WiringError(f"{path} is not an FMU: {reason(error)}") from error
 
 
-def described(path: Path, limits: Limits = USUAL) -> bytes:
+def described(path: Path, limits: Limits = USUAL_LIMITS) -> bytes:
     """The model description.
 
     Raises:

@@ -5,7 +5,7 @@ from pathlib import Path
 from fmpy.model_description import ModelVariable
 
 from . import description
-from .limits import USUAL, Limits
+from .limits import USUAL_LIMITS, Limits
 
 
 class Interface:
@@ -21,7 +21,7 @@ class Interface:
         any_value: NaN among the outputs is meant to be there.
     """
 
-    def __init__(self, path: Path, limits: Limits = USUAL) -> None:
+    def __init__(self, path: Path, limits: Limits = USUAL_LIMITS) -> None:
         """Reads the model description.
 
         Raises:

@@ -28,5 +28,5 @@ class Limits:
                 raise WiringError(f"Limits, {name} = {plain(repr(value), 60)}: it must be a number above 0")
 
 
-USUAL = Limits()
+USUAL_LIMITS = Limits()
 """The limits that hold by default."""

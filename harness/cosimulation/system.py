@@ -9,7 +9,7 @@ from typing import NamedTuple, NoReturn
 from ..base.errors import WiringError
 from ..base.known_names import nearest
 from ..base.plain_text import plain
-from .limits import USUAL, Limits
+from .limits import USUAL_LIMITS, Limits
 
 
 class Scheme(Enum):
@@ -75,7 +75,7 @@ class System:
     mapping: Mapping[str, str] = field(default_factory=dict[str, str])
     optional: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     own: frozenset[str] = frozenset()
-    limits: Limits = USUAL
+    limits: Limits = USUAL_LIMITS
     any_value: frozenset[str] = frozenset()
 
     @property

@@ -12,7 +12,7 @@ from .design import design
 from .design_trials import controller_parameters, loop_parameters, settled
 from .design_weights import WEIGHTS, Weights
 
-MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
+REDESIGN_MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
 """In which controllers are compared."""
 
 SOFTER, SOFTEST = 0.8, 0.25
@@ -38,8 +38,8 @@ def worth(
 
 
 def softened(car: Mapping[str, Any], before: Mapping[str, Any], settings: Settings | None = None) -> Weights:
-    """Weights of a design with which the car swings over less than before on both plants, in the mean over MANOEUVRES.
-    A lower washout does that; its price is torque that is withheld for longer.
+    """Weights of a design with which the car swings over less than before on both plants, in the mean over
+    REDESIGN_MANOEUVRES. A lower washout does that; its price is torque that is withheld for longer.
 
     Args:
         car: entries of the vehicle file of the car as it is known now.
@@ -60,5 +60,5 @@ def softened(car: Mapping[str, Any], before: Mapping[str, Any], settings: Settin
 
 def _overshoots(car: Mapping[str, Any], assumed: Mapping[str, Any], settings: Settings | None) -> np.ndarray:
     """Of each plant."""
-    found = [[worth(plant, name, car, assumed, settings)[1] for plant in PLANTS] for name in MANOEUVRES]
+    found = [[worth(plant, name, car, assumed, settings)[1] for plant in PLANTS] for name in REDESIGN_MANOEUVRES]
     return np.mean(found, axis=0)

@@ -8,7 +8,7 @@ from typing import TypedDict, Unpack
 
 from ..base.errors import WiringError
 from ..base.known_names import nearest
-from ..cosimulation.limits import USUAL, Limits
+from ..cosimulation.limits import USUAL_LIMITS, Limits
 from ..cosimulation.system import Scheme, System
 from .arguments import ARGUMENTS, require_arguments
 from .places import (
@@ -84,7 +84,7 @@ class Settings:
     folder: Path = BUILD
     build: str | None = None
     mapping: Mapping[str, str] = field(default_factory=dict)
-    limits: Limits = USUAL
+    limits: Limits = USUAL_LIMITS
 
     def __post_init__(self) -> None:
         require_arguments(**vars(self))

@@ -39,7 +39,7 @@ DRIVE = lines(
 
 _PRBS = binary_torque("prbs", mean=8.0, amplitude=15.0, clock=0.04, order=9, duration=10.0, v_0=15 * KMH)
 
-USUAL = (
+USUAL_MANOEUVRES = (
     step("tipin15", "tip-in through the backlash at 15 km/h", 15 * KMH, -12.0, 100.0),
     step("tipin50", "tip-in through the backlash at 50 km/h", 50 * KMH, -12.0, 100.0),
     step("tipin15r", "tip-in through the backlash at 15 km/h in 150 ms", 15 * KMH, -12.0, 100.0, 0.15),
@@ -179,7 +179,7 @@ EVERYDAY = (
 )
 """The days of an electric car."""
 
-MANOEUVRES: dict[str, Manoeuvre] = {manoeuvre.name: manoeuvre for manoeuvre in (*USUAL, *EVERYDAY)}
+MANOEUVRES: dict[str, Manoeuvre] = {manoeuvre.name: manoeuvre for manoeuvre in (*USUAL_MANOEUVRES, *EVERYDAY)}
 """The manoeuvres of the project, by name."""
 
-COMPARED = tuple(each.name for each in USUAL if each.name not in ("prbs15", "launch_brake", "hill_hold"))
+COMPARED = tuple(each.name for each in USUAL_MANOEUVRES if each.name not in ("prbs15", "launch_brake", "hill_hold"))

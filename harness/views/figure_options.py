@@ -9,7 +9,7 @@ KINDS = {
 }
 """The files that a figure can be, and what for."""
 
-USUAL = ("png", "pdf")
+USUAL_KINDS = ("png", "pdf")
 
 
 class FigureOptions(NamedTuple):
@@ -23,7 +23,7 @@ class FigureOptions(NamedTuple):
 
     caption: str = ""
     window: tuple[float, float] | None = None
-    kinds: tuple[str, ...] = USUAL
+    kinds: tuple[str, ...] = USUAL_KINDS
 
     def clipped(self, start: float, end: float) -> tuple[float, float]:
         """The part of these times that the window shows."""

@@ -15,7 +15,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from ..base.atomic_files import complete
-from .figure_options import PLAIN, USUAL, FigureOptions
+from .figure_options import PLAIN, USUAL_KINDS, FigureOptions
 from .panels import MARKERS, Arrow, Axis, Band, Bars, Curve, Dashes, Level, Panel, Part, Points, Spans, within
 
 STYLE = {
@@ -250,7 +250,7 @@ def legend(axes: Axes, columns: int = 5) -> None:
     made.set_in_layout(len(made.legend_handles) > columns)  # in one row there is room, also above the next column
 
 
-def save(figure: Figure, stem: Path, kinds: Sequence[str] = USUAL) -> list[Path]:
+def save(figure: Figure, stem: Path, kinds: Sequence[str] = USUAL_KINDS) -> list[Path]:
     """Writes a figure in files of these kinds (`harness.views.figure_options.KINDS`), without a date; returns them."""
     files = []
     for kind in kinds:

@@ -15,7 +15,7 @@ HELD_OUT_MANOEUVRES = ("tipin50r", "launch_brake", "hill_hold")
 HELD_OUT_SEEDS = (11, 12, 13)
 """Of noise and jitter. The corners of the box are the only draws of its parameters; what is inside is held out."""
 
-MANOEUVRES = tuple(name for name in COMPARED if name not in HELD_OUT_MANOEUVRES)
+SEARCHED_MANOEUVRES = tuple(name for name in COMPARED if name not in HELD_OUT_MANOEUVRES)
 SEEDS = (1, 2, 3)
 
 LASTS = 2.0
@@ -53,7 +53,7 @@ class Run(NamedTuple):
 
 def _runs() -> tuple[Run, ...]:
     """All manoeuvres with the car as it is, and a few of them with a slow motor and at corners of the box."""
-    found = [(plant, name, NOMINAL, 1.0) for plant in PLANTS for name in MANOEUVRES]
+    found = [(plant, name, NOMINAL, 1.0) for plant in PLANTS for name in SEARCHED_MANOEUVRES]
     found += [(plant, "tipin15", SLOW_MOTOR, 0.5) for plant in PLANTS]
     for row in screening():
         high = dict(zip([*BOX, "plant"], row, strict=False))

@@ -9,7 +9,7 @@ from ...base.plain_text import plain
 from ...cosimulation import fmu_archive
 from ...cosimulation.interface import Interface
 from ...cosimulation.isolated_process import IsolatedProcess
-from ...cosimulation.limits import USUAL, Limits
+from ...cosimulation.limits import USUAL_LIMITS, Limits
 from ...cosimulation.unpacked_fmu import Unpacked, unpacked
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
@@ -22,7 +22,9 @@ READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU"
 RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BINARY_RULES, *BEHAVIOUR_RULES)
 
 
-def check(path: Path, limits: Limits = USUAL, quick: bool = False, ignored: Collection[str] = ()) -> Iterator[Verdict]:
+def check(
+    path: Path, limits: Limits = USUAL_LIMITS, quick: bool = False, ignored: Collection[str] = ()
+) -> Iterator[Verdict]:
     """Checks an FMU, one verdict after the other; one that cannot be unpacked or read is not looked at any further.
 
     The behaviours are tried in a process of their own; an FMU that ends it in the default experiment is not tried

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...cosimulation.system import System
 from ...loop.settings import Settings
-from ...manoeuvres.catalogue import USUAL
+from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from ...metrics.evaluate import at_samples
 from ...simulation.simulate import simulate
 from .comparison import responses
@@ -49,7 +49,7 @@ def in_loop(
     """
     with TemporaryDirectory(prefix="driveline-") as temporary:
         path = built_on_target(controller, Path(temporary))
-        for manoeuvre in USUAL:
+        for manoeuvre in USUAL_MANOEUVRES:
             there = at_samples(simulate(manoeuvre, settings, controller=path))
             here = at_samples(simulate(manoeuvre, settings))
             off_line = responses(programs.single(), fed(manoeuvre, there, system, names))

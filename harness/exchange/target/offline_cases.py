@@ -10,7 +10,7 @@ import numpy as np
 from ...cosimulation.interface import Interface
 from ...cosimulation.system import System
 from ...loop.settings import Settings
-from ...manoeuvres.catalogue import USUAL
+from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
 from ...manoeuvres.town_drive import PATH as TOWN_DRIVE
@@ -74,7 +74,7 @@ def cases_in_loop(
     system: System, interfaces: Mapping[str, Interface], names: Sequence[str], settings: Settings
 ) -> Iterator[Case]:
     """What it got in every manoeuvre and on the recorded drive; arguments as for `recorded`."""
-    for manoeuvre in USUAL:
+    for manoeuvre in USUAL_MANOEUVRES:
         yield recorded(manoeuvre, system, names, settings)
     track = Track.of(read_drive(Path(TOWN_DRIVE)), torque_limit(interfaces["motor"], settings.parameters))
     load = RoadLoad.of_plant(interfaces["plant"], settings.parameters)

@@ -15,7 +15,7 @@ from ...base.progress import progress
 from ...cosimulation.wiring import fit
 from ...loop.places import T_S
 from ...loop.settings import Settings, loop
-from ...manoeuvres.catalogue import USUAL
+from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from .c_export import with_values
 from .comparison import Comparison, compare, responses
 from .in_loop import in_loop
@@ -26,7 +26,7 @@ from .sample_timing import schedule
 from .size import size_of
 from .target_page import page
 
-STEPS = 1 + (len(USUAL) + 1) + (len(USUAL) + 4) + len(USUAL)
+STEPS = 1 + (len(USUAL_MANOEUVRES) + 1) + (len(USUAL_MANOEUVRES) + 4) + len(USUAL_MANOEUVRES)
 """For the progress: the checks; what the loop gives; these cases and those that are drawn; the target in the loop."""
 
 Piece = TypeVar("Piece")

@@ -8,7 +8,7 @@ from ....fmus.target.deviations import LARGEST_STACK, Finding, reason
 from ....fmus.target.image import CODE, PACKAGES, PROCESSOR
 from ....fmus.target.link import LIMIT
 from ...loop.places import T_S
-from ...manoeuvres.catalogue import USUAL
+from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from ...views.markdown import markdown_table
 from .comparison import ABSOLUTE, RELATIVE, Comparison
 from .in_loop import InLoop
@@ -44,7 +44,7 @@ def page(found: Record, controller: str, plant: str) -> str:
         period=T_S * 1e3,
         controller=controller,
         plant=plant,
-        manoeuvres=len(USUAL),
+        manoeuvres=len(USUAL_MANOEUVRES),
         wider=WIDER,
         compiler="arm-none-eabi-gcc",
         flags=" ".join((*PROCESSOR, *CODE)),

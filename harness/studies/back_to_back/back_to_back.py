@@ -21,7 +21,7 @@ from ...cosimulation.runs import run
 from ...cosimulation.system import Scheme, System
 from ...loop.places import NATIVE, PLANTS
 from ...loop.settings import loop
-from ...manoeuvres.catalogue import KMH, USUAL
+from ...manoeuvres.catalogue import KMH, USUAL_MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...simulation.many_runs import run_many
 from ...simulation.simulate import signals, start
@@ -132,7 +132,7 @@ def compare_all(steps: int, folder: Path) -> tuple[dict[str, Differences], list[
     alone = run_many(
         lambda name: compare_block(name, random_inputs(FMUS[name].block, steps), folder), FMUS, label="blocks alone"
     )
-    cases = [(plant, each) for plant in PLANTS for each in USUAL]
+    cases = [(plant, each) for plant in PLANTS for each in USUAL_MANOEUVRES]
     found = run_many(lambda case: compare_loop(*case, folder), cases, label="blocks in the loop")
     rows = [LoopRow(plant, each.name, blocks) for (plant, each), blocks in zip(cases, found, strict=True)]
     return dict(zip(FMUS, alone, strict=True)), rows

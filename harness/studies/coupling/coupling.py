@@ -42,7 +42,7 @@ def short(name: str, description: str, T_driver: Signal) -> Manoeuvre:
     return Manoeuvre(name, description, duration=0.6, v_0=15 * KMH, T_driver=T_driver)
 
 
-MANOEUVRES = (
+COUPLING_MANOEUVRES = (
     short("in contact", "20 to 100 N.m, the teeth stay in contact", lines((0.1, 20.0), (0.1, 100.0))),
     short("through the gap", "-12 to 100 N.m, through the backlash", lines((0.1, -12.0), (0.1, 100.0))),
 )
@@ -122,7 +122,7 @@ def compare(
 
 def compare_all(folder: Path = BUILD) -> list[Comparison]:
     """The comparisons of both plants, all manoeuvres and all schemes, with the FMUs in `folder`."""
-    cases = product(PLANTS, MANOEUVRES, Scheme)
+    cases = product(PLANTS, COUPLING_MANOEUVRES, Scheme)
     return [compare(plant, manoeuvre, scheme, folder=folder) for plant, manoeuvre, scheme in cases]
 
 

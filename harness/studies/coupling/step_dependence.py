@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...loop.places import BUILD, PLANTS, T_S
-from ...manoeuvres.catalogue import MANOEUVRES, USUAL
+from ...manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
 from ...metrics.declaration import declared
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
@@ -29,7 +29,9 @@ class Case(NamedTuple):
     control: bool
 
 
-CASES = tuple(Case(plant, each.name, control) for plant in PLANTS for each in USUAL for control in (False, True))
+CASES = tuple(
+    Case(plant, each.name, control) for plant in PLANTS for each in USUAL_MANOEUVRES for control in (False, True)
+)
 
 
 def deviations(coarse: Metrics, fine: Metrics) -> dict[str, float]:

@@ -175,11 +175,11 @@ def analyse(settings: Mapping[str, Settings]) -> Analysis:
     found = dict(zip(parts, run_many(linear, parts, label="linear loop"), strict=True))
 
     changed = {plant: sensitivity.varied(plant, controller, parameters[plant]) for plant in plants}
-    runs = [Run(plant, name) for plant in plants for name in dict.fromkeys((*ESTIMATED, *sensitivity.MANOEUVRES))]
+    runs = [Run(plant, name) for plant in plants for name in dict.fromkeys((*ESTIMATED, *sensitivity.VARIED_IN))]
     runs += [
         Run(plant, name, parameter, factor * value)
         for plant in plants
-        for name in sensitivity.MANOEUVRES
+        for name in sensitivity.VARIED_IN
         for parameter, value in changed[plant].items()
         for factor in FACTORS
     ]
@@ -198,5 +198,5 @@ def analyse(settings: Mapping[str, Settings]) -> Analysis:
         {plant: found[Part(plant, "backlash")][0] for plant in plants},
         {plant: found[Part(plant, "backlash")][1] for plant in plants},
         {(plant, name): worth[Run(plant, name)][1] for plant in plants for name in ESTIMATED},
-        [depends(p, name, parameter) for p in plants for name in sensitivity.MANOEUVRES for parameter in changed[p]],
+        [depends(p, name, parameter) for p in plants for name in sensitivity.VARIED_IN for parameter in changed[p]],
     )

@@ -18,7 +18,7 @@ from ...views.figure_style import matrix_axes, sheet
 CHANGE = 0.1
 """By what share of itself each parameter is larger and smaller."""
 
-MANOEUVRES = ("tipin15", "launch")
+VARIED_IN = ("tipin15", "launch")
 
 SHOWN = ("overshoot", "gear_torque_rms", "jerk_rms", "response_delay", "withheld_time")
 """The metrics whose dependence is computed."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from math import inf, nan
 from typing import NamedTuple
 
-from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.declaration import Column, Metric, declared
 from ...metrics.run_metrics import Metrics
 from ...metrics.step_response import SETTLED
 
-MANOEUVRES = ("tipin15", "tipout", "launch")
+ROBUSTNESS_MANOEUVRES = ("tipin15", "tipout", "launch")
 
 LARGEST_PEAK = 2.0
 """Over the largest torque of the motor; so far swings a spring without damping on which that torque is put at once."""
@@ -77,7 +77,7 @@ class Outcome:
 
     @property
     def quiet(self) -> bool:
-        step = CATALOGUE[self.case.manoeuvre].dT or nan
+        step = MANOEUVRES[self.case.manoeuvre].dT or nan
         return self.magnitude("end_swing") <= SETTLED * abs(step)
 
     @property

@@ -9,7 +9,7 @@ from ...design.uncertainty_box import BOX, DOUBLINGS, LOSS
 from ...simulation.case_archive import Table
 from ...simulation.many_runs import run_many
 from .case_runs import CaseRunner
-from .outcome import MANOEUVRES, METRICS, Case, Outcome
+from .outcome import METRICS, ROBUSTNESS_MANOEUVRES, Case, Outcome
 
 
 def cases(loops: Iterable[tuple[str, str]], numbers: Sequence[int]) -> list[Case]:
@@ -18,7 +18,7 @@ def cases(loops: Iterable[tuple[str, str]], numbers: Sequence[int]) -> list[Case
         Case(plant, controller, number, manoeuvre)
         for plant, controller in loops
         for number in numbers
-        for manoeuvre in MANOEUVRES
+        for manoeuvre in ROBUSTNESS_MANOEUVRES
     ]
 
 
@@ -41,12 +41,16 @@ def campaign(
 def order(runner: CaseRunner) -> Callable[[Case], tuple[int, int, int]]:
     """Where a case stands among all those of its loops."""
     loops = list(runner.loops)
-    return lambda case: (loops.index((case.plant, case.controller)), case.number, MANOEUVRES.index(case.manoeuvre))
+    return lambda case: (
+        loops.index((case.plant, case.controller)),
+        case.number,
+        ROBUSTNESS_MANOEUVRES.index(case.manoeuvre),
+    )
 
 
 def distinguishing(runner: CaseRunner) -> dict[str, Any]:
     """All that the runs depend on, beside what was set."""
-    drawn = repr((dict(BOX), DOUBLINGS, LOSS, MANOEUVRES))
+    drawn = repr((dict(BOX), DOUBLINGS, LOSS, ROBUSTNESS_MANOEUVRES))
     files = {path.stem: digest for loop in runner.loops.values() for path, digest in loop.digests.items()}
     return {"draws": f"sha256:{sha256(drawn.encode()).hexdigest()}", "fmus": files, "seed": runner.seed}
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from ...manoeuvres.catalogue import MANOEUVRES
 from ...views.colours import COLOURS, GREY
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import plot
@@ -72,4 +72,4 @@ def plot_draw(runner: CaseRunner, case: Case, caption: str, stem: Path) -> list[
     runs = [runner.results(case, control) for control in (False, True)]
     drawn = f"draw {draw(case.number, runner.seed)}; {case.controller}"
     options = FigureOptions("\n".join(filter(None, (drawn, caption))))
-    return plot_step(runs, CATALOGUE[case.manoeuvre], case.plant, stem, options)
+    return plot_step(runs, MANOEUVRES[case.manoeuvre], case.plant, stem, options)

@@ -11,13 +11,13 @@ from ...base.atomic_files import write_text
 from ...base.csv_file import write_csv, write_rows
 from ...base.errors import SimulationError
 from ...design.uncertainty_box import BOX, DOUBLINGS, LOSS, SCALED, SHORTEST, SPREAD, Deviation
-from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from ...manoeuvres.catalogue import MANOEUVRES
 from ...views.markdown import markdown_table
 from ...views.metrics_table import write_metrics
 from ...views.terminal import print_table
 from .case_runs import CaseRunner
 from .draws import draw
-from .outcome import MANOEUVRES, SHOWN, VERDICTS, Outcome
+from .outcome import ROBUSTNESS_MANOEUVRES, SHOWN, VERDICTS, Outcome
 from .robustness_figures import plot_distributions, plot_draw
 from .summary import Summary, cells, goal, summaries
 
@@ -107,7 +107,7 @@ def page(summaries: Sequence[Summary], seed: int, arguments: str, drawn: Sequenc
         arguments=arguments,
         cases=count,
         runs=count * len(summaries),
-        manoeuvres="\n".join(f"- `{name}`: {CATALOGUE[name].description}" for name in MANOEUVRES),
+        manoeuvres="\n".join(f"- `{name}`: {MANOEUVRES[name].description}" for name in ROBUSTNESS_MANOEUVRES),
         box=markdown_table(["what", "least", "most", "spread evenly"], _box(), labels=1),
         spread=1e3 * SPREAD,
         shortest=1e3 * SHORTEST,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import SimulationError
-from ...manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from ...manoeuvres.catalogue import MANOEUVRES
 from ...views.html.figure_selector import chosen
 from ...views.html.linked_figures import linked, stacked, tables
 from ...views.html.paired_runs import Pair, pair_sections
@@ -88,7 +88,7 @@ def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[st
         case = summary.worst.case
         with suppress(SimulationError):  # a car that is not fit to be driven without damping
             runs = (runner.results(case, control) for control in (False, True))
-            yield _name(summary), Pair(CATALOGUE[case.manoeuvre], *runs)
+            yield _name(summary), Pair(MANOEUVRES[case.manoeuvre], *runs)
 
 
 def _name(summary: Summary) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...metrics.declaration import Column
-from .outcome import MANOEUVRES, METRICS, SHOWN, Outcome
+from .outcome import METRICS, ROBUSTNESS_MANOEUVRES, SHOWN, Outcome
 
 LEVELS = (0.5, 0.95)
 
@@ -55,7 +55,7 @@ def summaries(outcomes: Iterable[Outcome]) -> list[Summary]:
         case = outcome.case
         found.setdefault((case.plant, case.controller, case.manoeuvre), []).append(outcome)
     plants = list(dict.fromkeys(plant for plant, _, _ in found))
-    order = sorted(found, key=lambda key: (plants.index(key[0]), MANOEUVRES.index(key[2])))
+    order = sorted(found, key=lambda key: (plants.index(key[0]), ROBUSTNESS_MANOEUVRES.index(key[2])))
     return [Summary(*key, found[key]) for key in order]
 
 

@@ -6,11 +6,11 @@ import pytest
 from docs.studies.one_car import cars, frequencies
 from driveline.fmus.building.one_car import (
     DECLARED,
+    DEFAULT_CAR,
     DESIGN,
     DETAILED,
     FOLLOW,
     SHAFTS,
-    USUAL,
     differences,
     of_one_car,
     updated,
@@ -40,7 +40,7 @@ def test_both_plants_swing_as_far_apart_as_with_the_default_car(name: str, car: 
 
 
 def test_the_default_car_is_left_as_it_is() -> None:
-    every = {name: start for name, start in USUAL.items() if name in FOLLOW or name in DESIGN.Parameters._fields}
+    every = {name: start for name, start in DEFAULT_CAR.items() if name in FOLLOW or name in DESIGN.Parameters._fields}
     assert followed() == {}
     assert followed(**every) == {}
     for name in every.keys() - {*SHAFTS}:
@@ -51,7 +51,7 @@ def test_the_default_car_is_left_as_it_is() -> None:
 @pytest.mark.parametrize("name", ["C", "k_s"])
 @pytest.mark.parametrize("kind", [np.float64, np.float32, int])
 def test_numbers_of_all_kinds_are_taken(name: str, kind: type) -> None:
-    value = 1.1 * USUAL[name] // 1
+    value = 1.1 * DEFAULT_CAR[name] // 1
     assert of_one_car({name: kind(value)}, FOLLOW) == of_one_car({name: value}, FOLLOW)
 
 
@@ -67,7 +67,7 @@ def test_gains_and_other_blocks_pass() -> None:
 
 def test_a_stiffer_drive_train_is_stiffer_in_detail_with_the_same_shares() -> None:
     found = followed(C=160.0)
-    ratios = {name: found[name] / USUAL[name] for name in SHAFTS}
+    ratios = {name: found[name] / DEFAULT_CAR[name] for name in SHAFTS}
     assert min(ratios.values()) > 160.0 / 117.4, "as the tyres stay as soft as they were"
     assert ratios["k_g"] == pytest.approx(ratios["k_s"], rel=1e-5)
     assert ratios["k_p"] == pytest.approx(ratios["k_s"], rel=1e-5)
@@ -90,9 +90,9 @@ def test_what_the_design_alone_takes_follows_without_the_details() -> None:
 def test_one_of_gear_and_mounts_stands_and_the_others_make_up_for_it() -> None:
     found = followed(C=117.4, k_g=4e5)
     assert found.keys() >= {"k_s", "k_p"}
-    assert found["k_s"] < USUAL["k_s"]
+    assert found["k_s"] < DEFAULT_CAR["k_s"]
     assert frequencies({"C": 117.4, "k_g": 4e5}).apart == pytest.approx(APART, rel=1e-4)
-    assert followed(k_g=4e5)["C"] > USUAL["C"]
+    assert followed(k_g=4e5)["C"] > DEFAULT_CAR["C"]
 
 
 def test_the_wheels_follow_from_the_inertia_at_the_wheels() -> None:
@@ -104,18 +104,18 @@ def test_the_wheels_follow_from_the_inertia_at_the_wheels() -> None:
 
 def test_a_heavier_car_keeps_the_frequency_and_damping_ratio_of_its_pitch() -> None:
     found = followed(m=2900.0)
-    assert {found[name] / USUAL[name] for name in ("F_z0", "J_y", "k_th", "d_th")} == {2.0}
+    assert {found[name] / DEFAULT_CAR[name] for name in ("F_z0", "J_y", "k_th", "d_th")} == {2.0}
 
 
 def test_dampers_keep_the_damping_ratio() -> None:
     found = followed(J_2=1.2, C=80.0)
-    k, J = found["k_s"] / USUAL["k_s"], found["J_w"] / USUAL["J_w"]
-    assert found["d_s"] / USUAL["d_s"] == pytest.approx((k * J) ** 0.5, rel=1e-5)
+    k, J = found["k_s"] / DEFAULT_CAR["k_s"], found["J_w"] / DEFAULT_CAR["J_w"]
+    assert found["d_s"] / DEFAULT_CAR["d_s"] == pytest.approx((k * J) ** 0.5, rel=1e-5)
 
 
 @pytest.mark.parametrize(("k_s", "disagrees"), [(0.90, True), (0.92, False), (1.08, False), (1.12, True)])
 def test_shafts_that_make_another_frequency_by_three_per_cent_disagree(k_s: float, disagrees: bool) -> None:
-    entries = {"C": 117.4, **{name: k_s * USUAL[name] for name in SHAFTS}}
+    entries = {"C": 117.4, **{name: k_s * DEFAULT_CAR[name] for name in SHAFTS}}
     apart = frequencies({name: entries[name] for name in SHAFTS}).design / frequencies({}).design
     if not disagrees:
         assert 1.0 / 1.03 < apart < 1.03
@@ -154,7 +154,7 @@ def test_a_stiffness_that_becomes_known_replaces_the_shafts() -> None:
 
 
 def test_what_no_longer_follows_goes_back_to_the_default_car() -> None:
-    assert differences({"m": 2900.0}, {}, FOLLOW)["F_z0"] == USUAL["F_z0"]
+    assert differences({"m": 2900.0}, {}, FOLLOW)["F_z0"] == DEFAULT_CAR["F_z0"]
     assert differences({"m": 2900.0}, {"m": 2900.0}, FOLLOW) == {}
     assert differences({}, {"C": 80.0}, ["C"]) == {"C": 80.0}
 

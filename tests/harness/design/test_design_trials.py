@@ -13,13 +13,13 @@ from driveline.harness.simulation.many_runs import run_many
 from tests import ROOT
 
 CARS = {path.stem: path for path in sorted((ROOT / "examples" / "cars").glob("*.toml"))}
-MANOEUVRES = ("tipin15", "tipin50")
+TRIED_MANOEUVRES = ("tipin15", "tipin50")
 MEASURES = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "jerk_rms_to_50_Hz")
 
 TRIALS = [
     Trial(path, PLANTS[0], manoeuvre, gains)
     for path in CARS.values()
-    for manoeuvre in MANOEUVRES
+    for manoeuvre in TRIED_MANOEUVRES
     for gains in (Gains.DEFAULT, Gains.OWN)
 ]
 
@@ -30,7 +30,7 @@ def found(both_built: Path) -> dict[Trial, Metrics]:
     return dict(zip(TRIALS, run_many(run, TRIALS, workers=1), strict=True))
 
 
-@pytest.mark.parametrize("manoeuvre", MANOEUVRES)
+@pytest.mark.parametrize("manoeuvre", TRIED_MANOEUVRES)
 @pytest.mark.parametrize("car", CARS)
 def test_its_own_gains_beat_those_of_the_default_car(car: str, manoeuvre: str, found: dict[Trial, Metrics]) -> None:
     own, default = (found[Trial(CARS[car], PLANTS[0], manoeuvre, gains)] for gains in (Gains.OWN, Gains.DEFAULT))

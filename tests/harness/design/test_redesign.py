@@ -9,7 +9,7 @@ import pytest
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import WEIGHTS
-from driveline.harness.design.redesign import MANOEUVRES, MARGIN, SOFTER, SOFTEST, softened, worth
+from driveline.harness.design.redesign import MARGIN, REDESIGN_MANOEUVRES, SOFTER, SOFTEST, softened, worth
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
@@ -28,7 +28,7 @@ def overshoot(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
     ) -> tuple[float, float]:
         assert car == CAR
         return 0.1, (of["before"] if "omega_w" not in assumed else of[plant] * assumed["omega_w"]) * (
-            2.0 if manoeuvre == MANOEUVRES[0] else 1.0
+            2.0 if manoeuvre == REDESIGN_MANOEUVRES[0] else 1.0
         )
 
     monkeypatch.setattr(redesign, "worth", pretended)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.harness.manoeuvres.catalogue import COMPARED, EVERYDAY, MANOEUVRES, USUAL
+from driveline.harness.manoeuvres.catalogue import COMPARED, EVERYDAY, MANOEUVRES, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.prbs import shift_register
 from driveline.harness.manoeuvres.signals import FlatSine, Held, lines
 
@@ -83,8 +83,8 @@ def test_compared_are_the_manoeuvres_of_the_main_job():
 
 
 def test_the_everyday_ones_are_known_by_name_and_no_study_drives_them() -> None:
-    assert list(MANOEUVRES) == [each.name for each in (*USUAL, *EVERYDAY)]
-    assert len(USUAL) == 13
+    assert list(MANOEUVRES) == [each.name for each in (*USUAL_MANOEUVRES, *EVERYDAY)]
+    assert len(USUAL_MANOEUVRES) == 13
     assert {"regen", "one_pedal_hard", "blending", "hill_start", "park_back", "abs"} <= {each.name for each in EVERYDAY}
     assert not {each.name for each in EVERYDAY} & set(COMPARED)
 

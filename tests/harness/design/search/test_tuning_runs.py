@@ -11,7 +11,7 @@ from driveline.harness.design.search.tuning_runs import (
 )
 from driveline.harness.design.uncertainty_box import BOX, NOMINAL
 from driveline.harness.loop.places import PLANTS, T_S
-from driveline.harness.manoeuvres.catalogue import COMPARED, USUAL
+from driveline.harness.manoeuvres.catalogue import COMPARED, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 
 PART_OF_ANOTHER = {"prbs15"}
@@ -21,7 +21,7 @@ def test_every_usual_manoeuvre_is_driven_on_both_plants_or_held_out() -> None:
     for plant in PLANTS:
         in_runs = {run.name for run in RUNS if run.plant == plant and run.deviation == NOMINAL}
         assert in_runs.isdisjoint(HELD_OUT_MANOEUVRES)
-        assert in_runs | {*HELD_OUT_MANOEUVRES} | PART_OF_ANOTHER == {each.name for each in USUAL}
+        assert in_runs | {*HELD_OUT_MANOEUVRES} | PART_OF_ANOTHER == {each.name for each in USUAL_MANOEUVRES}
     assert {*COMPARED} & {*HELD_OUT_MANOEUVRES} == {"tipin50r"}
 
 

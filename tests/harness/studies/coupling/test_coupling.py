@@ -10,7 +10,7 @@ from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.studies.coupling import coupling
 from driveline.harness.studies.coupling.coupling import (
-    MANOEUVRES,
+    COUPLING_MANOEUVRES,
     NOISELESS,
     PLANTS,
     SIGNALS,
@@ -24,7 +24,7 @@ from driveline.harness.studies.coupling.dead_time import dead_times, lateness
 from driveline.harness.studies.coupling.step_dependence import Case
 from tests.foreign import tampered
 
-IN_CONTACT = MANOEUVRES[0]
+IN_CONTACT = COUPLING_MANOEUVRES[0]
 
 
 @cache
@@ -39,7 +39,7 @@ def reference_once(monkeypatch):
     monkeypatch.setattr(coupling, "reference", once)
 
 
-@pytest.mark.parametrize("manoeuvre", MANOEUVRES, ids=lambda manoeuvre: manoeuvre.name)
+@pytest.mark.parametrize("manoeuvre", COUPLING_MANOEUVRES, ids=lambda manoeuvre: manoeuvre.name)
 @pytest.mark.parametrize("plant", PLANTS)
 def test_propagated_comes_near_to_the_monolithic_solution_with_a_high_power_of_the_step(native, plant, manoeuvre):
     """Lines through values and derivatives; nothing else differs."""

@@ -11,7 +11,7 @@ import pytest
 from driveline.harness.loop.places import T_S
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.studies.coupling.coupling import MANOEUVRES
+from driveline.harness.studies.coupling.coupling import COUPLING_MANOEUVRES
 from driveline.harness.studies.coupling.step_dependence import Case, compare, deviations
 
 VALUES: dict[str, Any] = {metric.name: 2.0 for metric in declared(Metrics)}
@@ -49,6 +49,6 @@ def test_every_metric_is_within_one_percent_of_that_with_half_the_step(
 
 
 def test_the_manoeuvres_demand_what_they_say() -> None:
-    for manoeuvre, (low, high) in zip(MANOEUVRES, [(20.0, 100.0), (-12.0, 100.0)], strict=True):
+    for manoeuvre, (low, high) in zip(COUPLING_MANOEUVRES, [(20.0, 100.0), (-12.0, 100.0)], strict=True):
         assert f"{low:g} to {high:g} N.m" in manoeuvre.description
         assert (manoeuvre.T_driver(np.array(0.0)), manoeuvre.T_driver(np.array(0.2))) == (low, high)

@@ -9,13 +9,13 @@ from driveline.harness.base.errors import DrivelineError, SimulationError, Unpac
 from driveline.harness.design.uncertainty_box import Deviation, changed, deviating
 from driveline.harness.loop.places import PLACES
 from driveline.harness.loop.settings import Settings
-from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.draws import draw
-from driveline.harness.studies.robustness.outcome import MANOEUVRES, Case
+from driveline.harness.studies.robustness.outcome import ROBUSTNESS_MANOEUVRES, Case
 from driveline.harness.studies.robustness.robustness_campaign import RUNS, campaign, cases
 from tests.harness.studies.robustness.outcomes import outcome
 
@@ -53,7 +53,7 @@ def test_what_an_fmu_refuses_is_an_outcome_and_what_the_machine_refuses_is_not(e
 
 def test_every_controller_gets_every_draw_in_every_manoeuvre():
     found = campaign(Pretended(), [1, 2], workers=1)
-    expected = {(c, n, m) for _, c in LOOPS for n in (1, 2) for m in MANOEUVRES}
+    expected = {(c, n, m) for _, c in LOOPS for n in (1, 2) for m in ROBUSTNESS_MANOEUVRES}
     assert len(found) == len(expected)
     assert {(each.case.controller, each.case.number, each.case.manoeuvre) for each in found} == expected
 
@@ -98,10 +98,10 @@ def test_a_case_is_the_drawn_car_with_the_drawn_noise(controllers, plant, contro
     case, drawn = Case(plant, controller, 3, "tipout"), draw(3, 1)
     settings = {"folder": controllers, "build": "native", "controller": controller, "seed": drawn.noise}
     parameters = deviating({}, plant, controller, drawn.deviation)
-    expected = simulate(CATALOGUE["tipout"], plant, parameters=parameters, **settings)
+    expected = simulate(MANOEUVRES["tipout"], plant, parameters=parameters, **settings)
     made = runner(controllers, plant, controller)
     assert (made.results(case) == expected).all()
-    metrics, found = evaluate(expected, CATALOGUE["tipout"]), made.outcome(case).measured
+    metrics, found = evaluate(expected, MANOEUVRES["tipout"]), made.outcome(case).measured
     assert found["settling_time"] == metrics.settling_time
     assert found["gear_torque_peak"] == np.abs(expected["plant.T_gear"]).max() / 180.0
 
