@@ -12,6 +12,7 @@ from bokeh.server.server import Server
 from bokeh.settings import settings
 
 from ..base.errors import DrivelineError
+from ..base.interruption import between_callbacks
 from .admission import Admission
 from .request_runs import RequestRunner
 from .view import Save, Typed, View
@@ -57,9 +58,10 @@ def serve(
             unused_session_lifetime_milliseconds=VANISHED,
         )
         try:
-            announce(f"http://{ADDRESS}:{port}/")
-            server.start()
-            server.io_loop.start()
+            with between_callbacks(server.io_loop.asyncio_loop):  # type: ignore[attr-defined]
+                announce(f"http://{ADDRESS}:{port}/")
+                server.start()
+                server.io_loop.start()
         finally:
             server.unlisten()
             server.stop()

@@ -152,7 +152,8 @@ class View:
         )
         self._bind(more, "value", _as_typed, lambda text: {"typed": self._parsed(text)})
         self._sliders["character"] = character
-        hold = Toggle(label="hold this run", name="hold", width=WIDTHS[1] - 20)
+        # there is nothing to hold before the first answer
+        self._hold_button = hold = Toggle(label="hold this run", name="hold", width=WIDTHS[1] - 20, disabled=True)
         hold.on_change("active", lambda _, __, active: self._hold(bool(active)))
         gains = column(
             plant,
@@ -206,8 +207,9 @@ class View:
 
     def _figures(self) -> Any:
         figures = linked(self._panels, TIME, self._x_range, [self._source])
-        entries: Any = figures[0].legend[0].items[1 - len(self._runner.controllers) :]
-        beside = dict(zip(self._runner.controllers[1:], entries, strict=True))
+        entries: Any = figures[0].legend[0].items
+        others = self._runner.controllers[1:]
+        beside = dict(zip(others, entries[len(entries) - len(others) :], strict=True))
         self._optional: dict[str, list[Any]] = {name: [entry] for name, entry in beside.items()}
         self._optional[HELD] = [figure.legend[0].items[0] for figure in figures]
         self._show({})
@@ -345,6 +347,7 @@ class View:
     def _take(self, answer: Answer) -> None:
         """Shows an answer."""
         before, self._answer = self._answer, answer
+        self._hold_button.disabled = False
         if answer.request is self._request and self._status.text == RUNNING:
             self._status.text = ""
         self._draw(answer)
