@@ -21,19 +21,27 @@ examples:
 """
 
 import argparse
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ..loop.settings import Settings
 from ..manoeuvres.catalogue import COMPARED
+from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.run_metrics import Metrics
 from ..views.html.report_page import require_report
 from ..views.metrics_table import legend
-from .course import job
+from .course import RunJob, job
 from .manoeuvres import OWN, add_manoeuvre, chosen
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, figure_options
 from .settings import caption, distinguishing, other_format, settings_of_plants
 
+if TYPE_CHECKING:
+    from ..studies.compare.compare import Case, Outcome
+
 IN_HELP = {"metrics": legend(Metrics), "own": OWN}
+
+TABLES = ("table.md", "metrics.csv")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,10 +60,8 @@ def run(args: argparse.Namespace) -> int:
     require_report(args.report)
     given = settings_of_plants(args)
     # here and not above: mistakes and help are answered without them
-    from ..simulation.provenance import write_record
     from ..studies.compare.compare import cases, run_cases, write_figures, write_tables
     from ..views.signals_file import signals_path
-    from ..views.terminal import print_runs
 
     requested, by_name = chosen(args.manoeuvre or COMPARED), {each.plant_name: each for each in given.values()}
     manoeuvres, read = requested.manoeuvres, list(requested.files.values())
@@ -64,23 +70,48 @@ def run(args: argparse.Namespace) -> int:
     same |= {"manoeuvres": list(manoeuvres)} | requested.digests | other_format(args)
     runs = {case: args.output / "runs" / case.file_name for case in cases(list(given), list(manoeuvres))}
     signals = {case: signals_path(stem, args.format) for case, stem in runs.items()}
-    first = [args.output / name for name in ("table.md", "metrics.csv")]
-    with job(args, args.output / "compare.json", same, by_name, first, read) as made:
+    with job(args, args.output / "compare.json", same, by_name, [args.output / name for name in TABLES], read) as made:
         requested.require_drivable(made.fits, by_name)
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
         made.wrote(*write_tables(outcomes, args.output), *write_figures(outcomes, args.output, options, manoeuvres))
         for case, path in signals.items():
-            own = distinguishing(given[case.plant], manoeuvres[case.manoeuvre])
-            one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"} | own
-            write_record(path.with_suffix(".json"), one, {case.plant_name: made.fits[case.plant_name]}, [path], read)
+            _record(made, case, path, given[case.plant], manoeuvres[case.manoeuvre], read)
         for provenance, path in made.reports():
-            from ..studies.compare import compare_report
-
-            runs_of = [(each.row, each.results) for each in outcomes]
-            controllers = [Path(each.controller).stem for each in given.values()]
-            compare_report.report(runs_of, manoeuvres, controllers, provenance, path)
-        builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
-        made.out.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {args.output / 'runs'}")
-        made.tell(print_runs, [each.row for each in outcomes], runs=[each.record for each in outcomes])
+            _report(outcomes, manoeuvres, given, provenance, path)
+        _tell(made, outcomes, given, args.output / "runs")
     return 0
+
+
+def _tell(made: RunJob, outcomes: "Sequence[Outcome]", given: Mapping[str, Settings], folder: Path) -> None:
+    """The metrics of the runs, whose signals are in a folder."""
+    from ..views.terminal import print_runs
+
+    builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
+    made.out.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {folder}")
+    made.tell(print_runs, [each.row for each in outcomes], runs=[each.record for each in outcomes])
+
+
+def _record(
+    made: RunJob, case: "Case", signals: Path, settings: Settings, manoeuvre: Manoeuvre, read: Sequence[Path]
+) -> None:
+    """Writes what made the signals of a run beside them."""
+    from ..simulation.provenance import write_record
+
+    one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"}
+    fits = {case.plant_name: made.fits[case.plant_name]}
+    write_record(signals.with_suffix(".json"), one | distinguishing(settings, manoeuvre), fits, [signals], read)
+
+
+def _report(
+    outcomes: "Sequence[Outcome]",
+    manoeuvres: Mapping[str, Manoeuvre],
+    given: Mapping[str, Settings],
+    provenance: Mapping[str, Any],
+    path: Path,
+) -> None:
+    from ..studies.compare import compare_report
+
+    runs = [(each.row, each.results) for each in outcomes]
+    controllers = [Path(each.controller).stem for each in given.values()]
+    compare_report.report(runs, manoeuvres, controllers, provenance, path)

@@ -29,11 +29,10 @@ examples:
 import argparse
 import json
 import os
-from collections.abc import Sequence
-from hashlib import sha256
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...fmus.building.options import file
 from ..base.errors import DrivelineError
@@ -42,7 +41,7 @@ from ..views.html.report_page import require_report
 from .course import job
 from .options import add_figures, add_printing, add_replace, add_report, figure_options
 from .printing import Printer
-from .recording_options import add_recording, of_files
+from .recording_options import add_recording, files_of, of_recording
 from .redesign import compared_in, redesign
 
 if TYPE_CHECKING:
@@ -85,44 +84,43 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ...fmus.building.parameter_files import read_vehicle
-    from ..design.design_weights import records
-    from ..recordings.measurement import read_measurement
 
     require_report(args.report)
     vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
-    plant, _, _ = records(vehicle)
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     require_possible(args.free, output)
-    recording = read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
+    recording = read(args, vehicle)
     options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "native")
     runs = compared_in() if args.design else None
-    from ..base.atomic_files import write_text
-    from ..identification import car_file
     from ..identification.prior_knowledge import identify
 
-    everything = output.with_name(f"{output.stem}_identified.json")
-    same = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "vehicle": vehicle}
-    same |= {"free": sorted(set(args.free)), "columns": dict(args.columns)} | of_files(args)
-    read, first = [args.recording, *args.databases, *args.aliases], [output, everything]
-    with job(args, output.with_suffix(".json"), same, {}, first, read) as made:
+    same, first = of_recording(args) | {"vehicle": vehicle, "free": sorted(set(args.free))}, [output, all_found(output)]
+    with job(args, output.with_suffix(".json"), same, {}, first, files_of(args)) as made:
         identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
         say(identified, recording, made.out)
         made.begin()
         figures = draw(identified, recording, output.with_suffix(""), options)
-        program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
-        write_text(
-            car_file.vehicle_file(identified, f"The car of {args.recording.name}, by {program}.", vehicle), output
-        )
-        write_text(json.dumps(car_file.document(identified), indent=2) + "\n", everything)
-        made.wrote(output, everything, *figures)
+        made.wrote(*write(identified, args.recording, vehicle, output), *figures)
         for provenance, path in made.reports():
-            from ..identification import identification_report_html
-
-            identification_report_html.report(identified, recording, provenance, path)
+            report(identified, recording, provenance, path)
         if runs:
             made.wrote(*redesign(output, vehicle, runs, args.replace, made.out))
     return 0
+
+
+def read(args: argparse.Namespace, vehicle: Mapping[str, Any]) -> "Measurement":
+    """The recording, of the car of a vehicle file."""
+    from ..design.design_weights import records
+    from ..recordings.measurement import read_measurement
+
+    plant, _, _ = records(vehicle)
+    return read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
+
+
+def all_found(output: Path) -> Path:
+    """The file beside the vehicle file."""
+    return output.with_name(f"{output.stem}_identified.json")
 
 
 def require_possible(free: Sequence[str], output: Path) -> None:
@@ -146,6 +144,27 @@ def say(identified: "Identified", recording: "Measurement", out: Printer) -> Non
     delays, warnings = (f"delay: {delay}" for delay in recording.delays), (f"warning: {w}" for w in identified.warnings)
     for line in (*delays, *car_file.identified_lines(identified), *warnings):
         out.say(line)
+
+
+def write(identified: "Identified", recording: Path, vehicle: Mapping[str, Any], output: Path) -> tuple[Path, Path]:
+    """Writes the vehicle file, and beside it all that was found; returns both files.
+
+    Args:
+        vehicle: entries of the vehicle file that was known before.
+    """
+    from ..base.atomic_files import write_text
+    from ..identification import car_file
+
+    program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"
+    write_text(car_file.vehicle_file(identified, f"The car of {recording.name}, by {program}.", vehicle), output)
+    write_text(json.dumps(car_file.document(identified), indent=2) + "\n", all_found(output))
+    return output, all_found(output)
+
+
+def report(identified: "Identified", recording: "Measurement", provenance: Mapping[str, Any], path: Path) -> None:
+    from ..identification import identification_report_html
+
+    identification_report_html.report(identified, recording, provenance, path)
 
 
 def draw(identified: "Identified", recording: "Measurement", stem: Path, options: "FigureOptions") -> list[Path]:

@@ -27,12 +27,11 @@ orders: {orders}; the demand repeats after 2^order - 1 clocks
 import argparse
 from dataclasses import asdict
 
-from ..loop.settings import loop
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
-from .course import job
-from .frames import add_frames, require_frames, write_frames
+from .frames import add_frames
 from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
-from .settings import distinguishing, other_format, settings
+from .settings import settings
+from .signals_run import signals_job, write_run
 
 IN_HELP = {"orders": ", ".join(map(str, FEEDBACK))}
 
@@ -72,27 +71,20 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..simulation.excitation_drive import MeasurementWheels, planned, sensed
     from ..simulation.simulate import simulate
-    from ..views.signals_file import signals_path, write_signals
 
-    plant, stem = given.plant_name, args.output / f"{given.plant_name}_prbs_{args.control}"
-    require_frames(args, loop(given).own)
     demand = {name: getattr(args, name) for name in ("mean", "amplitude", "clock", "order", "duration")}
-    drive, wheels = (
-        planned(given, demand, args.speed / 3.6),
-        MeasurementWheels(args.noise, args.offset, args.gain_error),
-    )
-    same = {"demand": demand | {"speed": args.speed, "slope": drive.slope}, "damping": args.control}
-    same |= {"measurement_wheels": asdict(wheels)} | distinguishing(given, drive.manoeuvre) | other_format(args)
-    record, recording = stem.with_name(f"{stem.name}.json"), signals_path(stem, args.format)
-    with job(args, record, same, {plant: given}, [recording]) as made:
+    drive = planned(given, demand, args.speed / 3.6)
+    wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
+    same = {"demand": demand | {"speed": args.speed, "slope": drive.slope}, "measurement_wheels": asdict(wheels)}
+    with signals_job(args, given, drive.manoeuvre, same) as made:
         made.out.say(
-            f"{drive.manoeuvre.description}, {args.duration:g} s on {plant}, {given.build} FMUs, "
+            f"{drive.manoeuvre.description}, {args.duration:g} s on {given.plant_name}, {given.build} FMUs, "
             f"damping {args.control}, slope {100.0 * drive.slope:.2f} %"
         )
         results = simulate(drive.manoeuvre, given)
         made.begin()
-        made.wrote(write_signals(sensed(results, drive.load.i, wheels, given.seed), stem, args.format))
-        made.wrote(*write_frames(args, results, made.fits[plant], given.parameters, stem))
+        recorded = sensed(results, drive.load.i, wheels, given.seed)
+        write_run(args, made, given, drive.manoeuvre, results, recorded)
         v, T_gear = 3.6 * results["plant.v"], abs(results["plant.T_gear"]).max()
         made.out.say(f"speed {v.min():.1f} to {v.max():.1f} km/h, gear torque up to {T_gear:.0f} N.m")
     return 0

@@ -47,10 +47,20 @@ def add_recording(parser: argparse.ArgumentParser, what: str, **how: Any) -> Non
     )
 
 
-def of_files(args: argparse.Namespace) -> dict[str, Any]:
-    """What distinguishes a run by the databases of the bus and the files of names; nothing if there are none."""
+def files_of(args: argparse.Namespace) -> list[Path]:
+    """What is read: recording, databases of the bus, names."""
+    return [args.recording, *args.databases, *args.aliases]
+
+
+def of_recording(args: argparse.Namespace) -> dict[str, Any]:
+    """What distinguishes a run by these files and by what the columns are said to be."""
     given = {"databases": args.databases, "aliases": args.aliases}
-    return {name: [sha256(path.read_bytes()).hexdigest() for path in paths] for name, paths in given.items() if paths}
+    others = {name: [digest(path) for path in paths] for name, paths in given.items() if paths}
+    return {"recording": digest(args.recording), "columns": dict(args.columns), **others}
+
+
+def digest(path: Path) -> str:
+    return sha256(path.read_bytes()).hexdigest()
 
 
 def column(text: str) -> tuple[str, str]:

@@ -29,17 +29,17 @@ examples:
 """
 
 import argparse
-from collections.abc import Sequence
-from hashlib import sha256
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ..base.errors import DrivelineError
 from ..loop.places import PLACES, PLANTS
+from ..loop.settings import Settings
 from ..metrics.run_metrics import RideMetrics
 from ..recordings.quantities import aliases, example
 from ..views.html.report_page import require_report
 from ..views.metrics_table import legend
-from .course import job
+from .course import RunJob, job
 from .options import (
     add_figures,
     add_format,
@@ -52,12 +52,14 @@ from .options import (
     seconds,
 )
 from .printing import Printer
-from .recording_options import add_recording, of_files
+from .recording_options import add_recording, files_of, of_recording
 from .settings import caption, distinguishing, other_format, settings_of_each
 
 if TYPE_CHECKING:
+    from ..manoeuvres.road_load import RoadLoad, Track
     from ..recordings.drive import Drive
     from ..recordings.plausibility import Finding
+    from ..studies.drives.replay import Ride
 
 NAMES = aliases()
 IN_HELP = {
@@ -96,51 +98,78 @@ def run(args: argparse.Namespace) -> int:
     from ..manoeuvres.speed_following import require_held
     from ..recordings.drive import read_drive
     from ..recordings.plausibility import of_drive
-    from ..studies.drives.replay import by_name, car_of, records, replay, write
-    from ..studies.drives.verdict import followed_speed, tell
-    from ..views.terminal import print_rides, rides_reasons
+    from ..studies.drives.replay import by_name, car_of
+    from ..studies.drives.verdict import tell
 
     if args.look and args.report:
         raise DrivelineError("--look runs nothing, so that there is nothing to --report")
     require_report(args.report)
     require_held(args.held)
-    own = {"recording": sha256(args.recording.read_bytes()).hexdigest(), "held": args.held} | other_format(args)
+    same = of_recording(args) | {"held": args.held} | other_format(args)
     recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
     given = settings_of_each(args, args.plant, by_name(args.controller or PLACES["controller"][:1]))
-    first = next(iter(given.values()))
-    load, T_max = car_of(first)
+    load, T_max = car_of(next(iter(given.values())))
     odd = of_drive(recording, load, T_max)
     if args.look:
         return look(args, recording, odd)
     tell(odd, args.recording, args.strict)
-    track = Track.of(recording, T_max)
+    drive(args, recording, odd, Track.of(recording, T_max), load, given, same)
+    return 0
+
+
+def drive(
+    args: argparse.Namespace,
+    recording: "Drive",
+    odd: "Sequence[Finding]",
+    track: "Track",
+    load: "RoadLoad",
+    given: Mapping[str, Settings],
+    same: Mapping[str, Any],
+) -> None:
+    """Makes the rides with each controller, and writes and tells what they are worth.
+
+    Args:
+        odd: what makes the recording implausible before it is driven.
+        load: of the plant.
+        given: settings by the names of the controllers.
+        same: what distinguishes the run beside them.
+    """
+    from ..studies.drives.replay import replay, write
+    from ..studies.drives.verdict import followed_speed, tell
+
     options = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
-    same = own | {"controllers": list(given), "columns": dict(args.columns)} | of_files(args)
-    same |= {f"with {name}": distinguishing(each) for name, each in given.items()}
-    read = [args.recording, *args.databases, *args.aliases]
+    same = {**same, "controllers": list(given)} | {f"with {n}": distinguishing(each) for n, each in given.items()}
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
-    with job(args, record, same, given, [metrics], read) as made:
+    plant, build = next((each.plant_name, each.build) for each in given.values())
+    with job(args, record, same, given, [metrics], files_of(args)) as made:
         level = "" if recording.elevation is not None else "; it has no elevation: the road is level"
-        plant, title = first.plant_name, f"{first.plant_name} on the recorded drive {track.name}"
-        made.out.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {first.build} FMUs, {', '.join(given)}{level}")
+        made.out.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {build} FMUs, {', '.join(given)}{level}")
         rides = replay(track, load, given, args.held)
         unkept = followed_speed(recording, rides)
         tell(unkept, args.recording, args.strict)
-        odd += unkept
-        texts = [str(finding) for finding in odd]
-        notes = [f"not plausible: {text}" for text in texts]
+        odd = [*odd, *unkept]
         made.begin()
+        notes = [f"not plausible: {finding}" for finding in odd]
         made.wrote(*write(rides, track, plant, args.output, options, args.format, recording.file_units, notes))
-        metrics_of = {ride.controller: ride.metrics for ride in rides}
-        reasons = rides_reasons(metrics_of)
-        for provenance, path in made.reports():
-            from ..studies.drives import replay_report
+        _tell(made, rides, track, plant, odd, notes)
 
-            drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
-            replay_report.report(drawn, (track.t, track.v), title, reasons, texts, provenance, path)
-        found = {"runs": records(rides, track, plant), "findings": [finding.document() for finding in odd]}
-        made.tell(print_rides, metrics_of, f"{plant} on {recording.name}", [*reasons, *notes], **found)
-    return 0
+
+def _tell(
+    made: RunJob, rides: "Sequence[Ride]", track: "Track", plant: str, odd: "Sequence[Finding]", notes: list[str]
+) -> None:
+    """Writes the report, if one is asked for, and tells what the rides are worth."""
+    from ..studies.drives import replay_report
+    from ..studies.drives.replay import records
+    from ..views.terminal import print_rides, rides_reasons
+
+    metrics = {ride.controller: ride.metrics for ride in rides}
+    reasons = rides_reasons(metrics)
+    for provenance, path in made.reports():
+        drawn = {ride.controller: (ride.metrics, ride.signals) for ride in rides}
+        title, texts = f"{plant} on the recorded drive {track.name}", [str(finding) for finding in odd]
+        replay_report.report(drawn, (track.t, track.v), title, reasons, texts, provenance, path)
+    found = {"runs": records(rides, track, plant), "findings": [finding.document() for finding in odd]}
+    made.tell(print_rides, metrics, f"{plant} on {track.name}", [*reasons, *notes], **found)
 
 
 def look(args: argparse.Namespace, recording: "Drive", odd: "Sequence[Finding]") -> int:

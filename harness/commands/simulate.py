@@ -21,17 +21,16 @@ examples:
 """
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import DrivelineError
 from ..cosimulation.system import Scheme
 from ..loop.places import STEP_SIZE
-from ..loop.settings import Settings, loop
+from ..loop.settings import Settings
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..views.figure_options import FigureOptions
-from .course import RunJob, job
-from .frames import add_frames, require_frames, write_frames
+from .course import RunJob
+from .frames import add_frames
 from .manoeuvres import OWN, add_manoeuvre, chosen
 from .options import (
     add_figures,
@@ -44,7 +43,8 @@ from .options import (
     figure_options,
     seconds,
 )
-from .settings import caption, distinguishing, other_format, settings
+from .settings import caption, settings
+from .signals_run import signals_job, stem_of, write_run
 
 if TYPE_CHECKING:
     from ..cosimulation.results import Results
@@ -82,46 +82,36 @@ def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps
     from ..simulation.simulate import simulate
-    from ..views.signals_file import signals_path
 
     asked = chosen([args.manoeuvre])
     (manoeuvre,) = asked.manoeuvres.values()
     options = _options_of_figure(args, manoeuvre)
     require_steps(manoeuvre.duration, args.step)
-    require_frames(args, loop(given).own)
-    plant, stem = given.plant_name, args.output / f"{given.plant_name}_{manoeuvre.name}_{args.control}"
-    same = {"manoeuvre": manoeuvre.name, "damping": args.control, "step_size": args.step, "scheme": args.scheme}
-    same |= distinguishing(given, manoeuvre) | asked.digests | other_format(args)
-    record, signals = stem.with_name(f"{stem.name}.json"), signals_path(stem, args.format)
-    with job(args, record, same, {plant: given}, [signals], list(asked.files.values())) as made:
-        asked.require_drivable(made.fits, {plant: given})
-        made.out.say(f"{manoeuvre.name} on {plant}, {given.build} FMUs, damping {args.control}")
+    same = {"manoeuvre": manoeuvre.name, "step_size": args.step, "scheme": args.scheme} | asked.digests
+    with signals_job(args, given, manoeuvre, same, asked.files.values()) as made:
+        asked.require_drivable(made.fits, {given.plant_name: given})
+        made.out.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
         results = simulate(manoeuvre, given)
         made.begin()
-        _write(args, made, given, manoeuvre, results, stem, options)
+        write_run(args, made, given, manoeuvre, results, results)
+        if args.plot:
+            _draw(args, made, given, manoeuvre, results, options)
         _tell(made, given, manoeuvre, results)
     return 0
 
 
-def _write(
+def _draw(
     args: argparse.Namespace,
     made: RunJob,
     given: Settings,
     manoeuvre: Manoeuvre,
     results: "Results",
-    stem: Path,
     options: FigureOptions,
 ) -> None:
-    """Writes what was asked for: signals, frames and the figure."""
-    from ..views.signals_file import write_signals
+    from ..views.run_figure import plot_run
 
-    made.wrote(write_signals(results, stem, args.format))
-    made.wrote(*write_frames(args, results, made.fits[given.plant_name], given.parameters, stem))
-    if args.plot:
-        from ..views.run_figure import plot_run
-
-        title = f"{given.plant_name}, {manoeuvre.description}, damping {args.control}"
-        made.wrote(*plot_run(results, manoeuvre, title, stem, options))
+    title = f"{given.plant_name}, {manoeuvre.description}, damping {args.control}"
+    made.wrote(*plot_run(results, manoeuvre, title, stem_of(args, given, manoeuvre), options))
 
 
 def _options_of_figure(args: argparse.Namespace, manoeuvre: Manoeuvre) -> FigureOptions:

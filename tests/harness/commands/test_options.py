@@ -15,7 +15,7 @@ from driveline.fmus.catalogue import FMUS
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import parser
 from driveline.harness.commands.options import assignment, figure_options, megabytes, seconds, seed, window
-from driveline.harness.commands.recording_options import of_files
+from driveline.harness.commands.recording_options import of_recording
 from driveline.harness.loop.places import BUILD
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.models.block.declaration import Integer, variables
@@ -172,15 +172,17 @@ def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
     assert done.stdout.strip() == "build"
 
 
-def test_other_names_of_quantities_or_other_frames_make_another_run(tmp_path):
-    file = tmp_path / "names.toml"
-    args = Namespace(databases=[], aliases=[])
-    assert of_files(args) == {}
-    seen = []
+def test_other_samples_columns_names_or_frames_make_another_run(tmp_path):
+    file, empty = tmp_path / "names.toml", tmp_path / "empty.csv"
+    empty.touch()
+    usual = {"recording": empty, "columns": [], "databases": [], "aliases": []}
+    seen = [of_recording(Namespace(**usual | {"columns": [("v", "speed")]})), of_recording(Namespace(**usual))]
+    assert seen[1].keys() == {"recording", "columns"}
     for text in ("v = ['a']", "v = ['b']"):
         file.write_text(text)
-        seen += [of_files(Namespace(databases=[file], aliases=[])), of_files(Namespace(databases=[], aliases=[file]))]
-    assert len({str(each) for each in seen}) == 4
+        for changed in ({"recording": file}, {"databases": [file]}, {"aliases": [file]}):
+            seen.append(of_recording(Namespace(**usual | changed)))
+    assert len({str(each) for each in seen}) == 8
 
 
 @pytest.mark.parametrize(("command", "most"), [("faults", 1_000_000), ("robustness", 100_000)])
