@@ -25,30 +25,33 @@ BEFORE_START: Callable[[], None] | None = _die_with_parent if sys.platform == "l
 
 
 def run(
-    command: Sequence[str],
-    folder: Path,
+    command: Sequence[str | Path],
+    folder: Path | None = None,
     environment: Mapping[str, str] | None = None,
     timeout: float | None = None,
     text: bool = True,
+    question: bytes | None = None,
 ) -> "subprocess.CompletedProcess[Any]":
     """Runs a program to its end. Where that is cut short, what it has begun ends with it.
 
     Args:
-        folder: in which it runs and has its temporary files, for who calls to remove.
+        folder: in which it runs and has its temporary files, for who calls to remove; None: the present one, and that
+            for temporary files.
         environment: changes of that.
         timeout: in s.
         text: whether what it prints is given as text, or as bytes.
+        question: what it reads from stdin, as bytes.
 
     Raises:
         OSError: there is no such program.
         subprocess.TimeoutExpired: it takes longer.
     """
-    temporary = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder.absolute()))
+    temporary = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder.absolute())) if folder else {}
     process = subprocess.Popen(
         command,
         cwd=folder,
         env={**os.environ, **temporary, **(environment or {})},
-        stdin=subprocess.DEVNULL,
+        stdin=subprocess.DEVNULL if question is None else subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=text,
@@ -57,11 +60,23 @@ def run(
     )
     with process:
         try:
-            output, errors = process.communicate(timeout=timeout)
+            output, errors = process.communicate(question, timeout)
         except BaseException:
             _kill(process)
             raise
     return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
+
+
+def output_of(*command: str | Path) -> str:
+    """What a program prints, without the space around it.
+
+    Raises:
+        OSError: there is no such program.
+        subprocess.CalledProcessError: it fails.
+    """
+    done = run(command)
+    done.check_returncode()
+    return done.stdout.strip()
 
 
 def _kill(process: "subprocess.Popen[Any]") -> None:

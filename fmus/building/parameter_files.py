@@ -85,7 +85,7 @@ def of_vehicle(entries: Mapping[str, Any] | None) -> dict[str, Any]:
     """
     if entries is None:
         return {}
-    if not isinstance(entries, Mapping):
+    if not isinstance(entries, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # of a program without types
         raise ParameterFileError(
             f"the car {entries!r:.60} must be the entries of a vehicle file, as {{'m': 1900.0}}, or what read_vehicle "
             "gives"

@@ -4,11 +4,11 @@ Names, units, limits and meanings are those of the declaration that all else com
 linked image. All numbers there are of single precision, one after the other in the order of their records.
 """
 
-import subprocess
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from ...models.block.declaration import Enumeration
+from ..child_process import output_of
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 
@@ -96,7 +96,7 @@ def description(fmu: Fmu, image: Path) -> str:
 
 def symbols(image: Path) -> Mapping[str, int]:
     """The addresses of what an image holds by name."""
-    listing = subprocess.run(["arm-none-eabi-nm", image], capture_output=True, text=True, check=True).stdout
+    listing = output_of("arm-none-eabi-nm", image)
     rows = [line.split() for line in listing.splitlines()]
     return {row[2]: int(row[0], 16) for row in rows if len(row) == 3}
 

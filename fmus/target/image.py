@@ -1,10 +1,10 @@
 """The program with the controller behind a link, compiled for the target and, to compare, for this machine."""
 
 import shutil
-import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..child_process import output_of
 from ..native.compiler import CompilerError, host_compiler, run_compiler
 from .link import EMULATOR
 
@@ -74,14 +74,10 @@ def require_packages(*others: str) -> None:
             install.
     """
     lacking = [program for program in (COMPILER, EMULATOR, *others) if shutil.which(program) is None]
-    if not lacking and not Path(_output_of(COMPILER, "-print-file-name=nano.specs")).is_absolute():
+    if not lacking and not Path(output_of(COMPILER, "-print-file-name=nano.specs")).is_absolute():
         lacking = ["nano.specs"]
     if lacking:
         raise CompilerError(f"there is no {' and no '.join(lacking)}: apt-get install {' '.join(PACKAGES)}")
-
-
-def _output_of(*command: str) -> str:
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -> list[str]:

@@ -16,6 +16,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from ...fmus.child_process import run
 from ..base.errors import DrivelineError
 from ..base.interruption import end_with
 from ..base.plain_text import plain, words
@@ -61,26 +62,17 @@ def bounded(read: Read) -> Read:
 def _asked(path: Path, question: Any) -> Any:
     patience = PATIENCE if resource else SECONDS
     start = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import main; main({os.getpid()})"
-    with subprocess.Popen(
-        [sys.executable, "-c", start],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=os.environ | FEW_THREADS,
-        start_new_session=True,  # who waits for it is stopped at the keyboard, and ends it
-    ) as process:
-        try:
-            answer, complaint = process.communicate(pickle.dumps(question), patience)
-        except subprocess.TimeoutExpired as late:
-            raise _late(path, patience) from late
-        finally:
-            process.kill()
-    if process.returncode == OUT_OF_TIME:
+    command, asked = [sys.executable, "-c", start], pickle.dumps(question)
+    try:
+        done = run(command, environment=FEW_THREADS, timeout=patience, text=False, question=asked)
+    except subprocess.TimeoutExpired as late:
+        raise _late(path, patience) from late
+    if done.returncode == OUT_OF_TIME:
         raise _late(path, SECONDS)
-    if process.returncode:
-        last = plain(complaint.decode(errors="replace").strip().rpartition("\n")[2], 200)
-        raise RecordingError(f"{path} ended the process that read it: {last or f'exit code {process.returncode}'}")
-    return pickle.loads(answer)
+    if done.returncode:
+        last = plain(done.stderr.decode(errors="replace").strip().rpartition("\n")[2], 200)
+        raise RecordingError(f"{path} ended the process that read it: {last or f'exit code {done.returncode}'}")
+    return pickle.loads(done.stdout)
 
 
 def _late(path: Path, seconds: float) -> RecordingError:

@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from ...fmus.child_process import output_of
 from ..base.atomic_files import all_or_nothing, alone, remove, replaceable, write_text
 from ..base.errors import DrivelineError
 from ..cosimulation import row_layout
@@ -215,7 +216,7 @@ def commit() -> str | None:
         return None
     command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
     try:
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+        return output_of(*command)
     except (OSError, subprocess.CalledProcessError):
         return None
 

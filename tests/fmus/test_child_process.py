@@ -11,7 +11,7 @@ from time import monotonic, sleep
 
 import pytest
 
-from driveline.fmus.child_process import run
+from driveline.fmus.child_process import output_of, run
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems tell no program that its parent is gone")
 
@@ -101,3 +101,17 @@ def test_what_takes_too_long_is_ended_with_what_it_has_begun(tmp_path: Path) -> 
     with pytest.raises(subprocess.TimeoutExpired):
         run(["/bin/sh", "-c", "sleep 60 & echo $! > child; wait"], tmp_path, timeout=1.0)
     wait_until(lambda: gone(int((tmp_path / "child").read_text())))
+
+
+def test_a_program_gets_a_question_and_changes_of_the_environment(tmp_path: Path) -> None:
+    code = "import os, sys; print(os.environ['ASKED'], os.getcwd(), sys.stdin.buffer.read())"
+    question, changes = b"\xff?", {"ASKED": "so"}
+    done = run([sys.executable, "-c", code], environment=changes, text=False, question=question)
+    assert done.stdout.decode().split() == ["so", os.getcwd(), "b'\\xff?'"]
+    assert run([sys.executable, "-c", code], tmp_path, changes).stdout.split() == ["so", str(tmp_path), "b''"]
+
+
+def test_what_a_program_prints_is_given_only_if_it_does_not_fail() -> None:
+    assert output_of(sys.executable, "-c", "print(' 1 2 ')") == "1 2"
+    with pytest.raises(subprocess.CalledProcessError):
+        output_of(sys.executable, "-c", "raise SystemExit(3)")

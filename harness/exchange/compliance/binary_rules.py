@@ -1,14 +1,13 @@
 """Rules for the binary of an FMU. Each function is given it unpacked and yields what a host in C would miss."""
 
-import os
 import re
 import shutil
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import fmpy
 
+from ....fmus.child_process import run
 from ...cosimulation.unpacked_fmu import Unpacked
 from .rule import Rules, Severity
 
@@ -34,17 +33,9 @@ def missing_symbols(fmu: Unpacked) -> Iterator[str]:
     linker = shutil.which("ldd")
     if not linker or not binary.is_file():
         return
-    asked = [linker, "-r", str(binary)]
-    done = subprocess.run(
-        asked,
-        capture_output=True,
-        text=True,
-        errors="replace",
-        check=False,
-        timeout=LONGEST,
-        env=os.environ | {"LC_ALL": "C"},
-    )
-    found = [next(filter(None, match.groups())) for match in MISSING.finditer(done.stdout + done.stderr)]
+    done = run([linker, "-r", binary], environment={"LC_ALL": "C"}, timeout=LONGEST, text=False)
+    said = (done.stdout + done.stderr).decode(errors="replace")
+    found = [next(filter(None, match.groups())) for match in MISSING.finditer(said)]
     if found := list(dict.fromkeys(found)):
         more = f" and {len(found) - MOST_NAMED} more" if found[MOST_NAMED:] else ""
         yield f"{binary.name} needs {', '.join(found[:MOST_NAMED])}{more}, which no library has that it names"

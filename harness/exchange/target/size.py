@@ -1,10 +1,10 @@
 """What the controller takes on the target beside time: flash, RAM and stack."""
 
 import re
-import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
+from ....fmus.child_process import output_of
 from ....fmus.target.link import Link
 
 FLASH_SECTIONS = re.compile(r"^\.(?:text|rodata|data)\S*\s+(\d+)", re.MULTILINE)
@@ -50,5 +50,5 @@ def size_of(image: Path, name: str, link: Link) -> Size:
 
 
 def _flash(path: Path) -> int:
-    listing = subprocess.run(["arm-none-eabi-size", "-A", path], capture_output=True, text=True, check=True).stdout
+    listing = output_of("arm-none-eabi-size", "-A", path)
     return sum(map(int, FLASH_SECTIONS.findall(listing)))
