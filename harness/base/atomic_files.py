@@ -53,13 +53,13 @@ _before: ContextVar[dict[Path, Path | None] | None] = ContextVar("before", defau
 
 
 @contextmanager
-def all_or_nothing() -> Iterator[None]:
-    """Files that were completed or removed within it are as they were before when it is stopped or fails."""
+def as_before_if_stopped() -> Iterator[None]:
+    """Files that were completed or removed within it are as they were before when it is stopped."""
     before: dict[Path, Path | None] = {}
     outer = _before.set(before)
     try:
         yield
-    except BaseException:
+    except KeyboardInterrupt:
         for path, old in before.items():
             if old is None:
                 path.unlink(missing_ok=True)
@@ -74,7 +74,7 @@ def all_or_nothing() -> Iterator[None]:
 
 
 def _set_aside(path: Path) -> None:
-    """Keeps a file that will be replaced or removed, see `all_or_nothing`."""
+    """Keeps a file that will be replaced or removed, see `as_before_if_stopped`."""
     if (before := _before.get()) is None or path in before:
         return
     before[path] = old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ...fmus.child_process import output_of
-from ..base.atomic_files import all_or_nothing, alone, remove, replaceable, write_text
+from ..base.atomic_files import alone, as_before_if_stopped, remove, replaceable, write_text
 from ..base.errors import DrivelineError
 from ..cosimulation import row_layout
 from ..cosimulation.system import System
@@ -81,7 +81,7 @@ def recorded(
     replace: bool = False,
 ) -> Iterator[Made]:
     """Within it a run is made and written; at its end the record tells what made the files. When it is
-    stopped or fails, the files are as they were before.
+    stopped, the files are as they were before.
 
     Args:
         record: the JSON file beside the results.
@@ -104,7 +104,7 @@ def recorded(
     with ExitStack() as kept:
         made = Made(record, systems, require, kept)
         try:
-            with all_or_nothing():
+            with as_before_if_stopped():
                 yield made
                 write_record(record, run, made.fits, made.files, inputs)
         except KeyboardInterrupt as stop:
