@@ -5,6 +5,7 @@ It sets what is connected, steps, gets what is connected, and does nothing else.
 
 import subprocess
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -19,20 +20,20 @@ FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2")
 KINDS = ("Real", "Integer", "Boolean")
 
 
-def run(system: System, steps: int, step_size: float, start: Mapping[str, float], traced: str) -> tuple[float, float]:
-    """Compiles the loop for this system and runs it; all FMUs hand on their outputs after the step, as Jacobi.
+@contextmanager
+def program(system: System, start: Mapping[str, float], traced: str) -> Iterator[Path]:
+    """The loop compiled for this system; all FMUs hand on their outputs after the step, as Jacobi.
+
+    It takes the number of steps and their size in s, and prints the processor time of a step in s, without loading and
+    initialization, and the traced output in the end.
 
     Args:
-        step_size: in s.
         start: Real parameters and inputs `instance.variable`.
         traced: Real output `instance.variable`.
 
-    Returns:
-        Processor time a step in s, without loading and initialization; the watched output in the end.
-
     Raises:
         CompilerError: there is no compiler.
-        subprocess.CalledProcessError: it refuses the source, or an FMU refuses a call.
+        subprocess.CalledProcessError: it refuses the source.
     """
     with TemporaryDirectory() as name:
         folder = Path(name)
@@ -40,10 +41,20 @@ def run(system: System, steps: int, step_size: float, start: Mapping[str, float]
         for instance, interface in interfaces.items():
             fmpy.extract(str(interface.path), unzipdir=str(folder / instance))
         (folder / "wiring.h").write_text(_header(system, interfaces, folder, start, traced), encoding="utf-8")
-        program = folder / "loop"
-        command = [host_compiler(), *FLAGS, f"-I{folder}", str(SOURCE), "-ldl", "-o", str(program)]
+        made = folder / "loop"
+        command = [host_compiler(), *FLAGS, f"-I{folder}", str(SOURCE), "-ldl", "-o", str(made)]
         subprocess.run(command, check=True)
-        command = [str(program), str(steps), repr(step_size)]
+        yield made
+
+
+def run(system: System, steps: int, step_size: float, start: Mapping[str, float], traced: str) -> tuple[float, float]:
+    """Processor time a step in s and the traced output in the end; arguments and errors as of `program`.
+
+    Raises:
+        subprocess.CalledProcessError: an FMU refuses a call.
+    """
+    with program(system, start, traced) as made:
+        command = [str(made), str(steps), repr(step_size)]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
     cost, value = map(float, done.stdout.split())
     return cost, value

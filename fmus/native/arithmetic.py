@@ -74,88 +74,26 @@ class Ladder(NamedTuple):
 
 
 class Graph:
-    """All operations that the outputs need; equal ones are one.
-
-    Args:
-        inputs: for every input of the function and each of its elements what C calls it.
+    """Operations, equal ones of which are one; at first there are none.
 
     Attributes:
+        inputs: for every input of the function and each of its elements what C calls it.
         nodes: each after its operands.
         outputs: for every element of the output its node.
     """
 
-    def __init__(self, function: casadi.Function, inputs: Sequence[Sequence[str]]) -> None:
-        self.inputs = inputs
+    def __init__(self, inputs: Sequence[Sequence[str]]) -> None:
+        self.inputs = list(inputs)
         self.nodes: list[Node] = []
-        self._numbers: dict[Node, int] = {}
-        self._ladders: dict[int, Ladder] = {}
         self.outputs: dict[int, int] = {}
-        held: dict[int, int] = {}
-        for k in range(function.n_instructions()):
-            operation = function.instruction_id(k)
-            to, of = function.instruction_output(k), function.instruction_input(k)
-            if operation == casadi.OP_INPUT:
-                held[to[0]] = self._number(Node("INPUT", (), (of[0], of[1])))
-            elif operation == casadi.OP_CONST:
-                held[to[0]] = self._number(Node("CONSTANT", (), function.instruction_constant(k)))
-            elif operation == casadi.OP_OUTPUT:
-                self.outputs[to[1]] = held[of[0]]
-            else:
-                held[to[0]] = self._operation(OPERATIONS[operation], tuple(held[k] for k in of))
+        self._numbers: dict[Node, int] = {}
 
-    def _number(self, node: Node) -> int:
+    def number(self, node: Node) -> int:
+        """That of an operation, which is added if it is new."""
         if node not in self._numbers:
             self._numbers[node] = len(self.nodes)
             self.nodes.append(node)
         return self._numbers[node]
-
-    def _operation(self, operation: str, operands: tuple[int, ...]) -> int:
-        if operation == "ADD":
-            value, otherwise = (self.nodes[k] for k in operands)
-            if value.operation == otherwise.operation == "CHOICE":
-                condition, negated = value.operands[0], self.nodes[otherwise.operands[0]]
-                if negated == Node("NOT", (condition,)):
-                    return self._choice(condition, value.operands[1], otherwise.operands[1])
-        if operation == "IF_ELSE_ZERO":
-            return self._number(Node("CHOICE", (*operands, self._number(Node("CONSTANT", (), 0.0)))))
-        return self._number(Node(operation, operands))
-
-    def _choice(self, condition: int, value: int, otherwise: int) -> int:
-        if value == otherwise:
-            return value
-        ladder = self._ladder(condition, value, otherwise)
-        if ladder and ladder.count >= LOOKED_UP:
-            index = self._number(Node("INDEX", (ladder.position,), float(ladder.count)))
-            whole = ladder.first.operation == "CONSTANT"
-            number = self._number(Node("WHOLE", (index,)) if whole else Node("ELEMENT", (index,), ladder.first.value))
-        else:
-            number = self._number(Node("CHOICE", (condition, value, otherwise)))
-        if ladder:
-            self._ladders[number] = ladder
-        return number
-
-    def _ladder(self, condition: int, value: int, otherwise: int) -> Ladder | None:
-        """That of a choice, if it is one."""
-        comparison = self.nodes[condition]
-        if comparison.operation != "LE" or self.nodes[comparison.operands[0]].operation != "CONSTANT":
-            return None
-        position, count = comparison.operands[1], self.nodes[comparison.operands[0]].value
-        below = Ladder(position, self.nodes[otherwise], 0) if count == 1.0 else self._ladders.get(otherwise)
-        if below is None or (below.position, below.count + 1.0) != (position, count):
-            return None
-        ladder = below._replace(count=below.count + 1)
-        return ladder if self.nodes[value] == self._after(ladder.first, ladder.count) else None
-
-    def _after(self, first: Node, count: int) -> Node | None:
-        """The value so many places after the first of a ladder: a whole number or an element of an array."""
-        if first == Node("CONSTANT"):
-            return Node("CONSTANT", (), float(count))
-        if first.operation != "INPUT":
-            return None
-        vector, element = first.place
-        names = self.inputs[vector][element : element + count + 1]
-        is_array = names[0].endswith("]") and len({name.rpartition("[")[0] for name in names}) == 1
-        return Node("INPUT", (), (vector, element + count)) if is_array and len(names) > count else None
 
     def users(self) -> dict[int, list[tuple[int, Guard | None]]]:
         """For every node that the outputs need: who uses it, and on which side of a choice."""
@@ -186,3 +124,71 @@ class Graph:
             ]
             guards[k] = none if k in results or not needed else frozenset.intersection(*needed)
         return guards
+
+
+class TracedGraph(Graph):
+    """All operations of a CasADi function."""
+
+    def __init__(self, function: casadi.Function, inputs: Sequence[Sequence[str]]) -> None:
+        super().__init__(inputs)
+        self._ladders: dict[int, Ladder] = {}
+        held: dict[int, int] = {}
+        for k in range(function.n_instructions()):
+            operation = function.instruction_id(k)
+            to, of = function.instruction_output(k), function.instruction_input(k)
+            if operation == casadi.OP_INPUT:
+                held[to[0]] = self.number(Node("INPUT", (), (of[0], of[1])))
+            elif operation == casadi.OP_CONST:
+                held[to[0]] = self.number(Node("CONSTANT", (), function.instruction_constant(k)))
+            elif operation == casadi.OP_OUTPUT:
+                self.outputs[to[1]] = held[of[0]]
+            else:
+                held[to[0]] = self._operation(OPERATIONS[operation], tuple(held[k] for k in of))
+
+    def _operation(self, operation: str, operands: tuple[int, ...]) -> int:
+        if operation == "ADD":
+            value, otherwise = (self.nodes[k] for k in operands)
+            if value.operation == otherwise.operation == "CHOICE":
+                condition, negated = value.operands[0], self.nodes[otherwise.operands[0]]
+                if negated == Node("NOT", (condition,)):
+                    return self._choice(condition, value.operands[1], otherwise.operands[1])
+        if operation == "IF_ELSE_ZERO":
+            return self.number(Node("CHOICE", (*operands, self.number(Node("CONSTANT", (), 0.0)))))
+        return self.number(Node(operation, operands))
+
+    def _choice(self, condition: int, value: int, otherwise: int) -> int:
+        if value == otherwise:
+            return value
+        ladder = self._ladder(condition, value, otherwise)
+        if ladder and ladder.count >= LOOKED_UP:
+            index = self.number(Node("INDEX", (ladder.position,), float(ladder.count)))
+            whole = ladder.first.operation == "CONSTANT"
+            number = self.number(Node("WHOLE", (index,)) if whole else Node("ELEMENT", (index,), ladder.first.value))
+        else:
+            number = self.number(Node("CHOICE", (condition, value, otherwise)))
+        if ladder:
+            self._ladders[number] = ladder
+        return number
+
+    def _ladder(self, condition: int, value: int, otherwise: int) -> Ladder | None:
+        """That of a choice, if it is one."""
+        comparison = self.nodes[condition]
+        if comparison.operation != "LE" or self.nodes[comparison.operands[0]].operation != "CONSTANT":
+            return None
+        position, count = comparison.operands[1], self.nodes[comparison.operands[0]].value
+        below = Ladder(position, self.nodes[otherwise], 0) if count == 1.0 else self._ladders.get(otherwise)
+        if below is None or (below.position, below.count + 1.0) != (position, count):
+            return None
+        ladder = below._replace(count=below.count + 1)
+        return ladder if self.nodes[value] == self._after(ladder.first, ladder.count) else None
+
+    def _after(self, first: Node, count: int) -> Node | None:
+        """The value so many places after the first of a ladder: a whole number or an element of an array."""
+        if first == Node("CONSTANT"):
+            return Node("CONSTANT", (), float(count))
+        if first.operation != "INPUT":
+            return None
+        vector, element = first.place
+        names = self.inputs[vector][element : element + count + 1]
+        is_array = names[0].endswith("]") and len({name.rpartition("[")[0] for name in names}) == 1
+        return Node("INPUT", (), (vector, element + count)) if is_array and len(names) > count else None

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from ...models.block.declaration import Quantity, Real, is_tuple, variables
 from ...models.block.types import Block
 from ..description.numbers import numbers
+from .terms import TERMS
 
 RECORDS = {"u": "Input", "p": "Parameters", "y": "Output", "x": "State"}
 """What C calls the records of a block, by their letters."""
@@ -46,8 +47,11 @@ def paths(name: str, value: Any) -> Iterator[str]:
     return (path for path, _ in numbers(name, value))
 
 
-def structs(records: Mapping[str, Any], names: Names = IN_FMU) -> Iterator[str]:
+def structs(records: Mapping[str, Any], names: Names = IN_FMU, terms: int = 0) -> Iterator[str]:
     """The structs of a block's records, each after those of the records in it, which have the names of their classes.
+
+    Args:
+        terms: how many numbers are computed from the parameters and stand behind them.
 
     Raises:
         ValueError: records of two classes would have one name.
@@ -56,7 +60,7 @@ def structs(records: Mapping[str, Any], names: Names = IN_FMU) -> Iterator[str]:
     for letter, record in records.items():
         for name, value in (*((type(inner).__name__, inner) for inner in _inner(record)), (RECORDS[letter], record)):
             if name not in written:
-                yield _struct(name, value, names)
+                yield _struct(name, value, names, terms if letter == "p" else 0)
             elif written[name] is not type(value):
                 raise ValueError(f"{name} is the name of two records; to C names are all that tells them apart")
             written[name] = type(value)
@@ -71,7 +75,7 @@ def _inner(value: Any) -> Iterator[Any]:
                 yield item
 
 
-def _struct(name: str, record: Any, names: Names) -> str:
+def _struct(name: str, record: Any, names: Names, terms: int) -> str:
     declared = {variable.name: _comment(variable) for variable in variables(type(record))}
     fields = [
         (f"{c_type(value, names)} {field}{extent(value)};", declared.get(field) or _meaning(value))
@@ -79,6 +83,8 @@ def _struct(name: str, record: Any, names: Names) -> str:
         if any(paths(field, value))
     ]
     fields = fields or [(f"{names.real} none;", "in C a struct is not empty")]
+    if terms:
+        fields.append((f"{names.real} {TERMS}[{terms}];", "what depends on the others alone, by compute_terms"))
     width = max(len(field) for field, _ in fields)
     lines = "\n".join(f"    {field:{width}}  /* {comment} */" for field, comment in fields)
     return f"typedef struct {{\n{lines}\n}} {names.struct}{name};"

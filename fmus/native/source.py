@@ -1,15 +1,17 @@
 """The C source of a block: block.h and block.c, and variables.h with what a host sees of it."""
 
 import re
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from ...models.block.explicit import small_sizes
 from ...models.block.types import SampledBlock
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
-from .arithmetic import Graph
+from .arithmetic import TracedGraph
 from .records import IN_FMU, RECORDS, Names, paths, records_of, structs
 from .statements import DOUBLE, Precision, Statements
+from .terms import TERMS, Terms
 from .trace import Traced, trace
 
 MEANINGS = {
@@ -19,6 +21,7 @@ MEANINGS = {
     "event_indicators": "Values that are zero where the equations have a kink.",
     "update": "The state at the next sample.",
     "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
+    "compute_terms": "Computes the terms that depend on the other parameters alone, whenever one of these was set.",
     "start_rate": "The rate of change of the outputs at the start when inputs and parameters change at du and dp.",
 }
 
@@ -54,17 +57,17 @@ def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
     """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI."""
     block = fmu.block
     records, traced = records_of(block), trace(block)
+    made = functions(traced, records, precision)
     about = {"name": fmu.name, "description": block.description, "module": fmu.module}
     header = HEADER.format(
         **about,
         equations=fmu.equations.replace("*/", "* /").strip(),
         precision=precision,
-        structs="\n\n".join(structs(records)),
+        structs="\n\n".join(structs(records, terms=len(made.terms))),
         constants="\n".join(_constants(fmu, traced)),
-        prototypes="\n".join(f"/* {MEANINGS[each.name]} */\nstatic {head(each)};" for each in traced),
+        prototypes="\n".join(f"/* {meaning} */\nstatic {head};" for head, meaning in made.heads),
     )
-    functions = "\n\n".join(function(each, records, precision) for each in traced)
-    return {"block.h": header, "block.c": SOURCE.format(**about, functions=functions)}
+    return {"block.h": header, "block.c": SOURCE.format(**about, functions=made.text)}
 
 
 def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
@@ -88,7 +91,48 @@ WIDTH = 118
 """Of a line of C."""
 
 
-def head(each: Traced, names: Names = IN_FMU) -> str:
+class Functions(NamedTuple):
+    """The functions of a block in C.
+
+    Attributes:
+        heads: of each the head and what it computes.
+        text: all of them.
+        terms: values of the terms that depend on the declared parameters alone.
+    """
+
+    heads: list[tuple[str, str]]
+    text: str
+    terms: list[float]
+
+
+RARE = ("start", "start_rate")
+"""Functions that are not called in steps; all that they need they compute themselves."""
+
+
+def functions(
+    traced: Iterable[Traced], records: dict[str, Any], precision: Precision, names: Names = IN_FMU
+) -> Functions:
+    """The traced functions, and one that computes what depends on parameters alone.
+
+    Args:
+        records: one of each record of the block, by their letters.
+    """
+    terms, heads, texts = Terms(_lvalues("p", records)), list[tuple[str, str]](), list[str]()
+    for each in traced:
+        graph = TracedGraph(each.function, [_lvalues(name, records) for name in each.arguments])
+        if each.name not in RARE:
+            terms.take(graph, each.arguments.index("p"))
+        size = each.function.size1_out(0)
+        outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
+        heads.append((_head(each, names), MEANINGS[each.name]))
+        texts.append(_function(heads[-1][0], Statements(graph, outputs, precision).lines, each.arguments))
+    places = [f"p->{TERMS}[{n}]" for n in range(len(terms.outputs))]
+    heads.append((_line(f"{names.function}compute_terms", [f"{names.struct}Parameters *p"]), MEANINGS["compute_terms"]))
+    texts.append(_function(heads[-1][0], Statements(terms, places, precision).lines, ("p",)))
+    return Functions(heads, "\n\n".join(texts), terms.values(list(map(float, records["p"]))))
+
+
+def _head(each: Traced, names: Names) -> str:
     """The head of a function in C."""
 
     def pointer(name: str) -> str:
@@ -96,19 +140,18 @@ def head(each: Traced, names: Names = IN_FMU) -> str:
 
     arguments = [f"const {pointer(name)}" for name in each.arguments]
     result = f"{names.real} z[]" if each.result == "z" else pointer(each.result)
-    line = f"void {names.function}{each.name}({', '.join([*arguments, result])})"
+    return _line(f"{names.function}{each.name}", [*arguments, result])
+
+
+def _line(name: str, arguments: list[str]) -> str:
+    line = f"void {name}({', '.join(arguments)})"
     return line if len(line) <= WIDTH else line.replace("(", "(\n    ").replace(", ", ",\n    ")
 
 
-def function(each: Traced, records: dict[str, Any], precision: Precision, names: Names = IN_FMU) -> str:
-    """A function in C; `records` holds one of each record of its block, by their letters."""
-    inputs = [_lvalues(name, records) for name in each.arguments]
-    size = each.function.size1_out(0)
-    outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
-    lines = Statements(Graph(each.function, inputs), outputs, precision).lines
+def _function(head: str, lines: list[str], arguments: Iterable[str]) -> str:
     text = "\n".join(lines)
-    unused = [f"    (void){name};" for name in each.arguments if not re.search(rf"\b{name}->", text)]
-    return "\n".join([head(each, names), "{", *unused, *lines, "}"])
+    unused = [f"    (void){name};" for name in arguments if not re.search(rf"\b{name}->", text)]
+    return "\n".join([head, "{", *unused, *lines, "}"])
 
 
 def _lvalues(name: str, records: dict[str, Any]) -> list[str]:

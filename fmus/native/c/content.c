@@ -92,5 +92,6 @@ Status check_content(const Instance *instance, Memory *memory)
             instance, "du", input_names, (const double *)(const void *)&memory->du, sizeof(Input) / sizeof(double));
     if (status == OK && (mode == STEPPING || mode == TERMINATED))
         status = check_states(instance, memory);
+    compute_terms(&memory->values.p);
     return status;
 }

@@ -21,6 +21,7 @@ void set_start_values(Memory *memory)
 {
     for (unsigned k = 0; k < variable_count; k++)
         *place_of(&memory->values, &variables[k]) = variables[k].start;
+    compute_terms(&memory->values.p);
 }
 
 const Variable *variable_of(const Instance *instance, Reference reference, Type type)
@@ -139,13 +140,18 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
     for (size_t k = 0; k < count; k++)
         if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
             return ERROR;
+    int parameters_set = 0;
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
         const double value = value_at(type, values, k);
         *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : value;
         if (variable->causality == INPUT)
             *rate_of(&memory->du, variable) = 0.0;
+        else
+            parameters_set = 1;
     }
+    if (parameters_set)
+        compute_terms(&memory->values.p);
     memory->outputs_known = 0;
     return OK;
 }

@@ -24,7 +24,7 @@ static ControllerOutput y;
 
 static void send_sizes(void)
 {
-    const uint32_t sizes[4] = {sizeof u, sizeof y, sizeof *x, sizeof calibration};
+    const uint32_t sizes[4] = {sizeof u, sizeof y, sizeof *x, CONTROLLER_SET};
     board_send(sizes, sizeof sizes);
 }
 
@@ -64,6 +64,13 @@ static void outputs(void)
     controller_output(x, &u, &calibration, &y);
 }
 
+/* What was set may be a parameter. */
+static void calibrate(void)
+{
+    controller_compute_terms(&calibration);
+    outputs();
+}
+
 /* What lies at an address that the other side has from the linker. */
 static void *at(uint32_t address)
 {
@@ -98,9 +105,9 @@ static bool obeyed(uint8_t command)
         }
         break;
     case PARAMETERS:
-        known = board_receive(&calibration, sizeof calibration);
+        known = board_receive(&calibration, CONTROLLER_SET);
         if (known) {
-            answer(outputs);
+            answer(calibrate);
         }
         break;
     case READ:
@@ -115,7 +122,7 @@ static bool obeyed(uint8_t command)
             known = board_receive(at(place[0]), place[1]);
         }
         if (known) {
-            answer(outputs);
+            answer(calibrate);
         }
         break;
     default:

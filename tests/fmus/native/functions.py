@@ -13,14 +13,19 @@ __attribute__((visibility("default"))) void *address_of_{name}(void);
 void *address_of_{name}(void) {{ return (void *)(size_t)&{name}; }}
 """
 
+ROOM = 200
+"""Numbers behind the parameters for what depends on them alone."""
+
 
 class Functions:
     """Calls `derivative`, `output` and so on by name, as C computes them."""
 
     def __init__(self, fmu, folder):
         sources = block_sources(fmu) | {"operators.h": (C_FILES / "operators.h").read_text()}
-        self._sizes = {each.name: each.function.size1_out(0) for each in trace(fmu.block)}
-        exported = "".join(EXPORTED.format(name=name) for name in self._sizes)
+        traced = trace(fmu.block)
+        self._sizes = {each.name: each.function.size1_out(0) for each in traced}
+        self._parameters = {each.name: each.arguments.index("p") for each in traced}
+        exported = "".join(EXPORTED.format(name=name) for name in (*self._sizes, "compute_terms"))
         sources["exported.c"] = f'#include "block.c"\n#include <stddef.h>\n{exported}'
         for name, text in sources.items():
             (folder / name).write_text(text)
@@ -29,9 +34,13 @@ class Functions:
         self._library = ctypes.CDLL(str(folder / "block.so"))
 
     def __call__(self, name, *arguments):
+        given = [(ctypes.c_double * (len(a) + ROOM))(*map(float, a)) for a in arguments]
+        self._address("compute_terms", 1)(given[self._parameters[name]])
+        result = (ctypes.c_double * self._sizes[name])()
+        self._address(name, len(given) + 1)(*given, result)
+        return list(result)
+
+    def _address(self, name, arguments):
         address = self._library[f"address_of_{name}"]
         address.restype = ctypes.c_void_p
-        function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * (len(arguments) + 1))(address())
-        result = (ctypes.c_double * self._sizes[name])()
-        function(*((ctypes.c_double * len(a))(*map(float, a)) for a in arguments), result)
-        return list(result)
+        return ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * arguments)(address())

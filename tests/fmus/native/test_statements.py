@@ -9,7 +9,7 @@ pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
 import casadi
 
-from driveline.fmus.native.arithmetic import LOOKED_UP, Graph
+from driveline.fmus.native.arithmetic import LOOKED_UP, TracedGraph
 from driveline.fmus.native.statements import Statements
 from driveline.fmus.native.symbol import CasadiSymbol
 from driveline.fmus.native.trace import exact
@@ -24,7 +24,7 @@ def written(of: Callable[..., Any], names: list[str]) -> list[str]:
     with exact():
         result = of(*map(CasadiSymbol, symbols)).expression
     function = casadi.Function("f", [casadi.vertcat(*symbols)], [result])
-    return [line.strip() for line in Statements(Graph(function, [names]), ["y"]).lines]
+    return [line.strip() for line in Statements(TracedGraph(function, [names]), ["y"]).lines]
 
 
 def test_an_interpolation_in_an_array_looks_its_neighbours_up() -> None:

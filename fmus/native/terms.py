@@ -1,0 +1,124 @@
+"""Terms that depend on the parameters of a block alone: C computes them once, when parameters are set.
+
+Python computes them every time, by the same operations, so that the bits are the same.
+"""
+
+import operator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .arithmetic import TRUTH_VALUES, Graph, Node
+
+TERMS = "terms"
+"""What C calls the array of them in the record of the parameters."""
+
+COMPUTED: dict[str, Callable[..., Any]] = {
+    "ADD": operator.add,
+    "SUB": operator.sub,
+    "MUL": operator.mul,
+    "DIV": operator.truediv,
+    "NEG": operator.neg,
+    "SQ": np.square,
+    "TWICE": lambda x: 2.0 * x,
+    "INV": lambda x: 1.0 / x,
+    "FABS": abs,
+    "SIGN": np.sign,
+    "FLOOR": np.floor,
+    "FMOD": operator.mod,
+    "LT": operator.lt,
+    "LE": operator.le,
+    "EQ": operator.eq,
+    "NE": operator.ne,
+    "AND": np.logical_and,
+    "OR": np.logical_or,
+    "NOT": np.logical_not,
+    "CHOICE": np.where,
+    "SQRT": np.sqrt,
+    "LOG": np.log,
+    "SIN": np.sin,
+    "COS": np.cos,
+    "ATAN": np.arctan,
+    "TANH": np.tanh,
+    "WHOLE": np.float64,
+}
+"""What operations make of numbers."""
+
+
+class Terms(Graph):
+    """Those of some functions of a block; equal ones are one.
+
+    Args:
+        parameters: what C calls each of them.
+    """
+
+    def __init__(self, parameters: Sequence[str]) -> None:
+        super().__init__([parameters])
+        self._places: dict[int, int] = {}
+
+    def take(self, graph: Graph, vector: int) -> None:
+        """Takes the terms out of a graph, whose input of that number are the parameters: they become inputs."""
+        same = dict(self._same(graph, vector))
+        graph.inputs.append(names := [])
+        for k in sorted(_first(graph, lambda k: k in same and _is_term(graph.nodes[k]))):
+            place = self._places.setdefault(same[k], len(self._places))
+            self.outputs[place] = same[k]
+            names += [f"p->{TERMS}[{n}]" for n in range(len(names), len(self._places))]
+            graph.nodes[k] = Node("INPUT", (), (len(graph.inputs) - 1, place))
+
+    def _same(self, graph: Graph, vector: int) -> Iterator[tuple[int, int]]:
+        """The nodes of a graph that need no other input, and the same ones here."""
+        same: dict[int, int] = {}
+        for k, node in enumerate(graph.nodes):
+            if node.operation in ("INPUT", "ELEMENT"):
+                of, element = node.place
+                node = node._replace(value=(0, element))
+                if of != vector:
+                    continue
+            if all(operand in same for operand in node.operands):
+                same[k] = self.number(node._replace(operands=tuple(same[operand] for operand in node.operands)))
+                yield k, same[k]
+
+    def values(self, parameters: Sequence[float]) -> list[float]:
+        """Those for values of the parameters."""
+        p, found = np.array(parameters, float), dict[int, Any]()
+        with np.errstate(all="ignore"):
+            for k in sorted(self.users()):
+                found[k] = _value(self.nodes[k], p, found)
+        return [float(found[k]) for _, k in sorted(self.outputs.items())]
+
+
+def _value(node: Node, p: np.ndarray, found: Mapping[int, Any]) -> Any:
+    operands = [found[k] for k in node.operands]
+    match node.operation:
+        case "CONSTANT":
+            return np.float64(node.number)
+        case "INPUT":
+            return p[node.place[1]]
+        case "INDEX":
+            return int(np.clip(np.nan_to_num(operands[0]), 0.0, node.number))
+        case "ELEMENT":
+            return p[node.place[1] + operands[0]]
+        case operation:
+            return COMPUTED[operation](*operands)
+
+
+def _is_term(node: Node) -> bool:
+    """Whether it is worth a place: a number that takes more than a change of sign."""
+    return bool(node.operands) and node.operation not in (*TRUTH_VALUES, "INDEX", "NEG")
+
+
+def _first(graph: Graph, wanted: Callable[[int], bool]) -> set[int]:
+    """The wanted nodes that the outputs need, without those that only wanted ones need."""
+    found, seen, waiting = set[int](), set[int](), list(graph.outputs.values())
+    while waiting:
+        k = waiting.pop()
+        if k in seen:
+            continue
+        seen.add(k)
+        if wanted(k):
+            found.add(k)
+        else:
+            waiting += graph.nodes[k].operands
+    return found
