@@ -38,5 +38,6 @@ class Symbol:
     __eq__, __ne__ = map(_operator, ("eq", "ne"))
     __hash__ = object.__hash__
 
-    sin, cos, atan, tanh, sqrt, log, floor = map(_operator, ("sin", "cos", "atan", "tanh", "sqrt", "log", "floor"))
+    sin, cos, atan, tanh = map(_operator, ("sin", "cos", "atan", "tanh"))
+    sqrt, log, exp, floor = map(_operator, ("sqrt", "log", "exp", "floor"))
     where, logical_and, logical_or, logical_not = map(_operator, ("if_else", "logic_and", "logic_or", "logic_not"))

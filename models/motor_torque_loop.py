@@ -15,7 +15,7 @@ from typing import Annotated, NamedTuple
 from .block.declaration import Integer, Real
 from .block.frame import Content, Frame
 from .block.noise import normals
-from .block.operators import clip, floor, maximum, where
+from .block.operators import clip, cos, exp, floor, logical_and, logical_or, maximum, sin, where
 from .block.types import ContinuousBlock
 from .physics import dead_time
 from .physics.dead_time import Line
@@ -101,6 +101,32 @@ def derivative(x: State, u: Input, p: Parameters) -> State:
     )
 
 
+def solution(x: State, u: Input, du: Input, p: Parameters, h: float) -> tuple[bool, State]:
+    """The lag in closed form: about the response r(t) to a demand that moves along a line,
+
+        T_mot = r + E (e cos at + (e + de/a) sin at),   E = exp(-at),   a = 1/(sqrt(2) tau)
+        dT_mot = dr + E (de cos at - (de + 2 a e) sin at),   r = T_ref + dT_ref (t - sqrt(2) tau)
+
+    e and de are the distances from r and dr at the beginning. It holds without dead time, as long as the demand stays
+    within the largest torque or is held beyond it, and what the rate comes to at most is less than dT_max.
+    """
+    a, late = 1.0 / (SQRT_2 * p.tau), SQRT_2 * p.tau
+    end, omega_1 = u.T_ref + du.T_ref * h, maximum(abs(u.omega_1), abs(u.omega_1 + du.omega_1 * h))
+    T_max = limited(p.T_max, omega_1, p)
+    within = maximum(abs(u.T_ref), abs(end)) <= T_max
+    held = logical_and(du.T_ref == 0.0, logical_or(du.omega_1 == 0.0, omega_1 <= p.omega_base))
+    T_ref = clip(u.T_ref, -T_max, T_max)
+
+    e, de = x.T_mot - (T_ref - du.T_ref * late), x.dT_mot - du.T_ref
+    free = abs(du.T_ref) + 2.0 * (abs(de) + a * abs(e)) < p.dT_max
+    E, c, s = exp(-(a * h)), cos(a * h), sin(a * h)
+    return logical_and(logical_and(p.t_dead < dead_time.LEAST, free), logical_or(within, held)), x._replace(
+        T_mot=T_ref + du.T_ref * (h - late) + E * (e * c + (e + late * de) * s),
+        dT_mot=du.T_ref + E * (de * c - (de + 2.0 * a * e) * s),
+        sample=x.sample + 1.0 / p.T_s * h,
+    )
+
+
 def output(x: State, u: Input, p: Parameters) -> Output:
     k = floor(x.sample + 1e-6)
     noise_omega, noise_T = normals(p.seed, NOISE, k)
@@ -156,6 +182,7 @@ BLOCK = ContinuousBlock(
     output=output,
     derivative=derivative,
     event_indicators=event_indicators,
+    solution=solution,
     step_size=0.001,
     frames=FRAMES,
 )

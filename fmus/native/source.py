@@ -19,6 +19,8 @@ MEANINGS = {
     "output": "The outputs.",
     "derivative": "The rate of change of the state.",
     "event_indicators": "Values that are zero where the equations have a kink.",
+    "solution": "Whether the solution in closed form holds for a step of h s, and the state at its end, for inputs "
+    "that move at the rates du.",
     "update": "The state at the next sample.",
     "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
     "compute_terms": "Computes the terms that depend on the other parameters alone, whenever one of these was set.",
@@ -78,6 +80,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define INDICATORS {sum(indicators)}",
+        *("#define HAS_SOLUTION" for each in traced if each.name == "solution"),
         f"#define SMALL_SIZES {{{', '.join(map(repr, small_sizes(fmu.block)))}}} /* of the states: see explicit.py */",
     ]
 
@@ -138,7 +141,7 @@ def _head(each: Traced, names: Names) -> str:
     def pointer(name: str) -> str:
         return f"{names.struct}{RECORDS[_letter(name)]} *{name}"
 
-    arguments = [f"const {pointer(name)}" for name in each.arguments]
+    arguments = [f"{names.real} h" if name == "h" else f"const {pointer(name)}" for name in each.arguments]
     result = f"{names.real} z[]" if each.result == "z" else pointer(each.result)
     return _line(f"{names.function}{each.name}", [*arguments, result])
 
@@ -150,11 +153,13 @@ def _line(name: str, arguments: list[str]) -> str:
 
 def _function(head: str, lines: list[str], arguments: Iterable[str]) -> str:
     text = "\n".join(lines)
-    unused = [f"    (void){name};" for name in arguments if not re.search(rf"\b{name}->", text)]
+    unused = [f"    (void){name};" for name in arguments if not re.search(rf"\b{name}\b", text)]
     return "\n".join([head, "{", *unused, *lines, "}"])
 
 
 def _lvalues(name: str, records: dict[str, Any]) -> list[str]:
+    if name == "h":
+        return [name]
     return [path.replace(f"{name}.", f"{name}->", 1) for path in paths(name, records[_letter(name)])]
 
 

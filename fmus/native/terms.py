@@ -37,6 +37,7 @@ COMPUTED: dict[str, Callable[..., Any]] = {
     "CHOICE": np.where,
     "SQRT": np.sqrt,
     "LOG": np.log,
+    "EXP": np.exp,
     "SIN": np.sin,
     "COS": np.cos,
     "ATAN": np.arctan,

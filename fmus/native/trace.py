@@ -5,7 +5,7 @@ Python functions in their order and round as they do. Only derivatives, which Py
 are simplified.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -21,8 +21,8 @@ class Traced(NamedTuple):
 
     Attributes:
         function: its inputs are the flattened records `arguments`, its output the flattened `result`.
-        arguments: of x, u, p, and dx, du, dp for rates of change of these.
-        result: x, dx, y, dy or, for the event indicators, z.
+        arguments: of x, u, p, and dx, du, dp for rates of change of these, h for a time.
+        result: x, dx, y, dy or, for numbers that are no record, z.
     """
 
     name: str
@@ -44,23 +44,28 @@ def trace(block: Block) -> tuple[Traced, ...]:
     symbols = {"x": _symbols("x", x0), "u": _symbols("u", block.Input()), "p": _symbols("p", block.Parameters())}
     x, u, p = symbols.values()
     with exact():
-        results = {"start": ("up", "x", block.start(u, p)), "output": ("xup", "y", block.output(x, u, p))}
+        results: dict[str, tuple[Sequence[str], str, Any]] = {"start": ("up", "x", block.start(u, p)), "output": ("xup", "y", block.output(x, u, p))}
         if isinstance(block, ContinuousBlock):
             results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
             if indicators := block.event_indicators(x, u, p):
                 results["event_indicators"] = ("xup", "z", indicators)
+            if block.solution:
+                symbols |= {"du": _symbols("du", block.Input()), "h": CasadiSymbol(casadi.SX.sym("h"))}
+                solved = block.solution(x, u, symbols["du"], p, symbols["h"])
+                results["solution"] = (("x", "u", "du", "p", "h"), "z", solved)
         else:
             results["update"] = ("xup", "next", block.update(x, u, p))
         started = block.output(block.start(u, p), u, p)
-    vectors = {name: _vector(record) for name, record in symbols.items()}
+    vectors = {name: _vector(record if is_tuple(record) else (record,)) for name, record in symbols.items()}
     traced = [
         _traced(name, {argument: vectors[argument] for argument in arguments}, result, _vector(values))
         for name, (arguments, result, values) in results.items()
     ]
     if isinstance(block, ContinuousBlock):
-        traced.append(_rate("output_rate", _vector(results["output"][2]), vectors, ("x", "u")))
-        del vectors["x"]
-        traced.append(_rate("start_rate", _vector(started), vectors, ("u", "p")))
+        xup = {name: vectors[name] for name in "xup"}
+        traced.append(_rate("output_rate", _vector(results["output"][2]), xup, ("x", "u")))
+        del xup["x"]
+        traced.append(_rate("start_rate", _vector(started), xup, ("u", "p")))
     return tuple(traced)
 
 

@@ -34,6 +34,7 @@ class Symbol(Protocol):
     def tanh(self) -> float: ...
     def sqrt(self) -> float: ...
     def log(self) -> float: ...
+    def exp(self) -> float: ...
     def floor(self) -> float: ...
 
 
@@ -162,6 +163,13 @@ def log(x: float) -> float:
         return math.log(x)
     except TypeError:
         return symbol(x).log()
+
+
+def exp(x: float) -> float:
+    try:
+        return math.exp(x)
+    except TypeError:
+        return symbol(x).exp()
 
 
 def floor(x: float) -> float:

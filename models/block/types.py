@@ -62,11 +62,14 @@ class ContinuousBlock(_Block):
     Attributes:
         derivative: (x, u, p) -> dx/dt as a State.
         event_indicators: (x, u, p) -> tuple of floats whose zeros are located.
+        solution: (x, u, du, p, h) -> whether the solution in closed form holds, and the state h seconds later, with
+            inputs that move at the rates du; None: there is no such solution, and the block is integrated.
         step_size: longest step of the integration in s; where the block is stiff it takes shorter ones.
     """
 
     derivative: Callable[[Any, Any, Any], Any]
     event_indicators: Callable[[Any, Any, Any], tuple[Any, ...]] = no_event_indicators
+    solution: Callable[[Any, Any, Any, Any, Any], tuple[bool, Any]] | None = None
     step_size: float
 
 

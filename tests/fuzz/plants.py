@@ -58,7 +58,7 @@ void outputs(const State *x, const Input *u, const Parameters *p, Output *y) { o
 int run(const Input *u, const Parameters *p, double duration, State *x)
 {
     const Problem problem = {u, 0, p, 0};
-    return integrate(&problem, duration, x);
+    return integrate(&problem, duration, x, x);
 }
 """
 

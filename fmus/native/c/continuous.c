@@ -15,18 +15,17 @@ static const Input *moving(const Memory *memory)
     return memcmp(&memory->du, &still, sizeof still) ? &memory->du : NULL;
 }
 
-Obstacle advance(Memory *memory, double elapsed, double duration)
+Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next)
 {
-    Values *values = &memory->values;
+    const Values *values = &memory->values;
     const Problem problem = {&values->u, moving(memory), &values->p, NULL};
     (void)elapsed;
-    const int failed = integrate(&problem, duration, &memory->x);
+    const int failed = integrate(&problem, duration, &memory->x, &next->states[0]);
     if (failed)
         return (Obstacle){state_names[abs(failed) - 1] + 1, failed < 0}; /* without the dot of the name */
-    Input room;
+    next->x = &next->states[0];
     if (problem.du)
-        values->u = *inputs_at(&problem, duration, &room);
-    memory->du = still;
+        next->u = inputs_at(&problem, duration, &next->inputs);
     return (Obstacle){.state = NULL};
 }
 

@@ -44,6 +44,16 @@ typedef struct {
     Memory memory;
 } Instance;
 
+/* Where a step leads: the states and inputs at its end, in the memory where it does not change them, else here. */
+typedef struct {
+    const State *x;
+    const State *coming;
+    const Input *u;
+    double ticks;
+    State states[2];
+    Input inputs;
+} Next;
+
 /* What is in the way of a step. */
 typedef struct {
     const char *state;    /* the name of one that changes fast; NULL: nothing */
@@ -80,7 +90,7 @@ static Status make_step(Instance *instance, double time, double step_size);
 
 /* values.c; the values are double for REAL, else int */
 static void set_start_values(Memory *memory);
-static Status check_outputs(const Instance *instance, Memory *memory, double step_size); /* computes them */
+static Status compute_next_outputs(Instance *instance, const Next *next, double step_size); /* refused if not finite */
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
 static const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
@@ -100,7 +110,7 @@ static Status check_content(const Instance *instance, Memory *memory); /* of a s
 
 /* continuous.c or sampled.c */
 static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
-static Obstacle advance(Memory *memory, double elapsed, double duration); /* from `elapsed` s after the start on */
+static Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next); /* `elapsed` since start */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
 static Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);

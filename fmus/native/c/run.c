@@ -70,24 +70,44 @@ static Status check_step(Instance *instance, double time, double step_size)
     return check_moving_inputs(instance, step_size);
 }
 
-/* A step is made on a copy, which takes the place of the memory if it can be followed to finite outputs. */
+/* The memory takes over what a step has changed. `x` first: it may be what was coming. */
+static void arrive(Memory *memory, const Next *next, double time)
+{
+    if (next->x != &memory->x)
+        memory->x = *next->x;
+    if (next->coming != &memory->coming)
+        memory->coming = *next->coming;
+    if (next->u != &memory->values.u) {
+        static const Input still;
+        memory->values.u = *next->u;
+        memory->du = still;
+    }
+    memory->ticks = next->ticks;
+    memory->time = time;
+}
+
+/* What a step leads to takes its place in the memory if it can be followed to finite outputs. */
 Status make_step(Instance *instance, double time, double step_size)
 {
+    Memory *memory = &instance->memory;
     Status status = check_step(instance, time, step_size);
     if (status == OK) {
-        Memory next = instance->memory;
-        const Obstacle obstacle = advance(&next, time - next.start_time, step_size);
+        Next next;
+        next.x = &memory->x;
+        next.coming = &memory->coming;
+        next.u = &memory->values.u;
+        next.ticks = memory->ticks;
+        const Obstacle obstacle = advance(memory, time - memory->start_time, step_size, &next);
         char text[NUMBER_LENGTH];
-        next.time = time + step_size;
         if (obstacle.state && obstacle.shorter_steps_do)
             status = discard(instance, TOO_MUCH_WORK(write_number(text, step_size), obstacle.state));
         else if (obstacle.state)
             status = refuse(instance, NOT_INTEGRABLE(write_number(text, step_size), obstacle.state));
         else
-            status = check_outputs(instance, &next, step_size);
+            status = compute_next_outputs(instance, &next, step_size);
         if (status == OK)
-            instance->memory = next;
+            arrive(memory, &next, time + step_size);
     }
-    instance->memory.last_step = status;
+    memory->last_step = status;
     return status;
 }

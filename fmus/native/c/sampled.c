@@ -5,17 +5,19 @@
 
 /* The ticks up to the end of the step that have not been made; tick k is due k SAMPLE_TIME after the start. The same
 as runner.py, operation by operation. */
-Obstacle advance(Memory *memory, double elapsed, double duration)
+Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next)
 {
     const double samples = (elapsed + duration) / SAMPLE_TIME;
     const double due = ceil(samples - TICK_TOLERANCE);
     const Values *values = &memory->values;
-    for (; memory->ticks < due; memory->ticks += 1.0) {
-        memory->x = memory->coming;
-        update(&memory->x, &values->u, &values->p, &memory->coming);
+    for (; next->ticks < due; next->ticks += 1.0) {
+        State *made = &next->states[next->coming == &next->states[0]];
+        next->x = next->coming;
+        update(next->x, &values->u, &values->p, made);
+        next->coming = made;
     }
-    if (memory->ticks - samples <= TICK_TOLERANCE)
-        memory->x = memory->coming;
+    if (next->ticks - samples <= TICK_TOLERANCE)
+        next->x = next->coming;
     return (Obstacle){NULL, 0};
 }
 

@@ -64,17 +64,30 @@ static void compute_outputs(Memory *memory)
     memory->outputs_known = 1;
 }
 
-Status check_outputs(const Instance *instance, Memory *memory, double step_size)
+/* The variable at a place among the outputs. */
+static const Variable *output_at(size_t place)
 {
-    compute_outputs(memory);
-    for (unsigned k = 0; k < variable_count; k++) {
-        const double value = *place_of(&memory->values, &variables[k]);
+    const size_t offset = offsetof(Values, y) + place * sizeof(double);
+    const Variable *variable = variables;
+    while (variable->offset != offset)
+        variable++;
+    return variable;
+}
+
+Status compute_next_outputs(Instance *instance, const Next *next, double step_size)
+{
+    Values *values = &instance->memory.values;
+    const double *y = (const double *)(const void *)&values->y;
+    output(next->x, next->u, &values->p, &values->y);
+    for (size_t k = 0; k < sizeof values->y / sizeof *y && !gives_bad_output; k++) {
         char text[NUMBER_LENGTH], size[NUMBER_LENGTH];
-        if (variables[k].causality == OUTPUT && !gives_bad_output && !(fabs(value) <= DBL_MAX))
-            return refuse(
-                instance,
-                NOT_FINITE(write_number(size, step_size), variables[k].name, write_number(text, value)));
+        if (fabs(y[k]) <= DBL_MAX)
+            continue;
+        instance->memory.outputs_known = 0;
+        return refuse(
+            instance, NOT_FINITE(write_number(size, step_size), output_at(k)->name, write_number(text, y[k])));
     }
+    instance->memory.outputs_known = 1;
     return OK;
 }
 

@@ -53,7 +53,7 @@ int run(double duration, State *x, const Input *u, const Input *du);
 int run(double duration, State *x, const Input *u, const Input *du)
 {
     const Problem problem = {u, du, 0, 0};
-    return integrate(&problem, duration, x);
+    return integrate(&problem, duration, x, x);
 }
 """
 
