@@ -90,35 +90,35 @@ def gear_torque(x: State, p: Parameters) -> float:
 
 def tyre_force(x: State, p: Parameters) -> float:
     """Force in N of the tyre on the vehicle."""
-    v_s = p.r * x.omega_2 / p.i - x.v
+    v_s = p.r / p.i * x.omega_2 - x.v
     return p.c_slip / p.sigma_s * x.u + vehicle.standstill_damping(x.v, p) * v_s
 
 
 def load_torque(x: State, u: Input, F: float, dz: float, p: Parameters) -> float:
     """Torque in N.m (motor side) of tyre force F (N) and brake, or the recorded one."""
     T_br = u.T_brake * brake.grip(x.z, dz, p)
-    return where(p.recorded_load, u.T_load_rec, -(p.r * F + T_br) / p.i)
+    return where(p.recorded_load, u.T_load_rec, -1.0 / p.i * (p.r * F + T_br))
 
 
 def derivative(x: State, u: Input, p: Parameters) -> State:
-    w = x.omega_2 / p.i
+    w = 1.0 / p.i * x.omega_2
     F = tyre_force(x, p)
     dz = brake.bristle_rate(w, x.z, p)
     T_load = load_torque(x, u, F, dz, p)
     T_gear = gear_torque(x, p)
     return State(
-        omega_1=(u.T_mot - T_gear) / p.J_1,
-        omega_2=(T_load + T_gear) / p.J_2,
+        omega_1=1.0 / p.J_1 * (u.T_mot - T_gear),
+        omega_2=1.0 / p.J_2 * (T_load + T_gear),
         phi=x.omega_1 - x.omega_2,
-        v=(F - vehicle.resistance(x.v, u.slope, p.m * p.g, p)) / p.m,
-        u=p.r * w - x.v - maximum(abs(p.r * w), abs(x.v)) * x.u / p.sigma_s,
+        v=1.0 / p.m * (F - vehicle.resistance(x.v, u.slope, p.m * p.g, p)),
+        u=p.r * w - x.v - 1.0 / p.sigma_s * maximum(abs(p.r * w), abs(x.v)) * x.u,
         z=dz,
     )
 
 
 def output(x: State, u: Input, p: Parameters) -> Output:
     dx = derivative(x, u, p)
-    w = x.omega_2 / p.i
+    w = 1.0 / p.i * x.omega_2
     F = tyre_force(x, p)
     return Output(
         omega_1=x.omega_1,
@@ -130,14 +130,14 @@ def output(x: State, u: Input, p: Parameters) -> Output:
         T_rim=where(p.recorded_load, -p.i * u.T_load_rec, p.r * F),
         phi=x.phi,
         v=where(p.recorded_load, p.r * w, x.v),
-        a_body=where(p.recorded_load, p.r * dx.omega_2 / p.i, dx.v),
+        a_body=where(p.recorded_load, p.r / p.i * dx.omega_2, dx.v),
         pitch=0.0,
     )
 
 
 def event_indicators(x: State, u: Input, p: Parameters) -> tuple[float, ...]:
     """Both flanks of the gap; wheels at rest (the bristles turn round); the kinks of the tyre's rate."""
-    return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2, p.r * x.omega_2 / p.i - x.v, x.v)
+    return (x.phi - p.phi_B, x.phi + p.phi_B, x.omega_2, p.r / p.i * x.omega_2 - x.v, x.v)
 
 
 BLOCK = ContinuousBlock(

@@ -79,6 +79,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
     indicators = [each.function.size1_out(0) for each in traced if each.name == "event_indicators"]
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
+        f"#define ALLOWED_ERROR {fmu.block.allowed_error!r} /* of a step, in units of what is tolerated */",
         f"#define INDICATORS {sum(indicators)}",
         *("#define HAS_SOLUTION" for each in traced if each.name == "solution"),
         f"#define SMALL_SIZES {{{', '.join(map(repr, small_sizes(fmu.block)))}}} /* of the states: see explicit.py */",
@@ -153,7 +154,7 @@ def _line(name: str, arguments: list[str]) -> str:
 
 def _function(head: str, lines: list[str], arguments: Iterable[str]) -> str:
     text = "\n".join(lines)
-    unused = [f"    (void){name};" for name in arguments if not re.search(rf"\b{name}\b", text)]
+    unused = [f"    (void){name};" for name in arguments if not re.search(rf"(?<![>.\w]){name}\b", text)]
     return "\n".join([head, "{", *unused, *lines, "}"])
 
 

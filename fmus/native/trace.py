@@ -44,7 +44,10 @@ def trace(block: Block) -> tuple[Traced, ...]:
     symbols = {"x": _symbols("x", x0), "u": _symbols("u", block.Input()), "p": _symbols("p", block.Parameters())}
     x, u, p = symbols.values()
     with exact():
-        results: dict[str, tuple[Sequence[str], str, Any]] = {"start": ("up", "x", block.start(u, p)), "output": ("xup", "y", block.output(x, u, p))}
+        results: dict[str, tuple[Sequence[str], str, Any]] = {
+            "start": ("up", "x", block.start(u, p)),
+            "output": ("xup", "y", block.output(x, u, p)),
+        }
         if isinstance(block, ContinuousBlock):
             results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
             if indicators := block.event_indicators(x, u, p):

@@ -36,10 +36,6 @@ MOST_TRIALS = 400
 COARSE_ERROR = 100.0
 """A step with more than this error is no step on which a crossing could be looked for."""
 
-ALLOWED_ERROR = 0.01
-"""Error of a step that is made, in units of what is tolerated. Steps with this little are so short that a kink away
-from the zeros cannot pass for an accurate step; with order 8 they are hardly shorter for it."""
-
 STIFF = 20.0
 """Fastest rate times length of a stretch, above which it is left to the implicit method: explicit steps are stable up
 to 6, and one implicit step costs as much as four of them."""
@@ -72,7 +68,7 @@ class Integrator:
     def __init__(self, block: ContinuousBlock) -> None:
         self.derivative = block.derivative
         self.event_indicators = block.event_indicators
-        self.step_size, self.State = block.step_size, block.State
+        self.step_size, self.allowed_error, self.State = block.step_size, block.allowed_error, block.State
         self.solution, self.held = block.solution, block.Input._make(0.0 for _ in block.Input._fields)
         self.step, self.trial, self.tangent = step(block), trial(block), tangent(block)
         self.implicit, self.small = Implicit(block), small_sizes(block)
@@ -112,14 +108,14 @@ class Integrator:
         for _ in range(MOST_TRIALS):
             length, crossed = min(left, longest), None
             x_end, error = self._try(start, length)
-            if not error <= ALLOWED_ERROR and self._is_stiff(start, x_end, left):
+            if not error <= self.allowed_error and self._is_stiff(start, x_end, left):
                 break
             if error <= COARSE_ERROR and located < MOST_CROSSINGS:
                 crossings = self._crossings(start, length, x_end, sides)
                 if crossings:
                     length, crossed = min(crossings)
                     x_end, error = self._try(start, length)
-            if error <= ALLOWED_ERROR:
+            if error <= self.allowed_error:
                 left -= length
                 if crossed is not None:
                     sides[crossed] = not sides[crossed]
@@ -127,8 +123,8 @@ class Integrator:
                 if left <= LOCATION_TOLERANCE:
                     return x_end
                 start = start._replace(x=x_end, dx=self.derivative(x_end, u, p))
-            if crossed is None or not error <= ALLOWED_ERROR:
-                longest = length * change(error / ALLOWED_ERROR, 3)
+            if crossed is None or not error <= self.allowed_error:
+                longest = length * change(error / self.allowed_error, 3)
         x = self.implicit.advance(start.x, u, p, left, work)
         sides[:] = self._sides(x, u, p)
         return x

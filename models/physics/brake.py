@@ -47,9 +47,9 @@ class BristleParameters(Protocol):
 def bristle_rate(omega: float, z: float, p: BristleParameters) -> float:
     """dz/dt in rad/s for a wheel speed omega (rad/s) and a bristle twist z (rad)."""
     w_s = clip(omega, -p.omega_sat, p.omega_sat)
-    return w_s - abs(w_s) * z / p.z_br
+    return w_s - 1.0 / p.z_br * abs(w_s) * z
 
 
 def grip(z: float, dz: float, p: BristleParameters) -> float:
     """Share of the brake torque capacity that acts: q in [-1, 1]."""
-    return clip((z + p.t_br * dz) / p.z_br, -1.0, 1.0)
+    return clip(1.0 / p.z_br * (z + p.t_br * dz), -1.0, 1.0)

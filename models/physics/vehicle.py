@@ -75,10 +75,10 @@ class LowSpeedParameters(Protocol):
 
 def resistance(v: float, slope: float, rolling_load: float, p: ResistanceParameters) -> float:
     """Force in N against the motion: rolling (rolling_load in N), grade and air."""
-    return rolling_load * p.c_rr * tanh(v / p.v_rr) + p.m * p.g * sin(slope) + p.c_wa * v * abs(v)
+    return rolling_load * p.c_rr * tanh(1.0 / p.v_rr * v) + p.m * p.g * sin(slope) + p.c_wa * v * abs(v)
 
 
 def standstill_damping(v: float, p: LowSpeedParameters) -> float:
     """Tyre damping in N.s/m that keeps a standing car from swinging."""
-    ratio = v / p.v_low
+    ratio = 1.0 / p.v_low * v
     return p.d_low / (1.0 + ratio * ratio)

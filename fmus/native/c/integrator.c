@@ -255,8 +255,10 @@ static int is_solved(const Problem *problem, double duration, const State *x, St
     static const Input held;
     real found[1 + STATES];
     solution(x, problem->u, problem->du ? problem->du : &held, problem->p, duration, found);
-    memcpy(end, &found[1], sizeof *end);
-    return found[0] != 0.0;
+    const int holds = found[0] != 0.0;
+    if (holds)
+        memcpy(end, &found[1], sizeof *end);
+    return holds;
 }
 
 #else

@@ -36,6 +36,7 @@ typedef double real;
 typedef struct {{ real x[{states}]; }} State;
 typedef struct {{ real u; }} Input, Parameters;
 #define INDICATORS {indicators}
+#define ALLOWED_ERROR 0.01
 #define SMALL_SIZES {{ {sizes} }}
 extern double LONGEST_STEP;
 extern void (*derivative)(const State *x, const Input *u, const Parameters *p, State *dx);
