@@ -66,9 +66,14 @@ class Output(NamedTuple):
     omega_1_meas: Annotated[float, Real("rad/s", "speed of the motor as the resolver measures it")]
 
 
+def largest(omega_1: float, p: Parameters) -> float:
+    """The largest torque in N.m that the motor has at a speed (rad/s)."""
+    return p.T_max * (p.omega_base / maximum(abs(omega_1), p.omega_base))
+
+
 def limited(T: float, omega_1: float, p: Parameters) -> float:
     """A torque in N.m, limited to what the motor has at a speed (rad/s)."""
-    T_max = p.T_max * (p.omega_base / maximum(abs(omega_1), p.omega_base))
+    T_max = largest(omega_1, p)
     return clip(T, -T_max, T_max)
 
 
@@ -112,7 +117,7 @@ def solution(x: State, u: Input, du: Input, p: Parameters, h: float) -> tuple[bo
     """
     a, late = 1.0 / (SQRT_2 * p.tau), SQRT_2 * p.tau
     end, omega_1 = u.T_ref + du.T_ref * h, maximum(abs(u.omega_1), abs(u.omega_1 + du.omega_1 * h))
-    T_max = limited(p.T_max, omega_1, p)
+    T_max = largest(omega_1, p)
     within = maximum(abs(u.T_ref), abs(end)) <= T_max
     held = logical_and(du.T_ref == 0.0, logical_or(du.omega_1 == 0.0, omega_1 <= p.omega_base))
     T_ref = clip(u.T_ref, -T_max, T_max)
@@ -141,7 +146,7 @@ def output(x: State, u: Input, p: Parameters) -> Output:
 
 def event_indicators(x: State, u: Input, p: Parameters) -> tuple[float, ...]:
     """The torque changes at its largest rate, the delayed demand reaches the largest torque, the speed omega_base."""
-    T_max = limited(p.T_max, u.omega_1, p)
+    T_max = largest(u.omega_1, p)
     T_ref = delayed_demand(x, u, p)
     return (x.dT_mot - p.dT_max, x.dT_mot + p.dT_max, T_ref - T_max, T_ref + T_max, abs(u.omega_1) - p.omega_base)
 

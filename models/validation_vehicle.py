@@ -34,7 +34,6 @@ from .physics.brake import BRAKE
 from .physics.plant import Input, Output
 from .physics.vehicle import CAR
 
-
 RIPPLE_FULL, RIPPLE_NONE = 5000.0, 10000.0
 """Rates in rad/s between which a ripple fades out.
 

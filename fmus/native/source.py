@@ -18,6 +18,8 @@ MEANINGS = {
     "start": "The state at the start, with the inputs of that instant.",
     "output": "The outputs.",
     "derivative": "The rate of change of the state.",
+    "derivative_held": "The same, with what depends on inputs and parameters alone.",
+    "held_terms": "What the rate of change of the state needs that depends on inputs and parameters alone.",
     "event_indicators": "Values that are zero where the equations have a kink.",
     "solution": "Whether the solution in closed form holds for a step of h s, and the state at its end, for inputs "
     "that move at the rates du.",
@@ -66,13 +68,13 @@ def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
         equations=fmu.equations.replace("*/", "* /").strip(),
         precision=precision,
         structs="\n\n".join(structs(records, terms=len(made.terms))),
-        constants="\n".join(_constants(fmu, traced)),
+        constants="\n".join(_constants(fmu, traced, made.held)),
         prototypes="\n".join(f"/* {meaning} */\nstatic {head};" for head, meaning in made.heads),
     )
     return {"block.h": header, "block.c": SOURCE.format(**about, functions=made.text)}
 
 
-def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
+def _constants(fmu: Fmu, traced: tuple[Traced, ...], held: int) -> list[str]:
     """What else there is to know of the block."""
     if isinstance(fmu.block, SampledBlock):
         return [f"#define SAMPLE_TIME {fmu.block.sample_time!r} /* s */"]
@@ -81,6 +83,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...]) -> list[str]:
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define ALLOWED_ERROR {fmu.block.allowed_error!r} /* of a step, in units of what is tolerated */",
         f"#define INDICATORS {sum(indicators)}",
+        *([f"#define HELD_TERMS {held} /* numbers that held_terms computes */"] if held else []),
         *("#define HAS_SOLUTION" for each in traced if each.name == "solution"),
         f"#define SMALL_SIZES {{{', '.join(map(repr, small_sizes(fmu.block)))}}} /* of the states: see explicit.py */",
     ]
@@ -102,11 +105,13 @@ class Functions(NamedTuple):
         heads: of each the head and what it computes.
         text: all of them.
         terms: values of the terms that depend on the declared parameters alone.
+        held: how many terms of the derivative depend on inputs and parameters alone.
     """
 
     heads: list[tuple[str, str]]
     text: str
     terms: list[float]
+    held: int
 
 
 RARE = ("start", "start_rate")
@@ -121,30 +126,45 @@ def functions(
     Args:
         records: one of each record of the block, by their letters.
     """
-    terms, heads, texts = Terms(_lvalues("p", records)), list[tuple[str, str]](), list[str]()
+    terms, held = Terms(f"p->{TERMS}"), Terms("w")
+    heads, texts = list[tuple[str, str]](), list[str]()
+
+    def add(name: str, arguments: list[str], lines: list[str], used: Iterable[str]) -> None:
+        heads.append((_line(f"{names.function}{name}", arguments), MEANINGS[name]))
+        texts.append(_function(heads[-1][0], lines, used))
+
     for each in traced:
         graph = TracedGraph(each.function, [_lvalues(name, records) for name in each.arguments])
         if each.name not in RARE:
-            terms.take(graph, each.arguments.index("p"))
+            terms.take(graph, [each.arguments.index("p")])
+        if each.name == "derivative":
+            held.take(graph, [each.arguments.index("u"), each.arguments.index("p"), len(graph.inputs) - 1])
         size = each.function.size1_out(0)
         outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
-        heads.append((_head(each, names), MEANINGS[each.name]))
-        texts.append(_function(heads[-1][0], Statements(graph, outputs, precision).lines, each.arguments))
-    places = [f"p->{TERMS}[{n}]" for n in range(len(terms.outputs))]
-    heads.append((_line(f"{names.function}compute_terms", [f"{names.struct}Parameters *p"]), MEANINGS["compute_terms"]))
-    texts.append(_function(heads[-1][0], Statements(terms, places, precision).lines, ("p",)))
-    return Functions(heads, "\n\n".join(texts), terms.values(list(map(float, records["p"]))))
+        lines, arguments = Statements(graph, outputs, precision).lines, _arguments(each, names)
+        if each.name == "derivative" and held.outputs:
+            x, u, p, dx = arguments
+            add("derivative_held", [x, u, p, f"const {names.real} w[]", dx], lines, each.arguments)
+            add("held_terms", [u, p, f"{names.real} w[]"], Statements(held, held.names(), precision).lines, "up")
+            lines = [
+                f"    {names.real} w[HELD_TERMS];",
+                "    held_terms(u, p, w);",
+                "    derivative_held(x, u, p, w, dx);",
+            ]
+        add(each.name, arguments, lines, each.arguments)
+    add("compute_terms", [f"{names.struct}Parameters *p"], Statements(terms, terms.names(), precision).lines, "p")
+    declared = terms.values(list(map(float, records["p"])))
+    return Functions(heads, "\n\n".join(texts), declared, len(held.outputs))
 
 
-def _head(each: Traced, names: Names) -> str:
-    """The head of a function in C."""
+def _arguments(each: Traced, names: Names) -> list[str]:
+    """Those of a function in C."""
 
     def pointer(name: str) -> str:
         return f"{names.struct}{RECORDS[_letter(name)]} *{name}"
 
     arguments = [f"{names.real} h" if name == "h" else f"const {pointer(name)}" for name in each.arguments]
-    result = f"{names.real} z[]" if each.result == "z" else pointer(each.result)
-    return _line(f"{names.function}{each.name}", [*arguments, result])
+    return [*arguments, f"{names.real} z[]" if each.result == "z" else pointer(each.result)]
 
 
 def _line(name: str, arguments: list[str]) -> str:

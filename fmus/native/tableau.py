@@ -13,7 +13,8 @@ DOP853 = """/* The Runge-Kutta method of order 8 by Dormand and Prince, written 
 what is tolerated: NaN or infinite if the end is not finite. */
 static void step(const Problem *problem, double t, const Vector x, const Vector k0, double h, Vector end, double *error)
 {{
-    Vector at, sum, {stages};
+    Point at, {stages};
+    Vector sum;
 {lines}
     if (!error)
         return;
@@ -45,8 +46,8 @@ def step_header() -> str:
     """dop853.h: the step, operation by operation as explicit.py writes it."""
     lines: list[str] = []
     for stage, weights in enumerate(A[1:], start=1):
-        lines += _for_each_state(f"at[n] = x[n] + h * ({_sum(weights)})")
-        lines.append(f"    rate(problem, t + {math.fsum(weights.values())!r} * h, at, k{stage});")
+        lines += _for_each_state(f"at.at[n] = x[n] + h * ({_sum(weights)})")
+        lines.append(f"    rate_at(problem, t + {math.fsum(weights.values())!r} * h, &at, &k{stage});")
     lines += ["    for (int n = 0; n < STATES; n++) {", f"        sum[n] = {_sum(B)};"]
     lines += ["        end[n] = x[n] + h * sum[n];", "    }"]
     return DOP853.format(
@@ -65,7 +66,8 @@ def _for_each_state(statement: str) -> list[str]:
 
 def _sum(weights: dict[int, float]) -> str:
     """The weighted stages of state n."""
-    return " + ".join(f"{weight!r} * k{stage}[n]" for stage, weight in weights.items()).replace("+ -", "- ")
+    terms = (f"{weight!r} * {f'k{stage}.at' if stage else 'k0'}[n]" for stage, weight in weights.items())
+    return " + ".join(terms).replace("+ -", "- ")
 
 
 def rosenbrock_header() -> str:

@@ -1,6 +1,7 @@
-"""Terms that depend on the parameters of a block alone: C computes them once, when parameters are set.
+"""Terms of a block that depend on few of its arguments: C computes them once, when these are set.
 
-Python computes them every time, by the same operations, so that the bits are the same.
+Those of the parameters alone stand behind these, those of parameters and inputs are computed once for all stages of a
+step. Python computes them every time, by the same operations, so that the bits are the same.
 """
 
 import operator
@@ -12,7 +13,7 @@ import numpy as np
 from .arithmetic import TRUTH_VALUES, Graph, Node
 
 TERMS = "terms"
-"""What C calls the array of them in the record of the parameters."""
+"""What C calls the array of those that stand behind the parameters."""
 
 COMPUTED: dict[str, Callable[..., Any]] = {
     "ADD": operator.add,
@@ -51,38 +52,43 @@ class Terms(Graph):
     """Those of some functions of a block; equal ones are one.
 
     Args:
-        parameters: what C calls each of them.
+        name: what C calls the array of them.
     """
 
-    def __init__(self, parameters: Sequence[str]) -> None:
-        super().__init__([parameters])
+    def __init__(self, name: str) -> None:
+        super().__init__([])
+        self._name = name
         self._places: dict[int, int] = {}
 
-    def take(self, graph: Graph, vector: int) -> None:
-        """Takes the terms out of a graph, whose input of that number are the parameters: they become inputs."""
-        same = dict(self._same(graph, vector))
-        graph.inputs.append(names := [])
+    def take(self, graph: Graph, vectors: Sequence[int]) -> None:
+        """Takes the terms out of a graph that depend on its inputs of these numbers alone: they become inputs."""
+        self.inputs = [graph.inputs[vector] for vector in vectors]
+        same = dict(self._same(graph, vectors))
         for k in sorted(_first(graph, lambda k: k in same and _is_term(graph.nodes[k]))):
             place = self._places.setdefault(same[k], len(self._places))
             self.outputs[place] = same[k]
-            names += [f"p->{TERMS}[{n}]" for n in range(len(names), len(self._places))]
-            graph.nodes[k] = Node("INPUT", (), (len(graph.inputs) - 1, place))
+            graph.nodes[k] = Node("INPUT", (), (len(graph.inputs), place))
+        graph.inputs.append(self.names())
 
-    def _same(self, graph: Graph, vector: int) -> Iterator[tuple[int, int]]:
-        """The nodes of a graph that need no other input, and the same ones here."""
+    def names(self) -> list[str]:
+        """What C calls each of them."""
+        return [f"{self._name}[{n}]" for n in range(len(self.outputs))]
+
+    def _same(self, graph: Graph, vectors: Sequence[int]) -> Iterator[tuple[int, int]]:
+        """The nodes of a graph that need no other inputs, and the same ones here."""
         same: dict[int, int] = {}
         for k, node in enumerate(graph.nodes):
             if node.operation in ("INPUT", "ELEMENT"):
                 of, element = node.place
-                node = node._replace(value=(0, element))
-                if of != vector:
+                if of not in vectors:
                     continue
+                node = node._replace(value=(vectors.index(of), element))
             if all(operand in same for operand in node.operands):
                 same[k] = self.number(node._replace(operands=tuple(same[operand] for operand in node.operands)))
                 yield k, same[k]
 
     def values(self, parameters: Sequence[float]) -> list[float]:
-        """Those for values of the parameters."""
+        """Those that depend on parameters alone, for values of these."""
         p, found = np.array(parameters, float), dict[int, Any]()
         with np.errstate(all="ignore"):
             for k in sorted(self.users()):

@@ -76,16 +76,17 @@ def _joined(condition: bool, value: Values, otherwise: Values) -> Values:
     return make([_joined(condition, a, b) for a, b in zip(value, otherwise, strict=True)])
 
 
-# maximum, minimum and clip are the hot spots of every model: they save themselves the call of `where`
+# maximum, minimum and clip are the hot spots of every model: they save themselves the call of `where`, and with > and <
+# they are one instruction of most processors
 
 
 def maximum(a: float, b: float) -> float:
-    above = a >= b
+    above = a > b
     return a if above is True else b if above is False else symbol(above).where(a, b)
 
 
 def minimum(a: float, b: float) -> float:
-    below = a <= b
+    below = a < b
     return a if below is True else b if below is False else symbol(below).where(a, b)
 
 

@@ -57,7 +57,7 @@ void start_at(const Input *u, const Parameters *p, State *x) { start(u, p, x); }
 void outputs(const State *x, const Input *u, const Parameters *p, Output *y) { output(x, u, p, y); }
 int run(const Input *u, const Parameters *p, double duration, State *x)
 {
-    const Problem problem = {u, 0, p, 0};
+    const Problem problem = {u, 0, p, 0, 0};
     return integrate(&problem, duration, x, x);
 }
 """

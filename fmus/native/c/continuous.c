@@ -18,7 +18,7 @@ static const Input *moving(const Memory *memory)
 Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next)
 {
     const Values *values = &memory->values;
-    const Problem problem = {&values->u, moving(memory), &values->p, NULL};
+    const Problem problem = {&values->u, moving(memory), &values->p, NULL, NULL};
     (void)elapsed;
     const int failed = integrate(&problem, duration, &memory->x, &next->states[0]);
     if (failed)

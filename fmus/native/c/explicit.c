@@ -19,13 +19,24 @@ const Input *inputs_at(const Problem *problem, double t, Input *room)
     return room;
 }
 
-void rate(const Problem *problem, double t, const Vector x, Vector dx)
+static void rate_at(const Problem *problem, double t, const Point *x, Point *dx)
 {
     Input room;
-    State state, change;
-    memcpy(&state, x, sizeof state);
-    derivative(&state, inputs_at(problem, t, &room), problem->p, &change);
-    memcpy(dx, &change, sizeof change);
+#ifdef HELD_TERMS
+    if (!problem->du) {
+        derivative_held(&x->state, problem->u, problem->p, problem->held, &dx->state);
+        return;
+    }
+#endif
+    derivative(&x->state, inputs_at(problem, t, &room), problem->p, &dx->state);
+}
+
+void rate(const Problem *problem, double t, const Vector x, Vector dx)
+{
+    Point point, change;
+    memcpy(point.at, x, sizeof point.at);
+    rate_at(problem, t, &point, &change);
+    memcpy(dx, change.at, sizeof change.at);
 }
 
 #include "dop853.h"

@@ -10,12 +10,19 @@ typedef real Vector[STATES]; /* a State, but compilers take them for different t
 
 static const double small[STATES] = SMALL_SIZES; /* what is added to the size of a state */
 
+/* The same, for a function of the block and as numbers. */
+typedef union {
+    State state;
+    Vector at;
+} Point;
+
 /* What is integrated: the block with its parameters, and inputs that move at the rates du (NULL if held). */
 typedef struct {
     const Input *u;
     const Input *du;
     const Parameters *p;
-    long *work; /* explicit steps that it has come to; kept by integrate */
+    long *work;       /* explicit steps that it has come to; kept by integrate */
+    const real *held; /* what depends on held inputs and the parameters alone; kept by integrate */
 } Problem;
 
 /* Where a step starts: time since the start of the communication step in s, state, its derivative. */

@@ -273,8 +273,14 @@ static int is_solved(const Problem *problem, double duration, const State *x, St
 
 int integrate(const Problem *whole, double duration, const State *state, State *end)
 {
+#ifdef HELD_TERMS
+    real held[HELD_TERMS];
+    held_terms(whole->u, whole->p, held);
+#else
+    const real *held = NULL;
+#endif
     long work = 0;
-    const Problem counted = {whole->u, whole->du, whole->p, &work}, *problem = &counted;
+    const Problem counted = {whole->u, whole->du, whole->p, &work, held}, *problem = &counted;
     Vector x;
     const double stretches = fmax(1.0, ceil(duration / LONGEST_STEP - STEP_TOLERANCE));
     const double h = duration / stretches;

@@ -45,9 +45,11 @@ static int are_of_type(
         refuse(instance, "%u values of type %s, but an array is NULL", (unsigned)count, type_names[type]);
         return 0;
     }
-    for (size_t k = 0; k < count; k++)
-        if (!variable_of(instance, references[k], type))
+    for (size_t k = 0; k < count; k++) {
+        const Reference reference = references[k];
+        if ((reference >= variable_count || variables[reference].type != type) && !variable_of(instance, reference, type))
             return 0;
+    }
     return 1;
 }
 
@@ -96,16 +98,15 @@ Status get_values(Instance *instance, Type type, const Reference references[], s
     Memory *memory = &instance->memory;
     if (!are_of_type(instance, type, references, count, values))
         return ERROR;
-    for (size_t k = 0; k < count; k++) {
-        const Variable *variable = &variables[references[k]];
-        if (variable->causality == OUTPUT && !memory->outputs_known)
+    for (size_t k = 0; k < count && !memory->outputs_known; k++)
+        if (variables[references[k]].causality == OUTPUT)
             compute_outputs(memory);
-        const double value = *place_of(&memory->values, variable);
-        if (type == REAL)
-            ((double *)values)[k] = value;
-        else
-            ((int *)values)[k] = (int)value;
-    }
+    if (type == REAL)
+        for (size_t k = 0; k < count; k++)
+            ((double *)values)[k] = *place_of(&memory->values, &variables[references[k]]);
+    else
+        for (size_t k = 0; k < count; k++)
+            ((int *)values)[k] = (int)*place_of(&memory->values, &variables[references[k]]);
     return OK;
 }
 

@@ -53,7 +53,7 @@ void (*event_indicators)(const State *x, const Input *u, const Parameters *p, re
 int run(double duration, State *x, const Input *u, const Input *du);
 int run(double duration, State *x, const Input *u, const Input *du)
 {
-    const Problem problem = {u, du, 0, 0};
+    const Problem problem = {u, du, 0, 0, 0};
     return integrate(&problem, duration, x, x);
 }
 """
