@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from driveline.models import motor_torque_loop as motor
 from driveline.models.block.integrator import Integrator
@@ -191,3 +192,63 @@ def test_without_their_parameters_the_effects_change_no_bit() -> None:
         within = max(-P.T_max, min(T_ref, P.T_max))
         assert dx[:2] == (dT_mot, (within - T_mot - motor.SQRT_2 * P.tau * dT_mot) / (P.tau * P.tau))
         assert dx[3:] == (0.0,) * 4
+
+
+def exact_and_integrated(x: motor.State, u: motor.Input, du: motor.Input, p: motor.Parameters, h: float) -> np.ndarray:
+    """Torque and rate after h s by the solution in closed form, and by SciPy with inputs that move."""
+
+    def rates(t: float, values: np.ndarray) -> tuple[float, ...]:
+        at = motor.Input(u.T_ref + float(t) * du.T_ref, u.omega_1 + float(t) * du.omega_1)
+        T_mot, dT_mot = values.tolist()
+        return motor.derivative(x._replace(T_mot=T_mot, dT_mot=dT_mot), at, p)[:2]
+
+    integrated = solve_ivp(rates, (0.0, h), x[:2], method="DOP853", rtol=1e-12, atol=1e-9, max_step=h / 20.0).y[:, -1]
+    return np.array([motor.solution(x, u, du, p, h)[1][:2], integrated])
+
+
+@given(
+    state=st.tuples(st.floats(-180.0, 180.0), st.floats(-2e4, 2e4)),
+    T_ref=st.floats(-150.0, 150.0),
+    rate=st.floats(-3000.0, 3000.0),
+    tau=st.floats(1e-3, 0.1),
+    h=st.floats(1e-4, 0.01),
+)
+@settings(max_examples=40)
+def test_the_solution_is_that_of_the_equations_with_a_demand_that_moves(
+    state: tuple[float, float], T_ref: float, rate: float, tau: float, h: float
+) -> None:
+    x, p = motor.start(motor.Input(), P)._replace(T_mot=state[0], dT_mot=state[1]), P._replace(tau=tau)
+    u, du = motor.Input(T_ref, 100.0), motor.Input(rate, 50.0)
+    assert motor.solution(x, u, du, p, h)[0]
+    ours, theirs = exact_and_integrated(x, u, du, p, h)
+    assert ours == pytest.approx(theirs, rel=1e-8, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changed", "u", "du", "holds"),
+    [
+        ({"t_dead": 9.9e-5}, motor.Input(100.0), motor.Input(), True),
+        ({"t_dead": 1e-4}, motor.Input(100.0), motor.Input(), False),
+        ({}, motor.Input(179.0), motor.Input(990.0), True),
+        ({}, motor.Input(179.0), motor.Input(1010.0), False),
+        ({}, motor.Input(200.0, 3000.0), motor.Input(0.0, 1.0), True),
+        ({"omega_base": 100.0}, motor.Input(200.0, 300.0), motor.Input(), True),
+        ({"omega_base": 100.0}, motor.Input(200.0, 300.0), motor.Input(0.0, 1.0), False),
+        # 100 N.m away the rate comes to 2 a 100 = 47 140 N.m/s at most
+        ({"dT_max": 4.72e4}, motor.Input(100.0), motor.Input(), True),
+        ({"dT_max": 4.71e4}, motor.Input(100.0), motor.Input(), False),
+    ],
+)
+def test_the_solution_holds_without_dead_time_and_limits(
+    changed: dict[str, float], u: motor.Input, du: motor.Input, holds: bool
+) -> None:
+    x = motor.start(motor.Input(), P)
+    assert motor.solution(x, u, du, P._replace(**changed), 1e-3)[0] is holds
+
+
+@pytest.mark.parametrize("T_ref", [-300.0, 100.0, 300.0])
+@pytest.mark.parametrize("omega_1", [0.0, 400.0])
+def test_a_demand_beyond_the_limit_is_solved_like_integrated(T_ref: float, omega_1: float) -> None:
+    p, x = SILENT._replace(omega_base=300.0), motor.start(motor.Input(20.0), P)
+    ours, theirs = exact_and_integrated(x, motor.Input(T_ref, omega_1), motor.Input(), p, 2e-3)
+    assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-7)

@@ -267,3 +267,31 @@ def test_the_twist_follows_the_speed_difference() -> None:
             rate = (vehicle.output(after, v, P).phi - vehicle.output(before, u, P).phi) / 2e-3
             y = vehicle.output(x, v, P)
             assert rate == pytest.approx(y.omega_1 - y.omega_2, rel=0.02, abs=0.1)
+
+
+@pytest.mark.parametrize(("rate", "share"), [(0.0, 1.0), (5000.0, 1.0), (7500.0, 0.5), (10000.0, 0.0), (3e4, 0.0)])
+def test_ripple_that_turns_too_fast_for_the_steps_fades_out(rate: float, share: float) -> None:
+    assert vehicle.slow(rate) == pytest.approx(share)
+
+
+def test_a_step_at_speed_takes_one_stretch_as_at_walking_pace(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In 50 steps of 1 ms with 150 N.m, which is what they cost."""
+
+    def trials(v: float) -> int:
+        integrator = Integrator(vehicle.BLOCK)
+        once, count = integrator.trial, 0
+
+        def counted(*arguments: object) -> tuple[vehicle.State, float]:
+            nonlocal count
+            count += 1
+            return once(*arguments)  # pyright: ignore[reportArgumentType]
+
+        monkeypatch.setattr(integrator, "trial", counted)
+        u, p = vehicle.Input(150.0), P._replace(v_0=v, T_0=150.0)
+        x = vehicle.start(u, p)
+        for _ in range(50):
+            x = integrator.advance(x, u, p, 1e-3)
+        return count
+
+    assert trials(40.0) == 50
+    assert trials(4.0) <= 60
