@@ -6,6 +6,7 @@ step. Python computes them every time, by the same operations, so that the bits 
 
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,8 @@ COMPUTED: dict[str, Callable[..., Any]] = {
     "DIV": operator.truediv,
     "NEG": operator.neg,
     "SQ": np.square,
-    "TWICE": lambda x: 2.0 * x,
-    "INV": lambda x: 1.0 / x,
+    "TWICE": partial(operator.mul, 2.0),
+    "INV": partial(operator.truediv, 1.0),
     "FABS": abs,
     "SIGN": np.sign,
     "FLOOR": np.floor,

@@ -70,6 +70,15 @@ static Status check_step(Instance *instance, double time, double step_size)
     return check_moving_inputs(instance, step_size);
 }
 
+/* A step that changes nothing. */
+static void stay(const Memory *memory, Next *next)
+{
+    next->x = &memory->x;
+    next->coming = &memory->coming;
+    next->u = &memory->values.u;
+    next->ticks = memory->ticks;
+}
+
 /* The memory takes over what a step has changed. `x` first: it may be what was coming. */
 static void arrive(Memory *memory, const Next *next, double time)
 {
@@ -93,10 +102,7 @@ Status make_step(Instance *instance, double time, double step_size)
     Status status = check_step(instance, time, step_size);
     if (status == OK) {
         Next next;
-        next.x = &memory->x;
-        next.coming = &memory->coming;
-        next.u = &memory->values.u;
-        next.ticks = memory->ticks;
+        stay(memory, &next);
         const Obstacle obstacle = advance(memory, time - memory->start_time, step_size, &next);
         char text[NUMBER_LENGTH];
         if (obstacle.state && obstacle.shorter_steps_do)

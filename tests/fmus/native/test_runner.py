@@ -36,7 +36,10 @@ void tick(double u, double elapsed, double duration, double numbers[3]);
 void tick(double u, double elapsed, double duration, double numbers[3])
 {
     Memory memory = {.values.u.n = u, .x.n = numbers[0], .coming.n = numbers[1], .ticks = numbers[2]};
-    advance(&memory, elapsed, duration);
+    Next next;
+    stay(&memory, &next);
+    advance(&memory, elapsed, duration, &next);
+    arrive(&memory, &next, elapsed + duration);
     numbers[0] = memory.x.n;
     numbers[1] = memory.coming.n;
     numbers[2] = memory.ticks;
