@@ -75,6 +75,8 @@ cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
 bench: $(READY) ## cost per communication step, side by side and in other hosts, and of the start of a command
 	$(BIN)/driveline build
 	$(BIN)/python -m benchmarks.step_cost
+	$(BIN)/python -m benchmarks.instructions
+	$(BIN)/python -m benchmarks.step_error
 	$(BIN)/python -m benchmarks.standstill
 	$(BIN)/python -m benchmarks.start_up
 	$(BIN)/python -m benchmarks.hosts

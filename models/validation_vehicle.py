@@ -16,11 +16,12 @@ includes several additional real world effects').
     hubs         m_h dv_h/dt = F_L + F_R - F_h
     body         (m - m_h) dv/dt = F_h - resistance,   J_y domega_b/dt = F_h (h - r) - T_h - T_br - ...
 
-T_a is the air-gap torque with ripple and friction, T_h the mount torque, F_h the bushing force; F_k
-is half an axle's Magic Formula without curvature term on the deflection u_k of the tyre (H. B. Pacejka,
-"Tire and Vehicle Dynamics", 3rd ed., 2012, section 4.3). The impact damping of the teeth grows
-with their penetration, so that the torque does not jump at the contact (K. H. Hunt, F. R. E. Crossley,
-"Coefficient of restitution interpreted as damping in vibroimpact", J. Applied Mechanics 42(2), 1975).
+T_a is the air-gap torque with friction and with ripple, but for what turns faster than 10 krad/s; T_h
+is the mount torque, F_h the bushing force; F_k is half an axle's Magic Formula without curvature term on
+the deflection u_k of the tyre (H. B. Pacejka, "Tire and Vehicle Dynamics", 3rd ed., 2012, section 4.3).
+The impact damping of the teeth grows with their penetration, so that the torque does not jump at the
+contact (K. H. Hunt, F. R. E. Crossley, "Coefficient of restitution interpreted as damping in vibroimpact",
+J. Applied Mechanics 42(2), 1975).
 """
 
 from typing import Annotated, NamedTuple
@@ -37,17 +38,17 @@ from .physics.vehicle import CAR
 RIPPLE_FULL, RIPPLE_NONE = 5000.0, 10000.0
 """Rates in rad/s between which a ripple fades out.
 
-A faster one would take steps of its own and moves nothing: of its torque, at 5 krad/s less than .001 come to the gear
-stage, as J_1 turns by it against the stiffness k_g. Taken in steps that do not resolve it, it would stand for a torque
-that is not there.
+A faster one would take steps of its own and moves nothing: at 5 krad/s about .001 of its torque comes to the gear
+stage, k_g/(i^2 J_1 rate^2), and above less. In steps that do not resolve it, it would stand for a torque that is not
+there.
 """
 
 
 ALLOWED_ERROR = 1.0
 """Of a step of the integration, in units of what is tolerated: a hundred times the usual.
 
-A ripple of 1 to 5 krad/s takes steps of 1 ms this much of an error in the speed of the rotor, and gear torque and
-wheels hardly notice. `python -m benchmarks.step_error` holds T_gear to a tight integration in every manoeuvre.
+With ripple of up to 5 krad/s the estimate for steps of 1 ms comes near to it; T_gear is off by less than 1e-3 N.m then.
+`python -m benchmarks.step_error` measures it in every manoeuvre; docs/native.md has what it found.
 """
 
 
