@@ -139,12 +139,17 @@ def diagnose_outliers(through: Filtered, T_s: float) -> list[str]:
     ]
 
 
-def diagnose_spectrum(omega_1: np.ndarray) -> list[str]:
-    """Whether the motor speed has the white noise that a sensor has."""
+def is_coloured(omega_1: np.ndarray) -> bool:
+    """Whether the motor speed has less noise at high frequencies than a sensor has, as what was interpolated."""
     f, power = welch(np.diff(omega_1), nperseg=min(1024, len(omega_1) - 1))
     f, power = f[1:-1], power[1:-1] / np.sin(np.pi * f[1:-1]) ** 2  # of the speed, not of its differences
     last, second = (float(np.median(power[(f > low) & (f < low + 0.125)])) for low in (0.375, 0.125))
-    if last >= COLOURED * second:
+    return last < COLOURED * second
+
+
+def diagnose_spectrum(omega_1: np.ndarray) -> list[str]:
+    """Whether the motor speed has the white noise that a sensor has."""
+    if not is_coloured(omega_1):
         return []
     return [
         "the motor speed has no white noise (it looks interpolated, filtered or calculated): "

@@ -21,10 +21,12 @@ from .diagnostics import (
     diagnose_outliers,
     diagnose_spectrum,
     diagnose_tyre,
+    is_coloured,
 )
 from .drive_train import DELAYS, Parameters
 from .drive_train_response import Tyre, resonance, tyre
 from .global_start import best_start
+from .late_load import covariance_with_late_load, diagnose_late_load
 from .maximum_likelihood import Found, maximise
 from .model_inputs import Drive, model_inputs
 from .noise import white_noise
@@ -65,7 +67,7 @@ EXPLAINED = 1.25
 DAMPING = 0.1
 """Damping ratio with which a search begins."""
 
-MODEL_NOISE = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0)
+MODEL_NOISE = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0, acts=True)
 """Without the load torque: what model and resistance are off by. Narrower, the parameters are those of the next few
 milliseconds."""
 
@@ -203,7 +205,7 @@ def of_sensors(recording: Measurement, loop: FittedLoop | None) -> Noise:
     """The noise that the recording shows; none of the motor torque if that is the answer of motor control."""
     T_mot = 0.0 if loop else white_noise(recording.T_mot)
     T_load = 0.0 if recording.T_load is None else white_noise(recording.T_load)
-    return Noise(white_noise(recording.omega_1), T_mot, T_load)
+    return Noise(white_noise(recording.omega_1, is_coloured(recording.omega_1)), T_mot, T_load)
 
 
 def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], log: Log) -> Estimate:
@@ -217,10 +219,16 @@ def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Seq
     _log_stage(log, "predicted by a wide filter", initial)
     best = prediction_error_fit(drive, initial, noise, more, log)
     if best.innovations.rms <= EXPLAINED:
-        return Estimate("prediction error", best.p, best.covariance, best.free, noise, ())
+        covariance = covariance_with_late_load(drive, best, noise)
+        doubt = diagnose_late_load(best, float(np.sqrt(covariance[best.free.index("J_2"), best.free.index("J_2")])))
+        return Estimate("prediction error", best.p, covariance, best.free, noise, tuple(doubt))
     log("the model does not explain all of the recording: pieces of 0.5 s are simulated")
     late = _sure_delays(best.p)
-    fitted = output_error_fit(drive, initial._replace(**late), noise, (*more, *late))
+    free = (*more, *late)
+    fitted = output_error_fit(drive, coarse_fit(drive, start._replace(**late), noise, more), noise, free)
+    predicted = best.p._replace(**dict.fromkeys(DELAYS, 0.0))._replace(**late)
+    if free_run_error(drive, predicted, noise) < fitted.error:
+        fitted = output_error_fit(drive, predicted, noise, free, near=True)
     _log_stage(log, "simulated", fitted.p)
     warnings = (
         "the two masses do not explain all of this car (with the noise of the sensors alone the innovations have the "
@@ -233,7 +241,7 @@ def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Seq
 
 def coarse_fit(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str] = ()) -> Parameters:
     """A coarse fit from anywhere, by a filter that follows the motor speed whatever the parameters are."""
-    broad, free = Noise(noise.omega_1, noise.T_mot, WIDE_LOAD_NOISE), _searched(more)
+    broad, free = Noise(noise.omega_1, noise.T_mot, WIDE_LOAD_NOISE, acts=True), _searched(more)
     initial = best_start(Predictor(free), drive, start._replace(d=_damping(start)), broad)
     return maximise(Predictor((*free, "g_L")), drive, initial, broad, most=FEWER).p
 
@@ -241,25 +249,32 @@ def coarse_fit(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str
 def prediction_error_fit(
     drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = (), log: Log = lambda _: None
 ) -> Found:
-    """The fit by prediction error, with no parameter that is not significant."""
-    found = fit_with_delays(drive, initial, noise, more)
-    _log_stage(log, "predicted with the noise of the sensors", found.p)
-    return backward_elimination(drive, found, noise, more, log)
+    """The fit by prediction error: of the channels that may be late those with which the recording is likeliest, each
+    parameter that is not always free being worth LIKELY, and none that is not significant."""
+    ends = [
+        backward_elimination(drive, found, noise, more, log)
+        for found in fits_with_delays(drive, initial, noise, more, log)
+    ]
+    likeliest = min(ends, key=lambda end: end.innovations.cost)
+    return max(ends, key=lambda end: likeliest.gain(end) - LIKELY * len(end.free))
 
 
-def fit_with_delays(drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str]) -> Found:
-    """With the motor torque late; with the motor speed late instead, and then with a shift of either torque, where that
-    is surely likelier. With a tyre that is mostly a damper a shift of the load torque can hardly be told from another
-    J_2, so that it is not freed with the others."""
-    free = (*_searched(more), "g_L")
-    best = maximise(Predictor((*free, "late_T")), drive, initial, noise, most=FEW)
-    speed = initial._replace(late_1=-best.p.late_T)
-    tried = maximise(Predictor((*free, "late_1")), drive, speed, noise, most=FEW)
-    best = tried if best.gain(tried) > LIKELY else best
-    late_T, late_L = best.p.shifts
-    both = best.p._replace(late_1=0.0, late_T=late_T, late_L=late_L)
-    tried = maximise(Predictor((*free, "late_T", "late_L")), drive, both, noise, most=MANY)
-    return tried if best.gain(tried) > LIKELY else best
+def fits_with_delays(
+    drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str], log: Log
+) -> tuple[Found, Found, Found]:
+    """With the motor torque late, the motor speed, and each torque for itself; the second begins where the first ends,
+    the third where the better of both does."""
+
+    def fit(begin: Parameters, *late: str) -> Found:
+        found = maximise(Predictor((*_searched(more), "g_L", *late)), drive, begin, noise, most=MANY)
+        _log_stage(log, f"predicted with {', '.join(late)} free", found.p)
+        return found
+
+    torque = fit(initial, "late_T")
+    speed = fit(torque.p._replace(late_T=0.0, late_1=-torque.p.late_T), "late_1")
+    better = torque if speed.gain(torque) > 0.0 else speed
+    late_T, late_L = better.p.shifts
+    return torque, speed, fit(better.p._replace(late_1=0.0, late_T=late_T, late_L=late_L), "late_T", "late_L")
 
 
 def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequence[str], log: Log) -> Found:
@@ -283,19 +298,34 @@ def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequenc
     return best
 
 
-def output_error_fit(drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = ()) -> Fitted:
-    """The fit by output error; with the gain of the motor torque if that is surely not 1."""
+def output_error_fit(
+    drive: Drive, initial: Parameters, noise: Noise, more: Sequence[str] = (), near: bool = False
+) -> Fitted:
+    """The fit by output error; with the gain of the motor torque if that is surely not 1.
+
+    Args:
+        near: whether the search begins with `initial` itself, and not with what a wide filter makes of it.
+    """
     free = (*_searched(more), "g_L")
     known = free if "g_T" in more else tuple(name for name in free if name != "g_T")
     least = BURN_IN + SIMULATED * (len(free) + 2)
     _require_long("the recording", drive, least, f"for {len(free)} parameters of a car that two masses do not explain")
-    wider = Noise(noise.omega_1, noise.T_mot, WIDEST_LOAD_NOISE)
-    p = maximise(Predictor(free), drive, initial._replace(d=_damping(initial)), wider, most=FEW).p
-    pieces = segments(drive, free, WITHIN)
+    wider = Noise(noise.omega_1, noise.T_mot, WIDEST_LOAD_NOISE, acts=True)
+    begin = initial._replace(d=_damping(initial), g_T=1.0)
+    p = begin if near else maximise(Predictor(known), drive, begin, wider, most=FEW).p
+    pieces = segments(drive, known, WITHIN)
     fitted = pieces.fit(p._replace(d=_damping(p)), near_starts(pieces, filtered(drive, p, wider)))
-    if free == known or abs(fitted.p.g_T - 1.0) > SURELY * fitted.deviation("g_T"):
+    if free == known:
         return fitted
-    return segments(drive, known, WITHIN).fit(fitted.p._replace(g_T=1.0), fitted.starts, most=FEW)
+    scaled = segments(drive, free, WITHIN).fit(fitted.p, fitted.starts, most=FEW)
+    return scaled if abs(scaled.p.g_T - 1.0) > SURELY * scaled.deviation("g_T") else fitted
+
+
+def free_run_error(drive: Drive, p: Parameters, noise: Noise) -> float:
+    """What the motor speed of free runs is off by in rad/s (rms)."""
+    pieces = segments(drive, (), WITHIN)
+    runs, recorded = pieces.free_runs(p, near_starts(pieces, filtered(drive, p, noise)))
+    return float(np.sqrt(np.mean((runs[..., 0] - recorded) ** 2)))
 
 
 def refit(drive: Drive, estimate: Estimate, measured: bool) -> Parameters:

@@ -23,7 +23,7 @@ USUAL = 2.0
 PASSES = 60
 
 
-def white_noise(x: np.ndarray) -> float:
+def white_noise(x: np.ndarray, coloured: bool = False) -> float:
     """The standard deviation of the white noise in a signal, with that of its rounding, in its unit.
 
     The samples must be those of the sensor: noise that has been filtered or interpolated is no longer white. They must
@@ -31,8 +31,11 @@ def white_noise(x: np.ndarray) -> float:
 
     Args:
         x: at equal intervals, shape (n,), n well above 100.
+        coloured: whether interpolation has taken its highest frequencies away. It is then that of the lowest that is
+            looked at: a motor speed between two samples kept .86 of it there, .3 by the quartile.
     """
-    return float(np.sqrt(min(np.quantile(_between_hits(_power(x, n)), 0.25) for n in WINDOWS)))
+    share = 1.0 if coloured else 0.25
+    return float(np.sqrt(min(np.quantile(_between_hits(_power(x, n)), share) for n in WINDOWS)))
 
 
 def _power(x: np.ndarray, n: int) -> np.ndarray:

@@ -6,7 +6,7 @@ they are white and of size 1 (L. Ljung, System Identification, 2nd ed., section 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
 
@@ -32,15 +32,17 @@ class Noise:
         omega_1: of the recorded motor speed in rad/s, with its rounding.
         T_mot, T_load: of the recorded torques in N.m.
         phi: of what no equation of the twist has in it, in rad.
+        acts: whether that of the torques acts on the car; else its sensors add it. See `Predicted.cost`.
     """
 
     omega_1: float
     T_mot: float
     T_load: float
     phi: float = 1e-4
+    acts: bool = False
 
     def vector(self) -> np.ndarray:
-        return np.array([getattr(self, field.name) for field in fields(self)])
+        return np.array([self.omega_1, self.T_mot, self.T_load, self.phi])
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +57,18 @@ class Predicted:
     size: np.ndarray
     log_S: np.ndarray
     counted: slice
+    likelihood: bool
 
     @property
     def cost(self) -> float:
-        """Minus the logarithm of the likelihood, but for a constant."""
-        return 0.5 * float(np.sum((self.size**2 + self.log_S)[self.counted]))
+        """Minus the logarithm of the likelihood, but for a constant.
+
+        If the noise of the torques is that of sensors, what acts is what was recorded less noise. Of all torques that
+        may have acted the likeliest is taken, and the cost is the sum of squares (total least squares). The logarithm
+        of the variance stands for their mean; it would bias what is hardly told apart: J_2 by 6 % where a delay of the
+        load torque and damping are free.
+        """
+        return 0.5 * float(np.sum((self.size**2 + self.likelihood * self.log_S)[self.counted]))
 
     @property
     def rms(self) -> float:
@@ -84,13 +93,13 @@ class Innovations(Predicted):
     def scores(self) -> np.ndarray:
         """The share of each sample that counts in the gradient, shape (samples, parameters)."""
         at = self.counted
-        return self.d_size[at] * self.size[at, None] + 0.5 * self.d_log_S[at]
+        return self.d_size[at] * self.size[at, None] + 0.5 * self.likelihood * self.d_log_S[at]
 
     @property
     def information(self) -> np.ndarray:
         """Fisher's, as these innovations show it. A half of what the variance tells is in d_size."""
         d_size, d_log_S = self.d_size[self.counted], self.d_log_S[self.counted]
-        return d_size.T @ d_size + 0.25 * d_log_S.T @ d_log_S
+        return d_size.T @ d_size + 0.25 * self.likelihood * d_log_S.T @ d_log_S
 
 
 class Predictor:
@@ -108,7 +117,7 @@ class Predictor:
         _, _, seen, d_seen = _filter().passed_with_derivatives(n)(start, d_start, *given, d_torques)
         size, log_S = seen.copy()
         d_size, d_log_S = d_seen.reshape(2, n, -1)[:, :, self._columns]
-        return Innovations(size, log_S, _counted(drive), d_size, d_log_S)
+        return Innovations(size, log_S, _counted(drive), noise.acts, d_size, d_log_S)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +140,7 @@ def filtered(drive: Drive, p: Parameters, noise: Noise) -> Filtered:
     start, _ = _start(drive, p, noise)
     after, seen = _filter().passed(len(drive))(start, *_given(acting, p, noise))
     size, log_S = seen.copy()
-    return Filtered(size, log_S, _counted(drive), after[:STATES].T.copy())
+    return Filtered(size, log_S, _counted(drive), noise.acts, after[:STATES].T.copy())
 
 
 def _counted(drive: Drive) -> slice:

@@ -1,0 +1,67 @@
+"""What a load torque that may be recorded late leaves unknown.
+
+Where a tyre is mostly a damper, a change of the load torque follows the acceleration of the wheels, as the torque on
+their inertia does. A late load torque then looks like another J_2, or like damping d, and the recording hardly tells
+them apart.
+"""
+
+from math import exp, pi, sqrt
+
+import numpy as np
+
+from .drive_train import DELAYS, Parameters
+from .maximum_likelihood import Found
+from .model_inputs import Drive
+from .prediction import Noise, Predictor
+
+RANGE = 0.008
+"""Length in s of the range in which a delay of the load torque is, all equally likely: -3 to 5 ms."""
+
+SELDOM = 0.05
+"""Odds that the load torque is late where nothing else is; where another channel is late, it is as likely as not."""
+
+COLLINEAR = 0.99
+"""Correlation of J_2 with what is free beside it from which on they cannot be told apart."""
+
+
+def covariance_with_late_load(drive: Drive, best: Found, noise: Noise) -> np.ndarray:
+    """Covariance of the free parameters about the answer, allowing for a late load torque if that is not free.
+
+    The data do not ask for its delay then, but may not exclude it either. The answer that it leads to counts by its
+    posterior probability (Laplace; R. E. Kass, A. E. Raftery, J. Am. Stat. Assoc. 90, 1995), after one scoring step.
+    """
+    if "late_L" in best.free:
+        return best.covariance
+    wider = _freed(drive, best.p, (*best.free, "late_L"), noise)
+    step = -wider.inverse_information @ wider.innovations.gradient
+    covariance = wider.covariance
+    deviation = sqrt(covariance[-1, -1])
+    odds = (1.0 if {*DELAYS} & {*best.free} else SELDOM) * sqrt(2.0 * pi) * deviation / RANGE
+    share = odds / (odds + exp(-0.5 * (step[-1] / deviation) ** 2))
+    late = covariance[:-1, :-1] + np.outer(step[:-1], step[:-1])
+    return (1.0 - share) * best.covariance + share * late
+
+
+def diagnose_late_load(found: Found, deviation: float) -> list[str]:
+    """Whether J_2 is known badly as it cannot be told apart from what is free beside it.
+
+    Args:
+        deviation: of J_2 in kg.m2, with all doubt.
+    """
+    beside = [name for name in ("d", "late_L") if name in found.free]
+    alone = [found.free.index(name) for name in found.free if name not in beside]
+    J_2 = found.free.index("J_2")
+    information = np.linalg.inv(found.covariance)
+    known = sqrt(np.linalg.inv(information[np.ix_(alone, alone)])[alone.index(J_2), alone.index(J_2)])
+    if known > sqrt(1.0 - COLLINEAR**2) * deviation:
+        return []
+    names = " and ".join(beside if "late_L" in beside else [*beside, "late_L"])
+    return [
+        f"J_2 cannot be told apart from {names} (late_L: time by which the load torque is recorded late), which its "
+        f"interval allows for: with them known, J_2 would be known to +- {196.0 * known / found.p.J_2:.2g} %; "
+        "align the load torque with the motor speed"
+    ]
+
+
+def _freed(drive: Drive, p: Parameters, free: tuple[str, ...], noise: Noise) -> Found:
+    return Found(p, free, Predictor(free).innovations(drive, p, noise), passes=1)
