@@ -99,6 +99,7 @@ def run(args: argparse.Namespace) -> int:
     with job(args, output.with_suffix(".json"), same, {}, first, files_of(args)) as made:
         identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
         say(identified, recording, made.out)
+        require_known(identified)
         made.begin()
         figures = draw(identified, recording, output.with_suffix(""), options)
         made.wrote(*write(identified, args.recording, vehicle, output), *figures)
@@ -116,6 +117,13 @@ def read(args: argparse.Namespace, vehicle: Mapping[str, Any]) -> "Measurement":
 
     plant, _, _ = records(vehicle)
     return read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
+
+
+def require_known(identified: "Identified") -> None:
+    """Refuses what would make no vehicle file."""
+    from ..identification.car_file import identified_car
+
+    identified_car(identified)
 
 
 def all_found(output: Path) -> Path:

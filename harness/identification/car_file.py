@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...fmus.building.one_car import updated
+from ..recordings.source import RecordingError
 from .drive_train import Parameters
 from .drive_train_response import resonance
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
@@ -30,6 +31,9 @@ MEANS = {
     WITH_LOAD: "J_2 is that of the wheels alone, C that between motor and wheels",
     WITHOUT_LOAD: "J_2 carries the vehicle, C has its tyres in it",
 }
+
+WIDEST_INTERVAL = 0.5
+"""Half of a 95 % interval over its value, up to which a parameter is one of a vehicle file."""
 
 WIDEST = 118
 """Characters of a line of text in a vehicle file."""
@@ -96,18 +100,25 @@ def identified_lines(identified: Identified) -> list[str]:
 
 
 def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Entries of the vehicle file, in SI units: what the controller's model needs, as `design` takes it.
+    """Entries of the vehicle file, in SI units: what the controller's model needs, as `design` takes it. What is known
+    to no better than WIDEST_INTERVAL is not among them.
 
     Args:
         vehicle: entries of the one that was given, which stay but for those that were identified and those of the
             shafts, which follow from C.
+
+    Raises:
+        RecordingError: C is not known any better.
     """
-    p = identified.p
-    entries: dict[str, Any] = {"C": equivalent(p, identified.tyre, identified.resonance).C, "phi_B": p.phi_B}
-    if "J_1" in identified.free:
-        entries["J_1"] = p.J_1
-    if identified.loop:
-        entries["tau"] = identified.loop.loop.tau
+    C, half = of_car(identified)
+    if not half <= WIDEST_INTERVAL * C:
+        raise RecordingError(
+            f"C of the car = {C:.3g} +- {half:.2g} N.m/rad is known to +- {100.0 * half / C:.2g} % "
+            f"only, and a vehicle file needs +- {100.0 * WIDEST_INTERVAL:g} % or less: excite more or longer, and give "
+            "every channel as it was sampled"
+        )
+    rows = {name: value for name, value, half in found(identified) if half <= WIDEST_INTERVAL * value}
+    entries = {"C": C, **{name: rows[name] for name in ("phi_B", "J_1", "tau") if name in rows}}
     return updated(vehicle or {}, {name: float(f"{value:.6g}") for name, value in entries.items()})
 
 

@@ -9,10 +9,11 @@ from math import exp, pi, sqrt
 
 import numpy as np
 
-from .drive_train import DELAYS, Parameters
+from .drive_train import DELAYS
 from .maximum_likelihood import Found
 from .model_inputs import Drive
 from .prediction import Noise, Predictor
+from .quality import Z_95
 
 RANGE = 0.008
 """Length in s of the range in which a delay of the load torque is, all equally likely: -3 to 5 ms."""
@@ -32,7 +33,8 @@ def covariance_with_late_load(drive: Drive, best: Found, noise: Noise) -> np.nda
     """
     if "late_L" in best.free:
         return best.covariance
-    wider = _freed(drive, best.p, (*best.free, "late_L"), noise)
+    free = (*best.free, "late_L")
+    wider = Found(best.p, free, Predictor(free).innovations(drive, best.p, noise), passes=1)
     step = -wider.inverse_information @ wider.innovations.gradient
     covariance = wider.covariance
     deviation = sqrt(covariance[-1, -1])
@@ -43,25 +45,20 @@ def covariance_with_late_load(drive: Drive, best: Found, noise: Noise) -> np.nda
 
 
 def diagnose_late_load(found: Found, deviation: float) -> list[str]:
-    """Whether J_2 is known badly as it cannot be told apart from what is free beside it.
+    """Whether J_2 and what is free beside it cannot be told apart.
 
     Args:
         deviation: of J_2 in kg.m2, with all doubt.
     """
-    beside = [name for name in ("d", "late_L") if name in found.free]
-    alone = [found.free.index(name) for name in found.free if name not in beside]
-    J_2 = found.free.index("J_2")
+    alone = [k for k, name in enumerate(found.free) if name not in ("d", "late_L")]
     information = np.linalg.inv(found.covariance)
-    known = sqrt(np.linalg.inv(information[np.ix_(alone, alone)])[alone.index(J_2), alone.index(J_2)])
-    if known > sqrt(1.0 - COLLINEAR**2) * deviation:
+    J_2 = alone.index(found.free.index("J_2"))
+    if_known = sqrt(np.linalg.inv(information[np.ix_(alone, alone)])[J_2, J_2])
+    if if_known > sqrt(1.0 - COLLINEAR**2) * deviation:
         return []
-    names = " and ".join(beside if "late_L" in beside else [*beside, "late_L"])
+    beside = "d and late_L" if "d" in found.free else "late_L"
     return [
-        f"J_2 cannot be told apart from {names} (late_L: time by which the load torque is recorded late), which its "
-        f"interval allows for: with them known, J_2 would be known to +- {196.0 * known / found.p.J_2:.2g} %; "
-        "align the load torque with the motor speed"
+        f"J_2 and {beside} cannot be told apart (late_L: time by which the load torque is recorded late): their "
+        f"intervals say so; were the load torque surely aligned with the motor speed, J_2 would be known to "
+        f"+- {100.0 * Z_95 * if_known / found.p.J_2:.2g} %"
     ]
-
-
-def _freed(drive: Drive, p: Parameters, free: tuple[str, ...], noise: Noise) -> Found:
-    return Found(p, free, Predictor(free).innovations(drive, p, noise), passes=1)

@@ -31,8 +31,8 @@ def white_noise(x: np.ndarray, coloured: bool = False) -> float:
 
     Args:
         x: at equal intervals, shape (n,), n well above 100.
-        coloured: whether interpolation has taken its highest frequencies away. It is then that of the lowest that is
-            looked at: a motor speed between two samples kept .86 of it there, .3 by the quartile.
+        coloured: whether it was interpolated, so that little is left at the highest frequencies: that of the lowest
+            ones counts then. Of a motor speed half-way between its samples .7 is found so, and .3 else.
     """
     share = 1.0 if coloured else 0.25
     return float(np.sqrt(min(np.quantile(_between_hits(_power(x, n)), share) for n in WINDOWS)))

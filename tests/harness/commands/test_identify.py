@@ -237,6 +237,19 @@ def test_a_recording_that_is_too_short_is_refused_and_nothing_written(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_car_that_is_hardly_known_is_told_but_not_written(
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("driveline.harness.identification.car_file.WIDEST_INTERVAL", 1e-6)
+    assert identify() == 2
+    message = capsys.readouterr()
+    assert "  C     = 117" in message.out
+    (line,) = message.err.splitlines()
+    assert line.startswith("driveline identify: C of the car = 116 +- 0.")
+    assert line.endswith("excite more or longer, and give every channel as it was sampled")
+    assert not (tmp_path / "out").exists()
+
+
 def test_files_of_another_origin_are_not_replaced(
     identify: Identify, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,11 +9,13 @@ import pytest
 
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.identification import car_file
+from driveline.harness.identification.car_file import WIDEST_INTERVAL
 from driveline.harness.identification.drive_train_response import Tyre, resonance
 from driveline.harness.identification.identify import WITH_LOAD, WITHOUT_LOAD, Identified
-from driveline.harness.identification.quality import Quality
+from driveline.harness.identification.quality import Z_95, Quality
 from driveline.harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop
 from driveline.harness.identification.two_mass_equivalent import equivalent
+from driveline.harness.recordings.source import RecordingError
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "g_L")
@@ -57,6 +59,28 @@ def test_what_was_not_free_is_not_written() -> None:
     assert car_file.identified_car(replace(FOUND, loop=None), {}).keys() == {"C", "phi_B"}
     freed = replace(FOUND, free=("J_1", *FREE[1:]))
     assert car_file.identified_car(freed, {})["J_1"] == P.J_1
+
+
+def known_to(name: str, share: float) -> Identified:
+    """A parameter with half a 95 % interval of so much of its value."""
+    k = FREE.index(name)
+    covariance = FOUND.covariance.copy()
+    covariance[k, k] = (share * getattr(P, name) / Z_95) ** 2
+    return replace(FOUND, tyre=None, covariance=covariance)
+
+
+def test_a_stiffness_that_is_hardly_known_makes_no_vehicle_file() -> None:
+    assert car_file.identified_car(known_to("C", 0.999 * WIDEST_INTERVAL), {})["C"] == pytest.approx(P.C, rel=1e-6)
+    with pytest.raises(
+        RecordingError, match=r"C of the car = 117 \+- 59 N.m/rad is known to \+- 50 % only.*excite more"
+    ):
+        car_file.vehicle_file(known_to("C", 1.001 * WIDEST_INTERVAL), "A car.")
+
+
+def test_a_gap_that_is_hardly_known_stays_as_it_was() -> None:
+    given = {"phi_B": 0.1}
+    assert car_file.identified_car(known_to("phi_B", 0.999 * WIDEST_INTERVAL), given)["phi_B"] == P.phi_B
+    assert car_file.identified_car(known_to("phi_B", 1.001 * WIDEST_INTERVAL), given)["phi_B"] == 0.1
 
 
 def test_without_the_load_torque_the_stiffness_is_that_of_the_two_masses() -> None:

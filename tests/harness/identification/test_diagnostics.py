@@ -257,7 +257,7 @@ def test_a_damper_that_drives_is_named() -> None:
 def through(size: np.ndarray, *offsets: float) -> Filtered:
     states = np.zeros((len(size), 5))
     states[-1, 3:] = offsets or (0.0, 0.0)
-    return Filtered(size, np.zeros(len(size)), slice(100, None), states)
+    return Filtered(size, np.zeros(len(size)), slice(100, None), likelihood=False, states=states)
 
 
 def test_a_zero_that_is_off_is_named_from_its_threshold_on() -> None:

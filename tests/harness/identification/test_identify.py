@@ -7,12 +7,15 @@ from driveline.harness.identification import identify
 from driveline.harness.identification.diagnostics import LIKELY
 from driveline.harness.identification.drive_train import DELAYS, Parameters
 from driveline.harness.identification.identify import (
+    ONE_MORE,
     backward_elimination,
+    fit,
     prediction_error_fit,
     sandwich_covariance,
 )
 from driveline.harness.identification.maximum_likelihood import Found
 from driveline.harness.identification.model_inputs import Drive
+from driveline.harness.identification.output_error import Fitted
 from driveline.harness.identification.prediction import Innovations, Noise, Predictor
 from tests.harness.identification.simulated import NOISE, P, simulated
 
@@ -27,7 +30,9 @@ def white(n: int) -> np.ndarray:
 def found(d_size: np.ndarray, free: tuple[str, ...] = ("J_2", "C"), p: tuple[float, ...] = (1.0, 1.0)) -> Found:
     """With innovations of size 1 that depend on the free parameters so."""
     ones, nothing = np.ones(len(d_size)), np.zeros_like(d_size)
-    innovations = Innovations(size=ones, log_S=0.0 * ones, counted=slice(None), d_size=d_size, d_log_S=nothing)
+    innovations = Innovations(
+        size=ones, log_S=0.0 * ones, counted=slice(None), likelihood=True, d_size=d_size, d_log_S=nothing
+    )
     return Found(P._replace(**dict(zip(free, p, strict=True))), free, innovations, passes=1)
 
 
@@ -99,12 +104,65 @@ def test_what_the_data_ask_for_least_goes_first(
     assert dropped == sorted({"d", "g_T"} - free, key=lambda name: {"d": d, "g_T": g_T}[name])
 
 
+@pytest.mark.parametrize(
+    ("fewer", "more", "least"),
+    [
+        (("J_2",), ("J_2", "late_T"), LIKELY),
+        (("J_2", "late_1"), ("J_2", "late_T", "late_L"), ONE_MORE),
+        (("J_2",), ("J_2", "late_T", "late_L"), LIKELY + ONE_MORE),
+        (("J_2", "late_1"), ("J_2", "late_L"), 0.0),
+    ],
+)
+@pytest.mark.parametrize("share", [-0.01, 0.01])
+def test_the_channels_that_are_late_are_those_with_which_the_recording_is_likelier_by_what_they_cost(
+    fewer: tuple[str, ...], more: tuple[str, ...], least: float, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Twice the gain in likelihood, over the mean square of the innovations of the likelier one."""
+    n = 1000
+
+    def with_(free: tuple[str, ...], size: float) -> Found:
+        nothing = np.zeros((n, len(free)))
+        return Found(P, free, Innovations(np.full(n, size), np.zeros(n), slice(None), False, nothing, nothing), 1)
+
+    ends = (with_(fewer, np.sqrt(1.0 + (least + share) / n)), with_(more, 1.0))
+    monkeypatch.setattr(identify, "fits_with_delays", lambda *_: ends)
+    monkeypatch.setattr(identify, "backward_elimination", lambda _, end, *__: end)
+    best = prediction_error_fit(simulated(seed=1, n=10), P, NOISE)
+    assert best is ends[1 if share > 0.0 else 0]
+
+
+@pytest.mark.parametrize(("error", "near"), [(0.99, True), (1.01, False)])
+def test_free_runs_are_fitted_from_the_predicted_parameters_where_those_do_better(
+    error: float, near: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Than what was fitted from what a wide filter found: that one ended in a false valley."""
+    drive, given = simulated(seed=1, n=10), []
+    predicted = P._replace(J_2=0.31, late_1=0.001)
+    size = np.full(100, 2.0)
+    best = Found(predicted, ("J_2",), Innovations(size, size, slice(None), False, np.ones((100, 1)), size[:, None]), 1)
+
+    def output_error_fit(_: Drive, begin: Parameters, *__: object, near: bool = False) -> Fitted:
+        given.append((begin, near))
+        return Fitted(begin, ("J_2",), 0.0, np.zeros((1, 4)), np.eye(1), 1.0)
+
+    monkeypatch.setattr(identify, "coarse_fit", lambda _, start, *__: start)
+    monkeypatch.setattr(identify, "prediction_error_fit", lambda *_: best)
+    monkeypatch.setattr(identify, "output_error_fit", output_error_fit)
+    monkeypatch.setattr(identify, "free_run_error", lambda *_: error)
+    estimate = fit(drive, P, NOISE, True, (), lambda _: None)
+    assert estimate.method == "output error"
+    assert given == [(P._replace(late_1=0.001), False), *([(predicted, True)] if near else [])]
+    assert estimate.p == given[-1][0]
+
+
 @pytest.mark.parametrize("late", [0.0, 0.0005, -0.0003])
-def test_a_motor_torque_that_is_recorded_late_is_found_and_no_other_channel(late: float) -> None:
-    """It is recorded late where it acts as much earlier."""
+def test_a_motor_torque_that_is_recorded_late_is_found_and_nothing_else_where_all_is_aligned(late: float) -> None:
+    """It is recorded late where it acts as much earlier. A load torque as slow as here does not tell it from a motor
+    speed that is as early."""
     car = P._replace(d=0.0, g_T=1.0)
     recorded = simulated(seed=7, n=2000, p=car).acting(P._replace(late_T=-late))
     found = prediction_error_fit(recorded, car._replace(J_2=0.33, C=110.0), NOISE)
-    assert {*DELAYS} & {*found.free} == ({"late_T"} if late else set())
-    assert found.p.late_T == pytest.approx(late, abs=5e-5)
+    assert len({*DELAYS} & {*found.free}) == (1 if late else 0)
+    assert "late_L" not in found.free
+    assert found.p.shifts[0] == pytest.approx(late, abs=5e-5)
     assert found.innovations.rms == pytest.approx(1.0, abs=0.08)

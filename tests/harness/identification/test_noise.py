@@ -27,6 +27,13 @@ def test_white_noise_alone() -> None:
     assert np.std(found) < 0.03
 
 
+def test_of_interpolated_noise_that_of_the_lowest_frequencies_looked_at_counts() -> None:
+    """Between two samples .71 of it are left by the rule of thumb; what the upper ones tell is less than half of it."""
+    between = [0.5 * (x[1:] + x[:-1]) for x in map(white, range(5))]
+    assert np.mean([white_noise(x, coloured=True) for x in between]) == pytest.approx(np.sqrt(0.5), abs=0.05)
+    assert max(white_noise(x) for x in between) < 0.4
+
+
 def test_it_grows_with_the_unit_and_knows_no_offset_and_no_slope() -> None:
     x = white(1)
     assert white_noise(30.0 * x + 500.0 + 0.1 * K) == pytest.approx(30.0 * white_noise(x), rel=1e-9)

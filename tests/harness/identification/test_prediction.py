@@ -60,10 +60,13 @@ def test_size_and_log_S_are_those_without_derivatives(drive: Drive, innovations:
     assert innovations.cost == pytest.approx(alone.cost, rel=1e-12)
 
 
-def test_gradient_and_cost_belong_together(drive: Drive, innovations: Innovations) -> None:
+@pytest.mark.parametrize("acts", [False, True])
+def test_gradient_and_cost_belong_together(drive: Drive, acts: bool) -> None:
+    noise = replace(NOISE, acts=acts)
+    innovations = Predictor(Parameters._fields).innovations(drive, SKEWED, noise)
     for k, name in enumerate(Parameters._fields):
         step = STEP * getattr(SKEWED, name)
-        more, less = (filtered(drive, moved(name, by), NOISE).cost for by in (step, -step))
+        more, less = (filtered(drive, moved(name, by), noise).cost for by in (step, -step))
         assert innovations.gradient[k] == pytest.approx((more - less) / (2.0 * step), rel=1e-4), name
 
 
@@ -115,7 +118,7 @@ def test_the_information_about_a_standard_deviation_is_that_of_the_textbook() ->
     n = 100_000
     size = np.random.default_rng(1).standard_normal(n)
     d_size, d_log_S = np.column_stack([-size, -np.ones(n)]), np.column_stack([np.full(n, 2.0), np.zeros(n)])
-    information = Innovations(size, np.zeros(n), slice(n), d_size, d_log_S).information
+    information = Innovations(size, np.zeros(n), slice(n), True, d_size, d_log_S).information
     np.testing.assert_allclose(information / n, [[2.0, 0.0], [0.0, 1.0]], atol=0.02)
 
 
@@ -131,11 +134,26 @@ def test_the_information_tells_how_the_gradient_scatters() -> None:
     assert np.mean(scores**2) == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / scores.size))
 
 
+def test_only_the_variance_of_noise_that_acts_counts(drive: Drive) -> None:
+    of_sensors, acting = (filtered(drive, P, replace(NOISE, acts=acts)) for acts in (False, True))
+    np.testing.assert_array_equal(of_sensors.size, acting.size)
+    counted = acting.log_S[acting.counted]
+    assert acting.cost - of_sensors.cost == pytest.approx(0.5 * counted.sum())
+
+
+def test_noise_of_a_sensor_biases_no_inertia_and_would_if_it_counted_as_acting() -> None:
+    """By the mean gradient over seeds, in standard deviations of that mean; the load torque is hardly known."""
+    noise = replace(NOISE, T_load=20.0)
+    seen = [Predictor(["J_2"]).innovations(simulated(seed, n=750, noise=noise), P, noise) for seed in range(64)]
+    for likelihood, biased in ((False, False), (True, True)):
+        gradients = np.array([replace(one, likelihood=likelihood).gradient[0] for one in seen])
+        assert (abs(gradients.mean()) > 3.0 * gradients.std() / np.sqrt(len(seen))) == biased
+
+
 def test_a_recording_that_begins_in_the_middle_of_a_swing_is_explained_as_well(drive: Drive) -> None:
     """What the filter is off by until it has found its state does not count."""
     for first in range(100, 700, 50):
         through = filtered(drive.between(first, len(drive)), P, NOISE)
         assert through.counted == slice(SETTLED, len(drive) - first - LAST)
         assert through.rms == pytest.approx(1.0, abs=0.1)
-        counted = (through.size**2 + through.log_S)[SETTLED:-LAST]
-        assert through.cost == pytest.approx(0.5 * counted.sum())
+        assert through.cost == pytest.approx(0.5 * (through.size[SETTLED:-LAST] ** 2).sum())
