@@ -10,10 +10,10 @@ g_T and g_L are the gains of the recorded motor and load torque, 1 if they are r
 late_T and late_L are the times by which motor speed, motor torque and load torque are recorded late, of which there are
 those that the data ask for, up to 6 ms and less than a sample too.
 
-Where the model explains the recording, prediction error is used (the likelihood of an extended Kalman filter); where it
+Where the model explains the recording, prediction error is used (innovations of an extended Kalman filter); where it
 does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
-What is likely to be wrong with the recording, or is not determined by it, is said. A stiffness that is known to no better
-than +- 50 % makes no vehicle file, and a gap that is not known any better stays as it was.
+What is likely to be wrong with the recording, or is not determined by it, is said. A stiffness that is known to no
+better than +- 50 % makes no vehicle file, and a gap that is known no better stays as it was.
 
 Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it all that was
 found (NAME_identified.json), what made it (NAME.json) and four figures: measured and simulated signals, the
