@@ -56,9 +56,8 @@ def diagnose_late_load(found: Found, deviation: float) -> list[str]:
     if_known = sqrt(np.linalg.inv(information[np.ix_(alone, alone)])[J_2, J_2])
     if if_known > sqrt(1.0 - COLLINEAR**2) * deviation:
         return []
-    beside = "d and late_L" if "d" in found.free else "late_L"
+    together = "J_2, d and late_L" if "d" in found.free else "J_2 and late_L"
     return [
-        f"J_2 and {beside} cannot be told apart (late_L: time by which the load torque is recorded late): their "
-        f"intervals say so; were the load torque surely aligned with the motor speed, J_2 would be known to "
-        f"+- {100.0 * Z_95 * if_known / found.p.J_2:.2g} %"
+        f"{together} cannot be told apart (late_L: time by which the load torque is recorded late), which the interval "
+        f"of J_2 allows for; were the rest known, it would be +- {100.0 * Z_95 * if_known / found.p.J_2:.2g} %"
     ]

@@ -52,6 +52,7 @@ class Predicted:
     log_S: logarithm of the variance in (rad/s)2 that the filter expects of it, shape (n,).
     counted: samples that count: a recording may begin in the middle of a swing, and of a torque that comes late the
         end is not known.
+    likelihood: whether the noise of the torques acts on the car, see `cost`.
     """
 
     size: np.ndarray

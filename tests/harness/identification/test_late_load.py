@@ -66,6 +66,6 @@ def test_what_cannot_be_told_apart_is_named_from_its_correlation_on(name: str, s
     texts = diagnose_late_load(found, share * known / np.sqrt(1.0 - COLLINEAR**2))
     assert bool(texts) == named
     if named:
-        both = "d and late_L" if name == "d" else "late_L"
-        assert texts[0].startswith(f"J_2 and {both} cannot be told apart")
-        assert f"would be known to +- {196.0 * known / P.J_2:.2g} %" in texts[0]
+        together = "J_2, d and late_L" if name == "d" else "J_2 and late_L"
+        assert texts[0].startswith(f"{together} cannot be told apart")
+        assert f"it would be +- {196.0 * known / P.J_2:.2g} %" in texts[0]
