@@ -21,18 +21,23 @@ LONGEST_COMMUNICATION_STEP = 1000.0
 
 
 class Mode(IntFlag):
-    """Where an instance is in the sequence of calls."""
+    """Where an instance is in the sequence of calls; in the last two only where the host integrates (native build)."""
 
     INSTANTIATED = 1
     INITIALIZATION = 2
     STEPPING = 4
     TERMINATED = 8
+    EVENT = 16
+    CONTINUOUS_TIME = 32
 
 
 MOST_TICKS = 1e15
 """Of a sampled block in a run: a larger count would be a mistake, and one more could not be told from it."""
 
-MODE_NAMES = ("before initialization mode", "in initialization mode", "after initialization", "after termination")
+MODE_NAMES = (
+    *("before initialization mode", "in initialization mode", "after initialization", "after termination"),
+    *("in event mode", "in continuous-time mode"),
+)
 """In the order of the modes."""
 
 LOG_ERROR, LOG_DISCARD = "logStatusError", "logStatusDiscard"

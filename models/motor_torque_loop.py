@@ -52,7 +52,7 @@ class Input(NamedTuple):
 
 class State(NamedTuple):
     T_mot: Annotated[float, Real("N.m", "air-gap torque")]
-    dT_mot: Annotated[float, Real("N.m/s", "rate of the air-gap torque, before its limit")]
+    dT_mot: Annotated[float, Real("N.m/s", "rate of the air-gap torque, before its limit", nominal=1e4)]
     sample: Annotated[float, Real("1", "time in samples of the noise")]
     d_0: Annotated[float, Real("N.m", "demand in the dead time, filtered")]
     d_1: Annotated[float, Real("N.m", "first derivative of d_0 times t_dead")]
@@ -132,8 +132,13 @@ def solution(x: State, u: Input, du: Input, p: Parameters, h: float) -> tuple[bo
     )
 
 
+def noise_sample(x: State) -> float:
+    """The number of the sample of the noise that is held."""
+    return floor(x.sample + 1e-6)
+
+
 def output(x: State, u: Input, p: Parameters) -> Output:
-    k = floor(x.sample + 1e-6)
+    k = noise_sample(x)
     noise_omega, noise_T = normals(p.seed, NOISE, k)
     omega_1 = u.omega_1 + p.sigma_omega * noise_omega
     steps = floor(omega_1 / maximum(p.q_omega, 1e-9) + 0.5)
@@ -149,6 +154,11 @@ def event_indicators(x: State, u: Input, p: Parameters) -> tuple[float, ...]:
     T_max = largest(u.omega_1, p)
     T_ref = delayed_demand(x, u, p)
     return (x.dT_mot - p.dT_max, x.dT_mot + p.dT_max, T_ref - T_max, T_ref + T_max, abs(u.omega_1) - p.omega_base)
+
+
+def next_event(x: State, u: Input, p: Parameters) -> float:
+    """Time in s to the next sample of the noise."""
+    return (noise_sample(x) + 1.0 - x.sample) * p.T_s
 
 
 FRAMES = (
@@ -188,6 +198,7 @@ BLOCK = ContinuousBlock(
     derivative=derivative,
     event_indicators=event_indicators,
     solution=solution,
+    next_event=next_event,
     step_size=0.001,
     frames=FRAMES,
 )

@@ -60,8 +60,8 @@ class State(NamedTuple):
     omega_2: Annotated[float, Real("rad/s", "speed of the wheels, motor side")]
     phi: Annotated[float, Real("rad", "twist of the drive train, motor side")]
     v: Annotated[float, Real("m/s", "speed of the vehicle")]
-    u: Annotated[float, Real("m", "longitudinal deflection of the tyre")]
-    z: Annotated[float, Real("rad", "twist of the brake bristles, wheel side")]
+    u: Annotated[float, Real("m", "longitudinal deflection of the tyre", nominal=0.001)]
+    z: Annotated[float, Real("rad", "twist of the brake bristles, wheel side", nominal=0.005)]
 
 
 def start(u: Input, p: Parameters) -> State:

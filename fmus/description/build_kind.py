@@ -1,6 +1,6 @@
 """What the two builds of a block say of themselves; everything else is the same in both."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -10,6 +10,8 @@ class BuildKind:
     Attributes:
         tool: what made it.
         capabilities: attributes of the element CoSimulation that are not the same in every build.
+        model_exchange: attributes of the element ModelExchange that are not the same in every build; none: there is
+            no such element.
         log_categories: names and descriptions.
         needs: what the host must have, as HTML.
         external: what it needs besides itself, as plain text; empty for nothing.
@@ -22,5 +24,6 @@ class BuildKind:
     log_categories: dict[str, str]
     needs: str
     external: str = ""
+    model_exchange: dict[str, str] = field(default_factory=dict[str, str])
     inputs: str = "Inputs are held over a communication step."
     source_files: tuple[str, ...] = ()

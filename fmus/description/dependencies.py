@@ -1,12 +1,13 @@
 """What an output depends on, found by calling the block's own functions with symbols."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import product
 from typing import Any
 
 from ...models.block.declaration import Boolean, is_tuple, variables
-from ...models.block.types import Block
+from ...models.block.types import Block, ContinuousBlock
 from ..symbol import Symbol
+from .states import rate_name, state_name
 
 
 class Dependent(Symbol):
@@ -28,9 +29,9 @@ def _union(found: Iterable[frozenset[str]]) -> frozenset[str]:
     return frozenset[str]().union(*found)
 
 
-def _symbols(record: type[Any], named: bool) -> Any:
-    """A record of symbols, which are their own sources or have none."""
-    return record(*(Dependent(frozenset({name}) if named else frozenset()) for name in record._fields))
+def _symbols(record: type[Any], named: bool, name: Callable[[str], str] = str) -> Any:
+    """A record of symbols, which are their own sources, by the names that the FMU gives them, or have none."""
+    return record(*(Dependent(frozenset({name(field)}) if named else frozenset()) for field in record._fields))
 
 
 def _without_sources(value: Any) -> Any:
@@ -53,25 +54,50 @@ def _cases(block: Block) -> Iterator[dict[str, bool]]:
         yield dict(zip(names, values, strict=True))
 
 
-def _sources_in_all(block: Block, cases: Iterable[Any]) -> dict[str, frozenset[str]]:
-    """For every output what it was computed from in one or another of several outputs of the block."""
+Dependencies = dict[str, frozenset[str]]
+"""For every unknown of an FMU the names of what it depends on."""
+
+
+def _sources_in_all(names: Iterable[str], cases: Iterable[Any]) -> Dependencies:
+    """For every name what it was computed from in one or another of several records with these names."""
     columns = zip(*cases, strict=True)
-    return {name: _union(map(sources, values)) for name, values in zip(block.Output._fields, columns, strict=True)}
+    return {name: _union(map(sources, values)) for name, values in zip(names, columns, strict=True)}
 
 
-def output_dependencies(block: Block) -> dict[str, frozenset[str]]:
+def output_dependencies(block: Block) -> Dependencies:
     """For every output the inputs that it depends on directly."""
     start = block.start(block.Input(), block.Parameters())
+    return _after_start(block, block.output, _without_sources(start), block.Output._fields)
+
+
+def exchanged_dependencies(block: ContinuousBlock) -> tuple[Dependencies, Dependencies]:
+    """For every output, and for every derivative of a state, the inputs and states that it depends on directly."""
+    x = _symbols(block.State, True, state_name)
+    outputs = _after_start(block, block.output, x, block.Output._fields)
+    return outputs, _after_start(block, block.derivative, x, map(rate_name, block.State._fields))
+
+
+def _after_start(block: Block, function: Callable[..., Any], x: Any, names: Iterable[str]) -> Dependencies:
     u, p = _symbols(block.Input, named=True), _symbols(block.Parameters, named=False)
-    x = _without_sources(start)
-    return _sources_in_all(block, (block.output(x, u, p._replace(**case)) for case in _cases(block)))
+    return _sources_in_all(names, (function(x, u, p._replace(**case)) for case in _cases(block)))
 
 
-def initial_dependencies(block: Block) -> dict[str, frozenset[str]]:
+def initial_dependencies(block: Block) -> Dependencies:
     """For every output the inputs and parameters that its initial value depends on."""
+    return _at_start(block, block.output, block.Output._fields)
+
+
+def initial_state_dependencies(block: ContinuousBlock) -> Dependencies:
+    """For every state, and every derivative of one, the inputs and parameters that its initial value depends on."""
+    started = _at_start(block, lambda x, u, p: x, map(state_name, block.State._fields))
+    return started | _at_start(block, block.derivative, map(rate_name, block.State._fields))
+
+
+def _at_start(block: Block, function: Callable[..., Any], names: Iterable[str]) -> Dependencies:
+    names = tuple(names)
     u, p = _symbols(block.Input, named=True), _symbols(block.Parameters, named=True)
-    every = _sources_in_all(block, [block.output(block.start(u, p), u, p)])
+    every = _sources_in_all(names, [function(block.start(u, p), u, p)])
     chosen = [p._replace(**case) for case in _cases(block)]
-    known = _sources_in_all(block, (block.output(block.start(u, p), u, p) for p in chosen))
+    known = _sources_in_all(names, (function(block.start(u, p), u, p) for p in chosen))
     switches = frozenset(next(_cases(block)))
     return {name: known[name] | (every[name] & switches) for name in every}

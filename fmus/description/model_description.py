@@ -6,11 +6,17 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from ...models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real
-from ...models.block.types import SampledBlock
+from ...models.block.types import Block, ContinuousBlock, SampledBlock
 from ..fmu import Fmu
 from ..release import ABOUT, date
 from .build_kind import BuildKind
-from .dependencies import initial_dependencies, output_dependencies
+from .dependencies import (
+    exchanged_dependencies,
+    initial_dependencies,
+    initial_state_dependencies,
+    output_dependencies,
+)
+from .states import event_indicators, states
 from .units import base_exponents
 from .variables import Variable, interface
 
@@ -23,6 +29,14 @@ CAPABILITIES = {
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
+"""Of co-simulation, in every build."""
+
+STEPPING_ALONE = ("canHandleVariableCommunicationStepSize", "canRunAsynchronuously")
+"""Those that model exchange does not know."""
+
+EXCHANGE_CAPABILITIES = {name: CAPABILITIES[name] for name in CAPABILITIES if name not in STEPPING_ALONE} | {
+    "completedIntegratorStepNotNeeded": "true"
+}
 
 
 def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
@@ -31,7 +45,8 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     Raises:
         ValueError: the names of two variables differ in case only, which not every tool tells apart.
     """
-    all_variables = interface(fmu.block)
+    exchanged = states(fmu.block) if kind.model_exchange else ()
+    all_variables = (*interface(fmu.block), *exchanged)
     _check_names(all_variables)
     root = Element(
         "fmiModelDescription",
@@ -44,7 +59,10 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
         variableNamingConvention="flat",
     )
     root.attrib.update(ABOUT if fmu.is_of_the_project else {})
-    _add_co_simulation(root, fmu, kind)
+    if isinstance(fmu.block, ContinuousBlock) and exchanged:
+        root.set("numberOfEventIndicators", str(event_indicators(fmu.block)))
+        _add_kind(root, "ModelExchange", fmu, kind, EXCHANGE_CAPABILITIES | kind.model_exchange)
+    _add_kind(root, "CoSimulation", fmu, kind, CAPABILITIES | kind.capabilities)
     _add_units(root, all_variables)
     _add_enumerations(root, all_variables)
     categories = SubElement(root, "LogCategories")
@@ -55,7 +73,7 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     listed = SubElement(root, "ModelVariables")
     for variable in all_variables:
         _add_variable(listed, variable, sampled=isinstance(fmu.block, SampledBlock))
-    _add_structure(root, fmu, all_variables)
+    _add_structure(root, fmu.block, all_variables, exchanged)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
 
@@ -68,11 +86,10 @@ def _check_names(all_variables: Iterable[Variable]) -> None:
             raise ValueError(f"the variables {other} and {variable.name} differ in case only")
 
 
-def _add_co_simulation(root: Element, fmu: Fmu, kind: BuildKind) -> None:
-    attributes = {"modelIdentifier": fmu.name} | CAPABILITIES | kind.capabilities
-    co_simulation = SubElement(root, "CoSimulation", attributes)
+def _add_kind(root: Element, name: str, fmu: Fmu, kind: BuildKind, capabilities: dict[str, str]) -> None:
+    element = SubElement(root, name, {"modelIdentifier": fmu.name} | capabilities)
     if kind.source_files:
-        sources = SubElement(co_simulation, "SourceFiles")
+        sources = SubElement(element, "SourceFiles")
         for name in kind.source_files:
             SubElement(sources, "File", name=name)
 
@@ -115,13 +132,15 @@ def _add_variable(listed: Element, variable: Variable, sampled: bool) -> None:
         # what feeds a sampled block may change at any time; what leaves it may not
         discrete = not isinstance(declaration, Real) or (sampled and variable.causality == "output")
         attributes["variability"] = "discrete" if discrete else "continuous"
-        if variable.causality == "output":
+        if variable.causality != "input":
             attributes["initial"] = "calculated"
     start = {} if variable.start is None else {"start": _text(variable.start)}
     scalar = SubElement(listed, "ScalarVariable", attributes)
     tag, attributes = _type(declaration)
     if variable.causality != "parameter" and variable.nominal is not None:
         attributes["nominal"] = _text(variable.nominal)
+    if variable.state is not None:
+        attributes["derivative"] = str(variable.state + 1)
     SubElement(scalar, tag, attributes | start)
 
 
@@ -148,13 +167,17 @@ def _limits(declaration: Integer | Real, unlimited: Integer | Real) -> dict[str,
     return limits
 
 
-def _add_structure(root: Element, fmu: Fmu, all_variables: tuple[Variable, ...]) -> None:
+def _add_structure(
+    root: Element, block: Block, all_variables: tuple[Variable, ...], exchanged: tuple[Variable, ...]
+) -> None:
     index = {v.name: v.reference + 1 for v in all_variables}
     structure = SubElement(root, "ModelStructure")
-    for section, dependencies in (
-        ("Outputs", output_dependencies(fmu.block)),
-        ("InitialUnknowns", initial_dependencies(fmu.block)),
-    ):
+    sections = {"Outputs": output_dependencies(block), "InitialUnknowns": initial_dependencies(block)}
+    if isinstance(block, ContinuousBlock) and exchanged:
+        outputs, rates = exchanged_dependencies(block)
+        initial = sections["InitialUnknowns"] | initial_state_dependencies(block)
+        sections = {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": initial}
+    for section, dependencies in sections.items():
         unknowns = SubElement(structure, section)
         for output, on in dependencies.items():
             known = sorted(index[name] for name in on)

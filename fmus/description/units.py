@@ -20,6 +20,16 @@ NOMINAL = {"N.m": 100.0, "rad/s": 100.0, "rad": 0.1, "m/s": 10.0, "m/s2": 1.0}
 """How large quantities of a drive train are, motor side; for those that are not declared with a value of their own."""
 
 
+def rate_unit(unit: str) -> str:
+    """The unit of the rate at which a quantity of that unit changes: "rad/s" gives rad/s2."""
+    numerator, _, denominator = unit.partition("/")
+    factors = [factor for factor in denominator.strip("()").split(".") if factor]
+    times = [factor for factor in factors if re.fullmatch(r"s\d*", factor)]
+    exponent = sum(int(factor[1:] or 1) for factor in times) + 1
+    factors = [factor for factor in factors if factor not in times] + [f"s{exponent if exponent > 1 else ''}"]
+    return f"{numerator}/{factors[0]}" if len(factors) == 1 else f"{numerator}/({'.'.join(factors)})"
+
+
 def base_exponents(unit: str) -> dict[str, int]:
     """Exponents of the SI base units, in the order of the schema: "N.m/rad" gives kg 1, m 2, s -2, rad -1.
 

@@ -12,8 +12,9 @@ class Variable(NamedTuple):
 
     Attributes:
         reference: its FMI value reference, which is also its place in the list of all variables.
-        causality: "input", "output" or "parameter".
-        start: start value; None for an output.
+        causality: "input", "output" or "parameter"; of a state or its derivative "local".
+        start: start value; None for what is computed.
+        state: of a derivative, the reference of its state.
     """
 
     reference: int
@@ -21,6 +22,7 @@ class Variable(NamedTuple):
     causality: str
     declaration: Declaration
     start: Any
+    state: int | None = None
 
     @property
     def fmi_type(self) -> str:

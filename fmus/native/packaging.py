@@ -24,6 +24,7 @@ FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 FOR_ALL = (
     "content.c",
     "fmi2.c",
+    "fmi2_adapter.h",
     "messages.c",
     "run.c",
     "state.c",
@@ -33,6 +34,9 @@ FOR_ALL = (
     "variable.h",
 )
 FOR_CONTINUOUS = (
+    "fmi2_model_exchange.c",
+    "model_exchange.c",
+    "model_exchange.h",
     "continuous.c",
     "explicit.c",
     "implicit.c",
@@ -53,6 +57,10 @@ With FMI2_FUNCTION_PREFIX defined as {name}_ it can be linked with other FMUs, w
 
 MOVING = """An input is held over a communication step, or moves at the rate that fmi2SetRealInputDerivatives
 gave it for that step."""
+
+
+EXCHANGE = {"canNotUseMemoryManagementFunctions": "false", "providesDirectionalDerivative": "true"}
+"""What model exchange can do in a native build."""
 
 
 def build_native(
@@ -102,6 +110,7 @@ def native_kind(fmu: Fmu) -> BuildKind:
             "canNotUseMemoryManagementFunctions": "false",
             "providesDirectionalDerivative": "true" if continuous else "false",
         },
+        model_exchange=EXCHANGE if continuous else {},
         log_categories=LOG_CATEGORIES,
         needs=NEEDS,
         source_files=(WHOLE,),

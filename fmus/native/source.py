@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from ...models.block.explicit import small_sizes
 from ...models.block.types import SampledBlock
+from ..description.states import states
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 from .arithmetic import TracedGraph
@@ -23,10 +24,13 @@ MEANINGS = {
     "event_indicators": "Values that are zero where the equations have a kink.",
     "solution": "Whether the solution in closed form holds for a step of h s, and the state at its end, for inputs "
     "that move at the rates du.",
+    "next_event": "The time in s until outputs jump by themselves.",
     "update": "The state at the next sample.",
     "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
+    "derivative_rate": "The rate of change of the derivative when all else changes at the rates dx, du and dp.",
     "compute_terms": "Computes the terms that depend on the other parameters alone, whenever one of these was set.",
     "start_rate": "The rate of change of the outputs at the start when inputs and parameters change at du and dp.",
+    "start_state_rate": "The rate of change of the state at the start then.",
 }
 
 HEADER = """/* {name}: {description}.
@@ -78,20 +82,22 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...], held: int) -> list[str]:
     """What else there is to know of the block."""
     if isinstance(fmu.block, SampledBlock):
         return [f"#define SAMPLE_TIME {fmu.block.sample_time!r} /* s */"]
-    indicators = [each.function.size1_out(0) for each in traced if each.name == "event_indicators"]
+    sizes = {each.name: each.function.size1_out(0) for each in traced}
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define ALLOWED_ERROR {fmu.block.allowed_error!r} /* of a step, in units of what is tolerated */",
-        f"#define INDICATORS {sum(indicators)}",
+        f"#define INDICATORS {sizes.get('event_indicators', 0)}",
+        f"#define TIME_EVENTS {sizes.get('next_event', 0)}",
         *([f"#define HELD_TERMS {held} /* numbers that held_terms computes */"] if held else []),
-        *("#define HAS_SOLUTION" for each in traced if each.name == "solution"),
+        *(["#define HAS_SOLUTION"] if "solution" in sizes else []),
         f"#define SMALL_SIZES {{{', '.join(map(repr, small_sizes(fmu.block)))}}} /* of the states: see explicit.py */",
+        f"#define NOMINALS {{{', '.join(repr(v.nominal or 1.0) for v in states(fmu.block) if v.state is None)}}}",
     ]
 
 
 def _letter(name: str) -> str:
     """The letter of the record that an argument or result is one of; a rate of change is one of what changes."""
-    return "x" if name == "next" else name.removeprefix("d")
+    return "x" if name == "next" else name.lstrip("d")
 
 
 WIDTH = 118
@@ -114,7 +120,7 @@ class Functions(NamedTuple):
     held: int
 
 
-RARE = ("start", "start_rate")
+RARE = ("start", "start_rate", "start_state_rate")
 """Functions that are not called in steps; all that they need they compute themselves."""
 
 
@@ -196,9 +202,11 @@ static const char *const model_name = "{name}";
 static const char *const model_guid = "{guid}";
 static const int copes_with_bad_input = {copes}; /* inputs are not refused */
 static const int gives_bad_output = {bad_output}; /* NaN may be what it is for */
+static const int allows_model_exchange = {exchanges};
 static const unsigned variable_count = {count};
+static const unsigned reference_count = {references}; /* behind the variables come states and their derivatives */
 
-static const Variable variables[{count}] = {{
+static const Variable variables[{references}] = {{
 {rows}
 }};
 
@@ -219,14 +227,18 @@ FIELD = {"input": "u", "output": "y", "parameter": "p"}
 def variables_header(fmu: Fmu, guid: str) -> str:
     """variables.h: name, unit, place, bounds and start value of every variable, by value reference."""
     block, listed, records = fmu.block, interface(fmu.block), records_of(fmu.block)
+    exchanged = states(fmu.block)
+    fields = fmu.block.State._fields * 2
     return VARIABLES.format(
         name=fmu.name,
         module=fmu.module,
         guid=guid,
         copes=int(block.tolerates_bad_input),
         bad_output=int(block.gives_bad_output),
+        exchanges=int(bool(exchanged)),
         count=len(listed),
-        rows="\n".join(map(_row, listed)),
+        references=len(listed) + len(exchanged),
+        rows="\n".join([*map(_row, listed), *map(_state_row, exchanged, fields)]),
         inputs=_names(records["u"]),
         states=_names(records["x"]),
     )
@@ -238,11 +250,20 @@ def _names(record: Any) -> str:
 
 
 def _row(variable: Variable) -> str:
+    place = f"offsetof(Values, {FIELD[variable.causality]}.{variable.name})"
+    return _written(variable, variable.causality.upper(), place)
+
+
+def _state_row(variable: Variable, field: str) -> str:
+    kind = "STATE" if variable.state is None else "RATE"
+    return _written(variable, kind, f"offsetof(State, {field})")
+
+
+def _written(variable: Variable, kind: str, place: str) -> str:
     low, high = variable.bounds()
     start = 0.0 if variable.start is None else variable.start
     numbers = ", ".join(_number(value) for value in (low, high, start))
-    place = f"offsetof(Values, {FIELD[variable.causality]}.{variable.name})"
-    kinds = f"{variable.fmi_type.upper()}, {variable.causality.upper()}"
+    kinds = f"{variable.fmi_type.upper()}, {kind}"
     unit = f" {variable.unit}" if variable.unit else ""
     return f'    {{"{variable.name}", "{unit}", "{variable.allowed()}", {kinds}, {place}, {numbers}}},'
 

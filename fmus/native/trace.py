@@ -22,7 +22,7 @@ class Traced(NamedTuple):
     Attributes:
         function: its inputs are the flattened records `arguments`, its output the flattened `result`.
         arguments: of x, u, p, and dx, du, dp for rates of change of these, h for a time.
-        result: x, dx, y, dy or, for numbers that are no record, z.
+        result: x, dx, ddx, y, dy or, for numbers that are no record, z.
     """
 
     name: str
@@ -32,10 +32,10 @@ class Traced(NamedTuple):
 
 
 def trace(block: Block) -> tuple[Traced, ...]:
-    """All functions of a block; for a continuous one also the rates of change of its outputs.
+    """All functions of a block; for a continuous one also how fast outputs and derivatives change.
 
-    `output_rate` is that after initialization, for given rates of x and u; `start_rate` that of the outputs
-    of the start, for given rates of u and p.
+    `output_rate` holds after initialization, for given rates of x and u; `start_rate` and `start_state_rate` are those
+    of the outputs and the state of the start, for given rates of u and p; `derivative_rate` serves both.
 
     Raises:
         TypeError: a function branches on data, or does what symbols cannot.
@@ -56,6 +56,8 @@ def trace(block: Block) -> tuple[Traced, ...]:
                 symbols |= {"du": _symbols("du", block.Input()), "h": CasadiSymbol(casadi.SX.sym("h"))}
                 solved = block.solution(x, u, symbols["du"], p, symbols["h"])
                 results["solution"] = (("x", "u", "du", "p", "h"), "z", solved)
+            if block.next_event:
+                results["next_event"] = ("xup", "z", (block.next_event(x, u, p),))
         else:
             results["update"] = ("xup", "next", block.update(x, u, p))
         started = block.output(block.start(u, p), u, p)
@@ -66,9 +68,11 @@ def trace(block: Block) -> tuple[Traced, ...]:
     ]
     if isinstance(block, ContinuousBlock):
         xup = {name: vectors[name] for name in "xup"}
-        traced.append(_rate("output_rate", _vector(results["output"][2]), xup, ("x", "u")))
+        traced.append(_rate("output_rate", "dy", _vector(results["output"][2]), xup, ("x", "u")))
+        traced.append(_rate("derivative_rate", "ddx", _vector(results["derivative"][2]), xup, ("x", "u", "p")))
         del xup["x"]
-        traced.append(_rate("start_rate", _vector(started), xup, ("u", "p")))
+        traced.append(_rate("start_rate", "dy", _vector(started), xup, ("u", "p")))
+        traced.append(_rate("start_state_rate", "dx", _vector(results["start"][2]), xup, ("u", "p")))
     return tuple(traced)
 
 
@@ -104,9 +108,9 @@ def _traced(name: str, arguments: dict[str, casadi.SX], result: str, value: casa
     return Traced(name, casadi.Function(name, list(arguments.values()), [value]), tuple(arguments), result)
 
 
-def _rate(name: str, y: casadi.SX, vectors: dict[str, casadi.SX], moving: tuple[str, ...]) -> Traced:
-    """The rate of change of y while the vectors `moving` change at given rates."""
+def _rate(name: str, result: str, of: casadi.SX, vectors: dict[str, casadi.SX], moving: tuple[str, ...]) -> Traced:
+    """The rate of change of a vector while the vectors `moving` change at given rates."""
     rates = {f"d{of}": casadi.SX.sym(f"d{of}", vectors[of].numel()) for of in moving}
     at = casadi.vertcat(*(vectors[of] for of in moving))
-    dy = casadi.densify(casadi.jtimes(y, at, casadi.vertcat(*rates.values())))
-    return _traced(name, vectors | rates, "dy", dy)
+    rate = casadi.densify(casadi.jtimes(of, at, casadi.vertcat(*rates.values())))
+    return _traced(name, vectors | rates, result, rate)

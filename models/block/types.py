@@ -64,6 +64,7 @@ class ContinuousBlock(_Block):
         event_indicators: (x, u, p) -> tuple of floats whose zeros are located.
         solution: (x, u, du, p, h) -> whether the solution in closed form holds, and the state h seconds later, with
             inputs that move at the rates du; None: there is no such solution, and the block is integrated.
+        next_event: (x, u, p) -> time in s, above 0, until outputs jump by themselves; None: they never do.
         step_size: longest step of the integration in s; where the block is stiff it takes shorter ones.
         allowed_error: of a step that is made, in units of what is tolerated (see .explicit). Steps with as little as
             usual are so short that a kink away from the zeros cannot pass for an accurate step.
@@ -72,6 +73,7 @@ class ContinuousBlock(_Block):
     derivative: Callable[[Any, Any, Any], Any]
     event_indicators: Callable[[Any, Any, Any], tuple[Any, ...]] = no_event_indicators
     solution: Callable[[Any, Any, Any, Any, Any], tuple[bool, Any]] | None = None
+    next_event: Callable[[Any, Any, Any], Any] | None = None
     step_size: float
     allowed_error: float = 0.01
 

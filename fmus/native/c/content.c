@@ -82,15 +82,20 @@ static Status check_states(const Instance *instance, const Memory *memory)
 Status check_content(const Instance *instance, Memory *memory)
 {
     const int64_t mode = memory->mode;
-    if (mode != INSTANTIATED && mode != INITIALIZATION && mode != STEPPING && mode != TERMINATED)
+    const int exchanged = mode == EVENT || mode == CONTINUOUS_TIME;
+    if (mode != INSTANTIATED && mode != INITIALIZATION && mode != STEPPING && mode != TERMINATED
+        && !(exchanged && allows_model_exchange))
         return refuse(instance, DAMAGED_STATE);
+    if (instance->exchanges ? mode == STEPPING : exchanged)
+        return refuse(instance, "the FMU state is refused: its instance was made for %s",
+                      exchanged ? "model exchange" : "co-simulation");
     Status status = check_times(instance, memory);
     if (status == OK)
         status = check_values(instance, memory);
     if (status == OK)
         status = check_numbers(
             instance, "du", input_names, (const double *)(const void *)&memory->du, sizeof(Input) / sizeof(double));
-    if (status == OK && (mode == STEPPING || mode == TERMINATED))
+    if (status == OK && mode != INSTANTIATED && mode != INITIALIZATION)
         status = check_states(instance, memory);
     compute_terms(&memory->values.p);
     return status;

@@ -29,6 +29,21 @@ Obstacle advance(const Memory *memory, double elapsed, double duration, Next *ne
     return (Obstacle){.state = NULL};
 }
 
+static double number_in(const State *record, const Variable *variable)
+{
+    return *(const double *)(const void *)((const char *)record + variable->offset);
+}
+
+double state_value(const Memory *memory, const Variable *variable)
+{
+    const State x = present_state(memory);
+    State dx;
+    if (variable->causality == STATE)
+        return number_in(&x, variable);
+    derivative(&x, &memory->values.u, &memory->values.p, &dx);
+    return number_in(&dx, variable);
+}
+
 Status check_ticks(const Instance *instance, const Memory *memory)
 {
     (void)instance;
@@ -76,20 +91,34 @@ Status set_input_rates(Instance *instance, const Reference references[], size_t 
     return OK;
 }
 
-/* Gives out rates or changes of outputs if all are numbers; else they are refused. */
+/* Rates of change, or small changes, of all that a reference can name. */
+typedef struct {
+    Values values;
+    State x;
+    State dx;
+} Changes;
+
+static double *change_of(Changes *changes, const Variable *variable)
+{
+    char *record = (char *)(variable->causality == STATE ? &changes->x : &changes->dx);
+    const int of_state = variable->causality == STATE || variable->causality == RATE;
+    return of_state ? (double *)(void *)(record + variable->offset) : place_of(&changes->values, variable);
+}
+
+/* Gives out rates or changes if all are numbers; else they are refused. */
 static Status give_out(
-    const Instance *instance, const Reference references[], size_t count, Values *changes, double results[])
+    const Instance *instance, const Reference references[], size_t count, Changes *changes, double results[])
 {
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
-        const double change = *place_of(changes, variable);
+        const double change = *change_of(changes, variable);
         char text[NUMBER_LENGTH];
         if (!(fabs(change) <= DBL_MAX))
             return refuse(
                 instance, "the derivative of %s is refused; it would be %s", variable->name, write_number(text, change));
     }
     for (size_t k = 0; k < count; k++)
-        results[k] = *place_of(changes, &variables[references[k]]);
+        results[k] = *change_of(changes, &variables[references[k]]);
     return OK;
 }
 
@@ -97,7 +126,7 @@ Status get_output_rates(const Instance *instance, const Reference references[], 
 {
     const Memory *memory = &instance->memory;
     const Values *values = &memory->values;
-    Values changes;
+    Changes changes;
     State dx;
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = variable_of(instance, references[k], REAL);
@@ -107,12 +136,12 @@ Status get_output_rates(const Instance *instance, const Reference references[], 
             return refuse(instance, "%s is not an output and has no output derivative", variable->name);
     }
     derivative(&memory->x, &values->u, &values->p, &dx);
-    output_rate(&memory->x, &values->u, &values->p, &dx, &memory->du, &changes.y);
+    output_rate(&memory->x, &values->u, &values->p, &dx, &memory->du, &changes.values.y);
     return give_out(instance, references, count, &changes, rates);
 }
 
-/* Whether a variable can take part in a directional derivative as unknown (an output) or as known (an input, and
-until initialization mode is left a parameter); else it is refused. */
+/* Whether a variable can take part in a directional derivative: as unknown an output or the derivative of a state, as
+known an input or a state; until initialization mode is left a state is an unknown, and a parameter a known. */
 static int is_differentiable(const Instance *instance, Reference reference, int unknown)
 {
     const Variable *variable = variable_of(instance, reference, REAL);
@@ -120,14 +149,17 @@ static int is_differentiable(const Instance *instance, Reference reference, int 
         return 0;
     const Causality causality = variable->causality;
     const int tuning = instance->memory.mode == INITIALIZATION;
-    if (unknown ? causality == OUTPUT : causality == INPUT || (causality == PARAMETER && tuning))
+    if (unknown ? causality == OUTPUT || causality == RATE || (causality == STATE && tuning)
+                : causality == INPUT || causality == (tuning ? PARAMETER : STATE))
         return 1;
     refuse(
         instance,
         "%s cannot be %s of a directional derivative; allowed is any %s",
         variable->name,
         unknown ? "the unknown" : "a known",
-        unknown ? "output" : tuning ? "input or parameter" : "input");
+        unknown ? tuning ? "output, state or its derivative" : "output or derivative of a state"
+        : tuning ? "input or parameter"
+                 : "input or state");
     return 0;
 }
 
@@ -135,9 +167,8 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
 {
     const Memory *memory = &instance->memory;
     const Values *values = &memory->values;
-    static const Values unchanged;
-    static const State at_rest;
-    Values changes = unchanged;
+    static const Changes unchanged;
+    Changes changes = unchanged;
     for (size_t k = 0; k < direction->unknowns; k++)
         if (!is_differentiable(instance, direction->unknown[k], 1))
             return ERROR;
@@ -153,11 +184,15 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
                 "%s is refused as change of %s; allowed is any finite number",
                 write_number(text, change),
                 known->name);
-        *place_of(&changes, known) += change;
+        *change_of(&changes, known) += change;
     }
-    if (memory->mode == INITIALIZATION)
-        start_rate(&values->u, &values->p, &changes.u, &changes.p, &changes.y);
-    else
-        output_rate(&memory->x, &values->u, &values->p, &at_rest, &changes.u, &changes.y);
+    Values *dv = &changes.values;
+    const State x = present_state(memory);
+    if (memory->mode == INITIALIZATION) {
+        start_rate(&values->u, &values->p, &dv->u, &dv->p, &dv->y);
+        start_state_rate(&values->u, &values->p, &dv->u, &dv->p, &changes.x);
+    } else
+        output_rate(&x, &values->u, &values->p, &changes.x, &dv->u, &dv->y);
+    derivative_rate(&x, &values->u, &values->p, &changes.x, &dv->u, &dv->p, &changes.dx);
     return give_out(instance, direction->unknown, direction->unknowns, &changes, result);
 }

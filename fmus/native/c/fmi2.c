@@ -1,14 +1,6 @@
-/* The adapter to FMI 2.0 for co-simulation, and the only file that knows it. It keeps the callbacks of the host and
-sees to it that calls come in an order that makes sense; what they do is done by the instance. */
-#include "fmi2Functions.h"
-#include "instance.h"
-
-#ifdef FMI2_FUNCTION_PREFIX /* some editions of the header leave it out of the names */
-#undef fmi2FullName
-#define JOINED(prefix, name) prefix##name
-#define WITH_PREFIX(prefix, name) JOINED(prefix, name)
-#define fmi2FullName(name) WITH_PREFIX(FMI2_FUNCTION_PREFIX, name)
-#endif
+/* The adapter to FMI 2.0: what co-simulation and model exchange share, and co-simulation. It keeps the callbacks of the
+host and sees to it that calls come in an order that makes sense; what they do is done by the instance. */
+#include "fmi2_adapter.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,7 +13,10 @@ typedef struct {
     char name[];
 } Component;
 
-enum { ANY_MODE = INSTANTIATED | INITIALIZATION | STEPPING | TERMINATED };
+enum {
+    RUNNING = STEPPING | EVENT | CONTINUOUS_TIME,
+    ANY_MODE = INSTANTIATED | INITIALIZATION | RUNNING | TERMINATED
+};
 
 const char *fmi2GetTypesPlatform(void)
 {
@@ -33,13 +28,12 @@ const char *fmi2GetVersion(void)
     return fmi2Version;
 }
 
-static fmi2Status in_fmi(Status status)
+fmi2Status in_fmi(Status status)
 {
     return status == OK ? fmi2OK : status == DISCARD ? fmi2Discard : fmi2Error;
 }
 
-/* The instance, if there is one in one of the modes and the call is complete; else NULL. */
-static Instance *ready(fmi2Component c, unsigned modes, int complete, const char *function)
+Instance *ready(fmi2Component c, unsigned modes, int complete, const char *function)
 {
     Component *component = c;
     if (!component || !in_mode(&component->instance, modes, function))
@@ -48,6 +42,21 @@ static Instance *ready(fmi2Component c, unsigned modes, int complete, const char
         return &component->instance;
     refuse(&component->instance, "%s: an argument is NULL", function);
     return NULL;
+}
+
+Instance *ready_for(fmi2Type type, fmi2Component c, unsigned modes, int complete, const char *function)
+{
+    const Component *component = c;
+    const char *kind = type == fmi2ModelExchange ? "co-simulation" : "model exchange"; /* the other one */
+    if (!component || component->instance.exchanges == (type == fmi2ModelExchange))
+        return ready(c, modes, complete, function);
+    refuse(&component->instance, "%s is refused; the instance was made for %s", function, kind);
+    return NULL;
+}
+
+static Instance *stepping(fmi2Component c, unsigned modes, int complete, const char *function)
+{
+    return ready_for(fmi2CoSimulation, c, modes, complete, function);
 }
 
 static const char *const categories_of[] = {[OK] = "", [DISCARD] = LOG_DISCARD, [ERROR] = LOG_ERROR};
@@ -106,7 +115,7 @@ static const char *objection(fmi2String name, fmi2Type type, fmi2String guid, co
 {
     if (!name || !*name)
         return "fmi2Instantiate: an instance needs a name";
-    if (type != fmi2CoSimulation)
+    if (type != fmi2CoSimulation && !(type == fmi2ModelExchange && allows_model_exchange))
         return "fmi2Instantiate: the FMU is for co-simulation";
     if (!guid || strcmp(guid, model_guid) != 0)
         return "fmi2Instantiate: the GUID is that of another FMU";
@@ -136,6 +145,7 @@ fmi2Component fmi2Instantiate(
     }
     const Host host = {functions->allocateMemory, log_for, component};
     component->instance.host = host;
+    component->instance.exchanges = fmuType == fmi2ModelExchange;
     component->callbacks = *functions;
     component->logged[DISCARD] = component->logged[ERROR] = loggingOn;
     strcpy(component->name, instanceName);
@@ -158,7 +168,7 @@ fmi2Status fmi2SetupExperiment(
     fmi2Boolean stopTimeDefined,
     fmi2Real stopTime)
 {
-    (void)toleranceDefined; /* the integration has its own, see integrator.c */
+    (void)toleranceDefined; /* the integration has its own, see integrator.c; in model exchange it is the host's */
     (void)tolerance;
     const double stop = stopTimeDefined ? stopTime : (double)INFINITY;
     Instance *instance = ready(c, INSTANTIATED, 1, __func__);
@@ -178,7 +188,7 @@ fmi2Status fmi2SetupExperiment(
 
 CHANGE(fmi2EnterInitializationMode, INSTANTIATED, instance->memory.mode = INITIALIZATION)
 CHANGE(fmi2ExitInitializationMode, INITIALIZATION, leave_initialization(instance))
-CHANGE(fmi2Terminate, STEPPING, instance->memory.mode = TERMINATED)
+CHANGE(fmi2Terminate, RUNNING, instance->memory.mode = TERMINATED)
 CHANGE(fmi2Reset, ANY_MODE, renew(instance))
 
 #define VALUES(Type, TYPE)                                                                                             \
@@ -256,7 +266,7 @@ fmi2Status fmi2GetDirectionalDerivative(
     fmi2Real dvUnknown[])
 {
     const int complete = (nUnknown == 0 || (vUnknown_ref && dvUnknown)) && (nKnown == 0 || (vKnown_ref && dvKnown));
-    const Instance *instance = ready(c, INITIALIZATION | STEPPING | TERMINATED, complete, __func__);
+    const Instance *instance = ready(c, INITIALIZATION | RUNNING | TERMINATED, complete, __func__);
     if (!instance)
         return fmi2Error;
     const Direction direction = {vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown};
@@ -282,7 +292,7 @@ fmi2Status fmi2SetRealInputDerivatives(
     const fmi2Real value[])
 {
     const int complete = nvr == 0 || (vr && order && value);
-    Instance *instance = ready(c, INSTANTIATED | INITIALIZATION | STEPPING, complete, __func__);
+    Instance *instance = stepping(c, INSTANTIATED | INITIALIZATION | STEPPING, complete, __func__);
     const int allowed = instance && orders_are_one(instance, order, nvr);
     return allowed ? in_fmi(set_input_rates(instance, vr, nvr, value)) : fmi2Error;
 }
@@ -295,7 +305,7 @@ fmi2Status fmi2GetRealOutputDerivatives(
     fmi2Real value[])
 {
     const int complete = nvr == 0 || (vr && order && value);
-    const Instance *instance = ready(c, STEPPING | TERMINATED, complete, __func__);
+    const Instance *instance = stepping(c, STEPPING | TERMINATED, complete, __func__);
     const int allowed = instance && orders_are_one(instance, order, nvr);
     return allowed ? in_fmi(get_output_rates(instance, vr, nvr, value)) : fmi2Error;
 }
@@ -307,13 +317,13 @@ fmi2Status fmi2DoStep(
     fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
     (void)noSetFMUStatePriorToCurrentPoint;
-    Instance *instance = ready(c, STEPPING, 1, __func__);
+    Instance *instance = stepping(c, STEPPING, 1, __func__);
     return instance ? in_fmi(make_step(instance, currentCommunicationPoint, communicationStepSize)) : fmi2Error;
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c)
 {
-    const Instance *instance = ready(c, ANY_MODE, 1, __func__);
+    const Instance *instance = stepping(c, ANY_MODE, 1, __func__);
     if (instance)
         refuse(instance, "fmi2CancelStep is refused; every step ends before fmi2DoStep returns");
     return fmi2Error;
@@ -323,7 +333,7 @@ fmi2Status fmi2CancelStep(fmi2Component c)
 #define ANSWER(function, Type, known, answer)                                                                          \
     fmi2Status function(fmi2Component c, const fmi2StatusKind s, Type *value)                                          \
     {                                                                                                                  \
-        const Instance *instance = ready(c, STEPPING | TERMINATED, value != NULL, __func__);                           \
+        const Instance *instance = stepping(c, STEPPING | TERMINATED, value != NULL, __func__);                        \
         if (!instance)                                                                                                 \
             return fmi2Error;                                                                                          \
         if (!(known))                                                                                                  \

@@ -28,6 +28,7 @@ typedef struct {
 typedef struct {
     Values values;     /* the outputs in it are those of the present when outputs_known */
     Input du;          /* rates of change of the inputs during the next step; 0 if they are held */
+    int64_t sides;     /* in model exchange: bit n is set where event indicator n counts as above its zero */
     State x;           /* from the end of initialization mode on */
     State coming;      /* of a sampled block: what its last tick computed */
     double start_time; /* s */
@@ -41,6 +42,7 @@ typedef struct {
 
 typedef struct {
     Host host;
+    int exchanges; /* the host integrates (model exchange); else it asks for steps (co-simulation) */
     Memory memory;
 } Instance;
 
@@ -90,6 +92,7 @@ static Status make_step(Instance *instance, double time, double step_size);
 
 /* values.c; the values are double for REAL, else int */
 static void set_start_values(Memory *memory);
+static State present_state(const Memory *memory);
 static Status compute_next_outputs(Instance *instance, const Next *next, double step_size); /* refused if not finite */
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
@@ -109,6 +112,7 @@ static Status deserialize_state(const Instance *instance, const void *bytes, siz
 static Status check_content(const Instance *instance, Memory *memory); /* of a saved state */
 
 /* continuous.c or sampled.c */
+static double state_value(const Memory *memory, const Variable *variable); /* of a state or of its derivative */
 static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
 static Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next); /* `elapsed` since start */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */

@@ -50,7 +50,7 @@ void leave_initialization(Instance *instance)
     Memory *memory = &instance->memory;
     start(&memory->values.u, &memory->values.p, &memory->x);
     memory->coming = memory->x;
-    memory->mode = STEPPING;
+    memory->mode = instance->exchanges ? EVENT : STEPPING;
 }
 
 static Status check_step(Instance *instance, double time, double step_size)

@@ -26,8 +26,8 @@ void set_start_values(Memory *memory)
 
 const Variable *variable_of(const Instance *instance, Reference reference, Type type)
 {
-    if (reference >= variable_count) {
-        refuse(instance, UNKNOWN_REFERENCE(reference, model_name, variable_count - 1));
+    if (reference >= reference_count) {
+        refuse(instance, UNKNOWN_REFERENCE(reference, model_name, reference_count - 1));
         return NULL;
     }
     const Variable *variable = &variables[reference];
@@ -53,15 +53,19 @@ static int are_of_type(
     return 1;
 }
 
-/* Before the end of initialization mode the outputs are those of the state that would be started from. */
+/* Before the end of initialization mode that which would be started from. */
+State present_state(const Memory *memory)
+{
+    State x = memory->x;
+    if (memory->mode & (INSTANTIATED | INITIALIZATION))
+        start(&memory->values.u, &memory->values.p, &x);
+    return x;
+}
+
 static void compute_outputs(Memory *memory)
 {
     const Values *values = &memory->values;
-    State x;
-    if (memory->mode & (INSTANTIATED | INITIALIZATION))
-        start(&values->u, &values->p, &x);
-    else
-        x = memory->x;
+    const State x = present_state(memory);
     output(&x, &values->u, &values->p, &memory->values.y);
     memory->outputs_known = 1;
 }
@@ -101,12 +105,15 @@ Status get_values(Instance *instance, Type type, const Reference references[], s
     for (size_t k = 0; k < count && !memory->outputs_known; k++)
         if (variables[references[k]].causality == OUTPUT)
             compute_outputs(memory);
-    if (type == REAL)
-        for (size_t k = 0; k < count; k++)
-            ((double *)values)[k] = *place_of(&memory->values, &variables[references[k]]);
-    else
-        for (size_t k = 0; k < count; k++)
-            ((int *)values)[k] = (int)*place_of(&memory->values, &variables[references[k]]);
+    for (size_t k = 0; k < count; k++) {
+        const Variable *variable = &variables[references[k]];
+        const int of_state = variable->causality == STATE || variable->causality == RATE;
+        const double value = of_state ? state_value(memory, variable) : *place_of(&memory->values, variable);
+        if (type == REAL)
+            ((double *)values)[k] = value;
+        else
+            ((int *)values)[k] = (int)value;
+    }
     return OK;
 }
 
@@ -129,12 +136,15 @@ static const char *write_value(char text[NUMBER_LENGTH], Type type, double value
 static int is_allowed(const Instance *instance, const Variable *variable, double value)
 {
     const int64_t mode = instance->memory.mode;
-    const int late = mode == TERMINATED || (mode == STEPPING && variable->causality == PARAMETER);
+    const int started = (mode & (INSTANTIATED | INITIALIZATION)) == 0;
+    const int late = mode == TERMINATED || (started && variable->causality == PARAMETER);
     const int good = value >= variable->minimum && value <= variable->maximum;
     const char *name = variable->name;
     char text[NUMBER_LENGTH];
     if (variable->causality == OUTPUT)
         refuse(instance, OUTPUT_SET(name));
+    else if (variable->causality == STATE || variable->causality == RATE)
+        refuse(instance, "%s belongs to the state and cannot be set as a variable", name);
     else if (late)
         refuse(instance, SET_TOO_LATE(name, write_value(text, variable->type, value)));
     else if (good || (variable->causality == INPUT && copes_with_bad_input))

@@ -14,7 +14,7 @@ typedef struct {
 
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Type;
 
-typedef enum { INPUT, OUTPUT, PARAMETER } Causality;
+typedef enum { INPUT, OUTPUT, PARAMETER, STATE, RATE } Causality; /* RATE: the derivative of a state */
 
 typedef struct {
     const char *name;
@@ -22,7 +22,7 @@ typedef struct {
     const char *allowed; /* what values it may have, in words */
     Type type;
     Causality causality;
-    size_t offset; /* in Values; there all values are real numbers */
+    size_t offset; /* in Values, of a state or its derivative in State; there all values are real numbers */
     double minimum;
     double maximum;
     double start;
