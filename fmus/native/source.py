@@ -27,10 +27,10 @@ MEANINGS = {
     "next_event": "The time in s until outputs jump by themselves.",
     "update": "The state at the next sample.",
     "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
-    "derivative_rate": "The rate of change of the derivative when all else changes at the rates dx, du and dp.",
+    "output_tangent": "The change of the outputs with small changes dx, du and dp, to first order.",
+    "derivative_tangent": "The change of the derivative then.",
+    "start_tangent": "The change of the state at the start with those of inputs and parameters.",
     "compute_terms": "Computes the terms that depend on the other parameters alone, whenever one of these was set.",
-    "start_rate": "The rate of change of the outputs at the start when inputs and parameters change at du and dp.",
-    "start_state_rate": "The rate of change of the state at the start then.",
 }
 
 HEADER = """/* {name}: {description}.
@@ -120,7 +120,7 @@ class Functions(NamedTuple):
     held: int
 
 
-RARE = ("start", "start_rate", "start_state_rate")
+RARE = ("start", "start_tangent", "output_tangent", "derivative_tangent")
 """Functions that are not called in steps; all that they need they compute themselves."""
 
 

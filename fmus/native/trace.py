@@ -32,10 +32,9 @@ class Traced(NamedTuple):
 
 
 def trace(block: Block) -> tuple[Traced, ...]:
-    """All functions of a block; for a continuous one also how fast outputs and derivatives change.
+    """All functions of a block; for a continuous one also how fast their values change.
 
-    `output_rate` holds after initialization, for given rates of x and u; `start_rate` and `start_state_rate` are those
-    of the outputs and the state of the start, for given rates of u and p; `derivative_rate` serves both.
+    `output_rate` is for given rates of x and u. The tangents are for changes of all that a function depends on.
 
     Raises:
         TypeError: a function branches on data, or does what symbols cannot.
@@ -60,7 +59,6 @@ def trace(block: Block) -> tuple[Traced, ...]:
                 results["next_event"] = ("xup", "z", (block.next_event(x, u, p),))
         else:
             results["update"] = ("xup", "next", block.update(x, u, p))
-        started = block.output(block.start(u, p), u, p)
     vectors = {name: _vector(record if is_tuple(record) else (record,)) for name, record in symbols.items()}
     traced = [
         _traced(name, {argument: vectors[argument] for argument in arguments}, result, _vector(values))
@@ -69,10 +67,10 @@ def trace(block: Block) -> tuple[Traced, ...]:
     if isinstance(block, ContinuousBlock):
         xup = {name: vectors[name] for name in "xup"}
         traced.append(_rate("output_rate", "dy", _vector(results["output"][2]), xup, ("x", "u")))
-        traced.append(_rate("derivative_rate", "ddx", _vector(results["derivative"][2]), xup, ("x", "u", "p")))
-        del xup["x"]
-        traced.append(_rate("start_rate", "dy", _vector(started), xup, ("u", "p")))
-        traced.append(_rate("start_state_rate", "dx", _vector(results["start"][2]), xup, ("u", "p")))
+        for name in ("output", "derivative", "start"):
+            arguments, result, values = results[name]
+            own = {argument: vectors[argument] for argument in arguments}
+            traced.append(_rate(f"{name}_tangent", f"d{result}", _vector(values), own, tuple(arguments)))
     return tuple(traced)
 
 
@@ -108,9 +106,9 @@ def _traced(name: str, arguments: dict[str, casadi.SX], result: str, value: casa
     return Traced(name, casadi.Function(name, list(arguments.values()), [value]), tuple(arguments), result)
 
 
-def _rate(name: str, result: str, of: casadi.SX, vectors: dict[str, casadi.SX], moving: tuple[str, ...]) -> Traced:
-    """The rate of change of a vector while the vectors `moving` change at given rates."""
+def _rate(name: str, result: str, value: casadi.SX, vectors: dict[str, casadi.SX], moving: tuple[str, ...]) -> Traced:
+    """The rate of change of a value while the vectors `moving` change at given rates."""
     rates = {f"d{of}": casadi.SX.sym(f"d{of}", vectors[of].numel()) for of in moving}
     at = casadi.vertcat(*(vectors[of] for of in moving))
-    rate = casadi.densify(casadi.jtimes(of, at, casadi.vertcat(*rates.values())))
+    rate = casadi.densify(casadi.jtimes(value, at, casadi.vertcat(*rates.values())))
     return _traced(name, vectors | rates, result, rate)

@@ -25,7 +25,7 @@ def description(path, _changed):
 class Host:
     """One instance of an FMU, the last message it logged, under which name, and the status of the last refusal."""
 
-    def __init__(self, path, unpacked, name="instance"):
+    def __init__(self, path, unpacked, name="instance", kind=FMU2Slave):
         self.description = description(path, Path(path).stat().st_mtime_ns)
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.message = self.named = ""
@@ -35,7 +35,7 @@ class Host:
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
         self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
         assert self.description.coSimulation
-        self.fmu = FMU2Slave(
+        self.fmu = kind(
             guid=self.description.guid,
             unzipDirectory=str(unpacked),
             modelIdentifier=self.description.coSimulation.modelIdentifier,
@@ -84,13 +84,17 @@ class Host:
 
 
 @contextmanager
-def opened(path, folder, name="instance"):
-    """An instance of the FMU, what it needs to run unpacked into the folder if that is empty, and freed at the end."""
+def opened(path, folder, name="instance", kind=FMU2Slave):
+    """An instance of the FMU, what it needs to run unpacked into the folder if that is empty, and freed at the end.
+
+    Args:
+        kind: FMU2Slave for co-simulation, FMU2Model for model exchange.
+    """
     folder = folder.resolve()
     folder.mkdir(exist_ok=True)
     if not any(folder.iterdir()):
         fmpy.extract(str(path), str(folder), include=lambda entry: not entry.startswith(("sources/", "documentation/")))
-    host = Host(path, folder, name)
+    host = Host(path, folder, name, kind)
     try:
         yield host
     finally:

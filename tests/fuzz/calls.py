@@ -7,6 +7,7 @@ from pathlib import Path
 from random import Random
 
 import fmpy
+from fmpy.model_description import ModelDescription
 
 from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
@@ -23,6 +24,15 @@ SANITIZED = (
 )
 
 
+def numbers(description: ModelDescription) -> list[str]:
+    """What the compiler is to define for a host of an FMU: numbers of states and event indicators; none: it has no
+    model exchange."""
+    if not description.modelExchange:
+        return []
+    states, indicators = description.numberOfContinuousStates, description.numberOfEventIndicators
+    return [f"-DNUMBER_OF_STATES={states}", f"-DNUMBER_OF_INDICATORS={indicators}"]
+
+
 def program(fmu: Path, folder: Path) -> list[str]:
     """The command that makes random calls to a native FMU, compiled from its sources.
 
@@ -32,13 +42,14 @@ def program(fmu: Path, folder: Path) -> list[str]:
     fmpy.extract(str(fmu), str(folder))
     sources = folder / "sources"
     made = folder.resolve() / "host"
-    command = [host_compiler(), *SANITIZED, "-I.", str(HOST), "all.c", "-o", str(made), "-lm"]
+    description = fmpy.read_model_description(str(fmu))
+    command = [host_compiler(), *SANITIZED, *numbers(description), "-I.", str(HOST), "all.c", "-o", str(made), "-lm"]
     compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         raise NotPossible("the compiler has no sanitizers")
     if compiled.returncode:
         raise Unclean(compiled.stderr)
-    return [str(made), str(fmpy.read_model_description(str(fmu)).guid)]
+    return [str(made), str(description.guid)]
 
 
 @contextmanager

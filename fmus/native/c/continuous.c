@@ -29,21 +29,6 @@ Obstacle advance(const Memory *memory, double elapsed, double duration, Next *ne
     return (Obstacle){.state = NULL};
 }
 
-static double number_in(const State *record, const Variable *variable)
-{
-    return *(const double *)(const void *)((const char *)record + variable->offset);
-}
-
-double state_value(const Memory *memory, const Variable *variable)
-{
-    const State x = present_state(memory);
-    State dx;
-    if (variable->causality == STATE)
-        return number_in(&x, variable);
-    derivative(&x, &memory->values.u, &memory->values.p, &dx);
-    return number_in(&dx, variable);
-}
-
 Status check_ticks(const Instance *instance, const Memory *memory)
 {
     (void)instance;
@@ -189,10 +174,10 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
     Values *dv = &changes.values;
     const State x = present_state(memory);
     if (memory->mode == INITIALIZATION) {
-        start_rate(&values->u, &values->p, &dv->u, &dv->p, &dv->y);
-        start_state_rate(&values->u, &values->p, &dv->u, &dv->p, &changes.x);
+        start_tangent(&values->u, &values->p, &dv->u, &dv->p, &changes.x);
+        output_tangent(&x, &values->u, &values->p, &changes.x, &dv->u, &dv->p, &dv->y);
     } else
         output_rate(&x, &values->u, &values->p, &changes.x, &dv->u, &dv->y);
-    derivative_rate(&x, &values->u, &values->p, &changes.x, &dv->u, &dv->p, &changes.dx);
+    derivative_tangent(&x, &values->u, &values->p, &changes.x, &dv->u, &dv->p, &changes.dx);
     return give_out(instance, direction->unknown, direction->unknowns, &changes, result);
 }

@@ -112,7 +112,6 @@ static Status deserialize_state(const Instance *instance, const void *bytes, siz
 static Status check_content(const Instance *instance, Memory *memory); /* of a saved state */
 
 /* continuous.c or sampled.c */
-static double state_value(const Memory *memory, const Variable *variable); /* of a state or of its derivative */
 static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
 static Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next); /* `elapsed` since start */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */

@@ -21,13 +21,6 @@ Obstacle advance(const Memory *memory, double elapsed, double duration, Next *ne
     return (Obstacle){NULL, 0};
 }
 
-double state_value(const Memory *memory, const Variable *variable)
-{
-    (void)memory; /* its state is not shown */
-    (void)variable;
-    return 0.0;
-}
-
 Status check_ticks(const Instance *instance, const Memory *memory)
 {
     const double ticks = memory->ticks, samples = (memory->time - memory->start_time) / SAMPLE_TIME;

@@ -62,6 +62,18 @@ State present_state(const Memory *memory)
     return x;
 }
 
+/* Of a state or of its derivative. */
+static double state_value(const Memory *memory, const Variable *variable)
+{
+    State record = present_state(memory);
+#ifndef SAMPLE_TIME /* the state of a sampled block has no derivative, and is not shown */
+    const State x = record;
+    if (variable->causality == RATE)
+        derivative(&x, &memory->values.u, &memory->values.p, &record);
+#endif
+    return *(const double *)(const void *)((const char *)&record + variable->offset);
+}
+
 static void compute_outputs(Memory *memory)
 {
     const Values *values = &memory->values;

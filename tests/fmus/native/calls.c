@@ -1,4 +1,5 @@
-/* Makes the calls that it reads, one a line, on one instance of the FMU that it is compiled with.
+/* Makes the calls that it reads, one a line, on one instance of the FMU that it is compiled with; with NUMBER_OF_STATES
+defined also those of model exchange.
 
 To each it answers with the status and, after some, a number. Usage: calls GUID */
 #include "fmi2Functions.h"
@@ -11,6 +12,7 @@ typedef struct {
     fmi2Component instance;
     fmi2FMUstate state;
     const char *guid;
+    fmi2Type type;
     double value; /* answered after the status */
 } Session;
 
@@ -24,7 +26,7 @@ static const fmi2CallbackFunctions callbacks = {be_silent, calloc, free, NULL, N
 
 static fmi2Status instantiate(Session *s)
 {
-    s->instance = fmi2Instantiate("one", fmi2CoSimulation, s->guid, NULL, &callbacks, fmi2False, fmi2True);
+    s->instance = fmi2Instantiate("one", s->type, s->guid, NULL, &callbacks, fmi2False, fmi2True);
     return s->instance ? fmi2OK : fmi2Fatal;
 }
 
@@ -51,10 +53,47 @@ static fmi2Status through_bytes(Session *s)
     return status;
 }
 
+#ifdef NUMBER_OF_STATES
+enum { MOST = 100, NOT_THERE = -1 };
+
+static int exchange(Session *s, const char *call, fmi2ValueReference reference, double number)
+{
+    fmi2Real values[MOST];
+    fmi2Boolean enter, end;
+    fmi2EventInfo info;
+    if (strcmp(call, "enter_event") == 0)
+        return fmi2EnterEventMode(s->instance);
+    if (strcmp(call, "enter_continuous") == 0)
+        return fmi2EnterContinuousTimeMode(s->instance);
+    if (strcmp(call, "new_states") == 0)
+        return fmi2NewDiscreteStates(s->instance, &info);
+    if (strcmp(call, "completed") == 0)
+        return fmi2CompletedIntegratorStep(s->instance, fmi2True, &enter, &end);
+    if (strcmp(call, "set_time") == 0)
+        return fmi2SetTime(s->instance, number);
+    if (strcmp(call, "rates") == 0)
+        return fmi2GetDerivatives(s->instance, values, reference);
+    if (strcmp(call, "indicators") == 0)
+        return fmi2GetEventIndicators(s->instance, values, reference);
+    if (strcmp(call, "nominals") == 0)
+        return fmi2GetNominalsOfContinuousStates(s->instance, values, reference);
+    if (strcmp(call, "states") == 0)
+        return fmi2GetContinuousStates(s->instance, values, reference);
+    if (strcmp(call, "set_states") == 0) {
+        for (int k = 0; k < MOST; k++)
+            values[k] = number;
+        return fmi2SetContinuousStates(s->instance, values, reference);
+    }
+    return NOT_THERE;
+}
+#endif
+
 static fmi2Status make_call(Session *s, const char *call, fmi2ValueReference reference, double number)
 {
-    if (strcmp(call, "instantiate") == 0)
+    if (strcmp(call, "instantiate") == 0) {
+        s->type = reference ? fmi2ModelExchange : fmi2CoSimulation;
         return instantiate(s);
+    }
     if (strcmp(call, "free") == 0)
         return free_all(s);
     if (strcmp(call, "setup") == 0)
@@ -90,13 +129,18 @@ static fmi2Status make_call(Session *s, const char *call, fmi2ValueReference ref
         return through_bytes(s);
     if (strcmp(call, "drop") == 0)
         return fmi2FreeFMUstate(s->instance, &s->state);
+#ifdef NUMBER_OF_STATES
+    const int status = exchange(s, call, reference, number);
+    if (status != NOT_THERE)
+        return (fmi2Status)status;
+#endif
     fprintf(stderr, "there is no call %s\n", call);
     exit(2);
 }
 
 int main(int count, char *arguments[])
 {
-    Session session = {NULL, NULL, count > 1 ? arguments[1] : "", 0.0};
+    Session session = {.guid = count > 1 ? arguments[1] : "", .type = fmi2CoSimulation};
     char call[20];
     unsigned reference;
     double number;

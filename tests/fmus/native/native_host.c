@@ -1,7 +1,8 @@
 /* A host that calls the functions of one FMU in random order, with arguments that make sense and with others.
 
 It is compiled together with the sources of the FMU under the address and undefined-behaviour sanitizers: what
-goes wrong ends the program. Usage: native_host GUID SEED CALLS */
+goes wrong ends the program. With NUMBER_OF_STATES and NUMBER_OF_INDICATORS defined half of the instances are for model exchange. Usage:
+native_host GUID SEED CALLS */
 #include "fmi2Functions.h"
 
 #include <float.h>
@@ -10,7 +11,7 @@ goes wrong ends the program. Usage: native_host GUID SEED CALLS */
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 8, INSTANCES = 3, STATES = 4 };
+enum { MOST = 8, INSTANCES = 3, STATES = 4, WIDEST = 30 };
 
 static unsigned long long random_state;
 static size_t allocations;
@@ -229,6 +230,66 @@ static void step(Slot *slot)
     fmi2DoStep(slot->instance, time, size > 1.0 && size <= DBL_MAX ? 1.0 : size, 0);
 }
 
+#ifdef NUMBER_OF_STATES
+static void integrate(Slot *slot)
+{
+    double values[WIDEST];
+    fmi2Boolean enter, end;
+    fmi2EventInfo info;
+    const size_t count = draw(10) ? NUMBER_OF_STATES : draw(WIDEST);
+    const size_t indicators = draw(10) ? NUMBER_OF_INDICATORS : draw(WIDEST);
+    for (size_t k = 0; k < WIDEST; k++)
+        values[k] = draw(30) ? draw(100) * 1e-2 : number();
+    switch (draw(12)) {
+    case 0:
+        fmi2EnterEventMode(slot->instance);
+        break;
+    case 1:
+        fmi2NewDiscreteStates(slot->instance, draw(20) ? &info : NULL);
+        break;
+    case 2:
+    case 3:
+        fmi2EnterContinuousTimeMode(slot->instance);
+        break;
+    case 4:
+        fmi2CompletedIntegratorStep(slot->instance, 0, draw(20) ? &enter : NULL, draw(20) ? &end : NULL);
+        break;
+    case 5:
+        fmi2SetTime(slot->instance, number());
+        break;
+    case 6:
+        fmi2GetDerivatives(slot->instance, draw(20) ? values : NULL, count);
+        break;
+    case 7:
+        fmi2GetEventIndicators(slot->instance, draw(20) ? values : NULL, indicators);
+        break;
+    case 8:
+        fmi2GetNominalsOfContinuousStates(slot->instance, draw(20) ? values : NULL, count);
+        break;
+    case 9:
+        fmi2GetContinuousStates(slot->instance, draw(20) ? values : NULL, count);
+        break;
+    default:
+        fmi2SetContinuousStates(slot->instance, draw(20) ? values : NULL, count);
+    }
+}
+
+static fmi2Type any_type(void)
+{
+    return draw(2) ? fmi2ModelExchange : fmi2CoSimulation;
+}
+#else
+static void integrate(Slot *slot)
+{
+    (void)slot;
+}
+
+static fmi2Type any_type(void)
+{
+    return draw(20) ? fmi2CoSimulation : fmi2ModelExchange;
+}
+#endif
+
 static void free_slot(Slot *slot)
 {
     for (int k = 0; k < STATES; k++)
@@ -252,8 +313,8 @@ int main(int count, char *arguments[])
         Slot *slot = &slots[draw(INSTANCES)];
         if (!slot->instance)
             slot->instance = fmi2Instantiate(
-                "100 %s", fmi2CoSimulation, draw(10) ? arguments[1] : "{%d}", NULL, choice[draw(6)], 0, draw(5) > 0);
-        switch (draw(8)) {
+                "100 %s", any_type(), draw(10) ? arguments[1] : "{%d}", NULL, choice[draw(6)], 0, draw(5) > 0);
+        switch (draw(10)) {
         case 0:
         case 1:
             set_or_get(slot);
@@ -270,6 +331,10 @@ int main(int count, char *arguments[])
         case 5:
             if (draw(100) == 0 && slot->instance)
                 free_slot(slot);
+            break;
+        case 6:
+        case 7:
+            integrate(slot);
             break;
         default:
             step(slot);

@@ -27,13 +27,14 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import Variable, interface
 from driveline.fmus.native.compiler import host_compiler
 from driveline.harness.loop.places import NATIVE
+from tests.fuzz.calls import numbers
 from tests.slow import slow
 
 PROGRAM = Path(__file__).parent / "calls.c"
 WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion")
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1", "-ffp-contract=off")
 OK, DISCARD, ERROR = 0, 2, 3
-BEFORE, DURING, AFTER, ENDED = range(4)
+BEFORE, DURING, AFTER, ENDED, EVENT, CONTINUOUS_TIME = range(6)
 EXAMPLES, CALLS = 60, 40
 
 any_number = st.floats(width=64) | st.sampled_from([0.0, 1.0, -30.0, 30.0])
@@ -41,14 +42,16 @@ any_number = st.floats(width=64) | st.sampled_from([0.0, 1.0, -30.0, 30.0])
 
 @dataclass
 class Expected:
-    """What an instance must be like: where it is in the sequence of calls, its time, the values that were set."""
+    """What an instance must be like: whether it is for model exchange, where it is in the sequence of calls, its time,
+    the values that were set (the states' under -1)."""
 
+    exchange: bool = False
     mode: int = BEFORE
     time: float = 0.0
     values: dict[int, float] = field(default_factory=dict)
 
     def copy(self) -> "Expected":
-        return Expected(self.mode, self.time, copy(self.values))
+        return Expected(self.exchange, self.mode, self.time, copy(self.values))
 
 
 class Calls(RuleBasedStateMachine):
@@ -56,6 +59,8 @@ class Calls(RuleBasedStateMachine):
 
     command: tuple[str, ...]
     reals: tuple[Variable, ...]
+    states: int
+    indicators: int
     tolerates_bad_input: bool
 
     def __init__(self) -> None:
@@ -64,7 +69,11 @@ class Calls(RuleBasedStateMachine):
         self.program = subprocess.Popen(self.command, text=True, stdin=PIPE, stdout=PIPE, stderr=PIPE)
         self.now = Expected()
         self.saved: Expected | None = None
-        assert self.call("instantiate") == (OK, 0.0)
+        self.instantiate(False)
+
+    def instantiate(self, exchange: bool) -> None:
+        self.now, self.saved = Expected(exchange), None
+        assert self.call("instantiate", int(exchange)) == (OK, 0.0)
 
     def call(self, name: str, reference: int = 0, number: float = 0.0) -> tuple[int, float]:
         """Status and number that the program answers."""
@@ -80,10 +89,19 @@ class Calls(RuleBasedStateMachine):
         """Makes a call that must be answered with OK if it is allowed, else with an error."""
         assert self.call(name, number=number)[0] == (OK if allowed else ERROR)
 
-    @initialize(mode=st.sampled_from((BEFORE, DURING, AFTER, ENDED)))
-    def bring_to(self, mode):
+    def expect_of_exchange(self, modes: tuple[int, ...], name: str, number: float = 0.0) -> bool:
+        """The same for a call of model exchange, allowed in some modes; says whether it is."""
+        allowed = self.now.mode in modes
+        self.expect(allowed, name, number)
+        return allowed
+
+    @initialize(exchange=st.booleans(), calls=st.integers(0, 4))
+    def bring_to(self, exchange, calls):
         """Right calls first, so that every mode is met often."""
-        for call in (self.enter, self.exit, self.terminate)[:mode]:
+        if exchange and self.states:
+            self.free_and_begin_again(True)
+        integrating = [self.enter_continuous_time] if self.now.exchange else []
+        for call in [self.enter, self.exit, *integrating, self.terminate][:calls]:
             call()
 
     @rule(start=any_number)
@@ -103,7 +121,7 @@ class Calls(RuleBasedStateMachine):
     def exit(self):
         self.expect(self.now.mode == DURING, "exit")
         if self.now.mode == DURING:
-            self.now.mode = AFTER
+            self.now.mode = EVENT if self.now.exchange else AFTER
 
     @precondition(lambda self: self.now.mode == AFTER and abs(self.now.time) < 1e3)
     @rule()
@@ -125,20 +143,67 @@ class Calls(RuleBasedStateMachine):
 
     @rule()
     def terminate(self):
-        self.expect(self.now.mode == AFTER, "terminate")
-        if self.now.mode == AFTER:
+        allowed = self.now.mode in (AFTER, EVENT, CONTINUOUS_TIME)
+        self.expect(allowed, "terminate")
+        if allowed:
             self.now.mode = ENDED
 
     @rule()
     def reset(self):
         self.expect(True, "reset")
-        self.now = Expected()
+        self.now = Expected(self.now.exchange)
 
-    @rule()
-    def free_and_begin_again(self):
+    @rule(exchange=st.booleans())
+    def free_and_begin_again(self, exchange):
         self.expect(True, "free")
-        self.expect(True, "instantiate")
-        self.now, self.saved = Expected(), None
+        self.instantiate(exchange and self.states > 0)
+
+    @precondition(lambda self: self.states)
+    @rule()
+    def enter_event(self):
+        if self.expect_of_exchange((EVENT, CONTINUOUS_TIME), "enter_event"):
+            self.now.mode = EVENT
+
+    @precondition(lambda self: self.states)
+    @rule()
+    def enter_continuous_time(self):
+        if self.expect_of_exchange((EVENT,), "enter_continuous"):
+            self.now.mode = CONTINUOUS_TIME
+
+    @precondition(lambda self: self.states)
+    @rule()
+    def iterate(self):
+        self.expect_of_exchange((EVENT,), "new_states")
+        self.expect_of_exchange((CONTINUOUS_TIME,), "completed")
+
+    @precondition(lambda self: self.states)
+    @rule(time=any_number)
+    def set_time(self, time):
+        modes = (EVENT, CONTINUOUS_TIME) if math.isfinite(time) else ()
+        if self.expect_of_exchange(modes, "set_time", time):
+            self.now.time = time
+
+    @precondition(lambda self: self.states)
+    @rule(number=any_number, more=st.sampled_from((0, 0, 1, -1)))
+    def set_states(self, number, more):
+        allowed = self.now.mode == CONTINUOUS_TIME and not more
+        expected = ERROR if not allowed else OK if math.isfinite(number) else DISCARD
+        assert self.call("set_states", self.states + more, number)[0] == expected
+        if expected == OK:
+            self.now.values[-1] = number
+
+    @precondition(lambda self: self.states)
+    @rule(name=st.sampled_from(("states", "rates", "indicators", "nominals")), more=st.sampled_from((0, 0, 1, -1)))
+    def get_of_exchange(self, name, more):
+        modes = (DURING, EVENT, CONTINUOUS_TIME, ENDED) + ((BEFORE,) if name == "nominals" else ())
+        count = more + (self.indicators if name == "indicators" else self.states)
+        status, _ = self.call(name, count)
+        allowed = self.now.exchange and self.now.mode in modes and not more
+        assert status == (OK if allowed else ERROR) or (status, allowed, name) == (
+            DISCARD,
+            bool(self.now.values),
+            "rates",
+        )
 
     @rule(data=st.data())
     def set(self, data):
@@ -146,7 +211,11 @@ class Calls(RuleBasedStateMachine):
         variable = data.draw(st.sampled_from([v for v in self.reals if v.causality == causality]))
         low, high = variable.bounds()
         value = data.draw(any_number | st.floats(low, high))
-        allowed = {"input": (BEFORE, DURING, AFTER), "parameter": (BEFORE, DURING), "output": ()}[causality]
+        allowed = {
+            "input": (BEFORE, DURING, AFTER, EVENT, CONTINUOUS_TIME),
+            "parameter": (BEFORE, DURING),
+            "output": (),
+        }[causality]
         any_value = causality == "input" and self.tolerates_bad_input
         expected = self.now.mode in allowed and (low <= value <= high or any_value)
         assert self.call("set", variable.reference, value)[0] == (OK if expected else ERROR), variable.name
@@ -184,7 +253,7 @@ class Calls(RuleBasedStateMachine):
 
     @invariant()
     def time_is_that_of_the_last_step(self):
-        known = self.now.mode in (AFTER, ENDED)
+        known = self.now.mode in (AFTER, ENDED) and not self.now.exchange
         status, time = self.call("time")
         assert (status, time) == ((OK, pytest.approx(self.now.time)) if known else (ERROR, 0.0))
 
@@ -201,7 +270,9 @@ def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_not
     fmpy.extract(str(path), str(tmp_path))
     sources = tmp_path / "sources"
     program = tmp_path / "calls"
-    command = [host_compiler(), *WARNINGS, *SANITIZERS, "-I.", PROGRAM, "all.c", "-o", program, "-lm"]
+    description = fmpy.read_model_description(str(path))
+    options = [*WARNINGS, *SANITIZERS, *numbers(description)]
+    command = [host_compiler(), *options, "-I.", PROGRAM, "all.c", "-o", program, "-lm"]
     compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         pytest.skip("the compiler has no sanitizers")
@@ -209,7 +280,8 @@ def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_not
     block = FMUS[name].block
 
     class CallsOfThisFmu(Calls):
-        command = (str(program), str(fmpy.read_model_description(str(path)).guid))
+        command = (str(program), str(description.guid))
+        states, indicators = description.numberOfContinuousStates, description.numberOfEventIndicators
         reals = tuple(v for v in interface(block) if v.fmi_type == "Real")
         tolerates_bad_input = block.tolerates_bad_input
 

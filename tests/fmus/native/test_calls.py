@@ -118,10 +118,11 @@ def test_freeing_nothing_is_no_error(native, tmp_path):
         ({"name": b""}, "name"),
         ({"name": None}, "name"),
         ({"kind": 0}, "co-simulation"),
+        ({"kind": 2}, "co-simulation"),
     ],
 )
 def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, expected):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+    with opened(native / "WheelSpeedCan.fmu", tmp_path) as host:
         binary = ctypes.CDLL(host.fmu.dll._name)
         binary.fmi2Instantiate.restype = ctypes.c_void_p
         right = {"name": b"instance", "kind": 1, "guid": str(host.description.guid).encode()}

@@ -22,6 +22,8 @@ ORDERS = {
         "state.c",
         "run.c",
         "fmi2.c",
+        "model_exchange.c",
+        "fmi2_model_exchange.c",
     ),
     TARGET_FILES: ("board_host.c", "board_mps2.c", "link.c", "scheduler.c"),
 }

@@ -11,9 +11,9 @@ from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
 
-LARGEST = 210 * 1024
+LARGEST = 255 * 1024
 """Of a file with four libraries, one of them for two processors. 150 kB were enough until Arm Macs had one twice,
-200 kB until the grip of each wheel was a parameter."""
+200 kB until the grip of each wheel was a parameter, 210 kB until there was model exchange."""
 
 
 @pytest.fixture(scope="module")

@@ -175,19 +175,24 @@ def test_a_rate_of_an_output_that_is_no_number_is_refused(native, tmp_path):
         assert host.refuses(rates_of, host, "omega_1", "a_body") == message
 
 
-def test_after_initialization_only_inputs_can_be_known(native, tmp_path):
+def test_after_initialization_inputs_and_states_can_be_known(native, tmp_path):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize()
         assert derivative(host, "omega_1_meas", "omega_1") == 0.0, "it is rounded"
         message = host.refuses(derivative, host, "T_mot", "tau")
-        assert message == "tau cannot be a known of a directional derivative; allowed is any input"
-        assert "T_ref cannot be the unknown" in host.refuses(derivative, host, "T_ref", "T_ref")
+        assert message == "tau cannot be a known of a directional derivative; allowed is any input or state"
+        message = host.refuses(derivative, host, "T_ref", "T_ref")
+        allowed = "allowed is any output or derivative of a state"
+        assert message == f"T_ref cannot be the unknown of a directional derivative; {allowed}"
 
 
 def test_during_initialization_parameters_can_be_known_too(native, tmp_path):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.fmu.setupExperiment()
         host.fmu.enterInitializationMode()
+        allowed = "allowed is any output, state or its derivative"
+        message = host.refuses(derivative, host, "T_ref", "T_ref")
+        assert message == f"T_ref cannot be the unknown of a directional derivative; {allowed}"
         message = host.refuses(derivative, host, "T_mot", "T_mot")
         assert message == "T_mot cannot be a known of a directional derivative; allowed is any input or parameter"
 

@@ -10,6 +10,7 @@ import pytest
 
 from driveline.fmus import protocol
 from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.variables import interface
 from driveline.fmus.native.records import paths, records_of
 from tests.fmus.forged import forged
 from tests.fmus.host import Host, opened
@@ -100,8 +101,8 @@ REFUSALS = [
     Refusal("WRONG_TYPE", set_by("setBoolean", tau=True)),
     Refusal("WRONG_TYPE", set_by("setString", T_mot="1")),
     *(Refusal("WRONG_TYPE", get_by(f"get{kind}", 0)) for kind in ("Integer", "Boolean", "String")),
-    Refusal("UNKNOWN_REFERENCE", get_by("getReal", 17)),
-    Refusal("UNKNOWN_REFERENCE", get_by("getBoolean", 2**32 - 1)),
+    Refusal("UNKNOWN_REFERENCE", get_by("getReal", len(interface(FMUS["WheelSpeedCan"].block))), "WheelSpeedCan"),
+    Refusal("UNKNOWN_REFERENCE", get_by("getBoolean", 2**32 - 1), "WheelSpeedCan"),
     Refusal("WRONG_MODE", step(0.0, 0.001)),
     Refusal("WRONG_MODE", terminated(step(1.0, 0.001))),
     Refusal("WRONG_MODE", lambda host: host.fmu.exitInitializationMode()),
