@@ -2,8 +2,10 @@
 
 The loop makes a manoeuvre. What then enters plant or motor is given to it alone, with straight lines between the
 samples: in co-simulation with steps of 0.1 ms and input derivatives, in model exchange with CVode as FMPy has it. The
-difference over the largest torque is shown, the number of derivatives that CVode took, and of its restarts at events.
-The motor, which restarts with every sample of its noise, is run in the first manoeuvre alone.
+difference over the largest torque is shown, the number of derivatives that CVode took, and of its restarts at events;
+and how far co-simulation moves if the inertia of the motor is larger by 1e-8 of it: without feedback the motor swings
+undamped in the backlash, and some manoeuvres amplify what is small. The motor, which restarts with every sample of its
+noise, is run in the first manoeuvre alone.
 """
 
 import argparse
@@ -22,6 +24,7 @@ from fmpy.sundials import CVodeSolver
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate, start
+from driveline.models.physics.vehicle import CAR
 
 MOTOR = PLACES["motor"][0]
 
@@ -145,8 +148,14 @@ def integrated(run: OpenLoop, path: Path, tolerance: float) -> Taken:
     return Taken(np.asarray(results[run.output]), Solver.derivatives, Solver.restarts)
 
 
-COLUMNS = ("manoeuvre", "FMU", "largest, N.m", "difference, N.m", "over the largest", "derivatives", "events")
-ROW = "{:14}{:19}{:>12}{:>17}{:>18}{:>13}{:>8}"
+def sensitivity(run: OpenLoop, path: Path, expected: np.ndarray) -> float:
+    """How far the output moves, in co-simulation, if the inertia of the motor is larger by 1e-8 of it."""
+    moved = run._replace(start={**run.start, "J_1": CAR.J_1 * (1.0 + 1e-8)})
+    return np.max(np.abs(stepped(moved, path) - expected))
+
+
+COLUMNS = ("manoeuvre", "FMU", "largest, N.m", "difference, N.m", "over it", "derivatives", "events", "of J_1 + 1e-8")
+ROW = "{:15}{:18}{:>12}{:>17}{:>10}{:>13}{:>8}{:>15}"
 
 
 def main(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
@@ -161,7 +170,9 @@ def main(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
                 difference, largest = np.max(np.abs(taken.output - expected)), np.max(np.abs(expected))
                 worst = max(worst, difference / largest)
                 shown = f"{largest:.1f}", f"{difference:.1e}", f"{difference / largest:.1e}"
-                print(ROW.format(manoeuvre, run.name, *shown, taken.derivatives, taken.restarts), flush=True)
+                counts = taken.derivatives, taken.restarts
+                moved = f"{sensitivity(run, path, expected):.1e}" if run is of_plant else ""
+                print(ROW.format(manoeuvre, run.name, *shown, *counts, moved), flush=True)
     print(f"largest difference over the largest torque: {worst:.1e}, at a tolerance of {tolerance:g}")
 
 

@@ -35,7 +35,7 @@ th, td {{ text-align: left; padding: .25em 1em .25em 0; border-bottom: 1px solid
 <p>{timing} {inputs} A parameter may be changed until initialization
 mode is left, and outputs are right from then on. A value that is not allowed is refused with a
 message to the logger, and everything stays as it was before the call{tolerance}.</p>
-<p>FMI 2.0 Co-Simulation, all quantities in SI units. {needs}</p>
+<p>FMI 2.0 {kinds}, all quantities in SI units. {needs}</p>
 </body>
 </html>
 """
@@ -76,6 +76,7 @@ def page(fmu: Fmu, kind: BuildKind) -> str:
         tables="\n".join(_table(title, rows) for title, rows in tables(block)),
         timing=timing(block),
         inputs=kind.inputs,
+        kinds="Co-Simulation and Model Exchange" if kind.model_exchange else "Co-Simulation",
         needs=kind.needs,
         tolerance=" (inputs excepted: this block copes with any)" if block.tolerates_bad_input else "",
     )

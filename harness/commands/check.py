@@ -1,9 +1,9 @@
-"""Checks any FMI 2.0 Co-Simulation FMU: its archive, its model description (with fmpy, and what fmpy does
+"""Checks any FMU of FMI 2.0: its archive, its model description (with fmpy, and what fmpy does
 not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
 reset, several instances, saved states), the latter in a process of its own.
 
 A finding is an error (hosts fail), a warning (tools complain) or a note (people miss something).
-Exit code 0: no errors; 1: errors, with --strict any finding; 2: no such file. docs/check.md lists the rules.
+Exit code 0: no errors; 1: errors, with --strict also warnings; 2: no such file. docs/check.md lists the rules.
 
 examples:
   driveline check build/native/TwoMassDriveline.fmu
@@ -30,7 +30,7 @@ FORMATS = ("text", "json", "junit")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
-    parser.add_argument("--strict", action="store_true", help="warnings and notes count as errors do")
+    parser.add_argument("--strict", action="store_true", help="warnings count as errors do")
     parser.add_argument("--quick", action="store_true", help="of the behaviours only the first steps of a run")
     parser.add_argument(
         "--ignore", action="append", default=[], metavar="RULE", type=rule, help="leave out this rule (repeatable)"
@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     counts = dict.fromkeys((severity.value for severity in Severity), 0)
     for verdict in (verdict for verdicts in found.values() for verdict in verdicts):
         counts[verdict.severity] += len(verdict.problems)
-    failing = set(counts) if args.strict else {Severity.ERROR.value}
+    failing = {Severity.ERROR.value, *([Severity.WARNING.value] if args.strict else [])}
     print_summary(style, found, counts, failing, args.quiet)
     return 1 if any(counts[severity] for severity in failing) else 0
 

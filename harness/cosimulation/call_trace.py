@@ -22,6 +22,10 @@ FUNCTIONS = (
     "fmi2Terminate",
     "fmi2Reset",
     "fmi2FreeInstance",
+    *(f"fmi2{mode}" for mode in ("EnterEventMode", "NewDiscreteStates", "EnterContinuousTimeMode")),
+    *("fmi2CompletedIntegratorStep", "fmi2SetTime", "fmi2SetContinuousStates"),
+    *(f"fmi2Get{what}" for what in ("Derivatives", "EventIndicators", "ContinuousStates")),
+    "fmi2GetNominalsOfContinuousStates",
 )
 """What is called, numbered from 1."""
 

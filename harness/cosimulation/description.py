@@ -1,7 +1,7 @@
 """Reading a model description that anybody may have written: what a run relies on is there and is a number."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from io import BytesIO
 from math import isfinite, isnan
 from pathlib import Path
@@ -21,11 +21,20 @@ IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 WHOLE = re.compile(r"[+-]?[0-9]{1,19}")
 
 
-def read(path: Path, limits: Limits = USUAL_LIMITS) -> ModelDescription:
+STEPPING = ("CoSimulation",)
+"""The kind of FMU that runs in our loops."""
+
+EITHER = ("CoSimulation", "ModelExchange")
+
+
+def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPPING) -> ModelDescription:
     """The model description of an FMU.
 
+    Args:
+        kinds: of FMUs that are taken.
+
     Raises:
-        WiringError: it is not one of an FMI 2.0 Co-Simulation FMU, or what a run relies on is missing or is no number.
+        WiringError: it is not one of an FMI 2.0 FMU of these kinds, or what a run relies on is missing or is no number.
     """
     if not path.is_file():
         raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
@@ -34,11 +43,13 @@ def read(path: Path, limits: Limits = USUAL_LIMITS) -> ModelDescription:
         root = ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
     except Exception as error:  # what it raises depends on the encoding that the text claims to have
         raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
-    cosimulation = root.find("CoSimulation")
+    offered = [element for kind in kinds for element in root.findall(kind)]
     version = root.get("fmiVersion")
-    if root.tag != "fmiModelDescription" or version != "2.0" or cosimulation is None:
+    if version == "2.0" and not offered and root.find("ModelExchange") is not None:
+        raise WiringError(f"{path} is for model exchange alone; only FMI 2.0 Co-Simulation runs here")
+    if root.tag != "fmiModelDescription" or version != "2.0" or not offered:
         raise WiringError(f"{path} is of FMI {plain(version)}; only FMI 2.0 Co-Simulation runs here")
-    found = list(_problems(root, cosimulation))
+    found = list(_problems(root, offered))
     if found:
         more = f" (and {len(found) - 1} more)" if found[1:] else ""
         raise WiringError(f"the model description of {path} cannot be used: {found[0]}{more}")
@@ -56,14 +67,15 @@ class _Elements(ElementTree.TreeBuilder):
         raise ValueError("it declares a document type, which FMI does not know")
 
 
-def _problems(root: Element, cosimulation: Element) -> Iterator[str]:
+def _problems(root: Element, offered: Iterable[Element]) -> Iterator[str]:
     if root.get("guid") is None:
         yield "fmiModelDescription has no guid"
-    identifier = cosimulation.get("modelIdentifier")
-    if identifier is None:
-        yield "CoSimulation has no modelIdentifier"
-    elif not IDENTIFIER.fullmatch(identifier):
-        yield f"modelIdentifier is {plain(identifier)!r}; it must be a name as in C"
+    for kind in offered:
+        identifier = kind.get("modelIdentifier")
+        if identifier is None:
+            yield f"{kind.tag} has no modelIdentifier"
+        elif not IDENTIFIER.fullmatch(identifier):
+            yield f"modelIdentifier is {plain(identifier)!r}; it must be a name as in C"
     for experiment in root.findall("DefaultExperiment"):
         yield from _not_numbers(experiment, "DefaultExperiment", EXPERIMENT)
     variables = root.findall("ModelVariables/ScalarVariable")

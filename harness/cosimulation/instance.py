@@ -12,6 +12,7 @@ from typing import Any, cast
 import fmpy
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
+    FMU2Model,
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
     fmi2CallbackFreeMemoryTYPE,
@@ -59,11 +60,9 @@ _loading = Lock()
 """fmpy changes the working directory of the process while it loads a binary, so one thread does at a time."""
 
 
-class FMU2Traced(FMU2Slave):
-    """What fmpy makes of an FMU; notes each call, and takes a status that FMI does not know for a refusal.
-
-    (fmpy looks for FMU2 in the name of the class.)
-    """
+class _Traced:
+    """What fmpy makes of an FMU, before its class: notes each call, and takes a status that FMI does not know for a
+    refusal."""
 
     def __init__(self, number: int, **arguments: Any) -> None:
         note(number, "loading its binary")
@@ -73,10 +72,18 @@ class FMU2Traced(FMU2Slave):
 
     def _call(self, fname: str, *args: Any) -> Any:
         note(self.number, fname, args[1] if fname == "fmi2DoStep" else AT_START)
-        result = super()._call(fname, *args)
-        if self._functions[fname].restype == c_int and result < fmi2OK:
+        result = super()._call(fname, *args)  # pyright: ignore[reportAttributeAccessIssue]
+        if self._functions[fname].restype == c_int and result < fmi2OK:  # pyright: ignore[reportAttributeAccessIssue]
             raise FMICallException(function=fname, status=result)
         return result
+
+
+class FMU2Traced(_Traced, FMU2Slave):
+    """An FMU for co-simulation. (fmpy looks for FMU2 in the name of the class.)"""
+
+
+class FMU2Exchanging(_Traced, FMU2Model):
+    """An FMU for model exchange."""
 
 
 class Instance:
@@ -90,7 +97,7 @@ class Instance:
         status: the worst so far.
     """
 
-    def __init__(self, name: str, interface: Interface, slave: FMU2Traced, key: int) -> None:
+    def __init__(self, name: str, interface: Interface, slave: FMU2Traced | FMU2Exchanging, key: int) -> None:
         self.name = name
         self.number = slave.number
         self.interface = interface
@@ -186,11 +193,12 @@ def _typed(instance: str, name: str, kind: str, value: float) -> float:
 
 
 @contextmanager
-def instantiated(name: str, fmu: Unpacked, number: int = 0) -> Iterator[Instance]:
+def instantiated(name: str, fmu: Unpacked, number: int = 0, exchanging: bool = False) -> Iterator[Instance]:
     """The FMU as an instance of that name, freed at the end.
 
     Args:
         number: in its loop.
+        exchanging: for model exchange; else for co-simulation.
 
     Raises:
         SimulationError: it cannot be loaded or instantiated.
@@ -198,7 +206,7 @@ def instantiated(name: str, fmu: Unpacked, number: int = 0) -> Iterator[Instance
     key = next(_keys)
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
     try:
-        instance = _instantiate(name, fmu, key, number)
+        instance = _instantiate(name, fmu, key, number, exchanging)
         try:
             yield instance
         finally:
@@ -209,14 +217,16 @@ def instantiated(name: str, fmu: Unpacked, number: int = 0) -> Iterator[Instance
         del _logs[key]
 
 
-def _instantiate(name: str, fmu: Unpacked, key: int, number: int) -> Instance:
+def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bool) -> Instance:
     interface = fmu.interface
+    exchange = interface.description.modelExchange
     try:
-        slave = FMU2Traced(
+        traced = FMU2Exchanging if exchanging else FMU2Traced
+        slave = traced(
             number,
             guid=interface.description.guid,
             unzipDirectory=fmu.folder,
-            modelIdentifier=interface.identifier,
+            modelIdentifier=str(exchange.modelIdentifier) if exchanging and exchange else interface.identifier,
             instanceName=name,
         )
         slave.instantiate(callbacks=_callbacks(key), loggingOn=True)

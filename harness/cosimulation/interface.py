@@ -1,5 +1,6 @@
 """What an FMU shows to the outside, and what the loop calls it."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from fmpy.model_description import ModelVariable
@@ -21,16 +22,20 @@ class Interface:
         any_value: NaN among the outputs is meant to be there.
     """
 
-    def __init__(self, path: Path, limits: Limits = USUAL_LIMITS) -> None:
+    def __init__(self, path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = description.STEPPING) -> None:
         """Reads the model description.
 
+        Args:
+            kinds: of FMUs that are taken; of one that is of several the first counts.
+
         Raises:
-            WiringError: the file is not an FMI 2.0 Co-Simulation FMU, or is not one that can be used.
+            WiringError: the file is not an FMI 2.0 FMU of these kinds, or is not one that can be used.
         """
         self.path = path
-        self.description = description.read(path, limits)
-        assert self.description.coSimulation is not None
-        self.identifier = str(self.description.coSimulation.modelIdentifier)
+        self.description = description.read(path, limits, kinds)
+        offered = self.description.coSimulation or self.description.modelExchange
+        assert offered is not None
+        self.identifier = str(offered.modelIdentifier)
         self.variables: dict[str, ModelVariable] = {v.name: v for v in self.description.modelVariables}
         self.factors: dict[str, float] = {}
         self.refused: set[str] = set()

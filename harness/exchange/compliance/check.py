@@ -1,4 +1,4 @@
-"""Whether an FMU keeps the FMI 2.0 standard for Co-Simulation, and our rules beyond it."""
+"""Whether an FMU keeps the FMI 2.0 standard for Co-Simulation or Model Exchange, and our rules beyond it."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
@@ -7,6 +7,7 @@ from pathlib import Path
 from ...base.errors import DrivelineError, SimulationError
 from ...base.plain_text import plain
 from ...cosimulation import fmu_archive
+from ...cosimulation.description import EITHER
 from ...cosimulation.interface import Interface
 from ...cosimulation.isolated_process import IsolatedProcess
 from ...cosimulation.limits import USUAL_LIMITS, Limits
@@ -15,11 +16,18 @@ from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
 from .binary_rules import BINARY_RULES
 from .description_rules import DESCRIPTION_RULES
+from .exchange_rules import EXCHANGE_RULES, QUICK_EXCHANGE_RULES
 from .rule import Rule, Severity, Verdict
 
-READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 Co-Simulation FMU")
+READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 FMU for Co-Simulation or Model Exchange")
 
-RULES = (READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *BINARY_RULES, *BEHAVIOUR_RULES)
+RULES = (
+    *(READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES),
+    *(*BINARY_RULES, *BEHAVIOUR_RULES, *EXCHANGE_RULES),
+)
+
+FIRST = {BEHAVIOUR_RULES[0].name, EXCHANGE_RULES[0].name}
+"""An FMU that ends its process there is not tried any further."""
 
 
 def check(
@@ -57,13 +65,18 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
         return
     yield from (rule.judge(contents) for rule in kept(ARCHIVE_RULES))
     try:
-        interface = Interface(path, limits)
+        interface = Interface(path, limits, EITHER)
     except DrivelineError as error:
         yield READABLE.verdict([str(error)])
         return
     yield READABLE.verdict([])
     yield from (rule.judge(interface) for rule in kept(DESCRIPTION_RULES))
-    yield from _behaviour(interface, list(kept((*BINARY_RULES, *(QUICK_RULES if quick else BEHAVIOUR_RULES)))), limits)
+    stepping = QUICK_RULES if quick else BEHAVIOUR_RULES
+    exchanging = QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
+    description = interface.description
+    tried = [*BINARY_RULES, *(stepping if description.coSimulation else ())]
+    tried += exchanging if description.modelExchange else ()
+    yield from _behaviour(interface, list(kept(tried)), limits)
 
 
 def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> Iterator[Verdict]:
@@ -81,7 +94,7 @@ def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> I
                     isolated.close()
                 isolated = None
                 yield rule.verdict([str(error)])
-                if rule.name == BEHAVIOUR_RULES[0].name:
+                if rule.name in FIRST:
                     yield from (other.verdict([], tried=False) for other in rules[tried:])
                     return
     finally:

@@ -39,7 +39,23 @@ def bounds(interface: Interface) -> Iterator[str]:
             yield f"{variable.name} starts at {variable.start}, out of [{lower}, {upper}]"
 
 
-@DESCRIPTION_RULES.rule("units", Severity.WARNING, "variables have units")
+@DESCRIPTION_RULES.rule("derivatives", Severity.ERROR, "each derivative is that of one continuous state (2.2.7, 2.2.8)")
+def derivatives(interface: Interface) -> Iterator[str]:
+    """What ModelStructure lists as derivatives: the states are theirs, in that order (FMI 2.0.4, 2.2.7 and 2.2.8)."""
+    seen: dict[str, str] = {}
+    for unknown in interface.description.derivatives:
+        rate = unknown.variable
+        state = None if rate is None else rate.derivative
+        if rate is None or state is None:
+            continue  # the schema's rule says so
+        if state.type != "Real" or state.variability not in (None, "continuous"):
+            yield f"{rate.name} is the derivative of {state.name}, which is no continuous Real"
+        if state.name in seen:
+            yield f"{rate.name} and {seen[state.name]} are derivatives of {state.name}"
+        seen[state.name] = rate.name
+
+
+@DESCRIPTION_RULES.rule("units", Severity.NOTE, "variables have units")
 def units(interface: Interface) -> Iterator[str]:
     """Public variables without unit."""
     for variable in _public(interface):

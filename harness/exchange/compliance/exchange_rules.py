@@ -1,0 +1,104 @@
+"""Rules for what an FMU does in model exchange (FMI 2.0.4, chapter 3). Each function is given it unpacked."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from ...cosimulation.unpacked_fmu import Unpacked
+from .exchange_host import ExchangeHost, integrated
+from .rule import Rules, Severity
+
+POINTS = 100
+"""Of a run, at which states, derivatives and event indicators are looked at."""
+
+PART = 0.02
+"""Of the default experiment, which is run for a comparison, or quickly."""
+
+RUNS = "in model exchange the default experiment runs, all values are finite"
+
+Point = tuple[float, list[float], list[float]]
+"""A time, states, derivatives."""
+
+
+def _run(host: ExchangeHost, share: float, points: int) -> list[Point]:
+    found: list[Point] = []
+    begin = host.time
+    for k in range(1, points + 1):
+        host.advance(begin + share * host.duration * k / points)
+        found.append((host.time, host.states(), host.rates()))
+    return found
+
+
+def _not_finite(host: ExchangeHost, points: list[Point]) -> Iterator[str]:
+    names = [str(unknown.variable.name) for unknown in host.instance.interface.description.derivatives]
+    for time, _, rates in points:
+        for name, value in zip(names, rates, strict=True):
+            if not isfinite(value):
+                yield f"{name} is {value} at {time:g} s"
+                return
+
+
+EXCHANGE_RULES = Rules()
+
+
+@EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS)
+def default_experiment(fmu: Unpacked, share: float = 1.0) -> Iterator[str]:
+    """Integrates the default experiment; an FMU may end it (3.2.2, terminateSimulation)."""
+    with integrated(fmu) as host:
+        host.start()
+        points = _run(host, share, POINTS)
+        for k, value in enumerate(host.indicators()):
+            if not isfinite(value):
+                yield f"event indicator {k + 1} is {value} at {host.time:g} s"
+        yield from _not_finite(host, points)
+
+
+@EXCHANGE_RULES.rule("exchange-nominals", Severity.ERROR, "nominal values of the states are above 0 (3.2.2)")
+def nominals(fmu: Unpacked) -> Iterator[str]:
+    """What a solver divides by."""
+    with integrated(fmu) as host:
+        host.start()
+        for unknown, value in zip(fmu.interface.description.derivatives, host.nominals(), strict=True):
+            if not (isfinite(value) and value > 0.0):
+                yield f"the nominal value of {unknown.variable.derivative.name} is {value}"
+
+
+@EXCHANGE_RULES.rule("exchange-reset", Severity.ERROR, "in model exchange a second run after reset is the same")
+def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
+    """The same run before and after fmi2Reset (2.1.6)."""
+    with integrated(fmu) as host:
+        host.start()
+        first = _run(host, PART, POINTS)
+        host.instance.call("reset")
+        host.begin_anew()
+        host.start()
+        if _run(host, PART, POINTS) != first:
+            yield "the run after fmi2Reset is another one"
+
+
+@EXCHANGE_RULES.rule("exchange-states", Severity.ERROR, "in model exchange saved states are restored, if it claims so")
+def states_are_restored(fmu: Unpacked) -> Iterator[str]:
+    """Time, states and derivatives of a saved state (2.1.8)."""
+    kind = fmu.interface.description.modelExchange
+    if kind is None or not kind.canGetAndSetFMUstate:
+        return
+    with integrated(fmu) as host:
+        host.start()
+        _run(host, PART, 1)
+        if host.ended:
+            return
+        saved = host.instance.call("getFMUstate")
+        before = host.states(), host.rates()
+        _run(host, PART, 1)
+        host.instance.call("setFMUstate", saved)
+        host.instance.call("freeFMUstate", saved)
+        if (host.states(), host.rates()) != before:
+            yield "states and derivatives are not those that were saved"
+
+
+QUICK_EXCHANGE_RULES = Rules()
+
+
+@QUICK_EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS)
+def beginning(fmu: Unpacked) -> Iterator[str]:
+    """The first part of the default experiment."""
+    yield from default_experiment(fmu, PART)

@@ -1,0 +1,88 @@
+"""The compliance checks of model exchange: every planted fault found, and none where there is none."""
+
+import re
+
+import pytest
+
+from driveline.harness.base.errors import WiringError
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.limits import Limits
+from driveline.harness.exchange.compliance.check import check
+from driveline.harness.exchange.compliance.exchange_rules import EXCHANGE_RULES
+from driveline.harness.loop.places import PLANTS
+from tests.foreign import tampered
+from tests.foreign.oscillator import DESCRIPTION, build_oscillator
+
+NAMES = {rule.name for rule in EXCHANGE_RULES}
+
+
+def errors(path, **options):
+    """What was found, of each rule that is broken and an error."""
+    found = check(path, **options)
+    return {v.rule: "\n".join(v.problems) for v in found if v.problems and v.severity == "error"}
+
+
+def test_an_fmu_for_model_exchange_alone_is_checked_and_in_order(tmp_path):
+    verdicts = list(check(build_oscillator(tmp_path)))
+    assert [v for v in verdicts if v.severity == "error" and v.problems] == []
+    tried = {v.rule for v in verdicts if v.tried}
+    assert tried >= NAMES
+    assert not tried & {"runs", "steps", "reset", "instances", "states"}
+
+
+def test_ours_is_in_order_without_co_simulation_too(native, tmp_path):
+    def alone(xml):
+        return re.sub("<CoSimulation.*?</CoSimulation>", "", xml, flags=re.DOTALL)
+
+    path = tampered(native / f"{PLANTS[0]}.fmu", tmp_path / "alone.fmu", alone)
+    assert [v for v in check(path) if v.problems] == []
+
+
+@pytest.mark.parametrize(
+    ("does", "rules", "finding"),
+    [
+        ({"IN_DERIVATIVES": "dx[1]=NAN"}, {"exchange-runs"}, r"der\(v\) is nan|CVode cannot integrate"),
+        ({"IN_DERIVATIVES": "return 3"}, {"exchange-runs", "exchange-reset"}, "answered fmi2GetDerivatives with error"),
+        ({"IN_NEW_STATES": "info->needed=1"}, NAMES - {"exchange-states"}, "wants another iteration after 100 at 0 s"),
+        ({"NOMINAL": "0.0"}, {"exchange-nominals"}, "the nominal value of s is 0.0"),
+        ({"NOMINAL": "-1.0"}, {"exchange-nominals"}, "the nominal value of s is -1.0"),
+        ({"IN_RESET": "x[0]=x[0]"}, {"exchange-reset"}, "the run after fmi2Reset is another one"),
+        ({"IN_DERIVATIVES": "exit(0)"}, {"exchange-runs"}, "exit code 0, in fmi2GetDerivatives"),
+        ({"IN_DERIVATIVES": "for(;;){}"}, {"exchange-runs"}, "did not return from fmi2GetDerivatives"),
+    ],
+)
+def test_a_fault_is_found(tmp_path, does, rules, finding):
+    found = errors(build_oscillator(tmp_path, **does), limits=Limits(call=0.5))
+    assert rules <= found.keys() <= NAMES
+    assert re.search(finding, found[min(rules)])
+
+
+def test_an_end_that_the_fmu_wants_is_no_error(tmp_path):
+    assert errors(build_oscillator(tmp_path, IN_NEW_STATES="info->terminate=now>0.1")) == {}
+
+
+def test_time_events_are_met(tmp_path):
+    """One every tenth of a second; an event changes the state, so that a run without it would go on otherwise."""
+    jumps = "info->next_defined=1,info->next=now+0.1,info->values_changed=1,x[1]+=now>0.05"
+    assert errors(build_oscillator(tmp_path, IN_NEW_STATES=jumps)) == {}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement", "finding"),
+    [
+        ('derivative="2"', 'derivative="1"', r"der\(v\) and der\(s\) are derivatives of s"),
+        (
+            'name="v" ',
+            'name="v" variability="discrete" ',
+            r"der\(v\) is the derivative of v, which is no continuous Real",
+        ),
+    ],
+)
+def test_a_derivative_is_that_of_one_continuous_state(tmp_path, pattern, replacement, finding):
+    path = build_oscillator(tmp_path, DESCRIPTION.replace(pattern, replacement))
+    assert re.search(finding, errors(path)["derivatives"])
+
+
+def test_in_a_loop_it_is_told_that_there_is_no_co_simulation(tmp_path):
+    with pytest.raises(WiringError, match=r"is for model exchange alone; only FMI 2\.0 Co-Simulation"):
+        Interface(build_oscillator(tmp_path))
