@@ -89,8 +89,12 @@ def initial_dependencies(block: Block) -> Dependencies:
 
 def initial_state_dependencies(block: ContinuousBlock) -> Dependencies:
     """For every state, and every derivative of one, the inputs and parameters that its initial value depends on."""
-    started = _at_start(block, lambda x, u, p: x, map(state_name, block.State._fields))
+    started = _at_start(block, _state, map(state_name, block.State._fields))
     return started | _at_start(block, block.derivative, map(rate_name, block.State._fields))
+
+
+def _state(x: Any, u: Any, p: Any) -> Any:
+    return x
 
 
 def _at_start(block: Block, function: Callable[..., Any], names: Iterable[str]) -> Dependencies:

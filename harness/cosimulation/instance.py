@@ -72,7 +72,7 @@ class _Traced:
 
     def _call(self, fname: str, *args: Any) -> Any:
         note(self.number, fname, args[1] if fname == "fmi2DoStep" else AT_START)
-        result = super()._call(fname, *args)  # pyright: ignore[reportAttributeAccessIssue]
+        result: Any = super()._call(fname, *args)  # pyright: ignore
         if self._functions[fname].restype == c_int and result < fmi2OK:  # pyright: ignore[reportAttributeAccessIssue]
             raise FMICallException(function=fname, status=result)
         return result

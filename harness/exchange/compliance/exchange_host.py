@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from ctypes import c_double
 from math import inf, sin
-from typing import Any
+from typing import Any, cast
 
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2Discard
@@ -12,7 +12,7 @@ from fmpy.sundials import CVodeSolver
 
 from ...base.errors import SimulationError
 from ...base.plain_text import plain
-from ...cosimulation.instance import Instance, instantiated
+from ...cosimulation.instance import FMU2Exchanging, Instance, instantiated
 from ...cosimulation.unpacked_fmu import Unpacked
 
 TOLERANCE = 1e-6
@@ -151,7 +151,7 @@ class ExchangeHost:
         return met
 
     def _made(self) -> _Solver:
-        slave = self.instance.slave
+        slave = cast(FMU2Exchanging, self.instance.slave)
         return _Solver(
             nx=self.sizes[0],
             nz=self.sizes[1],

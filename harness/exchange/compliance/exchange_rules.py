@@ -28,10 +28,15 @@ def _run(host: ExchangeHost, share: float, points: int) -> list[Point]:
     return found
 
 
+def _names(host: ExchangeHost) -> list[str]:
+    """Those of the derivatives."""
+    variables = [unknown.variable for unknown in host.instance.interface.description.derivatives]
+    return [str(variable.name) if variable else "a derivative" for variable in variables]
+
+
 def _not_finite(host: ExchangeHost, points: list[Point]) -> Iterator[str]:
-    names = [str(unknown.variable.name) for unknown in host.instance.interface.description.derivatives]
     for time, _, rates in points:
-        for name, value in zip(names, rates, strict=True):
+        for name, value in zip(_names(host), rates, strict=True):
             if not isfinite(value):
                 yield f"{name} is {value} at {time:g} s"
                 return
@@ -57,9 +62,9 @@ def nominals(fmu: Unpacked) -> Iterator[str]:
     """What a solver divides by."""
     with integrated(fmu) as host:
         host.start()
-        for unknown, value in zip(fmu.interface.description.derivatives, host.nominals(), strict=True):
+        for name, value in zip(_names(host), host.nominals(), strict=True):
             if not (isfinite(value) and value > 0.0):
-                yield f"the nominal value of {unknown.variable.derivative.name} is {value}"
+                yield f"the nominal value of the state of {name} is {value}"
 
 
 @EXCHANGE_RULES.rule("exchange-reset", Severity.ERROR, "in model exchange a second run after reset is the same")
