@@ -75,7 +75,7 @@ class _Traced:
         result: Any = super()._call(fname, *args)  # pyright: ignore
         if self._functions[fname].restype == c_int and result < fmi2OK:  # pyright: ignore[reportAttributeAccessIssue]
             raise FMICallException(function=fname, status=result)
-        return result
+        return cast(Any, result)
 
 
 class FMU2Traced(_Traced, FMU2Slave):

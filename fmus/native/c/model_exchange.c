@@ -85,6 +85,10 @@ Status get_nominals(const Instance *instance, double x_nominal[], size_t count)
     return OK;
 }
 
+#if INDICATORS > 63
+#error "there are more event indicators than bits for the sides on which they are"
+#endif
+
 #if INDICATORS
 
 static void present_indicators(const Memory *memory, real z[INDICATORS])

@@ -17,7 +17,9 @@ from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 
-EXAMPLE, FMPY, *_ = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S)
+EXAMPLE, FMPY, *_, EXCHANGE, LINEAR = re.findall(
+    r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S
+)
 
 
 def build(file: Path, folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
@@ -139,8 +141,23 @@ def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str
     assert "Traceback" not in done.stderr
 
 
-def test_the_lines_for_fmpy_run(both_built: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("lines", "answer"),
+    [
+        pytest.param(
+            FMPY + EXCHANGE.replace("result =", "exchanged =") + "print(exchanged['v'][-1])", None, id="speeds"
+        ),
+        pytest.param(LINEAR, 7.69, id="frequency"),
+    ],
+)
+def test_the_lines_for_fmpy_run(both_built: Path, tmp_path: Path, lines: str, answer: float | None) -> None:
+    """Co-simulation and model exchange gain the same speed; the linear plant swings as the page says."""
     (tmp_path / "build").symlink_to(both_built)
-    done = subprocess.run([sys.executable, "-c", FMPY], cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert float(done.stdout) > 11.0
+    first, *others = map(float, done.stdout.split())
+    if answer:
+        assert first == pytest.approx(answer, abs=0.005)
+    else:
+        assert first > 11.0
+        assert others == pytest.approx([first], rel=1e-6)
