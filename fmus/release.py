@@ -24,6 +24,11 @@ EARLIEST, LATEST = 315_532_800, 4_354_819_199
 """In s since 1970: the years 1980 to 2107, which the dates in a zip file can tell."""
 
 
+def tool(library: str) -> str:
+    """What made an FMU: this project, with the help of that library."""
+    return f"driveline-damping {VERSION} ({library})"
+
+
 def date() -> datetime:
     """When an FMU that is built now was made: the date of the release, or that of the variable SOURCE_DATE_EPOCH.
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..catalogue import FMUS
 from ..comparators import COMPARATORS
-from .builds import BUILDS, PLATFORMS, build_fmus
+from .builds import BUILDS, FMIS, PLATFORMS, build_fmus
 from .options import add_parameter_files, output_folder
 
 DESCRIPTION = """\
@@ -15,7 +15,8 @@ the same files, byte by byte.
 A vehicle file and the gains that `driveline design` makes of it become start values: the FMUs are that car.
 
 The native builds go into the folder native/ in that of the others. They need the extra `native` and a
-C compiler; where one of them is missing, they are left out unless they are asked for.
+C compiler; where one of them is missing, they are left out unless they are asked for. With --fmi 3 the
+FMUs are native ones for FMI 3.0, in the folder fmi3/.
 """
 
 
@@ -32,6 +33,7 @@ examples:
   {program} --build native             only the native ones
   {program} my_vehicle.py              the block in a file of your own, see docs/native.md
   {program} --vehicle car.toml --parameters gains.toml
+  {program} --fmi 3                    for FMI 3.0
   {program} --platform all             native ones for Linux, Windows and macOS (extra `cross`)
 """
 
@@ -43,6 +45,7 @@ def add_arguments(parser: ArgumentParser, folder: Path) -> None:
     parser.add_argument(
         "--platform", choices=PLATFORMS, default="host", help="of the native build (default: %(default)s)"
     )
+    parser.add_argument("--fmi", type=int, choices=FMIS, default=2, help="2.0 or 3.0 (default: %(default)s)")
     add_parameter_files(parser)
     parser.add_argument(
         "--output", type=output_folder, default=str(folder), metavar="FOLDER", help="(default: %(default)s)"
@@ -56,6 +59,7 @@ def run(args: Namespace) -> None:
     Raises:
         BuildError: see `fmus.building.builds.build_fmus`.
     """
-    for path in build_fmus(args.names, args.output, args.build, args.platform, args.vehicle, args.parameters):
+    files = args.vehicle, args.parameters
+    for path in build_fmus(args.names, args.output, args.build, args.platform, *files, args.fmi):
         if not args.quiet:
             print(f"{path}  {path.stat().st_size / 1024:.0f} kB")

@@ -3,7 +3,6 @@
 import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from functools import partial
 from importlib.util import find_spec
 from math import inf
 from pathlib import Path
@@ -18,8 +17,11 @@ from .own_file import fmu_in, place
 BUILDS = ("python", "native", "both")
 PLATFORMS = ("host", "all")
 
-NATIVE_FOLDER = "native"
-"""Folder of the native builds, in that of the others."""
+FMIS = (2, 3)
+"""Of FMI 2.0 and FMI 3.0; there are native builds alone for the latter."""
+
+NATIVE_FOLDER, FMI3_FOLDER = "native", "fmi3"
+"""Folders of the native builds and of those for FMI 3.0, in that of the others."""
 
 LOG = logging.getLogger(__name__)
 
@@ -38,16 +40,18 @@ def build_fmus(
     platform: str = "host",
     vehicle: Path | None = None,
     parameters: Path | None = None,
+    fmi: int = 2,
 ) -> Iterator[Path]:
     """Builds FMUs, one after the other; yields the path of each file.
 
     Args:
         names: of FMUs of the project, or paths of Python files with a block of the user's own, of which there is a
             native build only, or these blocks themselves; none for all of the project but the comparators.
-        folder: for the files; the native ones go to NATIVE_FOLDER in it.
+        folder: for the files; the native ones go to NATIVE_FOLDER in it, those for FMI 3.0 to FMI3_FOLDER.
         builds: one of BUILDS; None for each that is possible here.
         platform: of the native builds, one of PLATFORMS.
         vehicle, parameters: files with start values of the car's and of the controller's parameters.
+        fmi: one of FMIS.
 
     Raises:
         BuildError: a name is unknown, a build is not possible here, a file is refused, or a block of the user's own
@@ -64,9 +68,9 @@ def build_fmus(
         raise BuildError(f"{same[0]} is the name of several FMUs, which would overwrite each other")
     if own and builds in ("python", "both"):
         raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
-    of_the_project = builders(builds, platform) if len(own) < len(fmus) else []
+    of_the_project = builders(builds, platform, fmi) if len(own) < len(fmus) else []
     files = [Path(name) for name in names if isinstance(name, str) and name.endswith(".py")]
-    of_own = [_guarded(builder, files) for builder in builders("native", platform)] if own else []
+    of_own = [_guarded(builder, files) for builder in builders("native", platform, fmi)] if own else []
     start_values = read_files(vehicle, parameters, own)
     require_taken(parameters, {name for fmu in fmus for name in fmu.block.Parameters._fields}, " or ".join(built))
     for fmu in fmus:
@@ -153,22 +157,27 @@ def _named(name: str) -> Fmu:
     raise BuildError(f"unknown FMU {name}; {hint}")
 
 
-def builders(builds: str | None, platform: str = "host") -> list[Builder]:
+def builders(builds: str | None, platform: str = "host", fmi: int = 2) -> list[Builder]:
     """What makes the chosen builds.
 
     Args:
         builds: one of BUILDS; None for each that is possible.
         platform: of the native build, one of PLATFORMS.
+        fmi: one of FMIS.
 
     Raises:
         NotPossible: a build that is asked for cannot be made here. Why native is left out otherwise is logged.
     """
     from ..python.packaging import build
 
+    if fmi == 3 and builds in ("python", "both"):
+        raise NotPossible("for FMI 3.0 there are native builds only")
+    if fmi == 3:
+        return [_native_builder(platform, fmi)]
     if builds == "python":
         return [build]
     try:
-        native = _native_builder(platform)
+        native = _native_builder(platform, fmi)
     except NotPossible as reason:
         if builds is None and platform == "host":
             LOG.warning("there is no native build: %s", reason)
@@ -177,7 +186,7 @@ def builders(builds: str | None, platform: str = "host") -> list[Builder]:
     return [native] if builds == "native" else [build, native]
 
 
-def _native_builder(platform: str) -> Builder:
+def _native_builder(platform: str, fmi: int) -> Builder:
     if find_spec("casadi") is None:
         raise NotPossible(
             "the native build needs the package casadi: "
@@ -194,11 +203,8 @@ def _native_builder(platform: str) -> Builder:
     except compiler.CompilerError as reason:
         raise NotPossible(str(reason)) from reason
     binaries = compiler.all_binaries if platform == "all" else compiler.host_binaries
-    return partial(_into_own_folder, partial(build_native, binaries=binaries))
-
-
-def _into_own_folder(builder: Builder, fmu: Fmu, folder: Path) -> Path:
-    return builder(fmu, folder / NATIVE_FOLDER)
+    own_folder = FMI3_FOLDER if fmi == 3 else NATIVE_FOLDER
+    return lambda fmu, folder: build_native(fmu, folder / own_folder, binaries, fmi)
 
 
 def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:

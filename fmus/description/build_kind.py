@@ -8,7 +8,7 @@ class BuildKind:
     """One way to build FMUs.
 
     Attributes:
-        tool: what made it.
+        tool: with whose help it was made.
         capabilities: attributes of the element CoSimulation that are not the same in every build.
         model_exchange: attributes of the element ModelExchange that are not the same in every build; none: there is
             no such element.
@@ -17,6 +17,8 @@ class BuildKind:
         external: what it needs besides itself, as plain text; empty for nothing.
         inputs: how inputs are taken over a communication step, as HTML.
         source_files: C files in the folder sources that together are the FMU.
+        version: of FMI.
+        picture: path of the picture in the archive, where that version has it.
     """
 
     tool: str
@@ -27,3 +29,5 @@ class BuildKind:
     model_exchange: dict[str, str] = field(default_factory=dict[str, str])
     inputs: str = "Inputs are held over a communication step."
     source_files: tuple[str, ...] = ()
+    version: str = "2.0"
+    picture: str = "model.png"

@@ -28,14 +28,14 @@ th, td {{ text-align: left; padding: .25em 1em .25em 0; border-bottom: 1px solid
 <body>
 <h1>{name}</h1>
 <p>{description}.</p>
-<p><img src="../model.png" alt="inputs and outputs of {name}"></p>
+<p><img src="../{picture}" alt="inputs and outputs of {name}"></p>
 {equations}
 {tables}
 <h2>How it runs</h2>
 <p>{timing} {inputs} A parameter may be changed until initialization
 mode is left, and outputs are right from then on. A value that is not allowed is refused with a
 message to the logger, and everything stays as it was before the call{tolerance}.</p>
-<p>FMI 2.0 {kinds}, all quantities in SI units. {needs}</p>
+<p>FMI {version} {kinds}, all quantities in SI units. {needs}</p>
 </body>
 </html>
 """
@@ -50,7 +50,7 @@ SAMPLED = (
 
 def documentation(fmu: Fmu, kind: BuildKind) -> dict[str, bytes]:
     """Page, picture, licence and what the FMU needs besides itself, by their names in the FMU."""
-    files = {"documentation/index.html": page(fmu, kind).encode(), "model.png": picture(fmu.block)}
+    files = {"documentation/index.html": page(fmu, kind).encode(), kind.picture: picture(fmu.block)}
     if kind.external:
         files["documentation/externalDependencies.txt"] = kind.external.encode()
     files["documentation/licenses/license.txt"] = licence().encode()
@@ -78,6 +78,8 @@ def page(fmu: Fmu, kind: BuildKind) -> str:
         inputs=kind.inputs,
         kinds="Co-Simulation and Model Exchange" if kind.model_exchange else "Co-Simulation",
         needs=kind.needs,
+        version=kind.version,
+        picture=kind.picture,
         tolerance=" (inputs excepted: this block copes with any)" if block.tolerates_bad_input else "",
     )
 

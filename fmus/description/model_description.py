@@ -1,14 +1,12 @@
-"""modelDescription.xml of an FMU, written from the declarations of its block."""
+"""modelDescription.xml of an FMU of FMI 2.0, written from the declarations of its block."""
 
 from collections.abc import Iterable
-from typing import Any
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from ...models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real
 from ...models.block.types import Block, ContinuousBlock, SampledBlock
 from ..fmu import Fmu
-from ..release import ABOUT, date
+from ..release import ABOUT, date, tool
 from .build_kind import BuildKind
 from .dependencies import (
     exchanged_dependencies,
@@ -16,8 +14,8 @@ from .dependencies import (
     initial_state_dependencies,
     output_dependencies,
 )
+from .elements import add_categories, add_experiment, add_units, check_names, limits, text, written
 from .states import event_indicators, states
-from .units import base_exponents
 from .variables import Variable, interface
 
 CAPABILITIES = {
@@ -47,14 +45,14 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     """
     exchanged = states(fmu.block) if kind.model_exchange else ()
     all_variables = (*interface(fmu.block), *exchanged)
-    _check_names(all_variables)
+    check_names(all_variables)
     root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=fmu.name,
         guid=guid,
         description=fmu.block.description,
-        generationTool=kind.tool,
+        generationTool=tool(kind.tool),
         generationDateAndTime=f"{date():%Y-%m-%dT%H:%M:%SZ}",
         variableNamingConvention="flat",
     )
@@ -63,27 +61,15 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
         root.set("numberOfEventIndicators", str(event_indicators(fmu.block)))
         _add_kind(root, "ModelExchange", fmu, kind, EXCHANGE_CAPABILITIES | kind.model_exchange)
     _add_kind(root, "CoSimulation", fmu, kind, CAPABILITIES | kind.capabilities)
-    _add_units(root, all_variables)
+    add_units(root, all_variables)
     _add_enumerations(root, all_variables)
-    categories = SubElement(root, "LogCategories")
-    for name, description in kind.log_categories.items():
-        SubElement(categories, "Category", {"name": name, "description": description})
-    experiment = {"startTime": "0", "stopTime": _text(fmu.stop_time), "stepSize": _text(fmu.step_size)}
-    SubElement(root, "DefaultExperiment", experiment)
+    add_categories(root, kind)
+    add_experiment(root, fmu)
     listed = SubElement(root, "ModelVariables")
     for variable in all_variables:
         _add_variable(listed, variable, sampled=isinstance(fmu.block, SampledBlock))
     _add_structure(root, fmu.block, all_variables, exchanged)
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
-
-
-def _check_names(all_variables: Iterable[Variable]) -> None:
-    known: dict[str, str] = {}
-    for variable in all_variables:
-        other = known.setdefault(variable.name.casefold(), variable.name)
-        if other != variable.name:
-            raise ValueError(f"the variables {other} and {variable.name} differ in case only")
+    return written(root)
 
 
 def _add_kind(root: Element, name: str, fmu: Fmu, kind: BuildKind, capabilities: dict[str, str]) -> None:
@@ -92,21 +78,6 @@ def _add_kind(root: Element, name: str, fmu: Fmu, kind: BuildKind, capabilities:
         sources = SubElement(element, "SourceFiles")
         for name in kind.source_files:
             SubElement(sources, "File", name=name)
-
-
-def _text(value: Any) -> str:
-    """A number or truth value as XML writes it."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return repr(value)
-
-
-def _add_units(root: Element, all_variables: Iterable[Variable]) -> None:
-    units = sorted({v.declaration.unit for v in all_variables if isinstance(v.declaration, Real)})
-    definitions = SubElement(root, "UnitDefinitions") if units else root
-    for unit in units:
-        exponents = {base: str(exponent) for base, exponent in base_exponents(unit).items()}
-        SubElement(SubElement(definitions, "Unit", name=unit), "BaseUnit", exponents)
 
 
 def _add_enumerations(root: Element, all_variables: Iterable[Variable]) -> None:
@@ -134,11 +105,11 @@ def _add_variable(listed: Element, variable: Variable, sampled: bool) -> None:
         attributes["variability"] = "discrete" if discrete else "continuous"
         if variable.causality != "input":
             attributes["initial"] = "calculated"
-    start = {} if variable.start is None else {"start": _text(variable.start)}
+    start = {} if variable.start is None else {"start": text(variable.start)}
     scalar = SubElement(listed, "ScalarVariable", attributes)
     tag, attributes = _type(declaration)
     if variable.causality != "parameter" and variable.nominal is not None:
-        attributes["nominal"] = _text(variable.nominal)
+        attributes["nominal"] = text(variable.nominal)
     if variable.state is not None:
         attributes["derivative"] = str(variable.state + 1)
     SubElement(scalar, tag, attributes | start)
@@ -152,19 +123,9 @@ def _type(declaration: Declaration) -> tuple[str, dict[str, str]]:
         case Enumeration():
             return "Enumeration", {"declaredType": declaration.name}
         case Integer():
-            return "Integer", _limits(declaration, Integer(""))
+            return "Integer", limits(declaration, Integer(""))
         case Real():
-            return "Real", {"unit": declaration.unit, **_limits(declaration, Real("1", ""))}
-
-
-def _limits(declaration: Integer | Real, unlimited: Integer | Real) -> dict[str, str]:
-    """The bounds that say more than those of an unlimited declaration."""
-    limits: dict[str, str] = {}
-    if declaration.minimum != unlimited.minimum:
-        limits["min"] = _text(declaration.minimum)
-    if declaration.maximum != unlimited.maximum:
-        limits["max"] = _text(declaration.maximum)
-    return limits
+            return "Real", {"unit": declaration.unit, **limits(declaration, Real("1", ""))}
 
 
 def _add_structure(

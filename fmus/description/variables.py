@@ -4,7 +4,8 @@ from typing import Any, NamedTuple
 
 from ...models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
 from ...models.block.operators import LARGEST
-from .units import NOMINAL
+from ...models.block.types import Block, ContinuousBlock
+from .units import NOMINAL, rate_unit
 
 
 class Variable(NamedTuple):
@@ -12,7 +13,8 @@ class Variable(NamedTuple):
 
     Attributes:
         reference: its FMI value reference, which is also its place in the list of all variables.
-        causality: "input", "output" or "parameter"; of a state or its derivative "local".
+        causality: "input", "output" or "parameter"; of a state or its derivative "local"; of the time in FMI 3.0
+            "independent".
         start: start value; None for what is computed.
         state: of a derivative, the reference of its state.
     """
@@ -83,3 +85,28 @@ def interface(block: Any) -> tuple[Variable, ...]:
         Variable(reference, v.name, causality, v.declaration, v.start)
         for reference, (causality, v) in enumerate(declared)
     )
+
+
+def time_and_rates(block: Block) -> tuple[Variable, ...]:
+    """What FMI 3.0 has beside: the time, and for each Real input of a continuous block its rate of change.
+
+    FMI 2.0 has a function that lets inputs move during a step, FMI 3.0 has none.
+    """
+    listed = interface(block)
+    first = len(listed)
+    moving = [v for v in listed if v.causality == "input" and isinstance(block, ContinuousBlock)]
+    rates = (
+        Variable(first + 1 + v.reference, f"der({v.name})", "input", Real(rate_unit(v.declaration.unit), MOVES), 0.0)
+        for v in moving
+        if isinstance(v.declaration, Real)
+    )
+    return Variable(first, "time", "independent", Real("s", "time"), None), *rates
+
+
+MOVES = "rate at which the input moves during communication steps"
+
+
+def rate_of(variable: Variable, block: Block) -> int | None:
+    """The value reference of the input whose rate of change a variable of FMI 3.0 is; None: it is none."""
+    first = len(interface(block)) + 1
+    return variable.reference - first if variable.reference >= first else None

@@ -27,7 +27,7 @@ LIBRARY_FLAGS = (
 )
 
 WINDOWS_LIBRARIES = tuple(
-    f"-lapi-ms-win-crt-{part}-l1-1-0" for part in ("math", "stdio", "string", "convert", "private")
+    f"-lapi-ms-win-crt-{part}-l1-1-0" for part in ("math", "stdio", "string", "convert", "heap", "private")
 )
 """The C library that is part of Windows."""
 
@@ -57,30 +57,39 @@ class CompilerError(Exception):
     """There is no compiler, or it refuses the source; the text says why."""
 
 
-def host_binaries(name: str, sources: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The binary for this machine, by its path in the FMU.
+def host_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict[str, bytes]:
+    """The binary for this machine, by its path in the FMU of that FMI.
 
     Raises:
         CompilerError: see there.
     """
-    path = f"binaries/{fmpy.platform}/{name}{fmpy.sharedLibraryExtension}"
+    folder = fmpy.platform_tuple if fmi == 3 else fmpy.platform
+    path = f"binaries/{folder}/{name}{fmpy.sharedLibraryExtension}"
     return {path: _compiled([host_compiler()], name + fmpy.sharedLibraryExtension, sources)}
 
 
-def all_binaries(name: str, sources: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The binaries for Linux, Windows and macOS (one file for both processors), by their paths in the FMU.
+def all_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict[str, bytes]:
+    """The binaries for Linux, Windows and macOS, by their paths in the FMU of that FMI.
 
     Raises:
         CompilerError: see there.
     """
     zig = zig_compiler()
+    linux = _compiled([*zig, "-target", LINUX], f"{name}.so", sources)
+    windows = _compiled_for_windows(zig, f"{name}.dll", sources)
     on_mac = {target: _compiled([*zig, "-target", target], f"{name}.dylib", sources) for target in MAC_PROCESSORS}
-    return {
-        f"binaries/linux64/{name}.so": _compiled([*zig, "-target", LINUX], f"{name}.so", sources),
-        f"binaries/win64/{name}.dll": _compiled_for_windows(zig, f"{name}.dll", sources),
+    # the name of FMI 3, which some tools look for in an FMU of FMI 2.0 as well
+    common = {f"binaries/aarch64-darwin/{name}.dylib": on_mac[MAC_ARM]}
+    if fmi == 3:
+        return common | {
+            f"binaries/x86_64-linux/{name}.so": linux,
+            f"binaries/x86_64-windows/{name}.dll": windows,
+            f"binaries/x86_64-darwin/{name}.dylib": on_mac[MAC_INTEL],
+        }
+    return common | {
+        f"binaries/linux64/{name}.so": linux,
+        f"binaries/win64/{name}.dll": windows,
         f"binaries/darwin64/{name}.dylib": universal(on_mac),
-        # the name of FMI 3, which some tools look for in an FMU of FMI 2.0 as well
-        f"binaries/aarch64-darwin/{name}.dylib": on_mac[MAC_ARM],
     }
 
 

@@ -10,6 +10,7 @@ from ..archive import guid_of, write_archive
 from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
+from ..description.model_description_3 import build_description, model_description_3
 from ..fmu import Fmu
 from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES
@@ -21,10 +22,18 @@ from .tableau import rosenbrock_header, step_header
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 
+ADAPTERS = {2: ("fmi2.c", "fmi2_adapter.h"), 3: ("fmi3.c", "fmi3_refused.c")}
+"""Of the core to each FMI."""
+
+FOR_EXCHANGE = {2: ("fmi2_model_exchange.c", "model_exchange.c", "model_exchange.h"), 3: ()}
+"""Of continuous blocks, of which FMI 3.0 has co-simulation alone here."""
+
+DESCRIPTIONS = {2: model_description, 3: model_description_3}
+"""What writes the model description of each FMI."""
+
 FOR_ALL = (
+    "calls.c",
     "content.c",
-    "fmi2.c",
-    "fmi2_adapter.h",
     "messages.c",
     "run.c",
     "state.c",
@@ -34,9 +43,6 @@ FOR_ALL = (
     "variable.h",
 )
 FOR_CONTINUOUS = (
-    "fmi2_model_exchange.c",
-    "model_exchange.c",
-    "model_exchange.h",
     "continuous.c",
     "explicit.c",
     "implicit.c",
@@ -52,11 +58,16 @@ folder <code>sources</code>."""
 
 ALL = """/* {name}: the one file to compile.
 
-With FMI2_FUNCTION_PREFIX defined as {name}_ it can be linked with other FMUs, without it makes a shared library. */
+With FMI{fmi}_FUNCTION_PREFIX defined as {name}_ it can be linked with other FMUs, without it makes a shared library. */
 {included}"""
 
-MOVING = """An input is held over a communication step, or moves at the rate that fmi2SetRealInputDerivatives
-gave it for that step."""
+MOVING = {
+    2: """An input is held over a communication step, or moves at the rate that fmi2SetRealInputDerivatives
+gave it for that step.""",
+    3: """An input moves over a communication step at the rate that is set for it (der(...)), which is 0
+until it is set.""",
+}
+"""How the inputs of continuous blocks are taken in each FMI."""
 
 
 EXCHANGE = {"canNotUseMemoryManagementFunctions": "false", "providesDirectionalDerivative": "true"}
@@ -64,55 +75,67 @@ EXCHANGE = {"canNotUseMemoryManagementFunctions": "false", "providesDirectionalD
 
 
 def build_native(
-    fmu: Fmu, folder: Path, binaries: Callable[[str, Mapping[str, bytes]], dict[str, bytes]] = host_binaries
+    fmu: Fmu,
+    folder: Path,
+    binaries: Callable[[str, Mapping[str, bytes], int], dict[str, bytes]] = host_binaries,
+    fmi: int = 2,
 ) -> Path:
     """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path.
 
     Args:
         binaries: compiles; `host_binaries` or `all_binaries` of .compiler.
+        fmi: 2 for FMI 2.0, 3 for FMI 3.0.
 
     Raises:
         CompilerError: there is no compiler, or it refuses the source.
     """
-    sources = c_sources(fmu)
-    kind = native_kind(fmu)
-    guid = guid_of(model_description(fmu, kind, ""), sources)
-    sources["variables.h"] = variables_header(fmu, guid).encode()
+    sources, kind, describe = c_sources(fmu, fmi), native_kind(fmu, fmi), DESCRIPTIONS[fmi]
+    guid = guid_of(describe(fmu, kind, ""), sources)
+    sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
     packed = {f"sources/{name}": content for name, content in sources.items()}
-    packed |= binaries(fmu.name, sources) | documentation(fmu, kind) | origin_entry(fmu)
-    packed["modelDescription.xml"] = model_description(fmu, kind, guid)
+    packed |= binaries(fmu.name, sources, fmi) | documentation(fmu, kind) | origin_entry(fmu)
+    packed["modelDescription.xml"] = describe(fmu, kind, guid)
+    if fmi == 3:
+        packed["sources/buildDescription.xml"] = build_description(fmu, kind)
     target = folder / f"{fmu.name}.fmu"
     write_archive(packed, target)
     return target
 
 
-def c_sources(fmu: Fmu) -> dict[str, bytes]:
+def c_sources(fmu: Fmu, fmi: int = 2) -> dict[str, bytes]:
     """All C files of an FMU by name, with an empty GUID."""
-    names = FOR_ALL + (FOR_CONTINUOUS if isinstance(fmu.block, ContinuousBlock) else FOR_SAMPLED)
+    continuous = isinstance(fmu.block, ContinuousBlock)
+    names = ADAPTERS[fmi] + FOR_ALL + (FOR_CONTINUOUS + FOR_EXCHANGE[fmi] if continuous else FOR_SAMPLED)
     sources = {name: (C_FILES / name).read_bytes() for name in names}
-    sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob("fmi2*.h")}
-    generated = block_sources(fmu) | {"variables.h": variables_header(fmu, ""), "shared.h": shared_header()}
+    sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob(f"fmi{fmi}*.h")}
+    generated = block_sources(fmu) | {"variables.h": variables_header(fmu, "", fmi), "shared.h": shared_header()}
     if isinstance(fmu.block, ContinuousBlock):
         generated |= {"dop853.h": step_header(), "rodas.h": rosenbrock_header()}
     sources |= {name: text.encode() for name, text in generated.items()}
     included = "".join(f'#include "{name}"\n' for name in sorted(sources) if name.endswith(".c"))
-    return sources | {WHOLE: ALL.format(name=fmu.name, included=included).encode()}
+    return sources | {WHOLE: ALL.format(name=fmu.name, fmi=fmi, included=included).encode()}
 
 
-def native_kind(fmu: Fmu) -> BuildKind:
+def native_kind(fmu: Fmu, fmi: int = 2) -> BuildKind:
     """What the native build of an FMU says of itself; rates of change are known of continuous blocks."""
     continuous = isinstance(fmu.block, ContinuousBlock)
+    differentiable = "true" if continuous else "false"
+    of_version = {
+        2: {
+            "canInterpolateInputs": differentiable,
+            "canNotUseMemoryManagementFunctions": "false",
+            "providesDirectionalDerivative": differentiable,
+        },
+        3: {"providesDirectionalDerivatives": differentiable},
+    }
     return BuildKind(
         tool=f"CasADi {version('casadi')}",
-        capabilities={
-            "canInterpolateInputs": "true" if continuous else "false",
-            "maxOutputDerivativeOrder": "1" if continuous else "0",
-            "canNotUseMemoryManagementFunctions": "false",
-            "providesDirectionalDerivative": "true" if continuous else "false",
-        },
-        model_exchange=EXCHANGE if continuous else {},
+        capabilities={"maxOutputDerivativeOrder": "1" if continuous else "0"} | of_version[fmi],
+        model_exchange=EXCHANGE if continuous and fmi == 2 else {},
         log_categories=LOG_CATEGORIES,
         needs=NEEDS,
         source_files=(WHOLE,),
-        **({"inputs": MOVING} if continuous else {}),
+        version=f"{fmi}.0",
+        picture={2: "model.png", 3: "documentation/diagram.png"}[fmi],
+        **({"inputs": MOVING[fmi]} if continuous else {}),
     )

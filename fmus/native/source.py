@@ -4,10 +4,11 @@ import re
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+from ...models.block.declaration import Enumeration
 from ...models.block.explicit import small_sizes
 from ...models.block.types import SampledBlock
 from ..description.states import states
-from ..description.variables import Variable, interface
+from ..description.variables import Variable, interface, time_and_rates
 from ..fmu import Fmu
 from .arithmetic import TracedGraph
 from .records import IN_FMU, RECORDS, Names, paths, records_of, structs
@@ -202,9 +203,10 @@ static const char *const model_name = "{name}";
 static const char *const model_guid = "{guid}";
 static const int copes_with_bad_input = {copes}; /* inputs are not refused */
 static const int gives_bad_output = {bad_output}; /* NaN may be what it is for */
-static const int allows_model_exchange = {exchanges};
+enum {{ allows_model_exchange = {exchanges} }};
 static const unsigned variable_count = {count};
 static const unsigned reference_count = {references}; /* behind the variables come states and their derivatives */
+static const unsigned last_reference = {last}; /* of all, also of those that the adapter has */
 
 static const Variable variables[{references}] = {{
 {rows}
@@ -224,11 +226,12 @@ static const char *const state_names[] = {{
 FIELD = {"input": "u", "output": "y", "parameter": "p"}
 
 
-def variables_header(fmu: Fmu, guid: str) -> str:
-    """variables.h: name, unit, place, bounds and start value of every variable, by value reference."""
+def variables_header(fmu: Fmu, guid: str, fmi: int = 2) -> str:
+    """variables.h: name, unit, place, bounds and start value of every variable, by value reference; for that FMI."""
     block, listed, records = fmu.block, interface(fmu.block), records_of(fmu.block)
-    exchanged = states(fmu.block)
-    fields = fmu.block.State._fields * 2
+    exchanged = states(block) if fmi == 2 else ()
+    fields = block.State._fields * 2 if exchanged else ()
+    all_listed = listed + (time_and_rates(block) if fmi == 3 else exchanged)
     return VARIABLES.format(
         name=fmu.name,
         module=fmu.module,
@@ -238,7 +241,8 @@ def variables_header(fmu: Fmu, guid: str) -> str:
         exchanges=int(bool(exchanged)),
         count=len(listed),
         references=len(listed) + len(exchanged),
-        rows="\n".join([*map(_row, listed), *map(_state_row, exchanged, fields)]),
+        last=all_listed[-1].reference,
+        rows="\n".join([*(_row(variable, fmi) for variable in listed), *map(_state_row, exchanged, fields)]),
         inputs=_names(records["u"]),
         states=_names(records["x"]),
     )
@@ -249,21 +253,24 @@ def _names(record: Any) -> str:
     return "\n".join(f'    "{path}",' for path in list(paths("", record)) or [".none"])
 
 
-def _row(variable: Variable) -> str:
+def _row(variable: Variable, fmi: int) -> str:
     place = f"offsetof(Values, {FIELD[variable.causality]}.{variable.name})"
-    return _written(variable, variable.causality.upper(), place)
+    is_enumeration = fmi == 3 and isinstance(variable.declaration, Enumeration)
+    return _written(
+        variable, "ENUMERATION" if is_enumeration else variable.fmi_type.upper(), variable.causality.upper(), place
+    )
 
 
 def _state_row(variable: Variable, field: str) -> str:
     kind = "STATE" if variable.state is None else "RATE"
-    return _written(variable, kind, f"offsetof(State, {field})")
+    return _written(variable, "REAL", kind, f"offsetof(State, {field})")
 
 
-def _written(variable: Variable, kind: str, place: str) -> str:
+def _written(variable: Variable, fmi_type: str, kind: str, place: str) -> str:
     low, high = variable.bounds()
     start = 0.0 if variable.start is None else variable.start
     numbers = ", ".join(_number(value) for value in (low, high, start))
-    kinds = f"{variable.fmi_type.upper()}, {kind}"
+    kinds = f"{fmi_type}, {kind}"
     unit = f" {variable.unit}" if variable.unit else ""
     return f'    {{"{variable.name}", "{unit}", "{variable.allowed()}", {kinds}, {place}, {numbers}}},'
 

@@ -9,14 +9,10 @@ host and sees to it that calls come in an order that makes sense; what they do i
 typedef struct {
     Instance instance;
     fmi2CallbackFunctions callbacks;
-    int logged[ERROR + 1]; /* by status: whether the host is told */
     char name[];
 } Component;
 
-enum {
-    RUNNING = STEPPING | EVENT | CONTINUOUS_TIME,
-    ANY_MODE = INSTANTIATED | INITIALIZATION | RUNNING | TERMINATED
-};
+static const char *const type_names[] = {"Real", "Integer", "Boolean", "String", "Integer"};
 
 const char *fmi2GetTypesPlatform(void)
 {
@@ -31,17 +27,6 @@ const char *fmi2GetVersion(void)
 fmi2Status in_fmi(Status status)
 {
     return status == OK ? fmi2OK : status == DISCARD ? fmi2Discard : fmi2Error;
-}
-
-Instance *ready(fmi2Component c, unsigned modes, int complete, const char *function)
-{
-    Component *component = c;
-    if (!component || !in_mode(&component->instance, modes, function))
-        return NULL;
-    if (complete)
-        return &component->instance;
-    refuse(&component->instance, "%s: an argument is NULL", function);
-    return NULL;
 }
 
 Instance *ready_for(fmi2Type type, fmi2Component c, unsigned modes, int complete, const char *function)
@@ -59,8 +44,6 @@ static Instance *stepping(fmi2Component c, unsigned modes, int complete, const c
     return ready_for(fmi2CoSimulation, c, modes, complete, function);
 }
 
-static const char *const categories_of[] = {[OK] = "", [DISCARD] = LOG_DISCARD, [ERROR] = LOG_ERROR};
-
 /* Calls the logger, which takes the message for a format. */
 static void say(const fmi2CallbackFunctions *callbacks, fmi2String name, Status status, const char *message)
 {
@@ -71,43 +54,20 @@ static void say(const fmi2CallbackFunctions *callbacks, fmi2String name, Status 
         if (*message == '%')
             *at++ = '%';
     *at = '\0';
-    callbacks->logger(callbacks->componentEnvironment, name, in_fmi(status), categories_of[status], escaped);
+    callbacks->logger(callbacks->componentEnvironment, name, in_fmi(status), category_of(status), escaped);
 }
 
 static void log_for(void *listener, Status status, const char *message)
 {
     const Component *component = listener;
-    if (component->logged[status])
-        say(&component->callbacks, component->name, status, message);
-}
-
-/* The status whose messages are of a category; OK if there is none. */
-static Status status_of(fmi2String category)
-{
-    for (Status status = DISCARD; category && status <= ERROR; status++)
-        if (strcmp(category, categories_of[status]) == 0)
-            return status;
-    return OK;
+    say(&component->callbacks, component->name, status, message);
 }
 
 fmi2Status fmi2SetDebugLogging(
     fmi2Component c, fmi2Boolean loggingOn, size_t nCategories, const fmi2String categories[])
 {
-    Component *component = c;
-    const Instance *instance = ready(c, ANY_MODE, nCategories == 0 || categories, __func__);
-    if (!instance)
-        return fmi2Error;
-    for (size_t k = 0; k < nCategories; k++)
-        if (status_of(categories[k]) == OK)
-            return in_fmi(refuse(
-                instance,
-                "log category %s is unknown; there are " LOG_ERROR " and " LOG_DISCARD,
-                categories[k] ? categories[k] : "NULL"));
-    for (size_t k = 0; k < nCategories; k++)
-        component->logged[status_of(categories[k])] = loggingOn;
-    if (nCategories == 0)
-        component->logged[DISCARD] = component->logged[ERROR] = loggingOn;
-    return fmi2OK;
+    Instance *instance = ready(c, ANY_MODE, nCategories == 0 || categories, __func__);
+    return instance ? in_fmi(set_logging(instance, loggingOn, nCategories, categories)) : fmi2Error;
 }
 
 /* Why there cannot be such an instance; NULL if there can. */
@@ -143,11 +103,11 @@ fmi2Component fmi2Instantiate(
         say(functions, instanceName ? instanceName : "", ERROR, why ? why : "fmi2Instantiate: no memory");
         return NULL;
     }
-    const Host host = {functions->allocateMemory, log_for, component};
+    const Host host = {functions->allocateMemory, log_for, component, {0}};
     component->instance.host = host;
     component->instance.exchanges = fmuType == fmi2ModelExchange;
     component->callbacks = *functions;
-    component->logged[DISCARD] = component->logged[ERROR] = loggingOn;
+    set_logging(&component->instance, loggingOn, 0, NULL);
     strcpy(component->name, instanceName);
     renew(&component->instance);
     return component;
@@ -191,6 +151,16 @@ CHANGE(fmi2ExitInitializationMode, INITIALIZATION, leave_initialization(instance
 CHANGE(fmi2Terminate, RUNNING, instance->memory.mode = TERMINATED)
 CHANGE(fmi2Reset, ANY_MODE, renew(instance))
 
+/* FMI 2.0 lets an input move for one step, and holds it from when it is set. */
+static Status set_held(Instance *instance, Type type, const Reference references[], size_t count, const void *values)
+{
+    const Status status = set_values(instance, type, references, count, values);
+    for (size_t k = 0; status == OK && k < count; k++)
+        if (variables[references[k]].causality == INPUT)
+            *rate_of(&instance->memory.du, &variables[references[k]]) = 0.0;
+    return status;
+}
+
 #define VALUES(Type, TYPE)                                                                                             \
     fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[])           \
     {                                                                                                                  \
@@ -200,7 +170,7 @@ CHANGE(fmi2Reset, ANY_MODE, renew(instance))
     fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##Type value[])     \
     {                                                                                                                  \
         Instance *instance = ready(c, ANY_MODE, 1, __func__);                                                          \
-        return instance ? in_fmi(set_values(instance, TYPE, vr, nvr, value)) : fmi2Error;                              \
+        return instance ? in_fmi(set_held(instance, TYPE, vr, nvr, value)) : fmi2Error;                                \
     }
 
 VALUES(Real, REAL)
@@ -273,17 +243,6 @@ fmi2Status fmi2GetDirectionalDerivative(
     return in_fmi(get_directional_derivative(instance, &direction, dvUnknown));
 }
 
-/* Whether all orders of derivatives are 1; else they are refused. */
-static int orders_are_one(const Instance *instance, const fmi2Integer order[], size_t count)
-{
-    for (size_t k = 0; k < count; k++)
-        if (order[k] != 1) {
-            refuse(instance, "derivative of order %d is refused; allowed is 1", order[k]);
-            return 0;
-        }
-    return 1;
-}
-
 fmi2Status fmi2SetRealInputDerivatives(
     fmi2Component c,
     const fmi2ValueReference vr[],
@@ -317,8 +276,14 @@ fmi2Status fmi2DoStep(
     fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
     (void)noSetFMUStatePriorToCurrentPoint;
+    static const Input held;
     Instance *instance = stepping(c, STEPPING, 1, __func__);
-    return instance ? in_fmi(make_step(instance, currentCommunicationPoint, communicationStepSize)) : fmi2Error;
+    if (!instance)
+        return fmi2Error;
+    const Status status = make_step(instance, currentCommunicationPoint, communicationStepSize);
+    if (status == OK)
+        instance->memory.du = held;
+    return in_fmi(status);
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c)

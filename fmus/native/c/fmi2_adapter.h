@@ -14,10 +14,7 @@
 
 static fmi2Status in_fmi(Status status);
 
-/* The instance, if there is one in one of the modes and the call is complete; else NULL. */
-static Instance *ready(fmi2Component c, unsigned modes, int complete, const char *function);
-
-/* The same for functions of model exchange, or of co-simulation, alone. */
+/* `ready` for functions of model exchange, or of co-simulation, alone. */
 static Instance *ready_for(fmi2Type type, fmi2Component c, unsigned modes, int complete, const char *function);
 
 #endif

@@ -22,12 +22,13 @@ typedef struct {
     void *(*allocate)(size_t count, size_t size); /* NULL if there is no memory */
     void (*log)(void *listener, Status status, const char *message);
     void *listener;
+    int logged[ERROR + 1]; /* by status: whether it wants to be told */
 } Host;
 
 /* All that a saved state holds; whole multiples of 8 bytes, so that it has no gaps. */
 typedef struct {
     Values values;     /* the outputs in it are those of the present when outputs_known */
-    Input du;          /* rates of change of the inputs during the next step; 0 if they are held */
+    Input du;          /* rates of change of the inputs during a step; 0 if they are held */
     int64_t sides;     /* in model exchange: bit n is set where event indicator n counts as above its zero */
     State x;           /* from the end of initialization mode on */
     State coming;      /* of a sampled block: what its last tick computed */
@@ -76,6 +77,19 @@ typedef struct {
 #else
 #define LIKE_PRINTF
 #endif
+
+/* the adapter */
+static const char *const type_names[ENUMERATION + 1]; /* what its standard calls them */
+
+/* calls.c */
+enum {
+    RUNNING = STEPPING | EVENT | CONTINUOUS_TIME,
+    ANY_MODE = INSTANTIATED | INITIALIZATION | RUNNING | TERMINATED
+};
+static Instance *ready(void *component, unsigned modes, int complete, const char *function); /* NULL if refused */
+static const char *category_of(Status status); /* of messages */
+static int orders_are_one(const Instance *instance, const int orders[], size_t count); /* of derivatives; else refused */
+static Status set_logging(Instance *instance, int on, size_t count, const char *const categories[]);
 
 /* messages.c */
 enum { NUMBER_LENGTH = 40, MESSAGE_LENGTH = 1000 };

@@ -13,6 +13,8 @@ enum { DIGITS = 17 };
 static void tell(const Instance *instance, Status status, const char *format, va_list arguments)
 {
     char message[MESSAGE_LENGTH];
+    if (!instance->host.logged[status])
+        return;
     vsnprintf(message, sizeof message, format, arguments);
     instance->host.log(instance->host.listener, status, message);
 }

@@ -86,11 +86,8 @@ static void arrive(Memory *memory, const Next *next, double time)
         memory->x = *next->x;
     if (next->coming != &memory->coming)
         memory->coming = *next->coming;
-    if (next->u != &memory->values.u) {
-        static const Input still;
+    if (next->u != &memory->values.u)
         memory->values.u = *next->u;
-        memory->du = still;
-    }
     memory->ticks = next->ticks;
     memory->time = time;
 }

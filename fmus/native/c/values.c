@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const type_names[] = {"Real", "Integer", "Boolean", "String"};
-
 double *place_of(Values *values, const Variable *variable)
 {
     return (double *)(void *)((char *)values + variable->offset);
@@ -27,7 +25,7 @@ void set_start_values(Memory *memory)
 const Variable *variable_of(const Instance *instance, Reference reference, Type type)
 {
     if (reference >= reference_count) {
-        refuse(instance, UNKNOWN_REFERENCE(reference, model_name, reference_count - 1));
+        refuse(instance, UNKNOWN_REFERENCE(reference, model_name, last_reference));
         return NULL;
     }
     const Variable *variable = &variables[reference];
@@ -181,10 +179,7 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
         const Variable *variable = &variables[references[k]];
         const double value = value_at(type, values, k);
         *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : value;
-        if (variable->causality == INPUT)
-            *rate_of(&memory->du, variable) = 0.0;
-        else
-            parameters_set = 1;
+        parameters_set |= variable->causality != INPUT;
     }
     if (parameters_set)
         compute_terms(&memory->values.p);

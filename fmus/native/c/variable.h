@@ -12,7 +12,7 @@ typedef struct {
     Parameters p;
 } Values;
 
-typedef enum { REAL, INTEGER, BOOLEAN, STRING } Type;
+typedef enum { REAL, INTEGER, BOOLEAN, STRING, ENUMERATION } Type;
 
 typedef enum { INPUT, OUTPUT, PARAMETER, STATE, RATE } Causality; /* RATE: the derivative of a state */
 

@@ -1,0 +1,221 @@
+/* The functions of FMI 3.0 that this FMU does not offer, which every FMU has nevertheless; the rest of fmi3.c. */
+#include "fmi3Functions.h"
+#include "instance.h"
+
+#ifdef __GNUC__ /* a call that is refused is not looked at */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
+static fmi3Status not_offered(fmi3Instance c, const char *function, const char *what)
+{
+    const Instance *instance = ready(c, ANY_MODE, 1, function);
+    if (instance)
+        refuse(instance, "%s is refused; the FMU has no %s", function, what);
+    return fmi3Error;
+}
+
+/* There are no variables of the type. */
+static fmi3Status no_variable(
+    fmi3Instance c, const fmi3ValueReference references[], size_t count, const char *function, const char *type)
+{
+    const Instance *instance = ready(c, ANY_MODE, count == 0 || references, function);
+    if (!instance)
+        return fmi3Error;
+    if (count == 0)
+        return fmi3OK;
+    if (references[0] >= variable_count)
+        return in_fmi(refuse(instance, UNKNOWN_REFERENCE(references[0], model_name, last_reference)));
+    const Variable *variable = &variables[references[0]];
+    return in_fmi(refuse(instance, WRONG_TYPE(variable->name, type_names[variable->type], type)));
+}
+
+#define NOT_OFFERED(what, function, arguments)       \
+    fmi3Status function arguments                    \
+    {                                                \
+        return not_offered(c, __func__, what);       \
+    }
+
+#define NO_VARIABLE(Type)                                                                                           \
+    fmi3Status fmi3Get##Type(                                                                                       \
+        fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3##Type values[], size_t nValues)             \
+    {                                                                                                               \
+        return no_variable(c, vr, nvr, __func__, #Type);                                                            \
+    }                                                                                                               \
+    fmi3Status fmi3Set##Type(                                                                                       \
+        fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3##Type values[], size_t nValues)       \
+    {                                                                                                               \
+        return no_variable(c, vr, nvr, __func__, #Type);                                                            \
+    }
+
+NO_VARIABLE(Float32)
+NO_VARIABLE(Int8)
+NO_VARIABLE(UInt8)
+NO_VARIABLE(Int16)
+NO_VARIABLE(UInt16)
+NO_VARIABLE(UInt32)
+NO_VARIABLE(UInt64)
+NO_VARIABLE(String)
+
+fmi3Status fmi3GetBinary(
+    fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, size_t valueSizes[], fmi3Binary values[],
+    size_t nValues)
+{
+    return no_variable(c, vr, nvr, __func__, "Binary");
+}
+
+fmi3Status fmi3SetBinary(
+    fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const size_t valueSizes[], const fmi3Binary values[],
+    size_t nValues)
+{
+    return no_variable(c, vr, nvr, __func__, "Binary");
+}
+
+fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Clock values[])
+{
+    return no_variable(c, vr, nvr, __func__, "Clock");
+}
+
+fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Clock values[])
+{
+    return no_variable(c, vr, nvr, __func__, "Clock");
+}
+
+NOT_OFFERED("event mode", fmi3EnterEventMode, (fmi3Instance c))
+NOT_OFFERED("event mode", fmi3EnterStepMode, (fmi3Instance c))
+NOT_OFFERED(
+    "event mode",
+    fmi3UpdateDiscreteStates,
+    (fmi3Instance c, fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
+     fmi3Boolean *nominalsOfContinuousStatesChanged, fmi3Boolean *valuesOfContinuousStatesChanged,
+     fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime))
+NOT_OFFERED("event mode", fmi3EvaluateDiscreteStates, (fmi3Instance c))
+
+NOT_OFFERED(
+    "clocks",
+    fmi3GetIntervalDecimal,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 intervals[],
+     fmi3IntervalQualifier qualifiers[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3GetIntervalFraction,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+     fmi3IntervalQualifier qualifiers[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3GetShiftDecimal,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 shifts[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3GetShiftFraction,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3UInt64 counters[], fmi3UInt64 resolutions[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3SetIntervalDecimal,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 intervals[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3SetIntervalFraction,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3UInt64 counters[],
+     const fmi3UInt64 resolutions[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3SetShiftDecimal,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 shifts[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3SetShiftFraction,
+    (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3UInt64 counters[],
+     const fmi3UInt64 resolutions[]))
+NOT_OFFERED(
+    "clocks",
+    fmi3ActivateModelPartition,
+    (fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime))
+
+NOT_OFFERED("structural parameters", fmi3EnterConfigurationMode, (fmi3Instance c))
+NOT_OFFERED("structural parameters", fmi3ExitConfigurationMode, (fmi3Instance c))
+
+NOT_OFFERED(
+    "adjoint derivatives",
+    fmi3GetAdjointDerivative,
+    (fmi3Instance c, const fmi3ValueReference unknowns[], size_t nUnknowns, const fmi3ValueReference knowns[],
+     size_t nKnowns, const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity))
+
+NOT_OFFERED(
+    "array variables",
+    fmi3GetNumberOfVariableDependencies,
+    (fmi3Instance c, fmi3ValueReference valueReference, size_t *nDependencies))
+NOT_OFFERED(
+    "array variables",
+    fmi3GetVariableDependencies,
+    (fmi3Instance c, fmi3ValueReference dependent, size_t elementIndicesOfDependent[],
+     fmi3ValueReference independents[], size_t elementIndicesOfIndependents[],
+     fmi3DependencyKind dependencyKinds[], size_t nDependencies))
+
+NOT_OFFERED("model exchange", fmi3EnterContinuousTimeMode, (fmi3Instance c))
+NOT_OFFERED(
+    "model exchange",
+    fmi3CompletedIntegratorStep,
+    (fmi3Instance c, fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *enterEventMode,
+     fmi3Boolean *terminateSimulation))
+NOT_OFFERED("model exchange", fmi3SetTime, (fmi3Instance c, fmi3Float64 time))
+NOT_OFFERED(
+    "model exchange",
+    fmi3SetContinuousStates,
+    (fmi3Instance c, const fmi3Float64 continuousStates[], size_t nContinuousStates))
+NOT_OFFERED(
+    "model exchange",
+    fmi3GetContinuousStateDerivatives,
+    (fmi3Instance c, fmi3Float64 derivatives[], size_t nContinuousStates))
+NOT_OFFERED(
+    "model exchange",
+    fmi3GetEventIndicators,
+    (fmi3Instance c, fmi3Float64 eventIndicators[], size_t nEventIndicators))
+NOT_OFFERED(
+    "model exchange",
+    fmi3GetContinuousStates,
+    (fmi3Instance c, fmi3Float64 continuousStates[], size_t nContinuousStates))
+NOT_OFFERED(
+    "model exchange",
+    fmi3GetNominalsOfContinuousStates,
+    (fmi3Instance c, fmi3Float64 nominals[], size_t nContinuousStates))
+NOT_OFFERED("model exchange", fmi3GetNumberOfEventIndicators, (fmi3Instance c, size_t *nEventIndicators))
+NOT_OFFERED("model exchange", fmi3GetNumberOfContinuousStates, (fmi3Instance c, size_t *nContinuousStates))
+
+static fmi3Instance no_instance(fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, const char *message)
+{
+    if (log)
+        log(environment, fmi3Error, category_of(ERROR), message);
+    return NULL;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(
+    fmi3String instanceName,
+    fmi3String instantiationToken,
+    fmi3String resourcePath,
+    fmi3Boolean visible,
+    fmi3Boolean loggingOn,
+    fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage)
+{
+    return no_instance(instanceEnvironment, logMessage, "fmi3InstantiateModelExchange is refused; the FMU has no model exchange");
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(
+    fmi3String instanceName,
+    fmi3String instantiationToken,
+    fmi3String resourcePath,
+    fmi3Boolean visible,
+    fmi3Boolean loggingOn,
+    fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage,
+    fmi3ClockUpdateCallback clockUpdate,
+    fmi3LockPreemptionCallback lockPreemption,
+    fmi3UnlockPreemptionCallback unlockPreemption)
+{
+    return no_instance(instanceEnvironment, logMessage, "fmi3InstantiateScheduledExecution is refused; the FMU has no scheduled execution");
+}
+
+#ifdef __GNUC__
+#pragma GCC diagnostic pop
+#endif
