@@ -1,5 +1,5 @@
-"""Checks any FMU of FMI 2.0: its archive, its model description (with fmpy, and what fmpy does
-not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
+"""Checks any FMU of FMI 2.0, or of FMI 3.0 for co-simulation: its archive, its model description (with fmpy, and
+what fmpy does not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
 reset, several instances, saved states), the latter in a process of its own.
 
 A finding is an error (hosts fail), a warning (tools complain) or a note (people miss something).

@@ -3,6 +3,11 @@
 from ctypes import Structure, c_double, c_int32, c_int64
 from mmap import mmap
 
+TYPES_OF_FMI3 = (
+    *("Float32", "Float64", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64"),
+    *("Boolean", "String", "Binary", "Clock"),
+)
+
 FUNCTIONS = (
     "loading its binary",
     "fmi2Instantiate",
@@ -26,6 +31,21 @@ FUNCTIONS = (
     *("fmi2CompletedIntegratorStep", "fmi2SetTime", "fmi2SetContinuousStates"),
     *(f"fmi2Get{what}" for what in ("Derivatives", "EventIndicators", "ContinuousStates")),
     "fmi2GetNominalsOfContinuousStates",
+    "fmi3InstantiateCoSimulation",
+    "fmi3EnterInitializationMode",
+    "fmi3ExitInitializationMode",
+    "fmi3DoStep",
+    *(f"fmi3{access}{kind}" for access in ("Get", "Set") for kind in TYPES_OF_FMI3),
+    "fmi3GetOutputDerivatives",
+    "fmi3GetFMUState",
+    "fmi3SetFMUState",
+    "fmi3FreeFMUState",
+    "fmi3SerializedFMUStateSize",
+    "fmi3SerializeFMUState",
+    "fmi3DeserializeFMUState",
+    "fmi3Terminate",
+    "fmi3Reset",
+    "fmi3FreeInstance",
 )
 """What is called, numbered from 1."""
 

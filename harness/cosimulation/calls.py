@@ -5,18 +5,19 @@ gathered from it. Every call returns its FMI status.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from ctypes import c_double, c_int, c_size_t, c_uint, sizeof
+from ctypes import byref, c_bool, c_double, c_int, c_size_t, c_uint, sizeof
 from functools import partial
 from itertools import pairwise
 from math import nan
 from operator import itemgetter
 from typing import Any, NamedTuple
 
+from fmpy.fmi2 import fmi2Discard, fmi2OK, fmi2Warning
 from fmpy.model_description import ModelVariable
 
 from .input_lines import Line, slope, start
 from .instance import Instance
-from .interface import type_of
+from .interface import ACCESSES, Access, type_of
 from .row_layout import KINDS, Layout
 
 
@@ -26,29 +27,34 @@ class Call(NamedTuple):
     Attributes:
         run: makes the call.
         changed: takes over the values to be set and tells whether they differ from those before; None: nothing is set.
-        arguments: of the FMI function after the component, as ctypes objects.
+        references: of the variables whose values are set or got, as a ctypes array.
+        values: those that are set or got, as a ctypes array.
+        orders: of derivatives, as a ctypes array; None: the values are none.
+        place: in the row, to which values are brought that do not travel as they stand there; None: there are none.
+        is_number: the values are real numbers that are got and must be finite.
         sources: of the values that are set, in bytes from the beginning of the row.
         factors: what the FMU's values are multiplied by to be those of the row; empty: they are the same.
         names: of the variables whose values are set or got.
         lines: along which inputs are set to move; once they do, what was sent before is forgotten.
+        slopes: of these the slopes are set, not the starts.
         step_size: in s, of calls that depend on it.
     """
 
     instance: Instance
     function: str
     run: Callable[[], int]
-    arguments: tuple[Any, ...]
     changed: Callable[[], bool] | None = None
+    references: Any = None
+    values: Any = None
+    orders: Any = None
+    place: Any = None
+    is_number: bool = False
     sources: Sequence[int] = ()
     factors: Sequence[float] = ()
     names: Sequence[str] = ()
     lines: Sequence[Line] = ()
+    slopes: bool = False
     step_size: c_double | None = None
-
-    @property
-    def values(self) -> Sequence[Any]:
-        """Those that are set or got."""
-        return self.arguments[-1]
 
 
 def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout: Layout) -> list[Call]:
@@ -59,11 +65,11 @@ def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout
     """
     calls: list[Call] = []
     fed = [v for v in instance.interface.of_causality("input") if f"{instance.name}.{v.name}" in sources]
-    for kind, variables in _by_type(fed):
+    for access, variables in instance.interface.by_access(fed).items():
+        kind = KINDS[type_of(variables[0])]
         offsets = [layout.offset(sources[f"{instance.name}.{v.name}"]) for v in variables]
-        buffer = (KINDS[kind].ctype * len(variables))()
-        call = _access(instance, f"fmi2Set{kind}", variables, buffer)
-        changed = _change(memoryview(row).cast(KINDS[kind].code), offsets, buffer, call.factors)
+        call = _access(instance, "Set", access, variables, (access.ctype * len(variables))())
+        changed = _change(memoryview(row).cast(kind.code), offsets, call.values, call.factors)
         calls.append(call._replace(changed=changed, sources=offsets))
     return calls
 
@@ -90,13 +96,17 @@ def _change(
 def receives(instance: Instance, row: bytearray, layout: Layout, outputs: Collection[str]) -> list[Call]:
     """Calls that read outputs into the row, one for each piece of it."""
     calls: list[Call] = []
-    for kind, variables in _by_type([v for v in instance.interface.of_causality("output") if v.name in outputs]):
-        size = sizeof(KINDS[kind].ctype)
+    read = [v for v in instance.interface.of_causality("output") if v.name in outputs]
+    for access, variables in instance.interface.by_access(read).items():
+        ctype = KINDS[type_of(variables[0])].ctype
+        size = sizeof(ctype)
         offsets = [layout.offset(f"{instance.name}.{v.name}") for v in variables]
         starts = [n for n, offset in enumerate(offsets) if n == 0 or offset != offsets[n - 1] + size]
         for first, end in pairwise([*starts, len(variables)]):
-            place = (KINDS[kind].ctype * (end - first)).from_buffer(row, offsets[first])
-            calls.append(_converted(_access(instance, f"fmi2Get{kind}", variables[first:end], place)))
+            place = (ctype * (end - first)).from_buffer(row, offsets[first])
+            values = place if access.ctype is ctype else (access.ctype * (end - first))()
+            call = _got(_access(instance, "Get", access, variables[first:end], values))
+            calls.append(call if values is place else _brought(call, place))
     return calls
 
 
@@ -104,15 +114,23 @@ def receives_rates(instance: Instance, row: bytearray, outputs: Sequence[str], p
     """The call that reads output derivatives into the memory behind the row, from that byte on."""
     variables = [instance.interface.variables[name] for name in outputs]
     values = (c_double * len(variables)).from_buffer(row, place)
-    return _converted(_access(instance, "fmi2GetRealOutputDerivatives", variables, values, _first_order(variables)))
+    function = {2: "fmi2GetRealOutputDerivatives", 3: "fmi3GetOutputDerivatives"}[instance.interface.fmi]
+    references = [v.valueReference for v in variables]
+    return _got(_with_units(_call(instance, function, references, values, _first_order(variables)), variables))
 
 
 def moves(instance: Instance, inputs: Sequence[str], lines: Sequence[Line], step_size: c_double) -> list[Call]:
     """Calls that let inputs move along lines during the step, of the size in s at that moment."""
     variables = [instance.interface.variables[name] for name in inputs]
+    interface = instance.interface
+    real = ACCESSES[interface.fmi]["Real"]
     rates, starts = (c_double * len(variables))(), (c_double * len(variables))()
-    move = _access(instance, "fmi2SetRealInputDerivatives", variables, rates, _first_order(variables))
-    begin = _access(instance, "fmi2SetReal", variables, starts)
+    begin = _access(instance, "Set", real, variables, starts)
+    references = [v.valueReference for v in variables]
+    if interface.fmi == 3:
+        move = _call(instance, f"fmi3Set{real.name}", [interface.rates[of] for of in references], rates)
+    else:
+        move = _call(instance, "fmi2SetRealInputDerivatives", references, rates, _first_order(variables))
 
     def run_begin() -> int:
         starts[:] = [start(line, step_size.value) for line in lines]
@@ -125,21 +143,23 @@ def moves(instance: Instance, inputs: Sequence[str], lines: Sequence[Line], step
         return move.run()
 
     kept = {"lines": lines, "step_size": step_size, "factors": ()}
-    calls = [begin._replace(run=run_begin, **kept), move._replace(run=run_move, **kept)]
+    calls = [begin._replace(run=run_begin, **kept), move._replace(run=run_move, slopes=True, **kept)]
     return calls if any(line.after is not None for line in lines) else calls[1:]
 
 
 def sent(call: Call, name: str) -> c_double:
     """Where a call that sets inputs keeps what it has set last."""
-    return c_double.from_buffer(call.arguments[-1], sizeof(c_double) * list(call.names).index(name))
+    return c_double.from_buffer(call.values, sizeof(c_double) * list(call.names).index(name))
 
 
 def _first_order(variables: Sequence[ModelVariable]) -> Any:
     return (c_int * len(variables))(*(1 for _ in variables))
 
 
-def _converted(call: Call) -> Call:
-    return call._replace(run=_converting(call.run, call.arguments[-1], call.factors)) if call.factors else call
+def _got(call: Call) -> Call:
+    """A call that gets values, in the units of the row."""
+    call = call._replace(is_number=call.values._type_ is c_double and not call.instance.interface.any_value)
+    return call._replace(run=_converting(call.run, call.values, call.factors)) if call.factors else call
 
 
 def _converting(get_values: Callable[[], int], place: Any, factors: Sequence[float]) -> Callable[[], int]:
@@ -151,24 +171,54 @@ def _converting(get_values: Callable[[], int], place: Any, factors: Sequence[flo
     return get
 
 
+def _brought(call: Call, place: Any) -> Call:
+    """A call that gets values which then are brought to their place in the row."""
+
+    def get() -> int:
+        status = call.run()
+        place[:] = [int(value) for value in call.values]
+        return status
+
+    return call._replace(run=get, place=place)
+
+
 def advance(instance: Instance, row: bytearray, step_size: c_double) -> Call:
-    """The call that makes one communication step from the time in the row, of the size in s at that moment."""
-    call = _bound(instance, "fmi2DoStep", c_double.from_buffer(row), step_size, c_int(1))
-    return call._replace(step_size=step_size)
+    """The call that makes one communication step from the time in the row, of the size in s at that moment.
+
+    An FMU of FMI 3.0 that then asks for the end of the simulation has discarded the step, as one of FMI 2.0 does.
+    """
+    time = c_double.from_buffer(row)
+    if instance.interface.fmi == 2:
+        step = partial(instance.function("fmi2DoStep"), instance.component, time, step_size, c_int(1))
+        return Call(instance, "fmi2DoStep", step, step_size=step_size)
+    do_step = instance.function("fmi3DoStep")
+    event, ended, early, reached = c_bool(), c_bool(), c_bool(), c_double()
+    answers = byref(event), byref(ended), byref(early), byref(reached)
+    component, keep = instance.component, c_bool(True)
+
+    def run() -> int:
+        status = do_step(component, time, step_size, keep, *answers)
+        return fmi2Discard if ended.value and status in (fmi2OK, fmi2Warning) else status
+
+    return Call(instance, "fmi3DoStep", run, step_size=step_size)
 
 
-def _by_type(variables: Sequence[ModelVariable]) -> list[tuple[str, list[ModelVariable]]]:
-    alike = [(kind, [v for v in variables if type_of(v) == kind]) for kind in KINDS]
-    return [(kind, group) for kind, group in alike if group]
+def _access(instance: Instance, verb: str, access: Access, variables: Sequence[ModelVariable], values: Any) -> Call:
+    function = f"fmi{instance.interface.fmi}{verb}{access.name}"
+    return _with_units(_call(instance, function, [v.valueReference for v in variables], values), variables)
 
 
-def _access(instance: Instance, function: str, variables: Sequence[ModelVariable], place: Any, *orders: Any) -> Call:
-    references = (c_uint * len(variables))(*(v.valueReference for v in variables))
-    factors = [instance.interface.factors.get(v.name, 1.0) for v in variables]
-    call = _bound(instance, function, references, c_size_t(len(variables)), *orders, place)
+def _with_units(call: Call, variables: Sequence[ModelVariable]) -> Call:
+    """The call with the names of the variables and, if their units are not those of the row, with factors."""
     call = call._replace(names=[v.name for v in variables])
+    factors = [call.instance.interface.factors.get(v.name, 1.0) for v in variables]
     return call._replace(factors=factors) if any(factor != 1.0 for factor in factors) else call
 
 
-def _bound(instance: Instance, function: str, *arguments: Any) -> Call:
-    return Call(instance, function, partial(instance.function(function), instance.component, *arguments), arguments)
+def _call(instance: Instance, function: str, references: Sequence[int], values: Any, orders: Any = None) -> Call:
+    array, count = (c_uint * len(references))(*references), c_size_t(len(references))
+    arguments = [array, count, *([] if orders is None else [orders]), values]
+    if instance.interface.fmi == 3:
+        arguments.append(count)
+    run = partial(instance.function(function), instance.component, *arguments)
+    return Call(instance, function, run, references=array, values=values, orders=orders)

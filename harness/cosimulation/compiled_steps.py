@@ -5,7 +5,21 @@ its source has changed since, the loop runs in Python, with the same results.
 """
 
 from collections.abc import Sequence
-from ctypes import CDLL, Structure, addressof, byref, c_char, c_double, c_int32, c_size_t, c_uint32, c_void_p, cast
+from ctypes import (
+    CDLL,
+    Structure,
+    addressof,
+    byref,
+    c_bool,
+    c_char,
+    c_double,
+    c_int32,
+    c_int64,
+    c_size_t,
+    c_uint32,
+    c_void_p,
+    cast,
+)
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -41,6 +55,10 @@ def why_not() -> str | None:
     return f"{spec.origin} is older than {SOURCE.name}; the steps run in Python until the next `make setup`"
 
 
+TYPES = [c_double, c_int32, c_int64, c_bool]
+"""Of values, numbered as in steps.c."""
+
+
 class CompiledLine(Structure):
     """`Line` in steps.c."""
 
@@ -57,6 +75,7 @@ class CompiledCall(Structure):
     """`Call` in steps.c."""
 
     _fields_ = (
+        ("fmi", c_int32),
         ("access", c_void_p),
         ("do_step", c_void_p),
         ("component", c_void_p),
@@ -65,13 +84,16 @@ class CompiledCall(Structure):
         ("values", c_void_p),
         ("sources", c_void_p),
         ("factors", c_void_p),
-        ("real", c_int32),
+        ("type", c_int32),
+        ("is_number", c_int32),
+        ("place", c_void_p),
         ("step_size", c_void_p),
         ("instance", c_int32),
         ("function", c_int32),
         ("rates", c_void_p),
         ("orders", c_void_p),
         ("lines", c_void_p),
+        ("slopes", c_int32),
     )
 
 
@@ -116,22 +138,22 @@ def _address(number: c_double | None) -> int | None:
 
 
 def _record(call: Call, sources: Any, factors: Any, lines: Any) -> CompiledCall:
-    record = CompiledCall(component=call.instance.component)
+    record = CompiledCall(fmi=call.instance.interface.fmi, component=call.instance.component)
     record.instance, record.function = call.instance.number, NUMBERS[call.function]
     function = cast(call.instance.slave.dll[call.function], c_void_p)
     record.step_size = _address(call.step_size)
-    if call.function == "fmi2DoStep":
+    if call.values is None:
         record.do_step = function
         return record
-    references, count, *orders, values = call.arguments
-    if orders:
-        record.rates, record.orders = function, addressof(orders[0])
-    else:
+    if call.orders is None:
         record.access = function
-    record.count, record.references, record.values = count, addressof(references), addressof(values)
+    else:
+        record.rates, record.orders = function, addressof(call.orders)
+    record.count, record.references = len(call.values), addressof(call.references)
+    record.values = addressof(call.values)
     record.sources = addressof(sources) if call.sources else None
-    # only what is real and was got is looked at
-    record.real = values._type_ is c_double and (bool(call.sources) or not call.instance.interface.any_value)
+    record.type, record.is_number = TYPES.index(call.values._type_), call.is_number
+    record.place = None if call.place is None else addressof(call.place)
     record.factors = addressof(factors) if call.factors else None
-    record.lines = addressof(lines) if call.lines else None
+    record.lines, record.slopes = addressof(lines) if call.lines else None, call.slopes
     return record

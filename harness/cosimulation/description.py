@@ -18,6 +18,8 @@ from .limits import USUAL_LIMITS, Limits
 
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 
+VERSION = re.compile(r"2\.0|3\.0(\.[0-9]+)?")
+
 WHOLE = re.compile(r"[+-]?[0-9]{1,19}")
 
 
@@ -31,10 +33,11 @@ def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPP
     """The model description of an FMU.
 
     Args:
-        kinds: of FMUs that are taken.
+        kinds: of FMUs of FMI 2.0 that are taken; those of FMI 3.0 must be for co-simulation.
 
     Raises:
-        WiringError: it is not one of an FMI 2.0 FMU of these kinds, or what a run relies on is missing or is no number.
+        WiringError: it is not one of an FMU of these kinds, of FMI 2.0 or of FMI 3.0 for co-simulation, or what a run
+            relies on is missing or is no number.
     """
     if not path.is_file():
         raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
@@ -43,12 +46,13 @@ def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPP
         root = ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
     except Exception as error:  # what it raises depends on the encoding that the text claims to have
         raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
-    offered = [element for kind in kinds for element in root.findall(kind)]
     version = root.get("fmiVersion")
-    if version == "2.0" and not offered and root.find("ModelExchange") is not None:
-        raise WiringError(f"{path} is for model exchange alone; only FMI 2.0 Co-Simulation runs here")
-    if root.tag != "fmiModelDescription" or version != "2.0" or not offered:
-        raise WiringError(f"{path} is of FMI {plain(version)}; only FMI 2.0 Co-Simulation runs here")
+    offered = [element for kind in (kinds if version == "2.0" else STEPPING) for element in root.findall(kind)]
+    takes = version is not None and VERSION.fullmatch(version) is not None
+    if takes and not offered and root.find("ModelExchange") is not None:
+        raise WiringError(f"{path} is for model exchange alone; only Co-Simulation of FMI 2.0 and 3.0 runs here")
+    if root.tag != "fmiModelDescription" or not takes or not offered:
+        raise WiringError(f"{path} is of FMI {plain(version)}; only Co-Simulation of FMI 2.0 and 3.0 runs here")
     found = list(_problems(root, offered))
     if found:
         more = f" (and {len(found) - 1} more)" if found[1:] else ""
@@ -68,8 +72,10 @@ class _Elements(ElementTree.TreeBuilder):
 
 
 def _problems(root: Element, offered: Iterable[Element]) -> Iterator[str]:
-    if root.get("guid") is None:
-        yield "fmiModelDescription has no guid"
+    fmi2 = root.get("fmiVersion") == "2.0"
+    token = "guid" if fmi2 else "instantiationToken"
+    if root.get(token) is None:
+        yield f"fmiModelDescription has no {token}"
     for kind in offered:
         identifier = kind.get("modelIdentifier")
         if identifier is None:
@@ -78,11 +84,13 @@ def _problems(root: Element, offered: Iterable[Element]) -> Iterator[str]:
             yield f"modelIdentifier is {plain(identifier)!r}; it must be a name as in C"
     for experiment in root.findall("DefaultExperiment"):
         yield from _not_numbers(experiment, "DefaultExperiment", EXPERIMENT)
-    variables = root.findall("ModelVariables/ScalarVariable")
+    variables = root.findall("ModelVariables/ScalarVariable" if fmi2 else "ModelVariables/*")
     for position, variable in enumerate(variables, start=1):
         yield from _of_variable(variable, position)
-    for unknown in root.iterfind("ModelStructure/*/Unknown"):
-        yield from _of_unknown(unknown, len(variables))
+        if variable.get("name"):
+            yield from _of_kind(variable) if fmi2 else _of_fmi3(variable)
+    for unknown in root.iterfind("ModelStructure/*/Unknown" if fmi2 else "ModelStructure/*"):
+        yield from _of_unknown(unknown, len(variables)) if fmi2 else _of_unknown_of_fmi3(unknown, variables)
 
 
 def _of_variable(variable: Element, position: int) -> Iterator[str]:
@@ -94,11 +102,30 @@ def _of_variable(variable: Element, position: int) -> Iterator[str]:
     if variable.get("valueReference") is None:
         yield f"{name} has no valueReference"
     yield from _not_numbers(variable, name, {"valueReference": _reference})
+
+
+def _of_kind(variable: Element) -> Iterator[str]:
+    name = plain(variable.get("name"))
     kinds = [child for child in variable if child.tag in NUMBERS]
     if len(kinds) != 1:
         yield f"{name} has {'more than one type' if kinds else 'no type'}"
     for kind in kinds:
         yield from _not_numbers(kind, name, NUMBERS[kind.tag])
+
+
+def _of_fmi3(variable: Element) -> Iterator[str]:
+    if variable.find("Dimension") is None:  # where a start is one number
+        yield from _not_numbers(variable, plain(variable.get("name")), NUMBERS_OF_FMI3.get(variable.tag, {}))
+
+
+def _of_unknown_of_fmi3(unknown: Element, variables: Sequence[Element]) -> Iterator[str]:
+    known = {variable.get("valueReference") for variable in variables}
+    for attribute in ("valueReference", "dependencies"):
+        for text in unknown.get(attribute, "").split():
+            if text not in known:
+                yield f"{attribute} of {plain(unknown.tag)} in ModelStructure is {plain(text)!r}, which no variable has"
+    if unknown.get("valueReference") is None:
+        yield f"{plain(unknown.tag)} in ModelStructure has no valueReference"
 
 
 def _of_unknown(unknown: Element, count: int) -> Iterator[str]:
@@ -160,3 +187,13 @@ NUMBERS: Mapping[str, Mapping[str, Callable[[str], bool]]] = {
     "String": {},
 }
 """The types of variables, and which of their attributes are numbers."""
+
+
+NUMBERS_OF_FMI3: Mapping[str, Mapping[str, Callable[[str], bool]]] = {
+    "Float64": NUMBERS["Real"],
+    "Float32": NUMBERS["Real"],
+    "Int32": NUMBERS["Integer"],
+    "Enumeration": NUMBERS["Enumeration"],
+    "Boolean": NUMBERS["Boolean"],
+}
+"""The types of variables of FMI 3.0 that a run knows, and Float32."""

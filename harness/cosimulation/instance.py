@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from ctypes import byref, c_int, c_void_p
+from functools import partial
 from itertools import count
 from math import isfinite
 from threading import Lock
@@ -18,11 +19,15 @@ from fmpy.fmi2 import (
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
+    fmi2Discard,
     fmi2Fatal,
     fmi2OK,
+    fmi2Terminated,
     fmi2Warning,
 )
+from fmpy.fmi3 import FMU3Slave
 from fmpy.logging import addLoggerProxy
+from fmpy.model_description import ModelVariable
 
 from ..base.errors import SimulationError, WiringError
 from ..base.plain_text import plain
@@ -40,6 +45,10 @@ _keys = count(1)
 def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes | None) -> None:
     if environment in _logs and message:
         _logs[environment].append((status, plain(message.decode("utf-8", "replace"))))
+
+
+def _log_of_fmi3(key: int, _environment: int, status: int, category: bytes, message: bytes | None) -> None:
+    _log(key, b"", status, category, message)
 
 
 # one callback for all, never freed: fmpy's proxy, which fills in the arguments of the message, knows one
@@ -71,7 +80,7 @@ class _Traced:
             super().__init__(**arguments)
 
     def _call(self, fname: str, *args: Any) -> Any:
-        note(self.number, fname, args[1] if fname == "fmi2DoStep" else AT_START)
+        note(self.number, fname, args[1] if fname in ("fmi2DoStep", "fmi3DoStep") else AT_START)
         result: Any = super()._call(fname, *args)  # pyright: ignore
         if self._functions[fname].restype == c_int and result < fmi2OK:  # pyright: ignore[reportAttributeAccessIssue]
             raise FMICallException(function=fname, status=result)
@@ -79,11 +88,50 @@ class _Traced:
 
 
 class FMU2Traced(_Traced, FMU2Slave):
-    """An FMU for co-simulation. (fmpy looks for FMU2 in the name of the class.)"""
+    """An FMU of FMI 2.0 for co-simulation. (fmpy looks for FMU2 in the name of the class.)"""
+
+    def start(self, start_time: float, stop_time: float | None) -> None:
+        """Enters initialization mode."""
+        self.setupExperiment(startTime=start_time, stopTime=stop_time)
+        self.enterInitializationMode()
+
+    def has_ended(self) -> bool:
+        """Whether it asked for the end of the simulation in the last step, which it discarded."""
+        ended = c_int(0)
+        asked = self.dll["fmi2GetBooleanStatus"](c_void_p(self.component), c_int(fmi2Terminated), byref(ended))
+        return asked == fmi2OK and bool(ended)
 
 
 class FMU2Exchanging(_Traced, FMU2Model):
-    """An FMU for model exchange."""
+    """An FMU of FMI 2.0 for model exchange."""
+
+
+
+class FMU3Traced(_Traced, FMU3Slave):
+    """An FMU of FMI 3.0, with the names of FMI 2.0 for what goes by another one."""
+
+    getFMUstate = FMU3Slave.getFMUState
+    setFMUstate = FMU3Slave.setFMUState
+    freeFMUstate = FMU3Slave.freeFMUState
+    serializeFMUstate = FMU3Slave.serializeFMUState
+    deSerializeFMUstate = FMU3Slave.deserializeFMUState
+    _ended = False
+
+    def start(self, start_time: float, stop_time: float | None) -> None:
+        """Enters initialization mode."""
+        self.enterInitializationMode(startTime=start_time, stopTime=stop_time)
+
+    def doStep(self, *arguments: Any, **named: Any) -> Any:
+        """Makes a step; one after which the FMU asks for the end of the simulation is discarded, as in FMI 2.0."""
+        answers = super().doStep(*arguments, **named)
+        self._ended = answers[1]
+        if self._ended:
+            raise FMICallException(function="fmi3DoStep", status=fmi2Discard)
+        return answers
+
+    def has_ended(self) -> bool:
+        """Whether it asked for the end of the simulation in the last step."""
+        return self._ended
 
 
 class Instance:
@@ -97,7 +145,9 @@ class Instance:
         status: the worst so far.
     """
 
-    def __init__(self, name: str, interface: Interface, slave: FMU2Traced | FMU2Exchanging, key: int) -> None:
+    def __init__(
+        self, name: str, interface: Interface, slave: FMU2Traced | FMU2Exchanging | FMU3Traced, key: int
+    ) -> None:
         self.name = name
         self.number = slave.number
         self.interface = interface
@@ -106,7 +156,7 @@ class Instance:
         self._log = _logs[key]
 
     def call(self, function: str, *arguments: Any, **named: Any) -> Any:
-        """Calls a method of FMU2Slave outside the loop.
+        """Calls a method of `FMU2Traced` or `FMU3Traced` outside the loop.
 
         Raises:
             SimulationError: the FMU refused.
@@ -171,10 +221,25 @@ class Instance:
         """
         for name, value in values.items():
             variable = self.interface.variables[name]
-            kind = type_of(variable)
-            value = _typed(self.name, name, kind, value)
+            value = _typed(self.name, name, type_of(variable), value)
             factor = self.interface.factors.get(name, 1.0)
-            self.call(f"set{kind}", [variable.valueReference], [value if factor == 1.0 else value / factor])
+            self.set([variable], [value if factor == 1.0 else value / factor])
+
+    def set(self, variables: Sequence[ModelVariable], values: Sequence[float]) -> None:
+        """Sets variables of one type.
+
+        Raises:
+            SimulationError: the FMU refused.
+        """
+        self.call(f"set{self._type_of(variables[0])}", [v.valueReference for v in variables], values)
+
+    def get(self, variables: Sequence[ModelVariable]) -> Sequence[Any]:
+        """The values of variables of one type; raises as `set` does."""
+        return self.call(f"get{self._type_of(variables[0])}", [v.valueReference for v in variables])
+
+    def _type_of(self, variable: ModelVariable) -> str:
+        access = self.interface.access(variable)
+        return access.name if access else str(variable.type)
 
 
 def label(name: str, interface: Interface) -> str:
@@ -221,7 +286,7 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
     interface = fmu.interface
     exchange = interface.description.modelExchange
     try:
-        traced = FMU2Exchanging if exchanging else FMU2Traced
+        traced = FMU2Exchanging if exchanging else FMU3Traced if interface.fmi == 3 else FMU2Traced
         slave = traced(
             number,
             guid=interface.description.guid,
@@ -229,7 +294,10 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
             modelIdentifier=str(exchange.modelIdentifier) if exchanging and exchange else interface.identifier,
             instanceName=name,
         )
-        slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
+        if isinstance(slave, FMU3Traced):
+            slave.instantiate(loggingOn=True, logMessage=partial(_log_of_fmi3, key))
+        else:
+            slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
     except Exception as error:  # fmpy raises bare exceptions
         logged = "; ".join(message for _, message in _logs[key])
         raise SimulationError(f"{label(name, interface)} cannot be instantiated: {plain(logged or error)}") from error

@@ -132,9 +132,8 @@ class Loop:
             prefix = f"{instance.name}."
             own = {name.removeprefix(prefix): parameters[name] for name in parameters if name.startswith(prefix)}
             instance.set_parameters(own)
-            instance.call("setupExperiment", startTime=0.0, stopTime=stop)
         for instance in self._instances:
-            instance.call("enterInitializationMode")
+            instance.call("start", 0.0, stop)
         self._propagate(wires, table)
         for instance in self._instances:
             instance.call("exitInitializationMode")

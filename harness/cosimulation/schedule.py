@@ -99,11 +99,11 @@ def transfers(system: System, interfaces: Mapping[str, Interface]) -> dict[str, 
     feedthrough = Feedthrough(system, interfaces)
     found: dict[str, Transfer] = {}
     for source, target, _ in system.connections:
-        (giver, output), (taker, _) = source.split(".", 1), target.split(".", 1)
+        (giver, output), (taker, taken) = source.split(".", 1), target.split(".", 1)
         is_ready = source in feedthrough.undeclared or not feedthrough.inputs[source]
         if not (_is_continuous(interfaces[giver], output) and _any_continuous(interfaces[taker])):
             continue
-        if not _claims(interfaces[taker]).canInterpolateInputs:
+        if not interfaces[taker].can_move(taken):
             found[target] = Transfer.HELD
         elif order.index(giver) < order.index(taker) and is_ready:
             found[target] = Transfer.INTERPOLATED

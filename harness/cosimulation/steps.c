@@ -2,6 +2,7 @@
  * and given the addresses of the FMI functions and of their arguments by compiled_steps.py. */
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -12,7 +13,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
-enum { FMI2_OK, FMI2_WARNING };
+enum { OK, WARNING, DISCARD }; /* the same in FMI 2.0 and 3.0 */
 
 /* The status, which no FMU returns, of a call that put out NaN or infinity: NOT_FINITE in steps.py */
 enum { NOT_FINITE = INT32_MIN };
@@ -36,24 +37,97 @@ typedef struct {
     const double *after;
 } Line;
 
+/* TYPES in compiled_steps.py */
+enum { REAL, WHOLE, LONG, TRUTH };
+
 /* CompiledCall in compiled_steps.py */
 typedef struct {
-    int32_t (*access)(void *component, const uint32_t *references, size_t count, void *values);
-    int32_t (*do_step)(void *component, double time, double step_size, int32_t no_set_before);
+    int32_t fmi;              /* 2 or 3 */
+    void (*access)(void);     /* sets or gets values */
+    void (*do_step)(void);
     void *component;
     const uint32_t *references;
     size_t count;
     void *values;             /* that are set or got */
     const uint32_t *sources;  /* of what is set: bytes from the beginning of the row; null: nothing is set */
     const double *factors;    /* the FMU's values times these are those of the row; null: they are the same */
-    int32_t real;             /* the values are double, else int32_t */
+    int32_t type;             /* of the values */
+    int32_t is_number;        /* what is got must be finite */
+    int32_t *place;           /* in the row, to which whole numbers are brought; null: the values are there */
     const double *step_size;  /* in s, of calls that depend on it */
     int32_t instance;         /* numbers for call_record */
     int32_t function;
-    int32_t (*rates)(void *component, const uint32_t *references, size_t count, const int32_t *orders, void *values);
+    void (*rates)(void);      /* sets or gets derivatives */
     const int32_t *orders;
     const Line *lines;        /* along which inputs are set to move; null: none */
+    int32_t slopes;           /* of these the slopes are set, not the starts */
 } Call;
+
+typedef int32_t Access2(void *component, const uint32_t *references, size_t count, void *values);
+typedef int32_t Access3(void *component, const uint32_t *references, size_t count, void *values, size_t number);
+typedef int32_t Rates2(void *component, const uint32_t *references, size_t count, const int32_t *orders, void *values);
+typedef int32_t Rates3(
+    void *component, const uint32_t *references, size_t count, const int32_t *orders, void *values, size_t number);
+typedef int32_t DoStep2(void *component, double time, double step_size, int32_t no_set_before);
+typedef int32_t DoStep3(
+    void *component, double time, double step_size, bool no_set_before, bool *event, bool *ended, bool *early,
+    double *reached);
+
+/* Sets or gets values or derivatives. */
+static int32_t exchange(const Call *call)
+{
+    if (call->rates && call->fmi == 3) {
+        return ((Rates3 *)call->rates)(
+            call->component, call->references, call->count, call->orders, call->values, call->count);
+    }
+    if (call->rates) {
+        return ((Rates2 *)call->rates)(call->component, call->references, call->count, call->orders, call->values);
+    }
+    if (call->fmi == 3) {
+        return ((Access3 *)call->access)(call->component, call->references, call->count, call->values, call->count);
+    }
+    return ((Access2 *)call->access)(call->component, call->references, call->count, call->values);
+}
+
+/* Makes a step; an FMU that then asks for the end of the simulation has discarded it. */
+static int32_t step(const Call *call, double time)
+{
+    bool event = false, ended = false, early = false;
+    double reached = time;
+    if (call->fmi == 2) {
+        return ((DoStep2 *)call->do_step)(call->component, time, *call->step_size, 1);
+    }
+    const int32_t status = ((DoStep3 *)call->do_step)(
+        call->component, time, *call->step_size, true, &event, &ended, &early, &reached);
+    return ended && (status == OK || status == WARNING) ? DISCARD : status;
+}
+
+/* Whole numbers as calls have them. */
+static int64_t whole(const Call *call, size_t i)
+{
+    switch (call->type) {
+    case LONG:
+        return ((const int64_t *)call->values)[i];
+    case TRUTH:
+        return ((const bool *)call->values)[i];
+    default:
+        return ((const int32_t *)call->values)[i];
+    }
+}
+
+static void set_whole(const Call *call, size_t i, int32_t value)
+{
+    switch (call->type) {
+    case LONG:
+        ((int64_t *)call->values)[i] = value;
+        break;
+    case TRUTH:
+        ((bool *)call->values)[i] = value != 0;
+        break;
+    default:
+        ((int32_t *)call->values)[i] = value;
+    }
+}
 
 /* Whether the values of the row that feed the inputs have changed; then they are taken over. */
 static int changed(const Call *call, const unsigned char *row)
@@ -61,7 +135,7 @@ static int changed(const Call *call, const unsigned char *row)
     int different = 0;
     for (size_t i = 0; i < call->count; i++) {
         const unsigned char *source = row + call->sources[i];
-        if (call->real) {
+        if (call->type == REAL) {
             double value;
             memcpy(&value, source, sizeof value);
             if (call->factors) {
@@ -73,9 +147,8 @@ static int changed(const Call *call, const unsigned char *row)
         } else {
             int32_t value;
             memcpy(&value, source, sizeof value);
-            int32_t *sent = (int32_t *)call->values + i;
-            different |= value != *sent;
-            *sent = value;
+            different |= value != whole(call, i);
+            set_whole(call, i, value);
         }
     }
     return different;
@@ -119,8 +192,8 @@ static void aim(const Call *call)
     double *values = call->values;
     for (size_t i = 0; i < call->count; i++) {
         const Line *line = &call->lines[i];
-        values[i] = call->rates ? slope(line, *call->step_size) : start(line, *call->step_size);
-        if (call->rates) {
+        values[i] = call->slopes ? slope(line, *call->step_size) : start(line, *call->step_size);
+        if (call->slopes) {
             *line->sent = NAN;
         }
     }
@@ -144,7 +217,7 @@ static int32_t made(const Call *call, const unsigned char *row)
     if (call->lines) {
         aim(call);
     } else if (call->sources && !changed(call, row)) {
-        return FMI2_OK;
+        return OK;
     }
     call_record->instance = call->instance;
     call_record->function = call->function;
@@ -153,16 +226,17 @@ static int32_t made(const Call *call, const unsigned char *row)
     if (call->do_step) {
         double time;
         memcpy(&time, row, sizeof time);
-        return call->do_step(call->component, time, *call->step_size, 1);
+        return step(call, time);
     }
-    int32_t status = call->rates
-        ? call->rates(call->component, call->references, call->count, call->orders, call->values)
-        : call->access(call->component, call->references, call->count, call->values);
+    const int32_t status = exchange(call);
     if (call->factors && !call->sources) {
         convert(call);
     }
-    if (call->real && !call->sources && !call->lines && !all_finite(call)) {
-        return status == FMI2_OK || status == FMI2_WARNING ? NOT_FINITE : status;
+    for (size_t i = 0; call->place && i < call->count; i++) {
+        call->place[i] = (int32_t)whole(call, i);
+    }
+    if (call->is_number && (status == OK || status == WARNING) && !all_finite(call)) {
+        return NOT_FINITE;
     }
     return status;
 }
@@ -172,7 +246,7 @@ static size_t make(const Call *calls, size_t first, size_t last, const unsigned 
 {
     for (size_t i = first; i < last; i++) {
         *status = made(&calls[i], row);
-        if (*status != FMI2_OK && *status != FMI2_WARNING) {
+        if (*status != OK && *status != WARNING) {
             return i;
         }
     }

@@ -15,9 +15,6 @@ NOT_FINITE = -(2**31)
 """The status, which no FMU returns, of a call that put out NaN or infinity."""
 
 
-GETS = ("fmi2GetReal", "fmi2GetRealOutputDerivatives")
-
-
 class Refusal(NamedTuple):
     """The call that was refused, its status, and the numbers of the step and of the instant at work."""
 
@@ -31,9 +28,7 @@ def made(call: Call, time: float = AT_START) -> int:
     """The status of a call that is made at a time in s; what it puts out is looked at."""
     note(call.instance.number, call.function, time)
     status = call.run()
-    if call.instance.interface.any_value:
-        return status
-    if status in (fmi2OK, fmi2Warning) and call.function in GETS and not all(map(isfinite, call.values)):
+    if call.is_number and status in (fmi2OK, fmi2Warning) and not all(map(isfinite, call.values)):
         return NOT_FINITE
     return status
 

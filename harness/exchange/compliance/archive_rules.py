@@ -10,7 +10,11 @@ from ...cosimulation import fmu_archive
 from ...cosimulation.limits import Limits
 from .rule import Rule, Rules, Severity
 
-PAGES = {"documentation/index.html": "the page that tools show", "model.png": "the picture that tools show"}
+PAGES = {
+    ("documentation/index.html",): "the page that tools show",
+    ("model.png", "documentation/diagram.png", "documentation/diagram.svg"): "the picture that tools show",
+}
+"""Where they are in FMI 2.0 or 3.0."""
 
 EXTENSIONS = {".so", ".dll", ".dylib"}
 
@@ -90,7 +94,6 @@ def leftovers(fmu: Archive) -> Iterator[str]:
 @ARCHIVE_RULES.rule("archive-pages", Severity.NOTE, "there are a page and a picture")
 def no_pages(fmu: Archive) -> Iterator[str]:
     """What people look at first."""
-    names = fmu.names
-    for name, why in PAGES.items():
-        if name not in names:
-            yield f"{name} is missing ({why})"
+    for places, why in PAGES.items():
+        if not set(places).intersection(fmu.names):
+            yield f"{' or '.join(places[:2])} is missing ({why})"

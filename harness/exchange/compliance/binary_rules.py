@@ -29,7 +29,8 @@ def missing_symbols(fmu: Unpacked) -> Iterator[str]:
     A host that happens to have loaded such a library lends it, as Python lends libm and itself; others cannot load the
     binary. The dynamic linker is asked (`ldd -r`), in a process that has neither; what is not Linux is not looked at.
     """
-    binary = Path(fmu.folder) / "binaries" / fmpy.platform / f"{fmu.interface.identifier}.so"
+    platform = fmpy.platform_tuple if fmu.interface.fmi == 3 else fmpy.platform
+    binary = Path(fmu.folder) / "binaries" / platform / f"{fmu.interface.identifier}.so"
     linker = shutil.which("ldd")
     if not linker or not binary.is_file():
         return

@@ -1,4 +1,4 @@
-"""Whether an FMU keeps the FMI 2.0 standard for Co-Simulation or Model Exchange, and our rules beyond it."""
+"""Whether an FMU keeps the standard: FMI 2.0, or FMI 3.0 for Co-Simulation; and our rules beyond it."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
@@ -19,7 +19,7 @@ from .description_rules import DESCRIPTION_RULES
 from .exchange_rules import EXCHANGE_RULES, QUICK_EXCHANGE_RULES
 from .rule import Rule, Severity, Verdict
 
-READABLE = Rule("readable", Severity.ERROR, "it is an FMI 2.0 FMU for Co-Simulation or Model Exchange")
+READABLE = Rule("readable", Severity.ERROR, "it is an FMU of FMI 2.0, or for Co-Simulation of FMI 3.0")
 
 RULES = (
     *(READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES),
@@ -75,7 +75,7 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
     exchanging = QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
     description = interface.description
     tried = [*BINARY_RULES, *(stepping if description.coSimulation else ())]
-    tried += exchanging if description.modelExchange else ()
+    tried += exchanging if description.modelExchange and interface.fmi == 2 else ()
     yield from _behaviour(interface, list(kept(tried)), limits)
 
 

@@ -30,7 +30,7 @@ def standard(interface: Interface) -> list[str]:
 def bounds(interface: Interface) -> Iterator[str]:
     """Start values that are out of bounds."""
     for variable in _public(interface):
-        if variable.type not in ("Real", "Integer") or variable.start is None:
+        if variable.type not in ("Real", "Float32", "Integer") or variable.start is None:
             continue
         declared = variable.declaredType
         lower = variable.min or (declared.min if declared else None) or -inf
@@ -59,7 +59,7 @@ def derivatives(interface: Interface) -> Iterator[str]:
 def units(interface: Interface) -> Iterator[str]:
     """Public variables without unit."""
     for variable in _public(interface):
-        if variable.type == "Real" and unit_of(variable) is None:
+        if variable.type in ("Real", "Float32") and unit_of(variable) is None:
             yield f'{variable.name} has no unit ("1" if it has no dimension)'
 
 

@@ -2,28 +2,31 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from ctypes import byref, c_int
 from math import inf, sin
 from typing import Any
 
-from fmpy.fmi2 import fmi2Discard, fmi2OK, fmi2Terminated
+from fmpy.fmi2 import fmi2Discard
 from fmpy.model_description import ModelVariable
 
 from ...base.errors import SimulationError
 from ...cosimulation.instance import Instance, instantiated
-from ...cosimulation.interface import type_of
 from ...cosimulation.unpacked_fmu import Unpacked
 
 Outputs = list[tuple[str, Any]]
 
-READABLE = ("Real", "Integer", "Boolean", "String")
+READABLE = (
+    *("Real", "Integer", "Enumeration", "Boolean", "String"),
+    *("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "Int64", "UInt64"),
+)
+"""Types whose values are compared; of FMI 3.0 not those that are binary, and no arrays."""
 
 
 class Host:
     """An instance that is fed with small oscillations around the start values of its Real inputs.
 
     Attributes:
-        ended: whether the FMU has ended the simulation, as FMI lets it (section 4.2.1, fmi2Terminated).
+        ended: whether the FMU has ended the simulation, as FMI lets it (2.0: section 4.2.1, fmi2Terminated; 3.0:
+            terminateSimulation of fmi3DoStep).
     """
 
     def __init__(self, instance: Instance) -> None:
@@ -32,14 +35,15 @@ class Host:
         default = interface.description.defaultExperiment
         self.step_size = float(default.stepSize or 1e-3) if default else 1e-3
         self.stop = float(default.stopTime or 1.0) if default else 1.0
-        self.inputs = [v for v in interface.of_causality("input") if v.type == "Real"]
+        rates = interface.rates.values()  # of inputs that are fed; they stay at 0
+        reals = [v for v in interface.of_causality("input") if v.type == "Real"]
+        self.inputs = [v for v in reals if v.valueReference not in rates]
         self.step, self.time, self.ended = 0, 0.0, False
 
     def start(self) -> None:
         """From instantiation or reset to the first step."""
         self.step, self.time, self.ended = 0, 0.0, False
-        self.instance.call("setupExperiment", startTime=0.0)
-        self.instance.call("enterInitializationMode")
+        self.instance.call("start", 0.0, None)
         self._feed()
         self.instance.call("exitInitializationMode")
 
@@ -55,9 +59,7 @@ class Host:
         try:
             self.instance.call("doStep", self.time, size)
         except SimulationError:
-            terminated, component = c_int(0), self.instance.component
-            asked = self.instance.function("fmi2GetBooleanStatus")(component, c_int(fmi2Terminated), byref(terminated))
-            if self.instance.status != fmi2Discard or asked != fmi2OK or not terminated:
+            if self.instance.status != fmi2Discard or not self.instance.slave.has_ended():
                 raise
             self.ended = True
 
@@ -72,10 +74,9 @@ class Host:
         """Names and values of the variables."""
         values: Outputs = []
         for kind in READABLE:
-            alike = [v for v in variables if type_of(v) == kind]
+            alike = [v for v in variables if v.type == kind]
             if alike:
-                got = self.instance.call(f"get{kind}", [v.valueReference for v in alike])
-                values += [(v.name, value) for v, value in zip(alike, got, strict=True)]
+                values += [(v.name, value) for v, value in zip(alike, self.instance.get(alike), strict=True)]
         return values
 
     def _feed(self) -> None:
@@ -84,7 +85,7 @@ class Host:
             swing = 0.1 * float(v.nominal or 1.0) * sin(0.1 * self.step)
             values.append(min(max(float(v.start or 0.0) + swing, float(v.min or -inf)), float(v.max or inf)))
         if values:
-            self.instance.call("setReal", [v.valueReference for v in self.inputs], values)
+            self.instance.set(self.inputs, values)
 
 
 @contextmanager
