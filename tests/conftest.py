@@ -60,6 +60,26 @@ def native(native_builder, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def fmi3(tmp_path_factory):
+    """Folder with the FMI 3.0 builds of all FMUs."""
+    try:
+        (build,) = builders(None, fmi=3)
+    except NotPossible as reason:
+        pytest.skip(str(reason))
+    folder = tmp_path_factory.mktemp("fmi3")
+    paths = [build(fmu, folder) for fmu in FMUS.values()]
+    return paths[0].parent
+
+
+@pytest.fixture(scope="session")
+def fmi3_as_native(fmi3, tmp_path_factory):
+    """Folder in whose folder native are the FMI 3.0 builds."""
+    folder = tmp_path_factory.mktemp("fmi3_as_native")
+    copytree(fmi3, folder / "native")
+    return folder
+
+
+@pytest.fixture(scope="session")
 def both_built(built, native, tmp_path_factory):
     """Folder of the FMUs that run Python, with the native builds in its folder native."""
     folder = tmp_path_factory.mktemp("both")

@@ -108,7 +108,10 @@ def c_sources(fmu: Fmu, fmi: int = 2) -> dict[str, bytes]:
     names = ADAPTERS[fmi] + FOR_ALL + (FOR_CONTINUOUS + FOR_EXCHANGE[fmi] if continuous else FOR_SAMPLED)
     sources = {name: (C_FILES / name).read_bytes() for name in names}
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob(f"fmi{fmi}*.h")}
-    generated = block_sources(fmu) | {"variables.h": variables_header(fmu, "", fmi), "shared.h": shared_header()}
+    generated = block_sources(fmu, exchanges=fmi == 2) | {
+        "variables.h": variables_header(fmu, "", fmi),
+        "shared.h": shared_header(),
+    }
     if isinstance(fmu.block, ContinuousBlock):
         generated |= {"dop853.h": step_header(), "rodas.h": rosenbrock_header()}
     sources |= {name: text.encode() for name, text in generated.items()}

@@ -62,10 +62,15 @@ SOURCE = """/* {name}: arithmetic, written by build_fmus.py from {module}. */
 """
 
 
-def block_sources(fmu: Fmu, precision: Precision = DOUBLE) -> dict[str, str]:
-    """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI."""
+def block_sources(fmu: Fmu, precision: Precision = DOUBLE, exchanges: bool = True) -> dict[str, str]:
+    """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI.
+
+    Args:
+        exchanges: whether that is among them which model exchange alone asks.
+    """
     block = fmu.block
     records, traced = records_of(block), trace(block)
+    traced = tuple(each for each in traced if exchanges or each.name != "next_event")
     made = functions(traced, records, precision)
     about = {"name": fmu.name, "description": block.description, "module": fmu.module}
     header = HEADER.format(

@@ -1,5 +1,9 @@
-"""A small host for the tests: variables by name, and everything the FMU logs."""
+"""A small host for the tests: variables by name, and everything the FMU logs.
 
+An FMU of FMI 3.0 is called, and what it says is read, in the words of FMI 2.0, so that one test asks the same of both.
+"""
+
+import re
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -14,12 +18,56 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
+from fmpy.fmi3 import FMU3Slave
+
+WORDS = {"fmi3": "fmi2", "Float64": "Real", "Int32": "Integer", "Enumeration": "Integer"}
+"""Of FMI 3.0, and those of FMI 2.0 that stand for them."""
+
+
+def in_words_of_fmi2(text):
+    """A message, or the name of a type."""
+    return re.sub(r"\b(fmi3(?=[A-Z])|(Float64|Int32|Enumeration)\b)", lambda found: WORDS[found[0]], text)
 
 
 @cache
 def description(path, _changed):
-    """The model description of an FMU, read once."""
-    return fmpy.read_model_description(str(path))
+    """The model description of an FMU, read once; types have the names of FMI 2.0."""
+    found = fmpy.read_model_description(str(path))
+    for variable in found.modelVariables if found.fmiVersion == "3.0" else ():
+        variable.type = variable.type if variable.type == "Enumeration" else in_words_of_fmi2(variable.type)
+    return found
+
+
+class FMU3AsFMU2(FMU3Slave):
+    """What fmpy makes of an FMU of FMI 3.0, with the methods that it gives one of FMI 2.0."""
+
+    getReal, setReal = FMU3Slave.getFloat64, FMU3Slave.setFloat64
+    getInteger, setInteger = FMU3Slave.getInt32, FMU3Slave.setInt32
+    getEnumeration, setEnumeration = FMU3Slave.getInt64, FMU3Slave.setInt64
+    getFMUstate, setFMUstate, freeFMUstate = FMU3Slave.getFMUState, FMU3Slave.setFMUState, FMU3Slave.freeFMUState
+    serializeFMUstate, deSerializeFMUstate = FMU3Slave.serializeFMUState, FMU3Slave.deserializeFMUState
+    getRealOutputDerivatives = FMU3Slave.getOutputDerivatives
+
+    def __init__(self, rates, **arguments):
+        super().__init__(**arguments)
+        self.rates = rates
+        self.experiment = {}
+
+    def setupExperiment(self, **experiment):
+        """In FMI 3.0 entering initialization mode tells it."""
+        self.experiment = {name: value for name, value in experiment.items() if name != "tolerance"}
+
+    def enterInitializationMode(self):
+        super().enterInitializationMode(**self.experiment)
+
+    def reset(self):
+        self.experiment = {}
+        super().reset()
+
+    def setRealInputDerivatives(self, vr, order, value):
+        """In FMI 3.0 these are variables."""
+        assert set(order) <= {1}
+        self.setReal([self.rates[each] for each in vr], value)
 
 
 class Host:
@@ -27,33 +75,42 @@ class Host:
 
     def __init__(self, path, unpacked, name="instance", kind=FMU2Slave):
         self.description = description(path, Path(path).stat().st_mtime_ns)
-        self.variables = {v.name: v for v in self.description.modelVariables}
+        moving = [v for v in self.description.modelVariables if v.derivative is not None and v.causality == "input"]
+        self.variables = {v.name: v for v in self.description.modelVariables if v not in moving}
         self.message = self.named = ""
         self.status = 0
+        assert self.description.coSimulation
+        arguments = {
+            "guid": self.description.guid,
+            "unzipDirectory": str(unpacked),
+            "modelIdentifier": self.description.coSimulation.modelIdentifier,
+            "instanceName": name,
+        }
+        if self.description.fmiVersion == "3.0":
+            self.fmu = FMU3AsFMU2({v.derivative.valueReference: v.valueReference for v in moving}, **arguments)
+            self.fmu.instantiate(logMessage=lambda *logged: self._keep(None, b"", *logged[1:]), loggingOn=True)
+            return
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
         self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
-        assert self.description.coSimulation
-        self.fmu = kind(
-            guid=self.description.guid,
-            unzipDirectory=str(unpacked),
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            instanceName=name,
-        )
+        self.fmu = kind(**arguments)
         self.fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
 
     def _keep(self, _environment, name, _status, _category, message):
         """Without the line that PythonFMU puts before a message of ours."""
         self.named = name.decode()
         self.message = message.decode().rpartition("\n")[2]
+        if self.description.fmiVersion == "3.0":
+            self.message = in_words_of_fmi2(self.message)
 
     def names(self, causality):
         return [v.name for v in self.variables.values() if v.causality == causality]
 
     def _function(self, verb, name):
         kind = self.variables[name].type
-        return getattr(self.fmu, verb + ("Integer" if kind == "Enumeration" else kind))
+        is_integer = kind == "Enumeration" and isinstance(self.fmu, FMU2Slave)
+        return getattr(self.fmu, verb + ("Integer" if is_integer else kind))
 
     def set(self, **values):
         for name, value in values.items():

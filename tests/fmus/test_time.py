@@ -242,7 +242,8 @@ def test_the_time_of_a_host_may_be_a_microsecond_off(built, tmp_path, difference
 def test_any_finite_time_is_a_start_time(built, tmp_path):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         for time in (sys.float_info.max, -sys.float_info.max, 5.0):
-            host.fmu.setupExperiment(startTime=time)
+            host.initialize(start_time=time)
+            host.fmu.reset()
 
 
 def test_a_run_ends_at_its_stop_time(built, tmp_path):
@@ -271,10 +272,11 @@ def test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset(built, 
 @pytest.mark.parametrize("stop_time", [math.nextafter(5.0, 0.0), -math.inf, math.nan])
 def test_a_run_does_not_stop_before_its_start(built, tmp_path, stop_time):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
-        message = host.refuses(host.fmu.setupExperiment, startTime=5.0, stopTime=stop_time)
+        message = host.refuses(host.initialize, start_time=5.0, stop_time=stop_time)
         assert message == f"stopTime = {stop_time!r} s is refused; allowed is the startTime = 5.0 s and later"
         for allowed in (5.0, math.nextafter(5.0, 6.0), sys.float_info.max, math.inf):
-            host.fmu.setupExperiment(startTime=5.0, stopTime=allowed)
+            host.initialize(start_time=5.0, stop_time=allowed)
+            host.fmu.reset()
 
 
 def test_outputs_change_with_time_alone(built, tmp_path):

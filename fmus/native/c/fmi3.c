@@ -189,14 +189,25 @@ static int is_count(const Instance *instance, size_t given, size_t expected, con
     return given == expected;
 }
 
-/* Of the variables that are set, all are or none. */
-#define VALUES(Type)                                                                                                 \
+/* Whether value references are those of variables of the block. */
+static int are_of_block(const Reference references[], size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        if (references[k] >= variable_count)
+            return 0;
+    return 1;
+}
+
+/* Of the variables that are set, all are or none. The core takes them at once, if it has them as the host has. */
+#define VALUES(Type, TYPE, as_in_core)                                                                               \
     fmi3Status fmi3Get##Type(                                                                                        \
         fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3##Type values[], size_t nValues)              \
     {                                                                                                                \
         Instance *instance = ready(c, ANY_MODE, nvr == 0 || (vr && values), __func__);                               \
         if (!instance || !is_count(instance, nValues, nvr, __func__))                                                \
             return fmi3Error;                                                                                        \
+        if (as_in_core)                                                                                              \
+            return in_fmi(get_values(instance, TYPE, vr, nvr, values));                                              \
         for (size_t k = 0; k < nvr; k++)                                                                             \
             if (get_##Type(instance, vr[k], &values[k]) != OK)                                                       \
                 return fmi3Error;                                                                                    \
@@ -208,6 +219,8 @@ static int is_count(const Instance *instance, size_t given, size_t expected, con
         Instance *instance = ready(c, ANY_MODE, nvr == 0 || (vr && values), __func__);                               \
         if (!instance || !is_count(instance, nValues, nvr, __func__))                                                \
             return fmi3Error;                                                                                        \
+        if (as_in_core)                                                                                              \
+            return in_fmi(set_values(instance, TYPE, vr, nvr, values));                                              \
         const Memory before = instance->memory;                                                                      \
         for (size_t k = 0; k < nvr; k++)                                                                             \
             if (set_##Type(instance, vr[k], values[k]) != OK) {                                                      \
@@ -217,10 +230,10 @@ static int is_count(const Instance *instance, size_t given, size_t expected, con
         return fmi3OK;                                                                                               \
     }
 
-VALUES(Float64)
-VALUES(Int32)
-VALUES(Int64)
-VALUES(Boolean)
+VALUES(Float64, REAL, are_of_block(vr, nvr))
+VALUES(Int32, INTEGER, 1)
+VALUES(Int64, ENUMERATION, 0)
+VALUES(Boolean, BOOLEAN, 0)
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *FMUState)
 {

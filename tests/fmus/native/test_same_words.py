@@ -78,6 +78,10 @@ TICKS = (-(10**18), -1, 8, 12, 10**18)
 
 NOISY = ("DampingController",)
 
+BEHIND = len(interface(FMUS["WheelSpeedCan"].block))
+
+OF_TIME_IN_FMI_3 = Refusal("UNKNOWN_REFERENCE", get_by("getReal", BEHIND), "WheelSpeedCan")
+
 REFUSALS = [
     *(
         Refusal("BAD_VALUE", set_by("setReal", T_ref=value))
@@ -101,20 +105,20 @@ REFUSALS = [
     Refusal("WRONG_TYPE", set_by("setBoolean", tau=True)),
     Refusal("WRONG_TYPE", set_by("setString", T_mot="1")),
     *(Refusal("WRONG_TYPE", get_by(f"get{kind}", 0)) for kind in ("Integer", "Boolean", "String")),
-    Refusal("UNKNOWN_REFERENCE", get_by("getReal", len(interface(FMUS["WheelSpeedCan"].block))), "WheelSpeedCan"),
+    OF_TIME_IN_FMI_3,
     Refusal("UNKNOWN_REFERENCE", get_by("getBoolean", 2**32 - 1), "WheelSpeedCan"),
     Refusal("WRONG_MODE", step(0.0, 0.001)),
     Refusal("WRONG_MODE", terminated(step(1.0, 0.001))),
     Refusal("WRONG_MODE", lambda host: host.fmu.exitInitializationMode()),
-    Refusal("WRONG_MODE", initialized(lambda host: host.fmu.setupExperiment())),
+    Refusal("WRONG_MODE", initialized(lambda host: host.initialize())),
     Refusal("WRONG_MODE", initialized(lambda host: host.fmu.enterInitializationMode())),
     Refusal("WRONG_MODE", terminated(lambda host: host.fmu.terminate())),
     *(
-        Refusal("BAD_START_TIME", lambda host, time=time: host.fmu.setupExperiment(startTime=time))
+        Refusal("BAD_START_TIME", lambda host, time=time: host.initialize(start_time=time))
         for time in (math.nan, math.inf)
     ),
     *(
-        Refusal("BAD_STOP_TIME", lambda host, time=time: host.fmu.setupExperiment(startTime=1.0, stopTime=time))
+        Refusal("BAD_STOP_TIME", lambda host, time=time: host.initialize(start_time=1.0, stop_time=time))
         for time in (math.nan, 0.9999999999999999)
     ),
     *(Refusal("BAD_STEP_SIZE", initialized(step(1.0, size))) for size in (0.0, -0.0, math.nan, math.inf)),
@@ -141,7 +145,7 @@ def message(folder, unpacked, refusal):
 
 @pytest.fixture(scope="module")
 def unpacked(tmp_path_factory):
-    return {build: tmp_path_factory.mktemp(build) for build in ("python", "native")}
+    return {build: tmp_path_factory.mktemp(build) for build in ("python", "native", "fmi3")}
 
 
 @pytest.mark.parametrize("refusal", REFUSALS, ids=lambda refusal: refusal.sentence)
@@ -155,19 +159,29 @@ def test_both_builds_say_the_same(built, native, unpacked, refusal):
     assert re.fullmatch("".join(re.escape(text) + (".+" if field else "") for text, field, _, _ in parts), in_c)
 
 
+@pytest.mark.parametrize(
+    "refusal", [each for each in REFUSALS if each != OF_TIME_IN_FMI_3], ids=lambda refusal: refusal.sentence
+)
+def test_fmi_3_says_what_fmi_2_says(native, fmi3, unpacked, refusal):
+    expected, status = message(native, unpacked["native"] / refusal.fmu, refusal)
+    expected = expected.replace("fmi2SetupExperiment", "fmi2EnterInitializationMode")
+    expected = expected.replace(f"has 0 to {BEHIND - 1}", f"has 0 to {BEHIND}")  # where the time is
+    assert message(fmi3, unpacked["fmi3"] / refusal.fmu, refusal) == (expected, status)
+
+
 @pytest.mark.parametrize("ticks", [9, 11])
-@pytest.mark.parametrize("build", ["python", "native"])
+@pytest.mark.parametrize("build", ["python", "native", "fmi3"])
 def test_one_tick_more_or_less_is_allowed_in_a_state(request, unpacked, build, ticks):
-    folder = request.getfixturevalue({"python": "built", "native": "native"}[build])
+    folder = request.getfixturevalue({"python": "built"}.get(build, build))
     with opened(folder / "WheelSpeedCan.fmu", unpacked[build] / "WheelSpeedCan") as host:
         with_content("ticks", ticks, "WheelSpeedCan")(host)
         host.step(1.01, 0.01)
 
 
 @pytest.mark.parametrize(("ticks", "allowed"), [(10**15, True), (10**15 + 1, False)])
-@pytest.mark.parametrize("build", ["python", "native"])
+@pytest.mark.parametrize("build", ["python", "native", "fmi3"])
 def test_a_state_can_have_made_1e15_ticks(request, unpacked, build, ticks, allowed):
-    folder = request.getfixturevalue({"python": "built", "native": "native"}[build])
+    folder = request.getfixturevalue({"python": "built"}.get(build, build))
     late = restored(lambda saved: forged(forged(saved, "time", 1.0 + 1e-3 * ticks), "ticks", ticks))
     with opened(folder / "WheelSpeedCan.fmu", unpacked[build] / "WheelSpeedCan") as host:
         host.initialize(1.0)

@@ -20,3 +20,8 @@ LIBRARIES = str(Path(sys.prefix) / "lib")
 @pytest.mark.parametrize("plant", PLANTS)
 def test_ecos_gets_what_our_master_gets_with_jacobi(plant: str, build: str, both_built: Path, tmp_path: Path) -> None:
     check_loop("ecos_host.py", plant, build, both_built, tmp_path, LD_LIBRARY_PATH=LIBRARIES)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_ecos_gets_the_same_from_fmus_of_fmi_3(plant: str, fmi3_as_native: Path, tmp_path: Path) -> None:
+    check_loop("ecos_host.py", plant, "native", fmi3_as_native, tmp_path, LD_LIBRARY_PATH=LIBRARIES)

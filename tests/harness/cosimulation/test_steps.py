@@ -50,6 +50,18 @@ def test_native_fmus_make_the_same_steps(native, plant, scheme):
 
 
 @pytest.mark.parametrize("scheme", Scheme)
+@pytest.mark.parametrize("plant", PLANTS)
+def test_fmus_of_fmi_3_make_the_same_steps_as_those_of_fmi_2(native, fmi3_as_native, plant, scheme):
+    """Each alone, and those of one kind with the others."""
+    of_fmi2, of_fmi3 = (loop(plant, folder=folder, build="native") for folder in (native.parent, fmi3_as_native))
+    kinds = of_fmi2.instances, of_fmi3.instances
+    mixed = replace(of_fmi2, instances={name: kinds[k % 2][name] for k, name in enumerate(of_fmi2.instances)})
+    expected = both(of_fmi2, tipin(scheme))
+    assert both(of_fmi3, tipin(scheme)) == expected
+    assert both(mixed, tipin(scheme)) == expected
+
+
+@pytest.mark.parametrize("scheme", Scheme)
 def test_fmus_that_run_python_make_the_same_steps(built, scheme):
     compiled, in_python = both(loop(PLANTS[0], folder=built, build="python"), tipin(scheme))
     assert compiled == in_python
@@ -75,10 +87,11 @@ def test_a_refusal_names_instance_function_time_and_reason(relay, make):
         running.run(Experiment(0.5, inputs={"a.u": lambda t: 1e3 * t}, parameters={"b.limit": 302.5}))
 
 
+@pytest.mark.parametrize(("build", "function"), [("native", "fmi2SetReal"), ("fmi3", "fmi3SetFloat64")])
 @pytest.mark.parametrize("make", [CompiledSteps, interpreted])
-def test_a_native_fmu_says_why_it_refuses(native, make):
-    system = System({"motor": native / "MotorTorqueLoop.fmu"})
+def test_a_native_fmu_says_why_it_refuses(request, make, build, function):
+    system = System({"motor": request.getfixturevalue(build) / "MotorTorqueLoop.fmu"})
     T_ref = np.where(np.arange(501) < 250, 10.0, np.nan)
-    message = r"^motor \(MotorTorqueLoop\.fmu\) answered fmi2SetReal at 0\.25 s .*T_ref"
+    message = rf"^motor \(MotorTorqueLoop\.fmu\) answered {function} at 0\.25 s .*T_ref"
     with loaded(system, make_steps=make) as running, pytest.raises(SimulationError, match=message):
         running.run(Experiment(0.5, inputs={"motor.T_ref": T_ref}))

@@ -37,9 +37,10 @@ def file_findings(path):
 OURS = [PLANT, "ValidationVehicle.fmu", "MotorTorqueLoop.fmu", "WheelSpeedCan.fmu", "DampingController.fmu"]
 
 
+@pytest.mark.parametrize("build", ["native", "fmi3"])
 @pytest.mark.parametrize("name", OURS)
-def test_our_native_fmus_have_no_findings(native, name):
-    assert findings(native / name) == []
+def test_our_native_fmus_have_no_findings(request, name, build):
+    assert findings(request.getfixturevalue(build) / name) == []
 
 
 @pytest.mark.parametrize("name", OURS)
@@ -70,6 +71,34 @@ def test_a_fault_in_the_description_is_found(built, tmp_path, pattern, replaceme
 
     faulty = tampered(built / PLANT, tmp_path / "faulty.fmu", change)
     assert re.search(finding, file_findings(faulty))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement", "finding"),
+    [
+        (r'(name="a_body"[^>]*) unit="m/s2"', r"\1", "a_body has no unit"),
+        (r'<Output valueReference="\d+" dependencies="[^"]*"', lambda m: m[0].split(" dep")[0], "its dependencies"),
+        (r"<InitialUnknown [^>]*>", "", "InitialUnknowns"),
+        (r' description="speed of the motor"', "", "omega_1 has no description"),
+        (r'min="-2000.0" ', 'min="1.0" ', r"T_mot starts at .* out of \[1\.0"),
+        (r'name="T_brake"', 'name="T_mot"', "not unique"),
+        (r"<DefaultExperiment[^>]*>", "", "DefaultExperiment"),
+        (r'<Float64 name="time"[^>]*>', "", "independent variable"),
+        (r' fmiVersion="3.0"', ' fmiVersion="3.1"', "FMI 3.1; only Co-Simulation of FMI 2.0 and 3.0 runs here"),
+        (r' instantiationToken="[^"]*"', "", "fmiModelDescription has no instantiationToken"),
+        (r' valueReference="0"', "", "T_mot has no valueReference"),
+        (r' valueReference="0"', ' valueReference="-1"', "valueReference of T_mot is '-1'"),
+        (r'min="-2000.0"', 'min="low"', "min of T_mot is 'low'"),
+        (r'(<Output valueReference=)"\d+"', r'\1"999"', "valueReference of Output in ModelStructure is '999'"),
+        (r'(<InitialUnknown .*? dependencies=)"[^"]*"', r'\1"1 x"', "dependencies of InitialUnknown .* is 'x'"),
+        (r"<Output valueReference", "<Output reference", "Output in ModelStructure has no valueReference"),
+    ],
+)
+def test_a_fault_in_the_description_of_fmi_3_is_found(fmi3, tmp_path, pattern, replacement, finding):
+    def change(xml):
+        return re.sub(pattern, replacement, xml, count=1, flags=re.DOTALL)
+
+    assert re.search(finding, file_findings(tampered(fmi3 / PLANT, tmp_path / "faulty.fmu", change)))
 
 
 @pytest.mark.parametrize(

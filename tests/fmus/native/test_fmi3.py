@@ -1,0 +1,334 @@
+"""The FMI 3.0 builds pass the tests of those of FMI 2.0, in the words of that; and what they have of their own."""
+
+import ctypes
+import re
+import zipfile
+
+import fmpy
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi3 import fmi3LogMessageCallback
+from fmpy.model_description import read_build_description
+from fmpy.validation import validate_fmu
+
+from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.comparators import COMPARATORS
+from driveline.fmus.description.units import base_exponents, rate_unit
+from driveline.fmus.description.variables import interface
+from driveline.fmus.native.packaging import FMI_HEADERS
+from tests.fmus.host import opened
+from tests.fmus.native.test_rates import (  # noqa: F401
+    ramp,
+    rates_of,
+    test_a_derivative_that_is_no_number_is_refused_and_not_given_out,
+    test_a_ramp_in_one_step_is_that_of_many_small_stairs,
+    test_a_ramp_may_end_at_the_bound,
+    test_a_ramp_out_of_the_range_is_refused_and_nothing_moves,
+    test_a_rate_of_an_output_that_is_no_number_is_refused,
+    test_after_initialization_only_inputs_can_be_known,
+    test_directional_derivatives_are_differences,
+    test_during_initialization_parameters_can_be_known_too,
+    test_rates_of_outputs_are_their_differences_over_a_short_time,
+)
+from tests.fmus.test_state import (  # noqa: F401
+    test_a_damaged_state_is_refused_and_changes_nothing,
+    test_a_demand_that_is_on_its_way_through_the_dead_time_is_in_the_state,
+    test_a_run_goes_on_bit_by_bit_after_set_and_after_deserialise,
+    test_a_state_moves_to_another_instance_and_has_one_serialised_form,
+    test_a_state_of_another_fmu_is_refused_and_both_are_named,
+    test_a_state_saved_before_initialization_restores_that_mode,
+)
+from tests.fmus.test_time import (  # noqa: F401
+    test_a_new_instance_shows_what_it_would_start_with,
+    test_a_run_does_not_stop_before_its_start,
+    test_a_run_ends_at_its_stop_time,
+    test_a_sampled_block_does_not_depend_on_the_communication_step,
+    test_a_step_from_another_time_is_refused,
+    test_a_step_that_is_not_positive_or_too_long_is_refused,
+    test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step,
+    test_an_input_that_is_fed_through_shows_before_the_step,
+    test_any_finite_time_is_a_start_time,
+    test_outputs_are_right_at_the_start_and_parameters_in_effect,
+    test_outputs_change_with_time_alone,
+    test_the_shortest_and_the_longest_step_are_allowed,
+    test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset,
+    test_the_time_of_a_host_may_be_a_microsecond_off,
+    test_time_counts_from_the_start_time,
+)
+from tests.fmus.test_values import *  # noqa: F403
+
+every_fmu = pytest.mark.parametrize("name", FMUS)
+OK, ERROR = 0, 3
+
+
+@pytest.fixture(scope="module")
+def built(fmi3):
+    """What the tests of others call the folder of the FMUs."""
+    return fmi3
+
+
+@pytest.fixture(scope="module")
+def native(fmi3):
+    """What the tests of rates call it."""
+    return fmi3
+
+
+@every_fmu
+def test_the_validator_finds_nothing(fmi3, name):
+    assert validate_fmu(str(fmi3 / f"{name}.fmu")) == []
+
+
+@pytest.mark.parametrize("name", COMPARATORS)
+def test_the_comparators_are_built_too(fmi3, tmp_path, name):
+    (build,) = builders("native", fmi=3)
+    assert validate_fmu(str(build(COMPARATORS[name], tmp_path))) == []
+
+
+def test_there_is_no_such_build_in_python():
+    for build in ("python", "both"):
+        with pytest.raises(NotPossible, match=r"for FMI 3\.0 there are native builds only"):
+            builders(build, fmi=3)
+
+
+@every_fmu
+def test_all_functions_of_the_standard_are_there_and_nothing_else_is(fmi3, tmp_path, name):
+    header = (FMI_HEADERS / "fmi3Functions.h").read_text()
+    functions = set(re.findall(r"FMI3_Export \w+\s+(\w+);", header))
+    assert len(functions) == 75
+    with opened(fmi3 / f"{name}.fmu", tmp_path) as host:
+        assert all(hasattr(host.fmu.dll, function) for function in functions)
+        assert not hasattr(host.fmu.dll, "fmi2DoStep")
+
+
+@every_fmu
+def test_value_references_are_those_of_fmi_2_and_behind_them_come_time_and_rates(fmi3, name):
+    block = FMUS[name].block
+    variables = fmpy.read_model_description(str(fmi3 / f"{name}.fmu")).modelVariables
+    ours = interface(block)
+    assert [(v.name, v.valueReference) for v in variables[: len(ours)]] == [(v.name, v.reference) for v in ours]
+    time, *rates = variables[len(ours) :]
+    assert (time.name, time.causality, time.valueReference) == ("time", "independent", len(ours))
+    moving = [v.name for v in ours if v.causality == "input" and hasattr(block, "derivative")]
+    assert [rate.derivative.name for rate in rates] == moving
+    for rate in rates:
+        assert rate.name == f"der({rate.derivative.name})"
+        assert rate.valueReference == time.valueReference + 1 + rate.derivative.valueReference
+        assert base_exponents(rate.unit).get("s", 0) == base_exponents(rate.derivative.unit).get("s", 0) - 1
+
+
+@pytest.mark.parametrize(
+    ("unit", "rate"),
+    [("N.m", "N.m/s"), ("rad/s", "rad/s2"), ("N.m/rad", "N.m/(rad.s)"), ("J/(kg.K)", "J/(kg.K.s)"), ("1", "1/s")],
+)
+def test_a_rate_of_change_has_the_unit_by_second(unit, rate):
+    assert rate_unit(unit) == rate
+
+
+def test_its_sources_are_described(fmi3):
+    (configuration,) = read_build_description(str(fmi3 / "MotorTorqueLoop.fmu"))
+    assert configuration.modelIdentifier == "MotorTorqueLoop"
+    assert configuration.sourceFileSets[0].sourceFiles == ["all.c"]
+    with zipfile.ZipFile(fmi3 / "MotorTorqueLoop.fmu") as archive:
+        names = set(archive.namelist())
+    assert {"sources/all.c", "documentation/index.html", "documentation/diagram.png"} <= names
+    assert not any("fmi2" in name for name in names)
+
+
+def test_a_rate_holds_until_it_is_set(fmi3, tmp_path):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        rate = host.fmu.rates[host.variables["T_ref"].valueReference]
+        assert host.fmu.getFloat64([rate]) == [0.0]
+        host.initialize()
+        ramp(host, T_ref=1000.0)
+        host.step(0.0, 0.01)
+        host.step(0.01, 0.01)
+        assert host.get("T_ref") == pytest.approx(20.0)
+        host.set(T_ref=5.0)
+        assert host.fmu.getFloat64([rate]) == [1000.0]
+        host.step(0.02, 0.01)
+        assert host.get("T_ref") == pytest.approx(15.0)
+        ramp(host, T_ref=0.0)
+        host.step(0.03, 0.01)
+        assert host.get("T_ref") == pytest.approx(15.0)
+        host.fmu.terminate()
+        assert "is refused after termination" in host.refuses(ramp, host, T_ref=1.0)
+
+
+def test_rates_are_part_of_a_saved_state_and_forgotten_by_a_reset(fmi3, tmp_path):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        rate = [host.fmu.rates[host.variables["omega_1"].valueReference]]
+        host.initialize(q_omega=0.0)
+        ramp(host, omega_1=1000.0)
+        state = host.fmu.getFMUState()
+        assert rates_of(host, "omega_1_meas") == [1000.0]
+        host.fmu.reset()
+        assert host.fmu.getFloat64(rate) == [0.0]
+        host.fmu.setFMUState(state)
+        host.fmu.freeFMUState(state)
+        assert host.fmu.getFloat64(rate) == [1000.0]
+
+
+def test_one_bad_rate_among_good_values_keeps_them_all_out(fmi3, tmp_path):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        references = [host.variables["T_ref"].valueReference, host.fmu.rates[0]]
+        assert "as derivative of T_ref" in host.refuses(host.fmu.setFloat64, references, [50.0, float("nan")])
+        assert host.fmu.getFloat64(references) == [0.0, 0.0]
+
+
+def test_a_sampled_block_has_no_rates(fmi3, tmp_path):
+    with opened(fmi3 / "WheelSpeedCan.fmu", tmp_path) as host:
+        last = host.variables["time"].valueReference
+        assert host.fmu.rates == {}
+        assert f"has 0 to {last}" in host.refuses(host.fmu.getFloat64, [last + 1])
+
+
+def test_time_is_told_and_cannot_be_set(fmi3, tmp_path):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize(start_time=1.0)
+        host.step(1.0, 0.25)
+        assert host.get("time") == 1.25
+        assert host.fmu.doStep(1.25, 0.25) == (False, False, False, 1.5)
+        assert host.refuses(host.set, time=0.0) == "time is the independent variable and cannot be set"
+
+
+def test_an_enumeration_is_no_whole_number_and_a_type_without_variables_has_none(fmi3, tmp_path):
+    with opened(fmi3 / "DampingController.fmu", tmp_path) as host:
+        status = [host.variables["status"].valueReference]
+        host.refuses(host.fmu.getInt32, status)
+        for kind in ("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64", "String"):
+            get, put = getattr(host.fmu, f"get{kind}"), getattr(host.fmu, f"set{kind}")
+            assert get([]) == []
+            assert f"of type Integer, not {kind}" in host.refuses(get, status)
+            assert f", not {kind}" in host.refuses(put, status, ["1" if kind == "String" else 1])
+            assert "reference 999 is unknown" in host.refuses(get, [999])
+
+
+@pytest.mark.parametrize("value", [2**31, -(2**31) - 1, 2**63 - 1])
+def test_a_whole_number_that_the_fmu_does_not_have_is_out_of_bounds(fmi3, tmp_path, value):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        seed = [host.variables["seed"].valueReference]
+        assert "seed is of type Integer" in host.refuses(host.fmu.setInt64, seed, [value])
+
+
+@pytest.mark.parametrize("values", [0, 2])
+def test_as_many_values_as_references_are_asked_for(fmi3, tmp_path, values):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        message = host.refuses(host.fmu.getFloat64, [0], values)
+        assert message == (
+            f"fmi2GetFloat64: {values} values are refused; allowed is one for each of the 1 value references"
+        )
+
+
+@pytest.mark.parametrize("name", ["Float64", "Int32", "Int64", "Boolean"])
+def test_missing_arrays_are_refused(fmi3, tmp_path, name):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        one, arrays = ctypes.c_size_t(1), ((ctypes.c_uint * 1)(0), (ctypes.c_double * 1)())
+        component = ctypes.c_void_p(host.fmu.component)
+        for verb in ("Get", "Set"):
+            function = ctypes.CDLL(host.fmu.dll._name)[f"fmi3{verb}{name}"]
+            for references, values in ((None, arrays[1]), (arrays[0], None)):
+                assert function(component, references, one, values, one) == ERROR
+                assert "an argument is NULL" in host.message
+            assert function(component, None, ctypes.c_size_t(0), None, ctypes.c_size_t(0)) == OK
+            assert function(None, *arrays[:1], one, arrays[1], one) == ERROR
+
+
+BEFORE, DURING, AFTER, ENDED = range(4)
+
+MODES = {
+    "fmi3EnterInitializationMode": {BEFORE},
+    "fmi3ExitInitializationMode": {DURING},
+    "fmi3DoStep": {AFTER},
+    "fmi3Terminate": {AFTER},
+    "fmi3GetOutputDerivatives": {AFTER, ENDED},
+    "fmi3GetDirectionalDerivative": {DURING, AFTER, ENDED},
+    "fmi3Reset": {BEFORE, DURING, AFTER, ENDED},
+}
+NOT_OFFERED = {
+    "event mode": ("EnterEventMode", "EnterStepMode", "UpdateDiscreteStates", "EvaluateDiscreteStates"),
+    "clocks": ("GetIntervalDecimal", "SetShiftFraction", "ActivateModelPartition"),
+    "structural parameters": ("EnterConfigurationMode", "ExitConfigurationMode"),
+    "adjoint derivatives": ("GetAdjointDerivative",),
+    "array variables": ("GetNumberOfVariableDependencies", "GetVariableDependencies"),
+    "model exchange": ("EnterContinuousTimeMode", "GetContinuousStates", "GetNumberOfEventIndicators"),
+}
+
+
+def arguments_of(function):
+    """Arguments that make sense."""
+    none, nothing, zero, truth = ctypes.c_void_p(), ctypes.c_size_t(0), ctypes.c_double(), ctypes.c_bool()
+    told = (ctypes.byref(truth), ctypes.byref(truth), ctypes.byref(truth), ctypes.byref(zero))
+    return {
+        "fmi3EnterInitializationMode": (truth, zero, zero, truth, zero),
+        "fmi3DoStep": (zero, ctypes.c_double(1e-3), truth, *told),
+        "fmi3GetOutputDerivatives": (none, nothing, none, none, nothing),
+        "fmi3GetDirectionalDerivative": (none, nothing, none, nothing, none, nothing, none, nothing),
+    }.get(function, ())
+
+
+@pytest.mark.parametrize("mode", [BEFORE, DURING, AFTER, ENDED])
+@pytest.mark.parametrize("function", MODES)
+def test_a_function_is_refused_outside_its_place_and_says_where_that_is(fmi3, tmp_path, function, mode):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        for step in (host.fmu.enterInitializationMode, host.fmu.exitInitializationMode, host.fmu.terminate)[:mode]:
+            step()
+        component = ctypes.c_void_p(host.fmu.component)
+        status = ctypes.CDLL(host.fmu.dll._name)[function](component, *arguments_of(function))
+        assert status == (OK if mode in MODES[function] else ERROR)
+        if status == ERROR:
+            assert host.message.startswith(f"{function.replace('fmi3', 'fmi2')} is refused")
+
+
+@pytest.mark.parametrize(("what", "function"), [(what, name) for what, names in NOT_OFFERED.items() for name in names])
+def test_what_is_not_offered_says_so(fmi3, tmp_path, what, function):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        called = ctypes.CDLL(host.fmu.dll._name)[f"fmi3{function}"]
+        zeros = [ctypes.c_size_t(0)] * 8
+        assert called(ctypes.c_void_p(host.fmu.component), *zeros) == ERROR
+        assert host.message == f"fmi2{function} is refused; the FMU has no {what}"
+        assert called(ctypes.c_void_p(), *zeros) == ERROR
+
+
+def test_what_cannot_be_instantiated_is_said(fmi3, tmp_path):
+    told = []
+    log = fmi3LogMessageCallback(lambda *message: told.append(message[3].decode()))
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        token = host.description.instantiationToken.encode()
+        binary = ctypes.CDLL(host.fmu.dll._name)
+
+        def made(name=b"one", token=token, event=False, variables=0):
+            function = binary.fmi3InstantiateCoSimulation
+            function.restype = ctypes.c_void_p
+            truth = ctypes.c_bool(True), ctypes.c_bool(event), ctypes.c_bool(True)
+            references = (ctypes.c_uint * 1)(), ctypes.c_size_t(variables)
+            return function(name, token, None, ctypes.c_bool(), *truth, *references, None, log, None)
+
+        for wrong in ({"name": b""}, {"name": None}, {"token": b"{other}"}, {"token": None}):
+            assert made(**wrong) is None
+        assert made(event=True) is None
+        assert made(variables=1) is None
+        assert [message.partition(": ")[2] for message in told] == [
+            *["an instance needs a name"] * 2,
+            *["the instantiation token is that of another FMU"] * 2,
+            "the FMU has no event mode",
+            "the FMU has no intermediate update",
+        ]
+        binary.fmi3FreeInstance(ctypes.c_void_p(made()))
+        binary.fmi3FreeInstance(None)
+        for kind in ("ModelExchange", "ScheduledExecution"):
+            function = binary[f"fmi3Instantiate{kind}"]
+            function.restype = ctypes.c_void_p
+            nothing = [ctypes.c_bool(), ctypes.c_bool(), None, log, None, None, None]
+            assert function(b"one", token, None, *nothing) is None
+            assert told[-1].startswith(f"fmi3Instantiate{kind} is refused; the FMU has no ")
+
+
+def test_messages_are_given_out_by_category(fmi3, tmp_path):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.fmu.setDebugLogging(False, ["logStatusError"])
+        with pytest.raises(FMICallException):
+            host.fmu.getFloat64([99])
+        assert host.message == ""
+        host.fmu.setDebugLogging(True, [])
+        assert "log category logEvents is unknown" in host.refuses(host.fmu.setDebugLogging, True, ["logEvents"])
