@@ -9,17 +9,23 @@ from random import Random
 import fmpy
 from fmpy.model_description import ModelDescription
 
-from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.building.builds import FMIS, NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import host_compiler
+from driveline.fmus.native.packaging import FMI_HEADERS
 from tests.fuzz.target import Attempt, Target, Unclean
 
 HOST = Path(__file__).parents[1] / "fmus" / "native" / "native_host.c"
+
+AS_FMI2 = HOST.parent / "fmi3"
+"""The functions of FMI 2.0 as those of FMI 3.0, for this host."""
+
 CALLS = 300
 """Of a sequence."""
 
 SANITIZED = (
-    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-ffp-contract=off"),
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wno-strict-prototypes"),
+    "-ffp-contract=off",
     *("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"),
 )
 
@@ -33,6 +39,14 @@ def numbers(description: ModelDescription) -> list[str]:
     return [f"-DNUMBER_OF_STATES={states}", f"-DNUMBER_OF_INDICATORS={indicators}"]
 
 
+def as_fmi2(description: ModelDescription) -> list[str]:
+    """Options of a compiler, with which a program that calls FMI 2.0 calls this FMU of FMI 3.0; none for FMI 2.0."""
+    if description.fmiVersion == "2.0":
+        return []
+    time = next(v.valueReference for v in description.modelVariables if v.causality == "independent")
+    return [f"-DTIME={time}u", f"-I{AS_FMI2}", f"-I{FMI_HEADERS}"]
+
+
 def program(fmu: Path, folder: Path) -> list[str]:
     """The command that makes random calls to a native FMU, compiled from its sources.
 
@@ -43,7 +57,8 @@ def program(fmu: Path, folder: Path) -> list[str]:
     sources = folder / "sources"
     made = folder.resolve() / "host"
     description = fmpy.read_model_description(str(fmu))
-    command = [host_compiler(), *SANITIZED, *numbers(description), "-I.", str(HOST), "all.c", "-o", str(made), "-lm"]
+    options = [*SANITIZED, *numbers(description), *as_fmi2(description)]
+    command = [host_compiler(), *options, "-I.", str(HOST), "all.c", "-o", str(made), "-lm"]
     compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         raise NotPossible("the compiler has no sanitizers")
@@ -54,8 +69,8 @@ def program(fmu: Path, folder: Path) -> list[str]:
 
 @contextmanager
 def attempts(folder: Path) -> Iterator[Attempt]:
-    (build,) = builders("native")
-    programs = [program(build(fmu, folder / "fmus"), folder / name) for name, fmu in FMUS.items()]
+    built = [build(fmu, folder) for fmi in FMIS for build in builders("native", fmi=fmi) for fmu in FMUS.values()]
+    programs = [program(fmu, folder / f"{fmu.parent.name}_{fmu.stem}") for fmu in built]
 
     def attempt(random: Random) -> str:
         command = [*random.choice(programs), str(random.getrandbits(31)), str(CALLS)]

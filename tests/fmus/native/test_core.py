@@ -9,7 +9,6 @@ pytest.importorskip("casadi", reason="the extra `native` is not installed")
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.packaging import c_sources
 
-
 OF_FMI = {
     2: {
         *("fmi2.c", "fmi2_adapter.h", "fmi2_model_exchange.c"),
