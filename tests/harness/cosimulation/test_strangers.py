@@ -25,7 +25,7 @@ from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.cosimulation.system import System
 from driveline.harness.loop.settings import loop as looped
 from tests import ROOT
-from tests.foreign.stranger import build_stranger
+from tests.foreign.stranger import build_stranger, in_words_of
 
 LATER = "if (time > 0.0995)"
 
@@ -72,11 +72,15 @@ FAULTS = {
 }
 
 
+every_fmi = pytest.mark.parametrize("fmi", [2, 3])
+
+
+@every_fmi
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault):
+def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault, fmi):
     does, message = FAULTS[fault]
-    system = System({"car": build_stranger(tmp_path, **does)}, limits=Limits(call=0.5))
-    with pytest.raises(SimulationError, match=message) as error:
+    system = System({"car": build_stranger(tmp_path, fmi=fmi, **does)}, limits=Limits(call=0.5))
+    with pytest.raises(SimulationError, match=in_words_of(fmi, message)) as error:
         run(system, Experiment(0.3))
     text = str(error.value)
     assert text.startswith("car (stranger.fmu)")
@@ -85,11 +89,28 @@ def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault):
     assert list(unpacked.iterdir()) == []
 
 
+@every_fmi
 @pytest.mark.parametrize("fault", ["exits in a step", "puts out NaN", "has the status -1", "aborts"])
-def test_the_steps_in_python_name_the_same(tmp_path, fault):
+def test_the_steps_in_python_name_the_same(tmp_path, fault, fmi):
     does, message = FAULTS[fault]
-    system = System({"car": build_stranger(tmp_path, **does)})
-    with pytest.raises(SimulationError, match=message), loaded(system, make_steps=interpreted) as loop:
+    system = System({"car": build_stranger(tmp_path, fmi=fmi, **does)})
+    with (
+        pytest.raises(SimulationError, match=in_words_of(fmi, message)),
+        loaded(system, make_steps=interpreted) as loop,
+    ):
+        loop.run(Experiment(0.3))
+
+
+@every_fmi
+@pytest.mark.parametrize("make", [CompiledSteps, interpreted])
+def test_an_fmu_that_wants_to_end_the_simulation_has_discarded_the_step(tmp_path, make, fmi):
+    ends = {
+        "IN_DO_STEP": f"{LATER} return 2",
+        "IN_GET_BOOLEAN_STATUS": "if (kind == 3) { *value = 1; return 0; }",
+    }
+    system = System({"car": build_stranger(tmp_path, fmi=fmi, **ends)})
+    message = in_words_of(fmi, r"answered fmi2DoStep at 0\.1 s with discard")
+    with pytest.raises(SimulationError, match=message), loaded(system, make_steps=make) as loop:
         loop.run(Experiment(0.3))
 
 

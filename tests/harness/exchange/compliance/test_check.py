@@ -19,7 +19,7 @@ from driveline.harness.loop.places import PLANTS
 from tests import ROOT
 from tests.foreign import RELAY, build_relay, tampered
 from tests.foreign.archives import HOSTILE
-from tests.foreign.stranger import build_stranger
+from tests.foreign.stranger import build_stranger, in_words_of
 
 PLANT = f"{PLANTS[0]}.fmu"
 
@@ -215,8 +215,10 @@ def test_a_hostile_archive_is_an_error_of_its_own_rule(tmp_path, unpacked, kind)
         ({"IN_GET_REAL": "values[0] = NAN"}, {"runs", "steps"}, "is nan"),
     ],
 )
-def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, unpacked, does, rules, finding):
-    path = build_stranger(tmp_path, **does)
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, unpacked, does, rules, finding, fmi):
+    path = build_stranger(tmp_path, fmi=fmi, **does)
+    finding = in_words_of(fmi, finding)
     errors = {
         name: text for name, (severity, text) in broken(path, limits=Limits(call=0.5)).items() if severity == "error"
     }
@@ -226,9 +228,10 @@ def test_a_stranger_that_misbehaves_is_an_error_that_names_the_call(tmp_path, un
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the rule is for binaries of Linux")
-def test_a_symbol_of_a_library_that_is_not_named_is_found(tmp_path):
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_symbol_of_a_library_that_is_not_named_is_found(tmp_path, fmi):
     """Python has loaded libm: the FMU runs here, and in no host in C."""
-    wants = {"IN_INSTANTIATE": "now = 0.0 * acos(now)"}
+    wants = {"fmi": fmi, "IN_INSTANTIATE": "now = 0.0 * acos(now)"}
     assert "symbols" not in broken(build_stranger(tmp_path, "linked", **wants))
     found = broken(build_stranger(tmp_path, libraries=[], **wants))
     assert found["symbols"] == ("error", "stranger.so needs acos, which no library has that it names")
@@ -238,13 +241,14 @@ def test_a_symbol_of_a_library_that_is_not_named_is_found(tmp_path):
 ENDS = {"IN_DO_STEP": "if (time > 0.0105) return 2"}
 
 
-def test_an_end_that_the_fmu_wants_is_no_error(tmp_path):
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_an_end_that_the_fmu_wants_is_no_error(tmp_path, fmi):
     """It discards a step and says that it has terminated; without that it is a refusal."""
     ending = build_stranger(
-        tmp_path, "ending", IN_GET_BOOLEAN_STATUS="if (kind == 3) { *value = 1; return 0; }", **ENDS
+        tmp_path, "ending", fmi=fmi, IN_GET_BOOLEAN_STATUS="if (kind == 3) { *value = 1; return 0; }", **ENDS
     )
     assert not {"runs", "steps", "reset", "instances"} & broken(ending).keys()
-    assert "answered fmi2DoStep with discard" in broken(build_stranger(tmp_path, **ENDS))["runs"][1]
+    assert f"answered fmi{fmi}DoStep with discard" in broken(build_stranger(tmp_path, fmi=fmi, **ENDS))["runs"][1]
 
 
 def test_many_short_calls_are_not_one_that_hangs(tmp_path):
