@@ -81,8 +81,8 @@ class _Traced:
 
     def _call(self, fname: str, *args: Any) -> Any:
         note(self.number, fname, args[1] if fname in ("fmi2DoStep", "fmi3DoStep") else AT_START)
-        result: Any = super()._call(fname, *args)  # pyright: ignore
-        if self._functions[fname].restype == c_int and result < fmi2OK:  # pyright: ignore[reportAttributeAccessIssue]
+        result = cast(Any, super())._call(fname, *args)
+        if cast(Any, self)._functions[fname].restype == c_int and result < fmi2OK:
             raise FMICallException(function=fname, status=result)
         return cast(Any, result)
 
@@ -98,7 +98,8 @@ class FMU2Traced(_Traced, FMU2Slave):
     def has_ended(self) -> bool:
         """Whether it asked for the end of the simulation in the last step, which it discarded."""
         ended = c_int(0)
-        asked = self.dll["fmi2GetBooleanStatus"](c_void_p(self.component), c_int(fmi2Terminated), byref(ended))
+        component = c_void_p(cast(int, self.component))
+        asked = self.dll["fmi2GetBooleanStatus"](component, c_int(fmi2Terminated), byref(ended))
         return asked == fmi2OK and bool(ended)
 
 

@@ -6,7 +6,7 @@ Types are called as in FMI 2.0, also those of FMI 3.0: a Float64 is a Real, an I
 from collections.abc import Sequence
 from ctypes import c_bool, c_double, c_int, c_int32, c_int64
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from fmpy.model_description import ModelDescription, ModelVariable
 
@@ -82,7 +82,7 @@ class Interface:
         self.rates = _rates(self.description) if self.fmi == 3 else {}
         for variable in self.description.modelVariables if self.fmi == 3 else ():
             of_array = "array of " if variable.shape else ""
-            variable.type = of_array + OURS.get(str(variable.type), str(variable.type))
+            cast(Any, variable).type = of_array + OURS.get(str(variable.type), str(variable.type))
         self.variables: dict[str, ModelVariable] = {v.name: v for v in self.description.modelVariables}
         self.factors: dict[str, float] = {}
         self.refused: set[str] = set()
