@@ -64,7 +64,7 @@ def host_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict
     Raises:
         CompilerError: see there.
     """
-    folder = str(fmpy.platform_tuple) if fmi == 3 else fmpy.platform
+    folder = str(fmpy.platform_tuple if fmi == 3 else fmpy.platform)
     path = f"binaries/{folder}/{name}{fmpy.sharedLibraryExtension}"
     return {path: _compiled([host_compiler()], name + fmpy.sharedLibraryExtension, sources)}
 
