@@ -107,7 +107,6 @@ class FMU2Exchanging(_Traced, FMU2Model):
     """An FMU of FMI 2.0 for model exchange."""
 
 
-
 class FMU3Traced(_Traced, FMU3Slave):
     """An FMU of FMI 3.0, with the names of FMI 2.0 for what goes by another one."""
 

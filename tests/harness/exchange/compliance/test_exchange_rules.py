@@ -84,5 +84,5 @@ def test_a_derivative_is_that_of_one_continuous_state(tmp_path, pattern, replace
 
 
 def test_in_a_loop_it_is_told_that_there_is_no_co_simulation(tmp_path):
-    with pytest.raises(WiringError, match=r"is for model exchange alone; only FMI 2\.0 Co-Simulation"):
+    with pytest.raises(WiringError, match=r"is for model exchange alone; only Co-Simulation of FMI 2\.0 and 3\.0"):
         Interface(build_oscillator(tmp_path))
