@@ -39,6 +39,11 @@ def test_the_validator_finds_nothing(built, name):
 
 
 @every_fmu
+def test_it_tells_that_this_project_made_it(description):
+    assert description.generationTool.startswith(f"driveline-damping {VERSION} (")
+
+
+@every_fmu
 def test_value_references_count_inputs_outputs_and_parameters(description):
     assert [v.valueReference for v in description.modelVariables] == list(range(len(description.modelVariables)))
     assert [v.causality for v in description.modelVariables] == sorted(

@@ -5,6 +5,7 @@ import pytest
 from tests.fmus.description.test_model_description import (  # noqa: F401
     description,
     test_every_quantity_has_unit_and_meaning_and_every_parameter_bounds,
+    test_it_tells_that_this_project_made_it,
     test_the_documentation_page_tells_of_every_variable,
     test_the_plants_have_the_same_inputs_and_outputs,
     test_the_validator_finds_nothing,

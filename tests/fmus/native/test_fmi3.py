@@ -17,6 +17,11 @@ from driveline.fmus.comparators import COMPARATORS
 from driveline.fmus.description.units import base_exponents, rate_unit
 from driveline.fmus.description.variables import interface
 from driveline.fmus.native.packaging import FMI_HEADERS
+from tests.fmus.description.test_model_description import (  # noqa: F401
+    description,
+    test_it_tells_that_this_project_made_it,
+    test_the_validator_finds_nothing,
+)
 from tests.fmus.host import opened
 from tests.fmus.native.test_rates import (  # noqa: F401
     ramp,
@@ -72,11 +77,6 @@ def built(fmi3):
 def native(fmi3):
     """What the tests of rates call it."""
     return fmi3
-
-
-@every_fmu
-def test_the_validator_finds_nothing(fmi3, name):
-    assert validate_fmu(str(fmi3 / f"{name}.fmu")) == []
 
 
 @pytest.mark.parametrize("name", COMPARATORS)
