@@ -45,7 +45,8 @@ IN_C = {
     "operators.h": ("tests/fmus/native/test_functions.py", "tests/fmus/native/test_rates.py"),
     "continuous.c": ("tests/fmus/native/test_rates.py", *CALLS),
     "content.c": ("tests/fmus/native/test_same_words.py", "tests/fmus/test_state.py", *CALLS),
-    **{f"{name}.c": CALLS for name in ("run", "values", "state", "messages", "fmi2")},
+    **{f"{name}.c": CALLS for name in ("run", "values", "state", "messages", "calls", "fmi2")},
+    "fmi3.c": ("tests/fmus/native/test_fmi3.py", "tests/fmus/native/test_same_words.py"),
 }
 """The files of the C core, and the tests that find faults in them, in the order in which they are run."""
 

@@ -21,9 +21,12 @@ ORDERS = {
         "content.c",
         "state.c",
         "run.c",
+        "calls.c",
         "fmi2.c",
         "model_exchange.c",
         "fmi2_model_exchange.c",
+        "fmi3.c",
+        "fmi3_refused.c",
     ),
     TARGET_FILES: ("board_host.c", "board_mps2.c", "link.c", "scheduler.c"),
 }
