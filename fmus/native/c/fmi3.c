@@ -25,7 +25,7 @@ const char *fmi3GetVersion(void)
     return fmi3Version;
 }
 
-static fmi3Status in_fmi(Status status)
+static fmi3Status in_fmi3(Status status)
 {
     return status == OK ? fmi3OK : status == DISCARD ? fmi3Discard : fmi3Error;
 }
@@ -34,14 +34,14 @@ static void log_for(void *listener, Status status, const char *message)
 {
     const Component *component = listener;
     if (component->log_message)
-        component->log_message(component->environment, in_fmi(status), category_of(status), message);
+        component->log_message(component->environment, in_fmi3(status), category_of(status), message);
 }
 
 fmi3Status fmi3SetDebugLogging(
     fmi3Instance c, fmi3Boolean loggingOn, size_t nCategories, const fmi3String categories[])
 {
     Instance *instance = ready(c, ANY_MODE, nCategories == 0 || categories, __func__);
-    return instance ? in_fmi(set_logging(instance, loggingOn, nCategories, categories)) : fmi3Error;
+    return instance ? in_fmi3(set_logging(instance, loggingOn, nCategories, categories)) : fmi3Error;
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(
@@ -109,7 +109,7 @@ fmi3Status fmi3EnterInitializationMode(
     const Status status = set_experiment(instance, startTime, stopTimeDefined ? stopTime : (double)INFINITY);
     if (status == OK)
         instance->memory.mode = INITIALIZATION;
-    return in_fmi(status);
+    return in_fmi3(status);
 }
 
 /* A function without arguments that is allowed in some modes and cannot fail. */
@@ -207,7 +207,7 @@ static int are_of_block(const Reference references[], size_t count)
         if (!instance || !is_count(instance, nValues, nvr, __func__))                                                \
             return fmi3Error;                                                                                        \
         if (as_in_core)                                                                                              \
-            return in_fmi(get_values(instance, TYPE, vr, nvr, values));                                              \
+            return in_fmi3(get_values(instance, TYPE, vr, nvr, values));                                             \
         for (size_t k = 0; k < nvr; k++)                                                                             \
             if (get_##Type(instance, vr[k], &values[k]) != OK)                                                       \
                 return fmi3Error;                                                                                    \
@@ -220,7 +220,7 @@ static int are_of_block(const Reference references[], size_t count)
         if (!instance || !is_count(instance, nValues, nvr, __func__))                                                \
             return fmi3Error;                                                                                        \
         if (as_in_core)                                                                                              \
-            return in_fmi(set_values(instance, TYPE, vr, nvr, values));                                              \
+            return in_fmi3(set_values(instance, TYPE, vr, nvr, values));                                             \
         const Memory before = instance->memory;                                                                      \
         for (size_t k = 0; k < nvr; k++)                                                                             \
             if (set_##Type(instance, vr[k], values[k]) != OK) {                                                      \
@@ -238,7 +238,7 @@ VALUES(Boolean, BOOLEAN, 0)
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *FMUState)
 {
     const Instance *instance = ready(c, ANY_MODE, FMUState != NULL, __func__);
-    return instance ? in_fmi(get_state(instance, FMUState)) : fmi3Error;
+    return instance ? in_fmi3(get_state(instance, FMUState)) : fmi3Error;
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState FMUState)
@@ -272,14 +272,14 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState FMUState, siz
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState FMUState, fmi3Byte serializedState[], size_t size)
 {
     const Instance *instance = ready(c, ANY_MODE, FMUState && serializedState, __func__);
-    return instance ? in_fmi(serialize_state(instance, FMUState, serializedState, size)) : fmi3Error;
+    return instance ? in_fmi3(serialize_state(instance, FMUState, serializedState, size)) : fmi3Error;
 }
 
 fmi3Status fmi3DeserializeFMUState(
     fmi3Instance c, const fmi3Byte serializedState[], size_t size, fmi3FMUState *FMUState)
 {
     const Instance *instance = ready(c, ANY_MODE, FMUState && serializedState, __func__);
-    return instance ? in_fmi(deserialize_state(instance, serializedState, size, FMUState)) : fmi3Error;
+    return instance ? in_fmi3(deserialize_state(instance, serializedState, size, FMUState)) : fmi3Error;
 }
 
 fmi3Status fmi3GetDirectionalDerivative(
@@ -299,7 +299,7 @@ fmi3Status fmi3GetDirectionalDerivative(
         !is_count(instance, nSensitivity, nUnknowns, __func__))
         return fmi3Error;
     const Direction direction = {unknowns, nUnknowns, knowns, nKnowns, seed};
-    return in_fmi(get_directional_derivative(instance, &direction, sensitivity));
+    return in_fmi3(get_directional_derivative(instance, &direction, sensitivity));
 }
 
 fmi3Status fmi3GetOutputDerivatives(
@@ -313,7 +313,7 @@ fmi3Status fmi3GetOutputDerivatives(
     const Instance *instance = ready(c, STEPPING | TERMINATED, nvr == 0 || (vr && orders && values), __func__);
     if (!instance || !is_count(instance, nValues, nvr, __func__) || !orders_are_one(instance, orders, nvr))
         return fmi3Error;
-    return in_fmi(get_output_rates(instance, vr, nvr, values));
+    return in_fmi3(get_output_rates(instance, vr, nvr, values));
 }
 
 fmi3Status fmi3DoStep(
@@ -334,5 +334,5 @@ fmi3Status fmi3DoStep(
     const Status status = make_step(instance, currentCommunicationPoint, communicationStepSize);
     *eventHandlingNeeded = *terminateSimulation = *earlyReturn = fmi3False;
     *lastSuccessfulTime = instance->memory.time;
-    return in_fmi(status);
+    return in_fmi3(status);
 }

@@ -25,9 +25,9 @@ static fmi3Status no_variable(
     if (count == 0)
         return fmi3OK;
     if (references[0] >= variable_count)
-        return in_fmi(refuse(instance, UNKNOWN_REFERENCE(references[0], model_name, last_reference)));
+        return in_fmi3(refuse(instance, UNKNOWN_REFERENCE(references[0], model_name, last_reference)));
     const Variable *variable = &variables[references[0]];
-    return in_fmi(refuse(instance, WRONG_TYPE(variable->name, type_names[variable->type], type)));
+    return in_fmi3(refuse(instance, WRONG_TYPE(variable->name, type_names[variable->type], type)));
 }
 
 #define NOT_OFFERED(what, function, arguments)       \
