@@ -198,7 +198,8 @@ fmi3Instance fmi3InstantiateModelExchange(
     fmi3InstanceEnvironment instanceEnvironment,
     fmi3LogMessageCallback logMessage)
 {
-    return no_instance(instanceEnvironment, logMessage, "fmi3InstantiateModelExchange is refused; the FMU has no model exchange");
+    return no_instance(
+        instanceEnvironment, logMessage, "fmi3InstantiateModelExchange is refused; the FMU has no model exchange");
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
@@ -213,7 +214,8 @@ fmi3Instance fmi3InstantiateScheduledExecution(
     fmi3LockPreemptionCallback lockPreemption,
     fmi3UnlockPreemptionCallback unlockPreemption)
 {
-    return no_instance(instanceEnvironment, logMessage, "fmi3InstantiateScheduledExecution is refused; the FMU has no scheduled execution");
+    return no_instance(
+        instanceEnvironment, logMessage, "fmi3InstantiateScheduledExecution is refused; the FMU has no scheduled execution");
 }
 
 #ifdef __GNUC__
