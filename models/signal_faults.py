@@ -1,11 +1,11 @@
 """Faults of the signals that a controller gets: a test bench for its monitor, between the sensors and the controller.
 
 Up to two faults act at a time, each on one signal from `begin` to `end`: the motor's speed, the torque that it
-estimates, or the message with the wheel speed. What fails in time (late, frozen, lost) takes the place of what comes
-in; what fails in value (gain, offset, noise, spikes, no number) is done to that. Without a fault the signals pass
+estimates, the frame with both, or the message with the wheel speed. What fails in time (late, frozen, lost) takes
+the place of what comes in; what fails in value (gain, offset, noise, spikes, no number) is done to that. Without a fault the signals pass
 as they are, within the same instant.
 
-    late       what was sent `size` seconds before, at most 0.5 (one signal alone: that of the first fault that is late)
+    late       what was sent `size` seconds before, at most 0.5 (of two faults that are late the first one's alone)
     frozen     what was sent last before `begin`; messages keep coming with that speed
     lost       this share of the samples or messages; the last one stays
     gain       times `size`: 0 reads zero, -1 has the wrong sign
@@ -32,13 +32,13 @@ HISTORY = 250
 """Samples that are kept for the signals that come late."""
 
 LATE, FROZEN, LOST, GAIN, OFFSET, NOISE, SPIKES, NO_NUMBER, FLAPPING, JUMPING = range(1, 11)
-MOTOR_SPEED, MOTOR_TORQUE, WHEEL_SPEED = 1, 2, 3
+MOTOR_SPEED, MOTOR_TORQUE, WHEEL_SPEED, FRAME = 1, 2, 3, 4
 
 COUNTERS = 1e6
 """A counter that jumps is below this."""
 
 Kind = Annotated[int, Integer("what fails, numbered as above from 1; 0 for nothing", 0, 10)]
-Place = Annotated[int, Integer("which signal: 1 motor speed, 2 motor torque, 3 wheel speed", 1, 3)]
+Place = Annotated[int, Integer("which signal: 1 motor speed, 2 motor torque, 3 wheel speed, 4 the first two", 1, 4)]
 Begin = Annotated[float, Real("s", "instant from which the fault acts", 0.0, 1e6)]
 End = Annotated[float, Real("s", "instant from which it no longer acts", 0.0, 1e6)]
 Size = Annotated[float, Real("1", "how much, see above; in SI units", -1e6, 1e6)]
@@ -92,9 +92,10 @@ class Fault(NamedTuple):
 
 
 class Sent(NamedTuple):
-    """The signal that a fault acts on, and what the message with the wheel speed has beside it."""
+    """What was sent, as far as a fault acts on it."""
 
-    value: Annotated[float, Real("1", "of the signal, in SI units")]
+    speed: Annotated[float, Real("rad/s", "of the motor; of the wheels for a fault of the message")]
+    torque: Annotated[float, Real("N.m", "of the motor")]
     valid: Annotated[bool, Boolean("flag of the message")]
     counter: Annotated[int, Integer("counter of the message")]
 
@@ -148,9 +149,12 @@ def _late_one(p: Parameters) -> Fault:
 
 def _sent(u: Input, fault: Fault) -> Sent:
     speed, torque, wheel, valid, counter = u
-    return Sent(
-        where(fault.signal == MOTOR_SPEED, speed, where(fault.signal == MOTOR_TORQUE, torque, wheel)), valid, counter
-    )
+    return Sent(where(fault.signal == WHEEL_SPEED, wheel, speed), torque, valid, counter)
+
+
+def is_of(fault: Fault, signal: int) -> bool:
+    """Whether a fault acts on a signal of the motor, alone or with the frame."""
+    return logical_or(fault.signal == signal, fault.signal == FRAME)
 
 
 def acts(fault: Fault, sample: float) -> bool:
@@ -173,9 +177,9 @@ def delivered(y: Signals, u: Input, late: Sent, last: Sent, fault: Fault, sample
     message = logical_and(fails, fault.signal == WHEEL_SPEED)
     whole = logical_and(message, fault.kind != FROZEN)
     return Signals(
-        omega_1_meas=where(logical_and(fails, fault.signal == MOTOR_SPEED), old.value, y.omega_1_meas),
-        T_mot_est=where(logical_and(fails, fault.signal == MOTOR_TORQUE), old.value, y.T_mot_est),
-        omega_2_can=where(message, old.value, y.omega_2_can),
+        omega_1_meas=where(logical_and(fails, is_of(fault, MOTOR_SPEED)), old.speed, y.omega_1_meas),
+        T_mot_est=where(logical_and(fails, is_of(fault, MOTOR_TORQUE)), old.torque, y.T_mot_est),
+        omega_2_can=where(message, old.speed, y.omega_2_can),
         valid=where(whole, old.valid, y.valid),
         counter=where(whole, old.counter, y.counter),
     )
@@ -189,14 +193,13 @@ def altered(y: Signals, fault: Fault, sample: float, p: Parameters) -> Signals:
     turned = logical_and(fault.kind == FLAPPING, times % 2.0 == 0.0)
     jumps = logical_and(logical_and(now, fault.kind == JUMPING), strikes)
 
-    def value(right: float, signal: int) -> float:
-        wrong = _wrong(right, fault, strikes, index, p)
-        return where(logical_and(now, fault.signal == signal), wrong, right)
+    def value(right: float, acts_on_it: bool) -> float:
+        return where(logical_and(now, acts_on_it), _wrong(right, fault, strikes, index, p), right)
 
     return Signals(
-        omega_1_meas=value(y.omega_1_meas, MOTOR_SPEED),
-        T_mot_est=value(y.T_mot_est, MOTOR_TORQUE),
-        omega_2_can=value(y.omega_2_can, WHEEL_SPEED),
+        omega_1_meas=value(y.omega_1_meas, is_of(fault, MOTOR_SPEED)),
+        T_mot_est=value(y.T_mot_est, is_of(fault, MOTOR_TORQUE)),
+        omega_2_can=value(y.omega_2_can, fault.signal == WHEEL_SPEED),
         valid=where(logical_and(now, turned), logical_not(y.valid), y.valid),
         counter=where(jumps, floor(COUNTERS * uniform(p.seed, fault.stream + 4.0, sample)), y.counter),
     )

@@ -14,6 +14,7 @@ examples:
   driveline faults                                        1000 cases, both plants
   driveline faults --cases 10000 --seed 2
   driveline faults --plant ValidationVehicle --cases 300
+  driveline faults --campaign roads --output results/roads  on ice, hills, under ABS; faults that stay, late frames
   driveline faults --case 806                             one of them, drawn
   driveline faults --controller my_controller.fmu         how good is mine?
   driveline faults --json > faults.json
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_cases(parser, 1000, 1_000_000, "only the case of this number, with a figure")
+    parser.add_argument("--campaign", choices=("dry", "roads"), help="which cases (default: dry)")
     add_plant(parser, several=True)
     add_loop(parser)
     add_output(parser, "results/faults", "the cases, the page and the figures", of_a_run=True)
@@ -66,12 +68,14 @@ def run(args: argparse.Namespace) -> int:
 def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
     from ..studies.faults.fault_campaign import campaign, table
     from ..studies.faults.fault_campaign import distinguishing as of_the_cases
+    from ..studies.faults.fault_cases import PLANS
     from ..studies.faults.fault_report import write
 
+    plan = PLANS[args.campaign or "dry"]
     record, cases = args.output / "faults.json", args.output / "faults.csv"
-    same |= of_the_cases(runner, args.seed)
-    with campaign_job(args, record, cases, table(args.seed, runner.plants), same, systems) as (made, archive):
-        outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, scheduler=args.scheduler)
+    same |= of_the_cases(runner, args.seed, plan)
+    with campaign_job(args, record, cases, table(args.seed, runner.plants, plan), same, systems) as (made, archive):
+        outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, scheduler=args.scheduler, plan=plan)
         archive.sort(lambda case: case.number)
         made.wrote(*write(outcomes, f" {as_given(args)}", args.output))
         return _tell(made, outcomes, runner)
@@ -79,12 +83,14 @@ def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], 
 
 def _one(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
     """One case again."""
+    from ..studies.faults.fault_cases import PLANS
     from ..studies.faults.fault_report import write_case
 
+    plan = PLANS[args.campaign or "dry"]
     record, signals = (args.output / f"case_{args.case}{ending}" for ending in (".json", ".csv"))
     with job(args, record, same | {"case": args.case}, systems, [signals]) as made:
         made.begin()
-        outcome, files = write_case(args.case, args.seed, runner, args.output, caption(args))
+        outcome, files = write_case(args.case, args.seed, runner, args.output, caption(args), plan)
         made.wrote(*files)
         made.out.say(f"case {outcome.case}")
         return _tell(made, [outcome], runner)

@@ -134,6 +134,7 @@ def as_given(args: argparse.Namespace) -> str:
     """The options that make runs what they are, as they are given."""
     given = [
         ("seed", getattr(args, "seed", None)),
+        ("campaign", getattr(args, "campaign", None)),
         *((name, value) for name in ("manoeuvre", "plant") for value in getattr(args, name, None) or ()),
         *_set(args),
         ("build", getattr(args, "build", None)),

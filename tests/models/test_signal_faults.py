@@ -11,6 +11,7 @@ from driveline.models.block.runner import SampledRunner
 from driveline.models.signal_faults import (
     BLOCK,
     FLAPPING,
+    FRAME,
     FROZEN,
     GAIN,
     JUMPING,
@@ -93,6 +94,23 @@ def test_of_two_faults_that_are_late_the_second_has_no_value_of_another_signal(s
     assert (out.omega_1_meas[NOW] == true.omega_1_meas[NOW.start - 10 : NOW.stop - 10]).all()
     for name in set(FIELD.values()) - {"omega_1_meas"}:
         assert (getattr(out, name) == getattr(true, name)).all()
+
+
+@pytest.mark.parametrize(("kind", "before"), [(LATE, 8), (FROZEN, None), (LOST, None)])
+def test_a_frame_fails_with_speed_and_torque_and_without_the_message(kind, before):
+    out, true = passed(**fault(kind, FRAME, size=8 * T_S))
+    sources = slice(NOW.start - before, NOW.stop - before) if before else NOW.start - 1
+    for name in ("omega_1_meas", "T_mot_est"):
+        assert (getattr(out, name)[NOW] == getattr(true, name)[sources]).all()
+        assert (np.delete(getattr(out, name), NOW) == np.delete(getattr(true, name), NOW)).all()
+    for name in ("omega_2_can", "valid", "counter"):
+        assert (getattr(out, name) == getattr(true, name)).all()
+
+
+def test_a_frame_without_numbers_has_none_at_all():
+    out, _ = passed(**fault(NO_NUMBER, FRAME))
+    assert np.isnan(out.omega_1_meas[NOW]).all()
+    assert np.isnan(out.T_mot_est[NOW]).all()
 
 
 def test_the_longest_delay_is_half_a_second():

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from ...loop.places import T_S
-from .fault_cases import DURATION, Fault
+from .fault_cases import Fault
 from .fault_injection import Limits, Runs
 
 WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, FALLBACK = 2, 3, 4
@@ -62,9 +62,13 @@ class Evidence:
     @property
     def end(self) -> float:
         """The instant from which the signals are right again; inf if they stay wrong or nothing is wrong with them."""
-        return max(
-            (fault.end if fault.end < DURATION else inf for fault in self.faults if fault.kind.number), default=inf
-        )
+        ends = [fault.end for fault in self.faults if fault.kind.number]
+        return max((end if end < self.t[-1] else inf for end in ends), default=inf)
+
+    @property
+    def lasts(self) -> bool:
+        """Whether a motor signal fails to the end of the run, so that there need be no damping there."""
+        return any(fault.end >= self.t[-1] and fault.kind.number and not fault.kind.tolerable for fault in self.faults)
 
 
 def motor_signal_is_wrong(seen: Evidence) -> np.ndarray:

@@ -10,8 +10,7 @@ from typing import Any
 from ...simulation.case_archive import Table
 from ...simulation.many_runs import run_many
 from .evidence import Evidence
-from .fault_cases import SITUATIONS, Case, case
-from .fault_catalogue import KINDS
+from .fault_cases import PLANS, Case, Plan, case
 from .fault_injection import FaultRunner, Limits, Runs
 from .judges import JUDGES
 
@@ -61,6 +60,11 @@ def count(outcomes: Iterable[Outcome], kind: str, judge: str | None = None) -> t
     return sum(judge in each.failed if judge else bool(each.failed) for each in cases), len(cases)
 
 
+def plan_of(outcomes: Sequence[Outcome]) -> Plan:
+    """What these cases of one campaign were drawn from."""
+    return outcomes[0].case.plan if outcomes else PLANS["dry"]
+
+
 def campaign(
     runner: FaultRunner,
     numbers: Sequence[int],
@@ -68,14 +72,15 @@ def campaign(
     known: MutableMapping[Case, Outcome] | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    plan: Plan = PLANS["dry"],
 ) -> list[Outcome]:
     """What came of the cases of these numbers, in their order.
 
     Args:
-        seed: of the campaign.
+        seed, plan: of the campaign.
         known, workers, scheduler: see `harness.simulation.many_runs.run_many`.
     """
-    cases = [case(number, seed, runner.plants) for number in numbers]
+    cases = [case(number, seed, runner.plants, plan) for number in numbers]
     return run_many(lambda each: outcome(runner, each), cases, workers, "faults", scheduler, known)
 
 
@@ -84,9 +89,10 @@ def outcome(runner: FaultRunner, each: Case) -> Outcome:
     return judged(each, runner.runs(each), runner.limits(each.plant))
 
 
-def distinguishing(runner: FaultRunner, seed: int) -> dict[str, Any]:
+def distinguishing(runner: FaultRunner, seed: int, plan: Plan) -> dict[str, Any]:
     """All that the outcomes depend on, beside what was set."""
-    first = [case(number, seed, runner.plants) for number in range(1, 2 * len(KINDS) * len(SITUATIONS) + 1)]
+    cells = 2 * len(plan.kinds) * len(plan.situations)
+    first = [case(number, seed, runner.plants, plan) for number in range(1, cells + 1)]
     limits = [(judge.name, judge.limit) for judge in JUDGES]
     return {
         "cases": f"sha256:{sha256(repr((first, limits)).encode()).hexdigest()}",
@@ -100,18 +106,18 @@ def judged(each: Case, runs: Runs, limits: Limits) -> Outcome:
     return Outcome(each, {judge.name: judge.measure(seen) for judge in JUDGES})
 
 
-def table(seed: int, plants: Sequence[str]) -> Table[Case, Outcome]:
+def table(seed: int, plants: Sequence[str], plan: Plan = PLANS["dry"]) -> Table[Case, Outcome]:
     """Of the campaign with this seed on these plants: a line has all of a case, which must be that of its number."""
 
     def parsed(cells: Sequence[str]) -> tuple[Case, Outcome]:
         measured = (float(cell) for cell in cells[-1 - len(JUDGES) : -1])
-        each = case(int(cells[0]), seed, plants)
+        each = case(int(cells[0]), seed, plants, plan)
         outcome = Outcome(each, {judge.name: value for judge, value in zip(JUDGES, measured, strict=True)})
         if _cells(each, outcome) != list(cells):
             raise ValueError
         return each, outcome
 
-    first = Outcome(case(1, seed, plants), {judge.name: 0.0 for judge in JUDGES})
+    first = Outcome(case(1, seed, plants, plan), {judge.name: 0.0 for judge in JUDGES})
     return Table([*first.record], _cells, parsed, "the case of its number and what was measured")
 
 

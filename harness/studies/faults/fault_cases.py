@@ -1,17 +1,17 @@
-"""The cases of a campaign: each is data, and follows from the seed of the campaign and its own number."""
+"""The cases of a campaign: each is data, and follows from the campaign, its seed and its own number."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...manoeuvres.catalogue import MANOEUVRES
+from ...manoeuvres.catalogue import EVERYDAY, GRADE, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import lines
-from .fault_catalogue import KINDS, PAIRS, Kind, uniform
+from .fault_catalogue import IN_SITUATIONS, KINDS, ON_ROADS, Kind, pairs, uniform
 
 DURATION = 4.0
-"""Of a run in s."""
+"""Of a run in a situation in s."""
 
 NOISES = 16
 """Seeds of the sensor noise; runs without faults are shared by the cases that have them in common."""
@@ -31,6 +31,11 @@ class Situation:
     first: float
     last: float
 
+    @property
+    def duration(self) -> float:
+        """Of a run in s."""
+        return self.manoeuvre.duration
+
 
 def _steady(name: str, v_0: float, T_driver: float) -> Manoeuvre:
     return Manoeuvre(name, name, DURATION, v_0, lines((0.0, T_driver)), t_0=1.0)
@@ -40,7 +45,7 @@ def _short(name: str) -> Manoeuvre:
     return replace(MANOEUVRES[name], duration=DURATION)
 
 
-SITUATIONS = {
+_SITUATIONS = {
     situation.name: situation
     for situation in (
         Situation("gap", "in the gap of a tip-in at 15 km/h", _short("tipin15"), 1.005, 1.035),
@@ -51,6 +56,74 @@ SITUATIONS = {
         Situation("standing", "standing", _steady("standing", 0.0, 0.0), 1.0, 1.1),
     )
 }
+
+
+def _abs(mu: float, frequency: float, T_brake: float) -> Manoeuvre:
+    """Brakes as they are let go: half of each period."""
+    pulses: list[tuple[float, float]] = []
+    for t in np.arange(1.0, 3.5, 1.0 / frequency):
+        pulses += [
+            (t, 200.0),
+            (t, 200.0 + T_brake),
+            (t + 0.5 / frequency, 200.0 + T_brake),
+            (t + 0.5 / frequency, 200.0),
+        ]
+    demand, brakes = lines((0.8, 12.0), (1.0, 0.0)), lines(*pulses)
+    return Manoeuvre("abs", "abs", 4.0, 22.0, demand, brakes, t_0=1.0, road={"mu": mu})
+
+
+def _rolls_back(mu: float, grade: float) -> Manoeuvre:
+    demand, slope = lines((2.0, 0.0), (2.1, 120.0)), lines((0.2, 0.0), (0.7, grade))
+    return Manoeuvre("rolls back", "rolls back", 6.0, 0.0, demand, slope=slope, t_0=1.5, road={"mu": mu})
+
+
+def _rocks(mu: float) -> Manoeuvre:
+    demand = lines((1.0, 0.0), (1.0, 80.0), (2.0, 80.0), (2.0, -80.0))
+    return Manoeuvre("rocks", "rocks", 5.0, 0.0, demand, t_0=1.0, road={"mu": mu})
+
+
+def _on_road(name: str, description: str, manoeuvre: Manoeuvre) -> Situation:
+    """The fault begins in the first two thirds of what the manoeuvre is about."""
+    last = manoeuvre.t_0 + 2.0 / 3.0 * (manoeuvre.duration - manoeuvre.t_0)
+    return Situation(name, description, manoeuvre, manoeuvre.t_0, last)
+
+
+_ROADS = {
+    situation.name: situation
+    for situation in (
+        *(_on_road(each.name, each.description, each) for each in EVERYDAY),
+        _on_road("ice_hill_20", "rolls back on a 20 % grade of ice (mu 0.1), then 120 N.m", _rolls_back(0.1, 0.2)),
+        _on_road("snow_hill", "rolls back on a 12 % grade (mu 0.2), then 120 N.m", _rolls_back(0.2, GRADE)),
+        _on_road("rocking", "80 N.m and back on ice (mu 0.15)", _rocks(0.15)),
+        _on_road("abs_wet", "brake pulses of 1500 N.m at 8 Hz (mu 0.5)", _abs(0.5, 8.0, 1500.0)),
+        _on_road("abs_ice", "brake pulses of 500 N.m at 4 Hz (mu 0.2)", _abs(0.2, 4.0, 500.0)),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What the cases of a campaign are drawn from.
+
+    Attributes:
+        name: as on the command line.
+        to_the_end: share of the faults that last to the end of the run, whatever their kind.
+    """
+
+    name: str
+    situations: Mapping[str, Situation]
+    kinds: Mapping[str, Kind]
+    to_the_end: float = 0.0
+    pairs: Sequence[tuple[Kind, Kind]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pairs", pairs(self.kinds.values()))
+
+
+PLANS = {plan.name: plan for plan in (Plan("dry", _SITUATIONS, IN_SITUATIONS), Plan("roads", _ROADS, ON_ROADS, 0.5))}
+"""Of the campaigns, by name."""
+
+SITUATIONS = _SITUATIONS | _ROADS
 
 
 @dataclass(frozen=True)
@@ -86,11 +159,16 @@ class Case:
     faults: tuple[Fault, ...]
     noise: int
 
+    @property
+    def plan(self) -> "Plan":
+        """That has its situation."""
+        return next(plan for plan in PLANS.values() if self.situation in plan.situations)
+
     def __str__(self) -> str:
         return f"{self.number}: {self.plant}, {self.situation}, {' and '.join(map(str, self.faults))}"
 
 
-def case(number: int, seed: int, plants: Sequence[str]) -> Case:
+def case(number: int, seed: int, plants: Sequence[str], plan: Plan = PLANS["dry"]) -> Case:
     """The case of a number, from 1 on; odd rounds over the plants are single faults, even ones pairs.
 
     Single faults go through all kinds and situations in turn, pairs through all situations with kinds at random.
@@ -98,20 +176,21 @@ def case(number: int, seed: int, plants: Sequence[str]) -> Case:
     rng = np.random.default_rng((seed, number))
     turn, plant = divmod(number - 1, len(plants))
     cell, is_pair = divmod(turn, 2)
-    rest, place = divmod(cell, len(SITUATIONS))
-    situation = list(SITUATIONS.values())[place]
-    pair = PAIRS[int(rng.integers(len(PAIRS)))]
-    kinds = pair if is_pair else (list(KINDS.values())[rest % len(KINDS)],)
-    faults = tuple(_drawn(kind, situation, rng) for kind in kinds)
+    rest, place = divmod(cell, len(plan.situations))
+    situation = list(plan.situations.values())[place]
+    pair = plan.pairs[int(rng.integers(len(plan.pairs)))]
+    kinds = pair if is_pair else (list(plan.kinds.values())[rest % len(plan.kinds)],)
+    faults = tuple(_drawn(kind, situation, plan, rng) for kind in kinds)
     return Case(number, plants[plant], situation.name, faults, int(rng.integers(1, NOISES + 1)))
 
 
-def _drawn(kind: Kind, situation: Situation, rng: np.random.Generator) -> Fault:
+def _drawn(kind: Kind, situation: Situation, plan: Plan, rng: np.random.Generator) -> Fault:
     begin = round(uniform(situation.first, situation.last)(rng), 3)
+    stays = kind.lasts is None or (plan.to_the_end > 0.0 and rng.random() < plan.to_the_end)
     return Fault(
         name=kind.name,
         begin=begin,
-        end=round(begin + kind.lasts(rng), 3) if kind.lasts else DURATION + 1.0,
+        end=situation.duration + 1.0 if stays else round(begin + kind.lasts(rng), 3),
         size=kind.size(rng),
         share=kind.share(rng),
     )

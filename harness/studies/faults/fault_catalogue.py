@@ -1,11 +1,12 @@
 """What can go wrong: faults of the signals that the controller gets, and what happens on ice."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
-MOTOR_SPEED, MOTOR_TORQUE, WHEEL_SPEED = 1, 2, 3
+MOTOR_SPEED, MOTOR_TORQUE, WHEEL_SPEED, FRAME = 1, 2, 3, 4
 """Signals, as SignalFaults numbers them."""
 
 LATE, FROZEN, LOST, GAIN, OFFSET, NOISE, SPIKES, NO_NUMBER, FLAPPING, JUMPING = range(1, 11)
@@ -130,15 +131,33 @@ _KINDS = (
     Kind("wheel spin on ice", 0, 0, "80 N.m more than before", fixed(80.0), lasts=uniform(0.2, 0.8), tolerable=True),
 )
 
-KINDS = {kind.name: kind for kind in _KINDS}
-
 LOCK, SPIN = "wheel lock on ice", "wheel spin on ice"
+
+_OF_FRAMES = (
+    Kind("frame late", FRAME, LATE, "motor speed and torque 10 to 100 ms late", by_ratio(0.01, 0.1)),
+    Kind("frame lost", FRAME, LOST, "a share of 0 to 100 % of motor speed and torque", share=uniform(0.0, 1.0)),
+    Kind("frame frozen", FRAME, FROZEN, "the last values stay"),
+)
+
+NOTHING = Kind("nothing", 0, 0, "all signals are right", tolerable=True)
+
+IN_SITUATIONS = {kind.name: kind for kind in _KINDS}
+"""What goes wrong on a dry road, or makes it icy."""
+
+ON_ROADS = {
+    kind.name: kind for kind in (NOTHING, *(kind for kind in _KINDS if kind.name not in (LOCK, SPIN)), *_OF_FRAMES)
+}
+"""What goes wrong on roads that are slippery themselves."""
+
+KINDS = IN_SITUATIONS | ON_ROADS
 
 
 def can_be_together(first: Kind, second: Kind) -> bool:
     """Of two kinds, whether they are a pair: SignalFaults delays one signal at a time, and wheels lock or spin."""
     same_slot = first.number == second.number and first.number in (0, LATE)
-    return first is not second and not same_slot
+    return first is not second and NOTHING not in (first, second) and not same_slot
 
 
-PAIRS = tuple((a, b) for k, a in enumerate(_KINDS) for b in _KINDS[k + 1 :] if can_be_together(a, b))
+def pairs(kinds: Iterable[Kind]) -> tuple[tuple[Kind, Kind], ...]:
+    """Those that can be made of kinds."""
+    return tuple(pair for pair in combinations(kinds, 2) if can_be_together(*pair))

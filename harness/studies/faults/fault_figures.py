@@ -11,9 +11,8 @@ from ...views.colours import BLACK, BLUE, GREY, VERMILION
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import matrix_axes, plot, sheet
 from ...views.panels import Axis, Curve, Panel, Spans
-from .fault_campaign import Outcome, count
-from .fault_cases import SITUATIONS, Case
-from .fault_catalogue import KINDS
+from .fault_campaign import Outcome, count, plan_of
+from .fault_cases import Case, Plan
 from .fault_injection import Runs
 from .judges import JUDGES
 
@@ -28,10 +27,16 @@ def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Pat
     """Single faults: each kind against the judges, and against where it begins on each plant; returns the files."""
     singles = [outcome for outcome in outcomes if len(outcome.kinds) == 1]
     plants = sorted({outcome.plant for outcome in singles})
-    kinds = list(KINDS)
-    panels = [("all judges", [judge.name for judge in JUDGES], _by_judge(singles))]
-    panels += [(plant, list(SITUATIONS), _by_situation([o for o in singles if o.plant == plant])) for plant in plants]
-    with sheet((9.6, 0.235 * len(kinds) + 1.7), title, stem, pads=(0.04, 0.04)) as (figure, files):
+    plan = plan_of(outcomes)
+    kinds, situations = list(plan.kinds), list(plan.situations)
+    panels = [("all judges", [judge.name for judge in JUDGES], _by_judge(singles, plan))]
+    panels += [(plant, situations, _by_situation([o for o in singles if o.plant == plant], plan)) for plant in plants]
+    with sheet(
+        (2.5 + 0.32 * sum(len(columns) for _, columns, _ in panels), 0.235 * len(kinds) + 1.7),
+        title,
+        stem,
+        pads=(0.04, 0.04),
+    ) as (figure, files):
         widths = [len(columns) for _, columns, _ in panels]
         row = figure.subplots(1, len(panels), sharey=True, squeeze=False, width_ratios=widths)[0]
         for axes, (heading, columns, cells) in zip(row, panels, strict=True):
@@ -39,24 +44,24 @@ def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Pat
     return files
 
 
-def _by_judge(outcomes: Sequence[Outcome]) -> np.ndarray:
+def _by_judge(outcomes: Sequence[Outcome], plan: Plan) -> np.ndarray:
     """For each kind and judge: cases not clean, cases."""
-    return np.array([[count(outcomes, kind, judge.name) for judge in JUDGES] for kind in KINDS])
+    return np.array([[count(outcomes, kind, judge.name) for judge in JUDGES] for kind in plan.kinds])
 
 
-def _by_situation(outcomes: Sequence[Outcome]) -> np.ndarray:
+def _by_situation(outcomes: Sequence[Outcome], plan: Plan) -> np.ndarray:
     """For each kind and situation: cases not clean, cases."""
-    cells = {(kind, situation): [0, 0] for kind in KINDS for situation in SITUATIONS}
+    cells = {(kind, situation): [0, 0] for kind in plan.kinds for situation in plan.situations}
     for outcome in outcomes:
         cell = cells[outcome.kinds[0], outcome.case.situation]
         cell[0] += bool(outcome.failed)
         cell[1] += 1
-    return np.array([[cells[kind, situation] for situation in SITUATIONS] for kind in KINDS])
+    return np.array([[cells[kind, situation] for situation in plan.situations] for kind in plan.kinds])
 
 
 def plot_pairs(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Path]:
     """Pairs of faults: each kind against each other; returns the files."""
-    kinds = list(KINDS)
+    kinds = list(plan_of(outcomes).kinds)
     cells = np.zeros((len(kinds), len(kinds), 2))
     for outcome in outcomes:
         if len(outcome.kinds) == 2:

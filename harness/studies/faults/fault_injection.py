@@ -20,7 +20,7 @@ from ...manoeuvres.signals import Signal, lines
 from ...metrics.evaluate import at_samples
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
 from ...simulation.simulate import signals, start
-from .fault_cases import DURATION, SITUATIONS, Case, Fault
+from .fault_cases import SITUATIONS, Case, Fault
 from .fault_catalogue import ICE, LOCK, SPIN
 
 INSTANCE = "faults"
@@ -46,8 +46,8 @@ JUDGED = (
 KEPT = ["controller.status", "controller.T_damp", "plant.T_gear"]
 """What they read of the runs without faults, of which hundreds are kept."""
 
-SLIPPERY = {"mu": ICE, "c_slip": 1e4}
-"""Parameters of a plant that make ice, the first that it has. Tyres without a limit of friction get slip instead."""
+SLIPPERY = 1e5
+"""Slip stiffness in N over the friction coefficient, for tyres without a limit of friction."""
 
 
 class Runs(NamedTuple):
@@ -103,7 +103,7 @@ class FaultRunner:
             SimulationError: an FMU cannot be loaded, or refused a call.
         """
         require_same_fmus(self.digests)
-        on_ice = tuple(fault for fault in case.faults if not fault.kind.number)
+        on_ice = tuple(fault for fault in case.faults if fault.name in (LOCK, SPIN))
         common = case.plant, case.situation, case.noise, on_ice
         return Runs(
             faulty=self._run(*common, faults=tuple(fault for fault in case.faults if fault.kind.number)),
@@ -141,10 +141,11 @@ class FaultRunner:
         control: bool = True,
     ) -> np.ndarray:
         manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
-        parameters = start(manoeuvre, noise) | (_slippery(self._fit(plant)) if on_ice else {})
+        road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
+        parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
         parameters |= dict(self._settings[plant].parameters) | _parameters(faults, noise)
         given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
-        return at_samples(run(self._system(plant), Experiment(DURATION, **given)))
+        return at_samples(run(self._system(plant), Experiment(manoeuvre.duration, **given)))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
@@ -195,10 +196,11 @@ def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
     return given
 
 
-def _slippery(fitted: Fit) -> dict[str, float]:
-    """Parameters of the plant on ice."""
+def _of_plant(road: Mapping[str, float], fitted: Fit) -> dict[str, float]:
+    """What a plant has of the parameters of a road; without a limit of friction slip in its place."""
     has = fitted.interfaces["plant"].variables
-    return next(({f"plant.{name}": value} for name, value in SLIPPERY.items() if name in has), {})
+    slip = {} if "mu" in has or "mu" not in road else {"c_slip": SLIPPERY * road["mu"]}
+    return {name: value for name, value in (road | slip).items() if name in has}
 
 
 def _with(on_ice: Sequence[Fault], manoeuvre: Manoeuvre) -> Manoeuvre:

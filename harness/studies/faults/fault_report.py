@@ -11,9 +11,8 @@ from ...base.csv_file import write_csv
 from ...views.markdown import markdown_table
 from ...views.terminal import print_table
 from .evidence import REFERENCE_AFTER, SHARE, WRONG_SPEED
-from .fault_campaign import Outcome, count, judged
-from .fault_cases import DURATION, SITUATIONS, case
-from .fault_catalogue import KINDS
+from .fault_campaign import Outcome, count, judged, plan_of
+from .fault_cases import PLANS, Plan, case
 from .fault_figures import plot_case, plot_matrix, plot_pairs
 from .fault_injection import FaultRunner
 from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
@@ -61,15 +60,15 @@ def write(outcomes: Sequence[Outcome], arguments: str, folder: Path) -> list[Pat
 
 
 def write_case(
-    number: int, seed: int, runner: FaultRunner, folder: Path, caption: str = ""
+    number: int, seed: int, runner: FaultRunner, folder: Path, caption: str = "", plan: Plan = PLANS["dry"]
 ) -> tuple[Outcome, list[Path]]:
     """Runs one case again, writes its signals and draws them.
 
     Args:
-        seed: of the campaign.
+        seed, plan: of the campaign.
         caption: what was set, in small below the figure.
     """
-    each = case(number, seed, runner.plants)
+    each = case(number, seed, runner.plants, plan)
     runs = runner.runs(each)
     outcome = judged(each, runs, runner.limits(each.plant))
     stem = folder / f"case_{number}"
@@ -91,18 +90,21 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
     singles = [outcome for outcome in outcomes if len(outcome.kinds) == 1]
     pairs = [outcome for outcome in outcomes if len(outcome.kinds) == 2]
     failed = sum(bool(outcome.failed) for outcome in outcomes)
+    plan = plan_of(outcomes)
+    durations = sorted({situation.duration for situation in plan.situations.values()})
     return PAGE.format(
         arguments=arguments,
-        duration=DURATION,
+        duration=" to ".join(f"{end:g}" for end in dict.fromkeys((durations[0], durations[-1]))),
+        stays=f" Of all faults {100.0 * plan.to_the_end:g} % last to the end of the run." if plan.to_the_end else "",
         cases=len(outcomes),
         clean=len(outcomes) - failed,
         failed=failed,
         singles=len(singles),
         pairs=len(pairs),
-        kinds=markdown_table(["kind", "what"], ((kind.name, kind.meaning) for kind in KINDS.values()), labels=2),
+        kinds=markdown_table(["kind", "what"], ((kind.name, kind.meaning) for kind in plan.kinds.values()), labels=2),
         situations=markdown_table(
             ["situation", "where", "between, s"],
-            ((s.name, s.description, f"{s.first:g} and {s.last:g}") for s in SITUATIONS.values()),
+            ((s.name, s.description, f"{s.first:g} and {s.last:.3g}") for s in plan.situations.values()),
             labels=2,
         ),
         off=WRONG_SPEED,
@@ -129,7 +131,7 @@ NOT_CLEAN = HEADINGS.index("not clean")
 
 def matrix_rows(outcomes: Sequence[Outcome]) -> Iterator[list[str]]:
     """For each kind how many cases each judge found not clean, how many any, and how many there are."""
-    for kind in KINDS:
+    for kind in plan_of(outcomes).kinds:
         failed, total = count(outcomes, kind)
         yield [kind, *(str(count(outcomes, kind, judge.name)[0] or "") for judge in JUDGES), str(failed), str(total)]
 

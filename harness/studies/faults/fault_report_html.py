@@ -12,9 +12,7 @@ from ...views.html.linked_figures import axes, linked, shown, stacked, tables
 from ...views.html.report_page import Heading, Row, Section, Table, write_report
 from ...views.html.thinning import thinned
 from ...views.panels import Axis, Curve, Panel
-from .fault_campaign import Outcome, count
-from .fault_cases import DURATION
-from .fault_catalogue import KINDS
+from .fault_campaign import Outcome, count, plan_of
 from .fault_figures import case_panels
 from .fault_injection import FaultRunner
 from .fault_report import HEADINGS, NOT_CLEAN, matrix_rows
@@ -60,7 +58,7 @@ def verdict(outcomes: Sequence[Outcome]) -> str:
     failed = [outcome for outcome in outcomes if outcome.failed]
     if not failed:
         return f"All {len(outcomes)} cases are clean."
-    kinds = sorted(KINDS, key=lambda kind: -count(failed, kind)[0])[:2]
+    kinds = sorted(plan_of(outcomes).kinds, key=lambda kind: -count(failed, kind)[0])[:2]
     often = " or ".join(kind for kind in kinds if count(failed, kind)[0])
     return (
         f"{len(outcomes) - len(failed)} of {len(outcomes)} cases are clean; what is not clean has most often {often}."
@@ -108,12 +106,13 @@ def _matrix(outcomes: Sequence[Outcome]) -> Any:
     from bokeh.transform import linear_cmap
 
     names = [judge.name for judge in JUDGES]
-    cells = [(kind, name, *count(outcomes, kind, name)) for kind in KINDS for name in names]
+    kinds = list(plan_of(outcomes).kinds)
+    cells = [(kind, name, *count(outcomes, kind, name)) for kind in kinds for name in names]
     kept = [(kind, name, failed, total, failed / total) for kind, name, failed, total in cells if total]
     columns: dict[str, list[Any]] = dict(
         zip(("kind", "judge", "failed", "cases", "share"), map(list, zip(*kept, strict=True)), strict=True)
     )
-    figure = axes("", 80 + 18 * len(KINDS), x_range=names, y_range=list(KINDS)[::-1], x_axis_location="above")
+    figure = axes("", 80 + 18 * len(kinds), x_range=names, y_range=kinds[::-1], x_axis_location="above")
     fill = linear_cmap("share", list(PALETTE), 0.0, 1.0)
     cells = figure.rect(
         "judge", "kind", 0.96, 0.92, source=ColumnDataSource(data=columns), fill_color=fill, line_color=None
@@ -158,5 +157,5 @@ def _runs(worst: Sequence[Outcome], runner: FaultRunner) -> Section:
 
 def _window(outcome: Outcome) -> tuple[float, float]:
     """From shortly before the first fault to a second after the last."""
-    faults = outcome.case.faults
-    return max(min(f.begin for f in faults) - 0.2, 0.0), min(max(f.end for f in faults) + 1.0, DURATION)
+    faults, duration = outcome.case.faults, outcome.case.plan.situations[outcome.case.situation].duration
+    return max(min(f.begin for f in faults) - 0.2, 0.0), min(max(f.end for f in faults) + 1.0, duration)

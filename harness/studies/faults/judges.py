@@ -26,7 +26,7 @@ from .evidence import (
     unchanged_for,
     wheel_speed_is_bad,
 )
-from .fault_catalogue import MOTOR_SPEED, MOTOR_TORQUE
+from .fault_catalogue import WHEEL_SPEED
 
 NOTICED, STALE, BACK = 0.05, 0.15, 0.5
 """Times in s: to notice a wrong motor signal; to notice that no message comes; to be as before."""
@@ -79,7 +79,7 @@ def time_of_false_alarm(seen: Evidence) -> float:
     tolerated, no wheel speed that parts from the motor speed unnoticed, no motor that turns too fast."""
     called_for = signals_part(seen) | motor_is_too_fast(seen)
     for fault in seen.faults:
-        if fault.kind.signal in (MOTOR_SPEED, MOTOR_TORQUE) and not fault.kind.tolerable:
+        if fault.kind.signal != WHEEL_SPEED and not fault.kind.tolerable:
             called_for |= (seen.t >= fault.begin) & (seen.t < fault.end)
     alarm = (seen.status == FALLBACK) & (time_since(called_for) > BACK + 0.5 * T_S)
     return T_S * float(alarm.sum())
@@ -116,10 +116,11 @@ def kick(seen: Evidence) -> float:
 
 
 def swing_left(seen: Evidence) -> float:
-    """Amplitude in N.m of the gear torque in the last 0.5 s, less that without the fault."""
+    """Amplitude in N.m of the gear torque in the last 0.5 s, less that without the fault; if a motor signal is still
+    wrong there, less that without control where this is larger."""
     last = round(0.5 / T_S)
-    left, usual = (amplitude(run["plant.T_gear"][-last:], T_S).max() for run in (seen.runs.faulty, seen.runs.healthy))
-    return float(left - usual)
+    left, usual, undamped = (amplitude(run["plant.T_gear"][-last:], T_S).max() for run in seen.runs)
+    return float(left - (max(usual, undamped) if seen.lasts else usual))
 
 
 def ratio_of_rms(seen: Evidence) -> float:

@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 from collections import Counter
+from hashlib import sha256
 
 import numpy as np
 import pytest
@@ -16,8 +17,8 @@ from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
 from driveline.harness.studies.faults.fault_campaign import campaign
-from driveline.harness.studies.faults.fault_cases import SITUATIONS, Case, Fault, case
-from driveline.harness.studies.faults.fault_catalogue import KINDS, LOCK, SPIN
+from driveline.harness.studies.faults.fault_cases import PLANS, SITUATIONS, Case, Fault, case
+from driveline.harness.studies.faults.fault_catalogue import FRAME, KINDS, LATE, LOCK, NOTHING, SPIN
 from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
 from driveline.harness.studies.faults.fault_report import page
 from driveline.models import signal_faults
@@ -39,17 +40,38 @@ def test_a_case_follows_from_seed_and_number_alone():
     assert case(7, 2, PLANTS).faults != case(7, 1, PLANTS).faults
 
 
-def test_single_faults_go_through_all_kinds_and_situations_on_both_plants():
-    everything = 2 * len(PLANTS) * len(KINDS) * len(SITUATIONS)
-    singles = [each for n in range(1, everything + 1) if len((each := case(n, 1, PLANTS)).faults) == 1]
+def test_the_cases_on_dry_roads_are_those_of_the_first_campaign():
+    """Whatever other campaigns are drawn from: a page of years ago names them by number."""
+    cases = "\n".join(str(case(n, 1, PLANTS)) for n in range(1, 1001))
+    assert sha256(cases.encode()).hexdigest() == "075dd984abdf8de78eea8bfab5ceb9e9acbea5f4298173fcaa61e82375587473"
+
+
+@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+def test_single_faults_go_through_all_kinds_and_situations_on_both_plants(plan):
+    everything = 2 * len(PLANTS) * len(plan.kinds) * len(plan.situations)
+    singles = [each for n in range(1, everything + 1) if len((each := case(n, 1, PLANTS, plan)).faults) == 1]
     cells = Counter((each.plant, each.situation, each.faults[0].name) for each in singles)
     assert set(cells.values()) == {1}
     assert len(cells) == everything / 2
+    assert all(each.plan is plan for each in singles)
+
+
+def test_on_roads_half_of_the_faults_stay_and_frames_come_late():
+    cases = [case(n, 1, PLANTS, PLANS["roads"]) for n in range(1, 2001)]
+    faults = [(fault, each.plan.situations[each.situation].duration) for each in cases for fault in each.faults]
+    assert np.mean([fault.end > duration for fault, duration in faults]) == pytest.approx(0.52, abs=0.04)
+    late = [fault.size for fault, _ in faults if (fault.kind.signal, fault.kind.number) == (FRAME, LATE)]
+    assert 0.01 <= min(late) < 0.015
+    assert 0.07 < max(late) <= 0.1
+
+
+def test_nothing_goes_wrong_together_with_nothing():
+    assert all(NOTHING not in pair for pair in PLANS["roads"].pairs)
 
 
 def test_faults_and_states_are_numbered_as_in_the_models():
     """The harness knows no models, so it declares them."""
-    signals_ = "MOTOR_SPEED", "MOTOR_TORQUE", "WHEEL_SPEED"
+    signals_ = "MOTOR_SPEED", "MOTOR_TORQUE", "WHEEL_SPEED", "FRAME"
     faults = "LATE", "FROZEN", "LOST", "GAIN", "OFFSET", "NOISE", "SPIKES", "NO_NUMBER", "FLAPPING", "JUMPING"
     for name in signals_ + faults:
         assert getattr(fault_catalogue, name) == getattr(signal_faults, name)
@@ -118,6 +140,15 @@ def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most)
 
     assert speed_of_the_wheels(LOCK, 4000.0).min() < least
     assert speed_of_the_wheels(SPIN, 80.0).max() > most
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_on_a_hill_of_ice_the_wheels_spin_without_a_fault(injector, settings, plant):
+    """Until the manoeuvre ends; the design model has slip in the place of a limit of friction."""
+    fault = Fault(NOTHING.name, 2.0, 3.0, 1.0, 1.0)
+    found = FaultRunner(injector, settings).runs(Case(1, plant, "ice_hill", (fault,), 1)).faulty
+    assert found["time"][-1] == SITUATIONS["ice_hill"].duration
+    assert (found["plant.omega_2"] / 9.0 * 0.29 - found["plant.v"]).max() > 0.5
 
 
 class Dying(FaultRunner):

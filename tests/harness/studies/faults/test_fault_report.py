@@ -17,7 +17,7 @@ from driveline.harness.cosimulation.runs import run
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
 from driveline.harness.studies.faults.fault_campaign import campaign, table
-from driveline.harness.studies.faults.fault_catalogue import KINDS
+from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS
 from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
@@ -44,7 +44,7 @@ def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_pa
     files = write(outcomes, " --cases 6", tmp_path)
     assert all(file.is_file() for file in files)
     page = (tmp_path / "faults.md").read_text(encoding="utf-8")
-    assert all(f"| {kind} |" in page for kind in KINDS)
+    assert all(f"| {kind} |" in page for kind in IN_SITUATIONS)
     for name in ("faults", "fault_pairs"):
         assert f"figures/{name}.png" in page
         assert (tmp_path / "figures" / f"{name}.png").is_file()
@@ -68,7 +68,9 @@ def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
     announce([bad[0], *clean[1:]])
     message = capsys.readouterr().out
     assert f"{len(clean)} cases, {len(clean) - 1} clean, 1 not clean\n" in message
-    assert [kind for kind in KINDS if f" {kind} " in message] == [kind for kind in KINDS if kind in bad[0].kinds]
+    assert [kind for kind in IN_SITUATIONS if f" {kind} " in message] == [
+        kind for kind in IN_SITUATIONS if kind in bad[0].kinds
+    ]
 
 
 def test_the_page_tells_how_a_case_is_run_again(outcomes):

@@ -202,6 +202,20 @@ def test_no_oscillation_is_left(swing, verdict):
     assert clean("settled", run) == verdict
 
 
+@pytest.mark.parametrize(
+    ("kind", "end", "verdict"),
+    [
+        ("motor speed NaN", 5.0, True),
+        ("motor speed NaN", 3.9, False),
+        ("wheel speed NaN", 5.0, False),
+    ],
+)
+def test_where_a_motor_signal_stays_wrong_the_drive_train_may_swing_as_without_control(kind, end, verdict):
+    run, off = quiet(), quiet()
+    run["plant.T_gear"] = off["plant.T_gear"] = 20.0 * np.sin(50.0 * T)
+    assert clean("settled", run, undamped=off, kind=kind, end=end) == verdict
+
+
 @pytest.mark.parametrize("judge", ["rms", "swing"])
 @pytest.mark.parametrize("undamped", [0.0, 20.0])
 @pytest.mark.parametrize(("ratio", "verdict"), [(1.19, True), (1.21, False)])
