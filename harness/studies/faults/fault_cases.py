@@ -186,11 +186,11 @@ def case(number: int, seed: int, plants: Sequence[str], plan: Plan = PLANS["dry"
 
 def _drawn(kind: Kind, situation: Situation, plan: Plan, rng: np.random.Generator) -> Fault:
     begin = round(uniform(situation.first, situation.last)(rng), 3)
-    stays = kind.lasts is None or (plan.to_the_end > 0.0 and rng.random() < plan.to_the_end)
+    lasts = None if plan.to_the_end > 0.0 and rng.random() < plan.to_the_end else kind.lasts
     return Fault(
         name=kind.name,
         begin=begin,
-        end=situation.duration + 1.0 if stays else round(begin + kind.lasts(rng), 3),
+        end=round(begin + lasts(rng), 3) if lasts else situation.duration + 1.0,
         size=kind.size(rng),
         share=kind.share(rng),
     )

@@ -200,7 +200,7 @@ def _of_plant(road: Mapping[str, float], fitted: Fit) -> dict[str, float]:
     """What a plant has of the parameters of a road; without a limit of friction slip in its place."""
     has = fitted.interfaces["plant"].variables
     slip = {} if "mu" in has or "mu" not in road else {"c_slip": SLIPPERY * road["mu"]}
-    return {name: value for name, value in (road | slip).items() if name in has}
+    return {name: value for name, value in {**road, **slip}.items() if name in has}
 
 
 def _with(on_ice: Sequence[Fault], manoeuvre: Manoeuvre) -> Manoeuvre:
