@@ -2,8 +2,8 @@
 
 Up to two faults act at a time, each on one signal from `begin` to `end`: the motor's speed, the torque that it
 estimates, the frame with both, or the message with the wheel speed. What fails in time (late, frozen, lost) takes
-the place of what comes in; what fails in value (gain, offset, noise, spikes, no number) is done to that. Without a fault the signals pass
-as they are, within the same instant.
+the place of what comes in; what fails in value (gain, offset, noise, spikes, no number) is done to that. Without a
+fault the signals pass as they are, within the same instant.
 
     late       what was sent `size` seconds before, at most 0.5 (of two faults that are late the first one's alone)
     frozen     what was sent last before `begin`; messages keep coming with that speed

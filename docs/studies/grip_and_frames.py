@@ -169,7 +169,8 @@ STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_fram
 def gear_torque(each: Run, settings: Settings, injector: Path) -> tuple[np.ndarray, float]:
     """In N.m at the samples that count, and the time in fallback in s."""
     system = with_faults(loop(settings), injector)
-    parameters = start(each.manoeuvre, each.seed) | {f"plant.{name}": value for name, value in each.plant.items()}
+    parameters = start(each.manoeuvre, each.seed) | dict(settings.parameters)
+    parameters |= {f"plant.{name}": value for name, value in each.plant.items()}
     parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
     inputs = signals(each.manoeuvre, settings.control, settings.step_size)
     rows = at_samples(run(system, Experiment(each.manoeuvre.duration, inputs=inputs, parameters=parameters)))

@@ -120,7 +120,7 @@ def found(road: Road, seed: int) -> Found:
         fallback=int(np.count_nonzero(rows["controller.status"] == FALLBACK)),
         jump=float(jumps(omega_1).max()) / (P.jump * added_speed(P, T_S)),
         contradiction=contradiction(rows) / P.t_apart,
-        half_swings=half_swings(rows) / oscillation.MOST,
+        half_swings=half_swings(rows) / oscillation.SWINGS,
         torque=longest_run(disobeyed(rows))[1] * T_S / P.t_bad,
         frozen=longest_run((np.diff(omega_1) == 0.0) & (abs(omega_1[1:]) > P.omega_still))[1] * T_S / P.t_bad,
     )

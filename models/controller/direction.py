@@ -13,12 +13,6 @@ from ..block.declaration import Real
 from ..block.operators import clip, logical_and, maximum, minimum, sign, where
 from .supervision_interface import Input, Parameters, added_speed
 
-FIRM = 1.5
-"""Torque over T_still that must push the motor: with less its offset decides, and the flanks throw it about."""
-
-LIKE = 0.25
-"""Share of half the square of `free` that it may be off: with a slow launch it is less, rocking on ice more."""
-
 
 class DirectionState(NamedTuple):
     """The direction, and the launch."""
@@ -57,8 +51,8 @@ def update(
     counting = abs(x.free) < far
     free = x.free + where(counting, T_s * demanded / p.J_1, 0.0)
     off = x.off + abs(free - x.free) * abs(omega_1 + 0.5 * (free + x.free))
-    firm = logical_and(abs(free) >= far, abs(demanded) >= FIRM * p.T_still)
-    against = logical_and(logical_and(counting, firm), off <= LIKE * 0.5 * free * free)
+    firm = logical_and(abs(free) >= far, abs(demanded) >= p.firm * p.T_still)
+    against = logical_and(logical_and(counting, firm), off <= p.like * 0.5 * free * free)
 
     turning = logical_and(trusted, abs(omega_1) > p.omega_still)
     direction = where(against, sign(free), where(turning, sign(omega_1), x.direction))

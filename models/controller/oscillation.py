@@ -2,10 +2,11 @@
 
 Behind a signal that is late, or wrong in a way that no comparison shows, damping may push where it should pull. It
 shows in the damping torque: in a damped drive train it dies away after a change of the demand, each half swing far
-smaller than the one before. Half swings are counted that reach `swing` on both sides and GROWS of the one before.
-They are forgotten at one a t_forget, and at one for each EXCUSE by which the demand changes. Whatever shakes the
-drive train from outside (ABS, a road without grip) is counted too, and the damping can do little against it: it only
-becomes less, and there is no fallback.
+smaller than the one before. Half swings are counted that reach `swing` on both sides and `grows` of the one before.
+From SWINGS on there is no damping, and less in the one before. They are forgotten at one a t_forget, once there is
+none at one a t_relapse, and at one for each `excuse` by which the demand changes. Whatever shakes the drive train from
+outside (ABS, a road without grip) is counted too, and the damping can do little against it: it only becomes less, and
+there is no fallback.
 """
 
 from typing import Annotated, NamedTuple
@@ -14,17 +15,11 @@ from ..block.declaration import Real
 from ..block.operators import clip, logical_and, logical_not, maximum, minimum, where
 from .supervision_interface import Parameters
 
-GROWS = 0.7
-"""Least size of a half swing that is counted, over the one before."""
-
-EXCUSE = 0.2
-"""Change of the demand that explains a half swing, over T_max."""
-
 AHEAD = 1.0
 """Half swings that a change of the demand can explain before they come."""
 
-USUAL, MOST, LONGEST = 1.5, 2.5, 6.0
-"""Half swings from which on there is less damping; with which there is none; that are counted."""
+SWINGS, LONGEST = 2.0, 5.5
+"""Half swings with which there is no damping, and that are counted at most. The output follows from the state alone."""
 
 
 class SwingState(NamedTuple):
@@ -51,10 +46,11 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
     side = where(size > p.swing * p.T_max, where(damping > 0.0, 1.0, -1.0), x.side)
     turned = side * x.side < 0.0
     peak = where(side * damping > 0.0, maximum(where(turned, 0.0, x.peak), size), x.peak)
-    enough = where(turned, GROWS * x.peak, x.enough)
+    enough = where(turned, p.grows * x.peak, x.enough)
     counts = logical_and(enough > 0.0, peak >= enough)
-    forgotten = x.count - clip(x.count, -T_s / p.t_forget, T_s / p.t_forget)
-    explained = abs(change) / (EXCUSE * p.T_max)
+    least = T_s / where(x.count < SWINGS, p.t_forget, p.t_relapse)
+    forgotten = x.count - clip(x.count, -least, least)
+    explained = abs(change) / (p.excuse * p.T_max)
     count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
     return SwingState(
         side=where(acting, side, 0.0),
@@ -66,4 +62,4 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
 
 def share(x: SwingState) -> float:
     """Of the damping that is left."""
-    return clip((MOST - x.count) / (MOST - USUAL), 0.0, 1.0)
+    return clip(SWINGS - x.count, 0.0, 1.0)

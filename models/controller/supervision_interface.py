@@ -32,6 +32,7 @@ class Parameters(NamedTuple):
     t_late: Annotated[float, Real("s", "time for which messages may tell what the motor speed was", 0.01, 1.0)] = 0.08
     t_move: Annotated[float, Real("s", "time for which an expected movement is remembered", 0.01, 10.0)] = 0.1
     t_forget: Annotated[float, Real("s", "time after which a half swing is forgotten", 0.01, 100.0)] = 0.5
+    t_relapse: Annotated[float, Real("s", "the same where there is no damping any more", 0.01, 100.0)] = 4.0
     T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
@@ -43,10 +44,14 @@ class Parameters(NamedTuple):
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
     near: Annotated[float, speed("largest distance of a message that corrects the estimate")] = 6.0
     free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
+    like: Annotated[float, Real("1", "share of that by which a launch against the torque may be off", 0.0, 1.0)] = 0.25
+    firm: Annotated[float, Real("1", "least torque of a launch, over T_still", 0.0, 100.0)] = 1.5
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
     swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 0.0, 1.0)] = 0.03
+    grows: Annotated[float, Real("1", "least half swing that counts, over the one before", 0.0, 10.0)] = 0.5
+    excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over T_max", 0.01, 10.0)] = 0.1
 
 
 class Motor(Protocol):
