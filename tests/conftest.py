@@ -1,8 +1,11 @@
 """What several tests share."""
 
 import os
+import pickle
 import tempfile
+from pathlib import Path
 from shutil import copytree
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -10,6 +13,7 @@ from hypothesis import settings
 from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.python.packaging import build
+from driveline.harness.recordings import bounded_reading
 from tests.browser import browser
 from tests.compiling import caching_compiler
 
@@ -86,6 +90,16 @@ def both_built(built, native, tmp_path_factory):
     copytree(built, folder, dirs_exist_ok=True)
     copytree(native, folder / native.name)
     return folder
+
+
+@pytest.fixture
+def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Recordings are read by the process of the tests; one of their own imports packages for a second, each time."""
+
+    def asked(_: Path, question: Any) -> Any:
+        return pickle.loads(pickle.dumps(bounded_reading.outcome(*pickle.loads(pickle.dumps(question)))))
+
+    monkeypatch.setattr(bounded_reading, "_asked", asked)
 
 
 @pytest.fixture

@@ -82,23 +82,26 @@ def _late(path: Path, seconds: float) -> RecordingError:
 def main(parent: int) -> None:
     """In the process: reads one file, and answers with what it holds or why it cannot be read."""
     end_with(parent)
-    module, name, arguments, named = pickle.load(sys.stdin.buffer)
+    question = pickle.load(sys.stdin.buffer)
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what packages print is no answer
-    read = getattr(import_module(module), name).__wrapped__
-    path = arguments[0]
     if resource:
         resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
-    try:
-        answer = read(*arguments, **named)
-    except DrivelineError as refusal:
-        answer = refusal
-    except MemoryError:
-        answer = RecordingError(f"{path} takes more than {MEMORY / 1e6:.0f} MB of memory to read")
-    except Exception as fault:
-        answer = RecordingError(f"{path} cannot be read: {plain(words(fault), 200)}")
     with answers:
-        pickle.dump(answer, answers, pickle.HIGHEST_PROTOCOL)
+        pickle.dump(outcome(*question), answers, pickle.HIGHEST_PROTOCOL)
     sys.stderr.flush()
     os._exit(0)  # freeing what is read takes time
+
+
+def outcome(module: str, name: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    """What the function, by its module and name, reads from the file; or the error that says why it cannot."""
+    path = arguments[0]
+    try:
+        return getattr(import_module(module), name).__wrapped__(*arguments, **named)
+    except DrivelineError as refusal:
+        return refusal
+    except MemoryError:
+        return RecordingError(f"{path} takes more than {MEMORY / 1e6:.0f} MB of memory to read")
+    except Exception as fault:
+        return RecordingError(f"{path} cannot be read: {plain(words(fault), 200)}")

@@ -10,6 +10,8 @@ from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.views.signals_file import FORMATS
 
+pytestmark = pytest.mark.usefixtures("read_here")
+
 OTHERS = [name for name in FORMATS if name != "csv"]
 
 

@@ -14,6 +14,8 @@ from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.format_detection import opened
 from driveline.harness.recordings.source import RecordingError
 
+pytestmark = pytest.mark.usefixtures("read_here")
+
 DBC = """VERSION ""
 BU_: ECU
 BO_ 256 Motor: 4 ECU

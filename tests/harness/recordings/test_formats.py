@@ -13,6 +13,8 @@ from driveline.harness.recordings.drive import Drive, read_drive
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.variants import TEXTS, Columns, recording, table, write_arrow, write_mdf
 
+pytestmark = pytest.mark.usefixtures("read_here")
+
 DRIVE = recording()
 
 

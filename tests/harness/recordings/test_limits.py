@@ -185,3 +185,17 @@ def test_large_texts_and_packed_files_are_read_by_a_process_of_their_own(
         alone = read_drive(path)
     np.testing.assert_array_equal(whole.T_mot, alone.T_mot)
     assert alone.file_units == whole.file_units
+
+
+@pytest.mark.parametrize("ending", ["mf4", "parquet", "blf"])
+def test_a_process_of_its_own_reads_what_this_one_does(tmp_path: Path, ending: str) -> None:
+    path, databases = tmp_path / f"drive.{ending}", []
+    if ending == "blf":
+        path, databases = write_log(tmp_path, frames())
+    else:
+        (write_mdf if ending == "mf4" else write_arrow)(recording(), path)
+    here = read_drive.__wrapped__(path, databases=databases)  # type: ignore[attr-defined]
+    there = read_drive(path, databases=databases)
+    for name in ("time", "v", "elevation", "T_mot"):
+        np.testing.assert_array_equal(getattr(here, name), getattr(there, name))
+    assert here.file_units == there.file_units

@@ -11,6 +11,8 @@ from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.car import RADIUS, RATIO, drive
 from tests.harness.recordings.conftest import Write
 
+pytestmark = pytest.mark.usefixtures("read_here")
+
 RPM = 2.0 * np.pi / 60.0
 MOTOR = {
     "Time [s]": drive()["time"],

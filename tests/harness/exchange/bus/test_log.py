@@ -14,6 +14,8 @@ from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.models.wheel_speed_can import FRAME, Parameters
 
+pytestmark = pytest.mark.usefixtures("read_here")
+
 LOGS = ("asc", "blf")
 P = Parameters()
 
