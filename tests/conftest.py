@@ -23,7 +23,9 @@ settings.load_profile("driveline")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Compiles through what keeps its results with the cache of pytest, unless a compiler is named from outside."""
+    """Compiles through what keeps its results with the cache of pytest, unless a compiler is named from outside. What
+    would start a process on each core runs in one: tests that need several say so."""
+    os.environ["LOKY_MAX_CPU_COUNT"] = "1"
     if "CC" not in os.environ and hasattr(config, "cache"):
         command = caching_compiler(config.cache.mkdir("compiled"))
         if command:

@@ -22,9 +22,17 @@ from tests import ROOT
 from tests.signals import STOPPING, started
 
 
+TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
+"""Environment of a command with workers."""
+
+
 @pytest.mark.parametrize(
     ("number", "whole_group", "code"),
-    [(signal.SIGTERM, False, 143), (signal.SIGHUP, True, 129), (signal.SIGINT, True, 130)],
+    [
+        (signal.SIGTERM, False, 143),
+        pytest.param(signal.SIGHUP, True, 129, marks=pytest.mark.slow),
+        (signal.SIGINT, True, 130),
+    ],
 )
 def test_a_signal_ends_the_workers_and_leaves_nothing(
     native: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, code: int
@@ -33,7 +41,7 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
     temporary, results = tmp_path / "temporary", tmp_path / "results"
     temporary.mkdir()
     # long enough to be stopped on its way: all manoeuvres on both plants
-    process = started("driveline", "compare", "--fmus", native.parent, "--output", results, TMPDIR=temporary)
+    process = started("driveline", "compare", "--fmus", native.parent, "--output", results, **TWO_CORES, TMPDIR=temporary)
     deadline = time.monotonic() + 60.0
     while not list(temporary.rglob("*.so")) and time.monotonic() < deadline:
         time.sleep(0.02)  # until a worker has unpacked an FMU
@@ -45,7 +53,7 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
 
 
 def test_a_module_that_is_run_is_stopped_like_a_command(tmp_path: Path) -> None:
-    process = started("docs.studies.undetectable_faults", TMPDIR=tmp_path)
+    process = started("docs.studies.undetectable_faults", **TWO_CORES, TMPDIR=tmp_path)
     deadline = time.monotonic() + 60.0
     while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
         time.sleep(0.02)
