@@ -51,7 +51,7 @@ IMPORTS = """
     from pathlib import Path
     """
 
-QUICK = [path for path in NOTEBOOKS if path.stem in ("first_run", "your_vehicle")]
+QUICK = [path for path in NOTEBOOKS if path.stem == "first_run"]
 
 FIGURES = {"first_run": 1, "your_vehicle": 1, "your_controller": 2, "sweep": 2, "from_recording": 2}
 

@@ -1,6 +1,7 @@
 """The motor's torque loop: the lag of the paper's eq. (1), and what motor control reports."""
 
 from dataclasses import replace
+from itertools import product
 from math import cos, exp, sin, sqrt
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.integrate import solve_ivp
 from driveline.models import motor_torque_loop as motor
 from driveline.models.block.integrator import Integrator
 from driveline.models.physics import dead_time
+from tests.slow import slow
 
 P = motor.Parameters()
 SILENT = P._replace(sigma_T=0.0, sigma_omega=0.0, q_omega=0.0)
@@ -105,7 +107,7 @@ def test_without_resolution_and_noise_the_speed_is_exact() -> None:
     assert run(motor.Input(0.0, 12.3456), SILENT, 3, 1e-3)[-1, 2] == 12.3456
 
 
-@pytest.mark.parametrize("h", [1e-4, 5e-4, 2e-3, 2e-3 / 3.0])
+@pytest.mark.parametrize("h", slow([1e-4, 5e-4, 2e-3, 2e-3 / 3.0], but=[2e-3, 2e-3 / 3.0]))
 def test_the_noise_does_not_depend_on_the_communication_step(h: float) -> None:
     """A sample lasts 2 ms; seen at every 2 ms for 4 s, also after many additions of its time."""
     per_sample = round(P.T_s / h)
@@ -162,8 +164,10 @@ def course(p: motor.Parameters, steps: int) -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.parametrize("tau", [1e-3, P.tau, 0.03])
-@pytest.mark.parametrize("dT_max", [500.0, 10_000.0, 1e5])
+LAGS = list(product([1e-3, P.tau, 0.03], [500.0, 10_000.0, 1e5]))
+
+
+@pytest.mark.parametrize(("tau", "dT_max"), slow(LAGS, but=[(P.tau, 500.0), (0.03, 10_000.0), (P.tau, 1e5)]))
 def test_the_torque_changes_at_most_at_its_rate_and_overshoots_no_more_for_it(tau: float, dT_max: float) -> None:
     p = SILENT._replace(tau=tau, dT_max=dT_max)
     T = run(motor.Input(100.0), p, 5000, 1e-4)[:, 0]

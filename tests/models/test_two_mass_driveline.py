@@ -25,7 +25,7 @@ def rattling(h: float, duration: float, seed: int) -> tuple[list[float], list[fl
     return sines(12.0, 1.0, 9.0), sines(6.0, 0.3, 3.0)
 
 
-@pytest.mark.parametrize("h", slow([1e-4, 5e-4, 1e-3, 3.3e-3, 1e-2], but=(1e-3, 3.3e-3, 1e-2)))
+@pytest.mark.parametrize("h", slow([1e-4, 5e-4, 1e-3, 3.3e-3, 1e-2], but=(3.3e-3,)))
 def test_agrees_with_the_exact_solution_through_hundreds_of_flanks(h: float) -> None:
     T_mot, T_load = rattling(h, 10.0, seed=2)
     integrator, exact = Integrator(driveline.BLOCK), ExactDriveline(RECORDED)

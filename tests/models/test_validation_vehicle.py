@@ -116,7 +116,7 @@ def dissipation(x: vehicle.State, u: vehicle.Input, p: vehicle.Parameters = P) -
 
 @pytest.mark.parametrize("p", [P, P._replace(g_muL=0.1)], ids=["equal grip", "split grip"])
 @given(x=states, u=inputs)
-@settings(max_examples=500)
+@settings(max_examples=250)
 def test_dissipation_is_never_negative(p: vehicle.Parameters, x: vehicle.State, u: vehicle.Input) -> None:
     dissipated, rounding = dissipation(x, u, p)
     assert dissipated >= -rounding

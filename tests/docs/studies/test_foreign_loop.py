@@ -10,6 +10,7 @@ from driveline.harness.identification.identify import Identified
 from driveline.harness.identification.prior_knowledge import identify
 from driveline.harness.identification.quality import Z_95
 from driveline.harness.recordings.measurement import read_measurement
+from tests.slow import slow
 
 WITHIN = {"J_2": 0.01, "C": 0.002, "phi_B": 0.005}
 """Relative errors that are allowed."""
@@ -33,9 +34,9 @@ def require_right(found: Identified, car: Car, loop: Loop) -> None:
 @pytest.mark.parametrize(
     ("loop", "channels"),
     [
-        (Loop("averaged"), []),
+        pytest.param(Loop("averaged"), [], marks=pytest.mark.slow),
         (Loop("averaged", late_omega=0.001), ["motor speed looks late: it is recorded 1.0"]),
-        (Loop("plant first"), ["motor torque looks early: it is recorded 0.5"]),
+        pytest.param(Loop("plant first"), ["motor torque looks early: it is recorded 0.5"], marks=pytest.mark.slow),
     ],
 )
 def test_a_skew_is_found_and_named_and_nothing_else(loop: Loop, channels: list[str], tmp_path: Path) -> None:
@@ -63,7 +64,7 @@ def test_cars_in_other_loops_are_right_to_within_what_is_asked(number: int, loop
     require_right(identified(CARS[number], loop, tmp_path), CARS[number], loop)
 
 
-@pytest.mark.parametrize("late_omega", [0.0, 0.001])
+@pytest.mark.parametrize("late_omega", slow([0.0, 0.001], but=[0.001]))
 def test_of_a_weak_excitation_what_it_does_not_tell_is_named_and_no_cause(late_omega: float, tmp_path: Path) -> None:
     loop = Loop("averaged", mean=25.0, amplitude=2.0, late_omega=late_omega)
     found = identified(CARS[2], loop, tmp_path)

@@ -16,6 +16,7 @@ from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from tests import ROOT
 from tests.fmus.host import opened
+from tests.slow import slow
 
 LARGEST = 150 * 1024
 every_fmu = pytest.mark.parametrize("name", FMUS)
@@ -57,14 +58,14 @@ def test_it_needs_nothing_besides_itself(native, name):
 
 
 @pytest.mark.usefixtures("uncached_compiler")
-@every_fmu
+@pytest.mark.parametrize("name", slow(FMUS, but=["MotorTorqueLoop", "WheelSpeedCan"]))
 def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
     assert native_builder(FMUS[name], tmp_path).read_bytes() == (native / f"{name}.fmu").read_bytes()
 
 
 @pytest.mark.usefixtures("uncached_compiler")
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="there is no cmake")
-@pytest.mark.parametrize("name", ["MotorTorqueLoop", "DampingController"])
+@pytest.mark.parametrize("name", slow(["MotorTorqueLoop", "DampingController"], but=["MotorTorqueLoop"]))
 def test_its_sources_compile_with_fmpy(native, tmp_path, name):
     folder = unpacked(native, tmp_path, name)
     shutil.rmtree(folder / "binaries")

@@ -2,6 +2,7 @@
 
 import struct
 import zipfile
+from functools import cache
 
 import pytest
 
@@ -10,6 +11,7 @@ pytest.importorskip("casadi", reason="the extra `native` is not installed")
 from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
+from tests.slow import slow
 
 LARGEST = 255 * 1024
 """Of a file with four libraries, one of them for two processors. 150 kB were enough until Arm Macs had one twice,
@@ -25,19 +27,26 @@ def builder():
     return made
 
 
-@pytest.mark.parametrize("name", ["ValidationVehicle", "WheelSpeedCan"])
-def test_one_small_file_holds_all_platforms_and_a_rebuild_gives_the_same_bytes(builder, tmp_path, name):
-    path = builder(FMUS[name], tmp_path / "once")
+@pytest.fixture(scope="module")
+def made(builder, tmp_path_factory):
+    """The path of an FMU for all platforms, made once."""
+    folder = tmp_path_factory.mktemp("all")
+    return cache(lambda name: builder(FMUS[name], folder))
+
+
+@pytest.mark.parametrize("name", slow(["ValidationVehicle", "WheelSpeedCan"], but=["WheelSpeedCan"]))
+def test_one_small_file_holds_all_platforms_and_a_rebuild_gives_the_same_bytes(builder, made, tmp_path, name):
+    path = made(name)
     assert path.stat().st_size < LARGEST
     with zipfile.ZipFile(path) as archive:
         names = set(archive.namelist())
     assert {f"binaries/linux64/{name}.so", f"binaries/win64/{name}.dll", f"binaries/darwin64/{name}.dylib"} <= names
     assert f"binaries/aarch64-darwin/{name}.dylib" in names
-    assert builder(FMUS[name], tmp_path / "twice").read_bytes() == path.read_bytes()
+    assert builder(FMUS[name], tmp_path).read_bytes() == path.read_bytes()
 
 
-def test_a_library_for_macos_asks_for_no_later_one_than_11(builder, tmp_path):
-    with zipfile.ZipFile(builder(FMUS["WheelSpeedCan"], tmp_path)) as archive:
+def test_a_library_for_macos_asks_for_no_later_one_than_11(made):
+    with zipfile.ZipFile(made("WheelSpeedCan")) as archive:
         library = archive.read("binaries/aarch64-darwin/WheelSpeedCan.dylib")
     assert least_macos(library) == (11, 0)
 

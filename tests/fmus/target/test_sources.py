@@ -25,6 +25,7 @@ from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
 from driveline.models.controller.supervision import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
+from tests.slow import slow
 
 OURS = CONTROLLERS["DampingController"]
 
@@ -54,7 +55,9 @@ def outputs(programs: dict[str, Path], precision: str, inputs: np.ndarray) -> np
     return np.array(rows, dtype=[(name, float) for name in CONTROLLER.Output._fields])
 
 
-@pytest.mark.parametrize("name", [each.name for each in USUAL_MANOEUVRES])
+@pytest.mark.parametrize(
+    "name", slow([each.name for each in USUAL_MANOEUVRES], but=["launch_brake", "tipin15", "drive"])
+)
 def test_single_precision_demands_the_same_torque(name: str, programs: dict[str, Path], both_built: Path) -> None:
     """Also in `launch_brake`, where the teeth float for seconds and the twist is the integral of a rounded speed."""
     inputs = fed(name, both_built).inputs

@@ -20,6 +20,7 @@ from driveline.harness.simulation.provenance import BEGINS_ANEW
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.signals import STOPPING, started
+from tests.slow import slow
 
 
 TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
@@ -41,7 +42,9 @@ def test_a_signal_ends_the_workers_and_leaves_nothing(
     temporary, results = tmp_path / "temporary", tmp_path / "results"
     temporary.mkdir()
     # long enough to be stopped on its way: all manoeuvres on both plants
-    process = started("driveline", "compare", "--fmus", native.parent, "--output", results, **TWO_CORES, TMPDIR=temporary)
+    process = started(
+        "driveline", "compare", "--fmus", native.parent, "--output", results, **TWO_CORES, TMPDIR=temporary
+    )
     deadline = time.monotonic() + 60.0
     while not list(temporary.rglob("*.so")) and time.monotonic() < deadline:
         time.sleep(0.02)  # until a worker has unpacked an FMU
@@ -214,7 +217,7 @@ def test_a_full_device_is_named_in_one_line(words: list[str], name: str) -> None
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")
-@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", slow([">&-", "<&- >&- 2>&-"], but=["<&- >&- 2>&-"]))
 def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
     program = """
 from driveline.harness.commands.cli import main

@@ -293,11 +293,11 @@ def test_a_figure_that_cannot_be_is_refused_before_the_run(simulate, options, me
 def test_an_fmu_of_somebody_else_takes_its_place_under_its_own_names(simulate, tmp_path):
     car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0), v=("speed", "km/h", 1 / 3.6))
     renamed = ("--map", "plant.T_gear=Shaft.tau", "--map", "plant.v=speed")
-    (code, _, err), folder = simulate("--plant", str(car), *renamed, "--build", "python")
+    (code, _, err), folder = simulate("--plant", str(car), *renamed)
     assert (code, err) == (0, "")
     signals = read_csv(folder / "Theirs_tipin15_on.csv")
     assert signals["plant.v"][0] == pytest.approx(15 / 3.6)
-    (code, _, err), _ = simulate("--plant", str(car), "--map", "plant.T_gear", "--build", "python")
+    (code, _, err), _ = simulate("--plant", str(car), "--map", "plant.T_gear")
     assert code == 2
     assert "plant.T_gear=Shaft.tau" in err
 

@@ -9,6 +9,7 @@ from driveline.harness.commands.cli import main
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.views.signals_file import FORMATS
+from tests.slow import slow
 
 pytestmark = pytest.mark.usefixtures("read_here")
 
@@ -37,7 +38,7 @@ def test_a_run_is_the_same_drive_in_every_format(driven, name):
         np.testing.assert_array_equal(getattr(found, quantity), getattr(expected, quantity))
 
 
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
 def test_a_recorded_test_drive_is_the_same_measurement_in_every_format(driven, name):
     stem = "TwoMassDriveline_prbs_off"
     expected, found = (read_measurement(path(driven, one, stem), 9.7, 0.3) for one in ("csv", name))
@@ -45,7 +46,7 @@ def test_a_recorded_test_drive_is_the_same_measurement_in_every_format(driven, n
         np.testing.assert_array_equal(getattr(found, quantity), getattr(expected, quantity), err_msg=quantity)
 
 
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
 def test_a_run_in_another_format_can_be_driven_again(driven, name, native, tmp_path):
     options = ["--fmus", str(native.parent), "--output", str(tmp_path), "--quiet", "--format", name]
     assert main(["replay", str(path(driven, name)), "--plant", "TwoMassDriveline", *options]) == 0
@@ -63,7 +64,7 @@ def read_drive_speed(ride):
     return Channels(ride).read("v")["v"].unit == "m/s"
 
 
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
 def test_a_comparison_writes_its_runs_in_the_format(native, tmp_path, name):
     options = ["--plant", "TwoMassDriveline", "--manoeuvre", "prbs15", "--fmus", str(native.parent), "--quiet"]
     assert main(["compare", *options, "--output", str(tmp_path), "--format", name]) == 0

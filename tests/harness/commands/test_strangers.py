@@ -13,6 +13,7 @@ from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from tests.foreign.stranger import build_stranger
 from tests.signals import started
+from tests.slow import slow
 
 COMMANDS = {
     "simulate": ["simulate"],
@@ -34,7 +35,7 @@ def drive(native, tmp_path):
     return start, temporary
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", slow(COMMANDS, but=["simulate", "compare"]))
 def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
     start, temporary = drive
     does = {"IN_DO_STEP": 'puts("hello"); if (time > 0.5) exit(0)'}
@@ -48,7 +49,7 @@ def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
     assert list(temporary.iterdir()) == []
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", slow([signal.SIGINT, signal.SIGTERM], but=[signal.SIGTERM]))
 def test_a_stranger_that_hangs_ends_with_the_command(drive, tmp_path, number):
     start, temporary = drive
     running = start("simulate", build_stranger(tmp_path, IN_DO_STEP="for (;;) usleep(1000)"))

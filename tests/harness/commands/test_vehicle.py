@@ -10,14 +10,14 @@ from tests.foreign import build_car
 
 
 def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
-    built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     heavy = tmp_path / "heavy.toml"
     heavy.write_text("m = 2000.0\n")
     plain, theirs = (
         build_car(tmp_path / name, m=("m", unit, factor)) for name, unit, factor in (("si", "kg", 1.0), ("t", "t", 1e3))
     )
-    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(built), "--quiet"]
+    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(both_built), "--quiet"]
     assert main([*options, "--plant", str(theirs), "--output", str(tmp_path)]) == 2
     assert "plant.m is in t; the file gives it in kg (--map plant.m=m converts it)" in capsys.readouterr().err
     for name, plant, mapped in (("si", plain, []), ("t", theirs, ["--map", "plant.m=m"])):
@@ -27,19 +27,19 @@ def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
 
 
 def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_mapped(
-    built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     heavy = tmp_path / "heavy.toml"
     heavy.write_text("m = 2000.0\n")
     plant = build_car(tmp_path / "metres", m=("m", "m", 1.0))
-    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(built), "--plant", str(plant)]
+    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(both_built), "--plant", str(plant)]
     for mapped in ([], ["--map", "plant.m=m"]):
         assert main([*options, *mapped, "--output", str(tmp_path)]) == 2
         assert "plant.m is in m, which does not convert into kg, the unit of the file" in capsys.readouterr().err
 
 
 def test_what_a_vehicle_file_does_not_reach_is_said(
-    built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
     """Somebody else's plant without J_1, whatever its name, keeps its own, while the controller's model takes that of
     the file."""
@@ -47,7 +47,7 @@ def test_what_a_vehicle_file_does_not_reach_is_said(
     car.write_text("J_1 = 0.06\n")
     gains.write_text("k_d = 2.0\n")
     theirs = build_car(tmp_path / "theirs", m=("m", "kg", 1.0)).rename(tmp_path / "TwoMassDriveline.fmu")
-    options = ["simulate", "--vehicle", str(car), "--fmus", str(built), "--quiet", "--output", str(tmp_path)]
+    options = ["simulate", "--vehicle", str(car), "--fmus", str(both_built), "--quiet", "--output", str(tmp_path)]
     assert main([*options, "--plant", str(theirs)]) == 0
     assert "has no parameter J_1: the file reaches the other blocks alone" in caplog.text
     assert "the gains of the default car" in caplog.text

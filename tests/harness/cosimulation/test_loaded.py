@@ -17,6 +17,7 @@ from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
 from tests.foreign import build_relay
+from tests.slow import slow
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)
 LAUNCH = replace(MANOEUVRES["launch"], duration=0.3)
@@ -32,8 +33,10 @@ def drive(running, manoeuvre=TIPIN, step_size=1e-3, scheme=Scheme.PROPAGATED, **
     return running.run(Experiment(manoeuvre.duration, step_size, signals(manoeuvre), parameters, scheme))
 
 
-@pytest.mark.parametrize("build", ["native", "python"])
-@pytest.mark.parametrize("plant", PLANTS)
+BUILDS = [(plant, build) for plant in PLANTS for build in ("native", "python")]
+
+
+@pytest.mark.parametrize(("plant", "build"), slow(BUILDS, but={*BUILDS} - {("ValidationVehicle", "python")}))
 def test_a_further_run_is_that_of_a_fresh_loop(both_built, plant, build):
     system = loop(plant, folder=both_built, build=build)
     with loaded(system) as running:

@@ -19,6 +19,7 @@ from tornado.httputil import HTTPHeaders
 
 from driveline.harness.explorer.admission import MOST_TABS, Admission, _session_of, foreign
 from tests.harness.explorer.served import PATIENCE, Served
+from tests.slow import slow
 
 HOSTS = ["127.0.0.1:5006", "localhost:5006"]
 
@@ -129,7 +130,7 @@ def test_a_token_that_is_none_is_no_session(token: str) -> None:
     assert _session_of(HTTPHeaders({"Sec-WebSocket-Protocol": token})) is None
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", slow([signal.SIGINT, signal.SIGTERM], but=[signal.SIGTERM]))
 def test_a_stop_leaves_no_process_and_no_traceback(with_washout: Path, tmp_path: Path, number: int) -> None:
     served = Served(with_washout, tmp_path)
     group = os.getpgid(served.process.pid)

@@ -9,6 +9,7 @@ from driveline.harness.identification.noise import white_noise
 from driveline.harness.manoeuvres.prbs import binary_torque
 from driveline.harness.simulation.simulate import simulate
 from tests.harness.recordings.car import drive
+from tests.slow import slow
 
 WITHIN = 0.1
 """What is asked for."""
@@ -74,8 +75,15 @@ def test_beside_hits_that_ring() -> None:
     assert white_noise(white(3) + np.convolve(hits, ring)[:COUNT]) == pytest.approx(1.0, abs=WITHIN)
 
 
-@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
-@pytest.mark.parametrize("control", [False, True])
+CARS = [
+    ("TwoMassDriveline", False),
+    ("TwoMassDriveline", True),
+    ("ValidationVehicle", False),
+    ("ValidationVehicle", True),
+]
+
+
+@pytest.mark.parametrize(("plant", "control"), slow(CARS, but=[("ValidationVehicle", True)]))
 def test_in_what_the_sensors_of_a_test_drive_record(both_built: Path, plant: str, control: bool) -> None:
     true = {"motor.omega_1_meas": np.hypot(0.15, 0.1 / np.sqrt(12.0)), "motor.T_mot_est": 0.3}
     manoeuvre = binary_torque("prbs", 10.0, 30.0, 0.04, 9, 10.0, 15.0 / 3.6)

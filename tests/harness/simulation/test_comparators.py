@@ -26,8 +26,7 @@ from driveline.harness.studies.back_to_back.back_to_back import compare_block, r
 from driveline.models.block.declaration import variables
 from driveline.models.controller import supervision
 from tests import ROOT
-
-every_comparator = pytest.mark.parametrize("name", COMPARATORS)
+from tests.slow import slow
 
 TIPIN = MANOEUVRES["tipin15"]
 
@@ -50,7 +49,7 @@ def test_they_are_no_part_of_the_product() -> None:
     assert EVERY.keys() == {*FMUS, *COMPARATORS}
 
 
-@every_comparator
+@pytest.mark.parametrize("name", slow(COMPARATORS, but=["NoDamping", "PerfectState"]))
 def test_both_builds_are_alike_and_damp(name: str, folder: Path, native_builder: Any) -> None:
     """One test, since each native build takes a while."""
     native_builder(COMPARATORS[name], folder)

@@ -19,6 +19,7 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
+from tests.slow import slow
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=0.1)
 
@@ -167,7 +168,7 @@ def test_a_crash_is_told(native, unpacked):
     assert list(unpacked.iterdir()) == []
 
 
-@pytest.mark.parametrize("at", [0, 7, 19])
+@pytest.mark.parametrize("at", slow([0, 7, 19], but=[7]))
 def test_a_case_whose_process_was_lost_is_run_once_more_and_all_are_answered(tmp_path, at):
     def run(case):
         with (tmp_path / f"{case}").open("a") as file:

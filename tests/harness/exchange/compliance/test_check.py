@@ -20,6 +20,7 @@ from tests import ROOT
 from tests.foreign import RELAY, build_relay, tampered
 from tests.foreign.archives import HOSTILE
 from tests.foreign.stranger import build_stranger, in_words_of
+from tests.slow import slow
 
 PLANT = f"{PLANTS[0]}.fmu"
 
@@ -43,7 +44,7 @@ def test_our_native_fmus_have_no_findings(request, name, build):
     assert findings(request.getfixturevalue(build) / name) == []
 
 
-@pytest.mark.parametrize("name", OURS)
+@pytest.mark.parametrize("name", slow(OURS, but=["WheelSpeedCan.fmu", "DampingController.fmu"]))
 def test_our_python_fmus_need_only_that_the_host_lends_them_python(built, name):
     found = broken(built / name)
     assert found.keys() <= {"symbols"}

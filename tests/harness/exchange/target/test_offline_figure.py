@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from driveline.harness.exchange.target.offline_results import SHOWN, plot_comparison
+from tests.slow import slow
 
 
-@pytest.mark.parametrize("count", [1, len(SHOWN)])
+@pytest.mark.parametrize("count", slow([1, len(SHOWN)], but=[len(SHOWN)]))
 def test_every_manoeuvre_that_is_shown_has_its_column(count: int, tmp_path: Path) -> None:
     traces = np.zeros(50), np.ones(50)
     given: Any = [SimpleNamespace(case=SimpleNamespace(name=name), traces=traces) for name in (*SHOWN[:count], "other")]

@@ -59,7 +59,7 @@ def test_effects_that_are_off_by_default_are_the_same_in_functions_and_both_buil
 
 
 @pytest.mark.parametrize("plant", slow(PLANTS, but=("TwoMassDriveline",)))
-@pytest.mark.parametrize("manoeuvre", ["tipin15", "hill_hold"])
+@pytest.mark.parametrize("manoeuvre", slow(["tipin15", "hill_hold"], but=["hill_hold"]))
 def test_the_loop_does_not_see_which_build_a_block_is_of(both_built, plant, manoeuvre):
     found = compare_loop(plant, short(manoeuvre), both_built)
     assert set(found) == {"motor", "controller", "can", "plant"}

@@ -5,7 +5,7 @@ import json
 import sys
 from dataclasses import replace
 from functools import cache
-from itertools import islice
+from itertools import islice, product
 from shutil import copyfile
 from typing import Any
 
@@ -27,6 +27,7 @@ from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
 from tests import ROOT
+from tests.slow import slow
 
 DATA = ROOT.parent / "shared" / "data"
 TRIPS = {"bmw_i3_trip_a01": (165.0, 260.0), "bmw_i3_trip_a11": (1005.0, 1060.0)}
@@ -147,8 +148,10 @@ def standing(track, signals):
     return counted[end] == counted[begin]
 
 
-@pytest.mark.parametrize("plant", PLANTS)
-@pytest.mark.parametrize("name", DRIVES)
+QUICK = ("town", "ValidationVehicle"), ("hilly", "TwoMassDriveline"), ("bmw_i3_trip_a11", "ValidationVehicle")
+
+
+@pytest.mark.parametrize(("name", "plant"), slow(product(DRIVES, PLANTS), but=QUICK))
 def test_the_car_keeps_the_recorded_speed_stands_where_it_stood_and_never_rolls_back(runs, name, plant):
     track, *both = runs(name, plant)
     for signals in both:

@@ -22,8 +22,10 @@ from driveline.harness.studies.margins.margins import margins
 from driveline.harness.studies.margins.modes import drive_train_mode
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
+from driveline.models.block.types import ContinuousBlock
 from driveline.models.physics.backlash import dead_zone
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
+from tests.slow import slow
 
 
 @pytest.mark.parametrize("amplitude", [0.5, 1.0, 1.01, 1.5, 4.0, 100.0])
@@ -60,8 +62,11 @@ def test_without_control_the_drive_train_swings_slower_by_the_root_of_it() -> No
     assert slower == pytest.approx(sqrt(0.5) * contact, rel=0.01)
 
 
-@pytest.mark.parametrize("point", [Point(), Point(plant=validation_vehicle.BLOCK)])
-def test_in_contact_it_is_the_loop_in_contact(point: Point) -> None:
+@pytest.mark.parametrize(
+    "plant", slow([Point().plant, validation_vehicle.BLOCK], but=[Point().plant]), ids=lambda block: block.name
+)
+def test_in_contact_it_is_the_loop_in_contact(plant: ContinuousBlock) -> None:
+    point = Point(plant)
     found, expected = margins(Swinging(point).loop(1.0)), margins(linear_loop(point))
     assert astuple(found) == pytest.approx(astuple(expected), rel=1e-9)
 

@@ -19,6 +19,7 @@ from driveline.models import validation_vehicle
 from driveline.models.block.types import SampledBlock
 from driveline.models.controller.supervision import T_S
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
+from tests.slow import slow
 
 CONTROLLERS = {name: fmu.block for name, fmu in EVERY.items() if isinstance(fmu.block, SampledBlock)}
 
@@ -30,7 +31,9 @@ POINTS["PaperObserver"] = POINTS["PaperObserver"].with_parameters(controller={"k
 """With its own gains it swings at half the rate of the messages, where two frequencies beat and no growth is seen."""
 POINTS["on the vehicle"] = Point(plant=validation_vehicle.BLOCK)
 
-every_loop = pytest.mark.parametrize("point", POINTS.values(), ids=POINTS)
+QUICK = "DampingController", "on the vehicle"
+
+every_loop = pytest.mark.parametrize("name", slow(POINTS, but=QUICK))
 
 
 class Known:
@@ -62,17 +65,19 @@ def test_the_margins_of_a_lag_are_those_of_the_textbook() -> None:
 
 
 @every_loop
-def test_a_delay_just_below_the_margin_is_borne_and_one_just_above_is_not(point: Point) -> None:
+def test_a_delay_just_below_the_margin_is_borne_and_one_just_above_is_not(name: str) -> None:
     """At least half an interval off, for at the margin itself the swing neither dies away nor grows."""
+    point = POINTS[name]
     found = margins(linear_loop(point))
     samples = found.delay_margin / INTERVAL
     below, above = (replace(point, late=INTERVAL * k) for k in (floor(samples - 0.5), ceil(samples + 0.5)))
     assert growth(below, found.delay_frequency) < 1.0 < growth(above, found.delay_frequency)
 
 
-@pytest.mark.parametrize("point", [POINTS[name] for name in FEEDING_BACK])
-def test_a_gain_just_below_the_margin_is_borne_and_one_just_above_is_not(point: Point) -> None:
+@pytest.mark.parametrize("name", slow(FEEDING_BACK, but=QUICK))
+def test_a_gain_just_below_the_margin_is_borne_and_one_just_above_is_not(name: str) -> None:
     """Between teeth the wheel speed is known only as well as that of their messages is a mean over a cycle."""
+    point = POINTS[name]
     loop = linear_loop(point)
     found, near = margins(loop), 0.05 if loop.cycle > 1 else 0.03
     below, above = (
@@ -81,10 +86,10 @@ def test_a_gain_just_below_the_margin_is_borne_and_one_just_above_is_not(point: 
     assert below < 1.0 < above
 
 
-@pytest.mark.parametrize("point", [point for name, point in POINTS.items() if name != "SpeedDifference"])
-def test_the_poles_leave_the_unit_circle_at_the_same_gain_and_delay(point: Point) -> None:
+@pytest.mark.parametrize("name", slow([name for name in POINTS if name != "SpeedDifference"], but=QUICK))
+def test_the_poles_leave_the_unit_circle_at_the_same_gain_and_delay(name: str) -> None:
     """Exactly, where the wheel speed is not used."""
-    point = replace(point, wheel=False)
+    point = replace(POINTS[name], wheel=False)
     loop = linear_loop(point)
     found = margins(loop)
     for share, stable in ((0.9999, True), (1.0001, False)):
@@ -94,8 +99,9 @@ def test_the_poles_leave_the_unit_circle_at_the_same_gain_and_delay(point: Point
 
 
 @every_loop
-def test_the_linear_loop_moves_as_the_true_one(point: Point) -> None:
+def test_the_linear_loop_moves_as_the_true_one(name: str) -> None:
     """What a step of the demand adds to the gear torque, over 0.3 s."""
+    point = POINTS[name]
     step, samples = 2.0, 150
     stepped, kept = (torque(point, height, duration=samples * T_S) for height in (step, 0.0))
     true = (stepped - kept)[:: round(T_S / INTERVAL)]
