@@ -51,53 +51,53 @@ def theirs(tmp_path_factory):
     return build_car(tmp_path_factory.mktemp("theirs"), **THEIRS)
 
 
-def test_other_names_and_units_drive_the_loop_with_the_same_results(built, plain, theirs):
+def test_other_names_and_units_drive_the_loop_with_the_same_results(both_built, plain, theirs):
     uphill = replace(TIPIN, slope=lambda t: np.full(np.shape(t), 0.02))
     heavy = EXACT | {"plant.m": 1600.0}
-    expected = simulate(uphill, plain, folder=built, parameters=heavy)
-    results = simulate(uphill, theirs, folder=built, parameters=heavy, mapping=MAPPING)
+    expected = simulate(uphill, plain, folder=both_built, parameters=heavy)
+    results = simulate(uphill, theirs, folder=both_built, parameters=heavy, mapping=MAPPING)
     assert set(results.dtype.names or ()) == set(expected.dtype.names or ())
     for name in expected.dtype.names or ():
         np.testing.assert_allclose(results[name], expected[name], rtol=1e-9, atol=1e-9, err_msg=name)
 
 
 @pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
-def test_compiled_steps_and_those_in_python_convert_alike(built, theirs):
+def test_compiled_steps_and_those_in_python_convert_alike(both_built, theirs):
     results = []
     for make in (CompiledSteps, interpreted):
-        with loaded(loop(theirs, folder=built, mapping=MAPPING), make_steps=make) as running:
+        with loaded(loop(theirs, folder=both_built, mapping=MAPPING), make_steps=make) as running:
             results.append(running.run(Experiment(TIPIN.duration, 1e-3, signals(TIPIN), start(TIPIN))).tobytes())
     assert results[0] == results[1]
 
 
-def test_a_mapped_variable_without_a_unit_is_said(built, theirs, caplog):
+def test_a_mapped_variable_without_a_unit_is_said(both_built, theirs, caplog):
     warn_once.cache_clear()
-    fit(loop(theirs, folder=built, mapping=MAPPING))
+    fit(loop(theirs, folder=both_built, mapping=MAPPING))
     assert caplog.messages == [f"{theirs.name}: what is mapped to v has no unit; it is taken to be in m/s"]
 
 
-def test_nothing_changes_where_names_and_units_are_the_same(built):
-    ours = built / f"{PLANTS[0]}.fmu"
+def test_nothing_changes_where_names_and_units_are_the_same(both_built):
+    ours = both_built / f"{PLANTS[0]}.fmu"
     mapping = {f"plant.{name}": name for name in ("T_mot", "T_gear", "omega_1", "v_0")}
     np.testing.assert_array_equal(
-        simulate(TIPIN, ours, folder=built, mapping=mapping), simulate(TIPIN, ours, folder=built)
+        simulate(TIPIN, ours, folder=both_built, mapping=mapping), simulate(TIPIN, ours, folder=both_built)
     )
 
 
-def test_one_output_may_be_two_things(built, tmp_path):
+def test_one_output_may_be_two_things(both_built, tmp_path):
     """A car with one wheel speed."""
     one = {"omega_wheel_L": ("wheel", "rad/s", 1.0), "omega_wheel_R": ("other", "rad/s", 1.0)}
     plant = build_car(tmp_path / "car", **one)
     mapping = {"plant.omega_wheel_L": "wheel", "plant.omega_wheel_R": "wheel"}
-    results = simulate(TIPIN, plant, folder=built, mapping=mapping)
+    results = simulate(TIPIN, plant, folder=both_built, mapping=mapping)
     np.testing.assert_array_equal(results["plant.omega_wheel_R"], results["plant.omega_wheel_L"])
     assert results["plant.omega_wheel_R"][-1] > 1.0
     assert "plant.wheel" not in (results.dtype.names or ())
 
 
-def test_what_the_fmu_itself_calls_by_that_name_is_hidden(built, plain):
+def test_what_the_fmu_itself_calls_by_that_name_is_hidden(both_built, plain):
     swapped = {"plant.omega_1": "omega_2", "plant.omega_2": "omega_1"}
-    row = simulate(TIPIN, plain, folder=built, mapping=swapped)[-1]
+    row = simulate(TIPIN, plain, folder=both_built, mapping=swapped)[-1]
     assert row["plant.omega_wheel_L"] * 9.0 == pytest.approx(row["plant.omega_1"], rel=1e-12)
     assert row["plant.omega_2"] != row["plant.omega_1"]
 
@@ -112,34 +112,34 @@ def test_what_the_fmu_itself_calls_by_that_name_is_hidden(built, plain):
         ({"plant.T_mot": "T_brake", "plant.T_brake": "T_brake"}, "T_brake is mapped to T_brake too; only an output"),
     ],
 )
-def test_a_mapping_that_does_not_fit_is_refused(built, theirs, mapping, complaint):
+def test_a_mapping_that_does_not_fit_is_refused(both_built, theirs, mapping, complaint):
     with pytest.raises(WiringError, match=complaint):
-        simulate(TIPIN, theirs, folder=built, mapping=MAPPING | mapping)
+        simulate(TIPIN, theirs, folder=both_built, mapping=MAPPING | mapping)
 
 
-def test_an_unknown_unit_is_named(built, tmp_path):
+def test_an_unknown_unit_is_named(both_built, tmp_path):
     plant = build_car(tmp_path / "car", T_gear=("Shaft.tau", "blub", 1.0))
     with pytest.raises(WiringError, match=r"plant\.T_gear=Shaft\.tau: .* is in 'blub', which is not a known unit"):
-        simulate(TIPIN, plant, folder=built, mapping={"plant.T_gear": "Shaft.tau"})
+        simulate(TIPIN, plant, folder=both_built, mapping={"plant.T_gear": "Shaft.tau"})
 
 
-def test_all_that_does_not_fit_is_named_at_once_and_each_once(built, theirs):
+def test_all_that_does_not_fit_is_named_at_once_and_each_once(both_built, theirs):
     mapping = MAPPING | {"plant.T_gear": "Shaft.ta", "plant.omega_1": "Shaft.tau", "plant.v_0": "v0"}
     del mapping["plant.T_mot"]
     with pytest.raises(WiringError) as error:
-        simulate(TIPIN, theirs, folder=built, mapping=mapping, parameters={"plant.J_1": 0.06})
+        simulate(TIPIN, theirs, folder=both_built, mapping=mapping, parameters={"plant.J_1": 0.06})
     named = [line.partition("=")[0].partition(":")[0] for line in str(error.value).splitlines()]
     assert sorted(named) == ["plant.J_1", "plant.T_gear", "plant.T_mot", "plant.omega_1", "plant.v_0"]
 
 
-def test_a_unit_that_differs_is_only_converted_on_request(built, plain, tmp_path):
+def test_a_unit_that_differs_is_only_converted_on_request(both_built, plain, tmp_path):
     def change(xml):
         return xml.replace('unit="rad/s"', 'unit="rpm"', 1)
 
     plant = tampered(plain, tmp_path / "rpm.fmu", change)
     with pytest.raises(WiringError, match=r"\(--map plant\.omega_1=omega_1 converts it\)"):
-        simulate(TIPIN, plant, folder=built)
-    first = simulate(TIPIN, plant, folder=built, mapping={"plant.omega_1": "omega_1"})[0]
+        simulate(TIPIN, plant, folder=both_built)
+    first = simulate(TIPIN, plant, folder=both_built, mapping={"plant.omega_1": "omega_1"})[0]
     assert first["plant.omega_1"] == pytest.approx(first["plant.omega_2"] * pi / 30.0, rel=1e-12)
 
 

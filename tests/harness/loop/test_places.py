@@ -77,8 +77,8 @@ def test_our_fmus_have_all_that_is_optional_and_take_their_inputs_from_the_loop(
     assert have - fed == {"plant.T_load_rec", "controller.direction"}, "our bus tells no direction"
 
 
-def test_a_controller_need_not_use_every_signal(built, relay, caplog):
-    results = simulate(SHORT, folder=built, controller=relay, mapping=FEEDTHROUGH)
+def test_a_controller_need_not_use_every_signal(both_built, relay, caplog):
+    results = simulate(SHORT, folder=both_built, controller=relay, mapping=FEEDTHROUGH)
     np.testing.assert_array_equal(results["controller.T_ref"][1:], results["controller.T_driver"][:-1])
     assert "controller.enable" not in (results.dtype.names or ())
     assert results["plant.T_gear"][-1] > 50.0
@@ -87,10 +87,10 @@ def test_a_controller_need_not_use_every_signal(built, relay, caplog):
     assert noted - without_unit == {name for name in OPTIONAL if name.startswith("controller.")}
 
 
-def test_what_is_always_on_cannot_be_switched_off(built, relay):
+def test_what_is_always_on_cannot_be_switched_off(both_built, relay):
     with pytest.raises(WiringError, match=r"controller\.enable: Relay\.fmu does not have it and .* always 1"):
-        simulate(SHORT, folder=built, controller=relay, mapping=FEEDTHROUGH, control=False)
-    system = loop(PLANTS[0], folder=built, controller=relay, mapping=FEEDTHROUGH)
+        simulate(SHORT, folder=both_built, controller=relay, mapping=FEEDTHROUGH, control=False)
+    system = loop(PLANTS[0], folder=both_built, controller=relay, mapping=FEEDTHROUGH)
     at_times = signals(SHORT) | {"controller.enable": lambda t: t < 0.5}
     with pytest.raises(WiringError, match=r"controller\.enable"):
         run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))
@@ -104,12 +104,14 @@ def test_what_is_not_optional_must_be_there(built, relay):
     ]  # fmt: skip
 
 
-def test_a_motor_without_noise_has_no_seed(built, tmp_path):
-    plain = tampered(built / "MotorTorqueLoop.fmu", tmp_path / "plain.fmu", lambda xml: xml.replace("seed", "grain"))
-    results = simulate(SHORT, folder=built, motor=plain, seed=7)
+def test_a_motor_without_noise_has_no_seed(both_built, tmp_path):
+    plain = tampered(
+        both_built / "MotorTorqueLoop.fmu", tmp_path / "plain.fmu", lambda xml: xml.replace("seed", "grain")
+    )
+    results = simulate(SHORT, folder=both_built, motor=plain, seed=7)
     assert results["motor.T_mot"][-1] > 50.0
     with pytest.raises(WiringError, match="no parameter sed; did you mean seed"):
-        simulate(SHORT, folder=built, motor=built / "MotorTorqueLoop.fmu", parameters={"motor.sed": 1})
+        simulate(SHORT, folder=both_built, motor=both_built / "MotorTorqueLoop.fmu", parameters={"motor.sed": 1})
 
 
 def test_the_page_says_what_each_place_needs():
