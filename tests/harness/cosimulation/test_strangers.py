@@ -42,8 +42,8 @@ FAULTS = {
         r"crashed \(SIGSEGV\) in fmi2DoStep at 0\.1 s",
     ),
     "aborts": ({"IN_GET_REAL": "if (now > 0.0995) abort()"}, r"crashed \(SIGABRT\) in fmi2GetReal at 0\.1 s"),
-    "crashes when instantiated": ({"IN_INSTANTIATE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2Instantiate"),
-    "crashes when freed": ({"IN_FREE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2FreeInstance"),
+    "crashes when instantiated": ({"IN_INSTANTIATE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2Instantiate$"),
+    "crashes when freed": ({"IN_FREE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2FreeInstance$"),
     "ends by a signal of real time": (
         {"IN_DO_STEP": f"{LATER} raise(SIGRTMIN + 6)"},
         r"crashed \(signal 4\d\) in fmi2DoStep at 0\.1 s",

@@ -136,3 +136,9 @@ def test_the_page_says_what_was_measured():
     assert "| jacobi | 1 | 0.5 | 1.0 |" in text
     assert "`motor`, `plant`" in text
     assert "| TwoMassDriveline | launch | 0.4 (end swing) | 0.4 (end swing) |" in text
+
+
+@pytest.mark.parametrize("late", [-0.5, 0.0, 0.25])
+def test_a_signal_is_as_late_as_it_is_of_the_one_that_is_a_sample_late(late):
+    exact, other = np.array([0.0, 3.0, -4.0]), np.array([0.0, 0.0, 3.0])
+    assert lateness(exact + late * (other - exact), exact, other) == pytest.approx(late * T_S)

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from driveline.harness.metrics.evaluate import T_S
+from driveline.harness.studies.compare import compare_report
 from driveline.harness.studies.compare.compare_report import verdict
-from driveline.harness.studies.drives.replay_report import PIECE, _densities, _worst, roughest
+from driveline.harness.studies.drives import replay_report
+from driveline.harness.studies.drives.replay_report import PIECE, WHOLE, _densities, _figures, _worst, roughest
 from driveline.harness.studies.faults.fault_report import _classes
 from driveline.harness.studies.faults.fault_report_html import _ratio, _table
 from driveline.harness.studies.faults.judges import JUDGES
@@ -89,6 +91,44 @@ def test_the_density_of_a_swing_is_largest_at_its_frequency() -> None:
     (curve,) = panel.parts
     assert isinstance(curve, Curve)
     assert curve.x[np.argmax(curve.y)] == pytest.approx(50.0 / (2.0 * np.pi), abs=0.25)
+
+
+def test_the_whole_drive_is_shown_from_its_beginning_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: dict[str, tuple[float, float]] = {}
+
+    def chosen(title: str, choices: object, windows: dict[str, tuple[float, float]], x_range: object) -> Any:
+        given.update(windows)
+        return None, None
+
+    monkeypatch.setattr(replay_report, "chosen", chosen)
+    for name in ("torques", "swings", "speeds", "Panel", "_acceleration", "within", "tables", "thinned", "linked"):
+        monkeypatch.setattr(replay_report, name, lambda *_: [])
+    monkeypatch.setattr(replay_report, "_acceleration", lambda *_: SimpleNamespace(of=lambda _: []))
+    monkeypatch.setattr(replay_report, "stacked", lambda _: None)
+    rides: Any = {name: (None, ride(0.0, 5.0)) for name in ("without damping", "with")}
+    next(_figures(rides, (np.zeros(2), np.zeros(2)), [30.0, 57.0]))
+    end = pytest.approx(60.0 - T_S)
+    assert given == {WHOLE: (0.0, end), f"30 to {30.0 + PIECE:g} s": (30.0, 36.0), "57 to 63 s": (57.0, end)}
+
+
+def test_a_comparison_is_written_and_draws_each_run_without_damping_with_its_own_with_damping(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    drawn: dict[str, Any] = {}
+    monkeypatch.setattr(compare_report, "pair_sections", lambda pairs: drawn.update(pairs) or [])
+    for name in ("verdict", "_table", "_worst", "metric_dots"):
+        monkeypatch.setattr(compare_report, name, lambda *_: None)
+    written: list[tuple[str, Path]] = []
+    monkeypatch.setattr(compare_report, "write_report", lambda title, *others: written.append((title, others[-1])))
+    rows = [SimpleNamespace(manoeuvre=name, plant="Car", control=on) for name in "ab" for on in (False, True)]
+    runs: Any = [(row, f"{row.manoeuvre} {row.control}") for row in rows]
+    manoeuvres: Any = {"a": "tip-in", "b": "launch"}
+    compare_report.report(runs, manoeuvres, ["SpeedWashout"], {}, Path("page.html"))
+    assert written == [("Without and with SpeedWashout", Path("page.html"))]
+    assert {name: tuple(pair) for name, pair in drawn.items()} == {
+        "a on Car": ("tip-in", "a False", "a True"),
+        "b on Car": ("launch", "b False", "b True"),
+    }
 
 
 def test_all_columns_of_the_faults_but_the_first_are_numbers() -> None:
