@@ -53,6 +53,9 @@ IN_C = {
 OF_NUMBERS = "models/block/integrator.py", "fmus/protocol.py"
 """Of these only the numbers that C takes from them are changed."""
 
+FEW = 12
+"""Tests of the first round: most faults are found by it, and pytest has only their files to collect."""
+
 SHARE = 30.0
 """Time in s that the tests may take that are run for a fault of the sample."""
 
@@ -66,12 +69,19 @@ def main() -> None:
     parser.add_argument("--workers", type=int, metavar="N", default=os.cpu_count(), help="(default: one on each core)")
     args = parser.parse_args()
     if not KEPT.exists():
-        subprocess.run([sys.executable, Path(__file__).with_name("touched.py")], check=False)
+        watched(args.workers)
     is_good = (
         whole(args.files, args.every, args.workers) if args.files else sampled(args.faults, args.seed, args.workers)
     )
     write_page()
     sys.exit(not is_good)
+
+
+def watched(shards: int) -> None:
+    """Runs the fast tests under coverage, in so many processes."""
+    command = [sys.executable, Path(__file__).with_name("touched.py")]
+    for running in [subprocess.Popen([*command, str(shard), str(shards)]) for shard in range(shards)]:
+        running.wait()
 
 
 def whole(files: Sequence[str], step: int, workers: int) -> bool:
@@ -118,24 +128,29 @@ def sampled(size: int, seed: int, workers: int) -> bool:
     return good >= LEAST_SCORE * len(sample.mutants)
 
 
-def tests_of(mutant: Mutant, touched: Touched) -> tuple[Sequence[str], Sequence[str]]:
-    """What may find a fault, in the order in which it is run; and the tests whose slow ones may too."""
+def tests_of(mutant: Mutant, touched: Touched) -> tuple[Sequence[Sequence[str]], Sequence[str]]:
+    """What may find a fault, in rounds in the order in which they are run; and the tests whose slow ones may too."""
     name = Path(mutant.file).name
     if name in IN_C:
-        return IN_C[name], IN_C[name]
-    own, naming = own_tests(mutant.file), touched.naming(mutant.file)
-    unseen = [test for test in naming if test in own]
-    return [*unseen, *chosen(touched.by(mutant)), *(test for test in naming if test not in own)], own
+        return [IN_C[name]], IN_C[name]
+    own, naming, touching = own_tests(mutant.file), touched.naming(mutant.file), chosen(touched.by(mutant))
+    unseen, others = ([test for test in naming if (test in own) is is_own] for is_own in (True, False))
+    return [[*unseen, *by_file(touching[:FEW])], [*by_file(touching[FEW:]), *others]], own
 
 
 def chosen(tests: Sequence[Test]) -> list[str]:
-    """The names of those that can be run within SHARE; of a file one after the other."""
+    """The names of those that can be run within SHARE."""
     total, names = 0.0, []
     for test in tests:
         total += test.time
         if total > SHARE:
             break
         names.append(test.name)
+    return names
+
+
+def by_file(names: Sequence[str]) -> list[str]:
+    """The tests of a file one after the other."""
     files = list(dict.fromkeys(name.partition("::")[0] for name in names))
     return sorted(names, key=lambda name: files.index(name.partition("::")[0]))
 

@@ -40,5 +40,5 @@ def test_a_test_that_waits_for_ever_has_failed(tmp_path: Path) -> None:
 
 def test_a_test_that_fails_without_the_fault_does_not_find_it(tmp_path: Path) -> None:
     (tmp_path / "code.py").write_text("x = 1.0\n")
-    call = 'workers.finder(Mutant("code.py", 1, 4, "x = 1.0", "1.0", "1.2"), ["test_it.py"], [])'
+    call = 'workers.finder(Mutant("code.py", 1, 4, "x = 1.0", "1.0", "1.2"), [["test_it.py"]], [])'
     assert answered(call, "assert False", tmp_path) == "None"

@@ -3,8 +3,8 @@
     python tests/mutation/touched.py [SHARD SHARDS]  # of so many runs side by side, counted from 0
 
 What a test does is told apart from what is made once for many of them: the lines of a fixture of a module or of the
-session are touched by all tests that use it. A slow test, or one that computes for longer than LONGEST, is left out:
-with a thousand others at hand it would find hardly anything that they do not, and late.
+session are touched by all tests that use it. Slow tests are left out. No test is interrupted, for what it was waiting
+for may then never end: one that is still running after WAITED ends its process, and another one goes on behind it.
 """
 
 import ast
@@ -14,7 +14,7 @@ import re
 import shutil
 import signal
 import sys
-from collections.abc import Collection, Generator, Iterator, Mapping
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from hashlib import sha256
@@ -30,11 +30,17 @@ from mutants import CODE, ROOT, Mutant, code_files
 KEPT = ROOT / "build" / "mutation"
 """Folder of what a run has shown of this machine's checkout; not under version control."""
 
-LONGEST = 1.5
-"""Time in s that a test may compute while it is watched."""
-
-WAITED = 20.0
+WAITED = 180
 """Time in s that a test may take with the programs that it waits for."""
+
+EXAMPLES = 25
+"""Of a property, unless the test says how many: further ones hardly touch other lines."""
+
+OWN = 10.0
+"""As often as another test a test of the module itself finds a fault in it, at the same cost."""
+
+RUNNING = "running"
+"""File with the name of the test that is running."""
 
 OPTIONS = "-q", "--tb=no", "-m", "not slow", "--hypothesis-profile=watched"
 
@@ -65,15 +71,11 @@ class Test(NamedTuple):
         return self.name.partition("::")[0]
 
 
-class TooLong(BaseException):
-    """A test takes longer than it may."""
-
-
 class Watch:
-    """Plugin of pytest that says to coverage what is running, and keeps to the time."""
+    """Plugin of pytest that says to coverage what is running, and notes it for the process that waits."""
 
-    def __init__(self, coverage: Coverage, record: Path, digests: Mapping[str, str]) -> None:
-        self.coverage, self.record, self.digests = coverage, record, digests
+    def __init__(self, coverage: Coverage, folder: Path, digests: Mapping[str, str]) -> None:
+        self.coverage, self.folder, self.digests = coverage, folder, digests
         self.running = [""]
         self.tests: list[Test] = []
         self.passed: set[str] = set()
@@ -94,27 +96,6 @@ class Watch:
         self.coverage.switch_context(self.running[-1])
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_pyfunc_call(self) -> Generator[None, Any, Any]:
-        """Within a time limit, that is said again and again to a test that goes on trying."""
-        try:
-            signal.setitimer(signal.ITIMER_PROF, LONGEST, LONGEST)
-            signal.setitimer(signal.ITIMER_REAL, WAITED, WAITED)
-            return (yield)
-        except TooLong:
-            pass
-        finally:
-            signal.setitimer(signal.ITIMER_PROF, 0.0)
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-        pytest.fail("takes too long to be watched", pytrace=False)
-
-    def pytest_sessionstart(self) -> None:
-        def too_long(*_: object) -> None:
-            raise TooLong
-
-        signal.signal(signal.SIGPROF, too_long)
-        signal.signal(signal.SIGALRM, too_long)
-
-    @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any) -> Generator[None, Any, Any]:
         if fixturedef.scope == "function":
             return (yield)
@@ -124,6 +105,8 @@ class Watch:
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: Any, nextitem: Any) -> Generator[None, Any, Any]:
         began = process_time()
+        (self.folder / RUNNING).write_text(item.nodeid, encoding="utf-8")
+        signal.alarm(WAITED)  # ends the process
         definitions = [each[-1] for each in item._fixtureinfo.name2fixturedefs.values()]
         wide = tuple(_wide(each) for each in definitions if each.scope != "function")
         with self.of(item.nodeid):
@@ -143,7 +126,7 @@ class Watch:
         passed = [test for test in self.tests if test.name in self.passed]
         others = [test.name for test in self.tests if test.name not in self.passed]
         record = {"tests": passed, "left_out": others, "digests": self.digests}
-        self.record.write_text(json.dumps(record), encoding="utf-8")
+        (self.folder / "tests.json").write_text(json.dumps(record), encoding="utf-8")
 
 
 def _wide(definition: Any) -> str:
@@ -156,20 +139,35 @@ def bytes_of(path: Path) -> str:
 
 
 def watch(shard: int = 0, shards: int = 1) -> None:
-    """Runs every so manieth file of the tests, and keeps what was seen; ends the process."""
-    folder = KEPT / str(shard)
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    """Runs every so manieth file of the tests, and keeps what was seen."""
+    for old in KEPT.glob(f"{shard}_*"):
+        shutil.rmtree(old)
+    left, stuck = test_files()[shard::shards], []
+    while left:
+        folder = KEPT / f"{shard}_{len(stuck)}"
+        folder.mkdir(parents=True)
+        child = os.fork()
+        if child == 0:
+            _watch(left, stuck, folder)
+        if not os.WIFSIGNALED(os.waitpid(child, 0)[1]):
+            return
+        stuck.append((folder / RUNNING).read_text(encoding="utf-8"))
+        print(f"does not end: {stuck[-1]}", flush=True)
+        left = left[left.index(stuck[-1].partition("::")[0]) :]
+
+
+def _watch(files: Sequence[str], stuck: Sequence[str], folder: Path) -> None:
+    """Runs files of tests but those that do not end; ends the process."""
     os.chdir(ROOT)
     sys.path[0] = str(ROOT)
-    settings.register_profile("watched", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
+    watched = {"deadline": None, "derandomize": True, "max_examples": EXAMPLES}
+    settings.register_profile("watched", phases=(Phase.explicit, Phase.generate), **watched)
     configuration = folder / "coverage.ini"
     configuration.write_text(CONFIGURATION + f"source = {','.join(str(ROOT / each) for each in CODE)}\n")
     seen = Coverage(data_file=str(folder / "lines"), config_file=str(configuration))
-    files = test_files()[shard::shards]
-    plugin = Watch(seen, folder / "tests.json", {file: bytes_of(ROOT / file) for file in (*files, *code_files())})
+    plugin = Watch(seen, folder, {file: bytes_of(ROOT / file) for file in (*files, *code_files())})
     seen.start()
-    pytest.main([*OPTIONS, *files], plugins=[plugin])
+    pytest.main([*OPTIONS, *files, *(f"--deselect={test}" for test in stuck)], plugins=[plugin])
     plugin.keep()
     os._exit(0)  # whatever the tests have left running
 
@@ -223,7 +221,7 @@ class Touched:
         return {name for name, test in self.tests.items() if test.file not in self.unseen}
 
     def naming(self, file: str) -> list[str]:
-        """Those of them that name a module, its own first, then tests that take too long in files that do."""
+        """Those of them that name a module, its own first, then tests of files that do which did not pass here."""
         stem = Path(file).stem
         name = re.compile(rf"[./]{stem}\b|import .*\b{stem}\b")
         own = own_tests(file)
@@ -232,7 +230,7 @@ class Touched:
         return [each for each in (*own, *others) if each in self.unseen] + left_out
 
     def by(self, mutant: Mutant) -> list[Test]:
-        """The tests that touch the place of a fault, the cheapest first and those of one function apart.
+        """The tests that touch the place of a fault, the cheapest and its own first and those of one function apart.
 
         What is computed while a module is imported is touched by whoever touches a function that names it, else by who
         touches the file; so is what stands in a file that has changed since.
@@ -244,7 +242,7 @@ class Touched:
             places = {path: lines} if lines else _where(names) or places
         contexts = {context for file, lines in places.items() for context in self._contexts(file, lines)}
         found = {test for name in contexts for test in (self.users.get(name) or [self.tests.get(name)]) if test}
-        return _spread(found)
+        return _spread(found, own_tests(mutant.file))
 
     def _contexts(self, file: str, lines: set[int] | None) -> Iterator[str]:
         for data in self.seen:
@@ -258,14 +256,15 @@ def own_tests(file: str) -> list[str]:
     return [each for each in test_files() if Path(each).stem == f"test_{Path(file).stem}"]
 
 
-def _spread(tests: Collection[Test]) -> list[Test]:
-    """Cheap ones first, but of many cases of the same test one after the other."""
+def _spread(tests: Collection[Test], own: Collection[str]) -> list[Test]:
+    """Cheap ones and those of the files `own` first, but of many cases of the same test one after the other."""
     cases: dict[str, int] = {}
     ranked = []
     for test in sorted(tests, key=_cost):
         function = test.name.partition("[")[0]
         cases[function] = cases.get(function, 0) + 1
-        ranked.append((cases[function] * (_cost(test) + 0.02), test.name, test))
+        dear = (_cost(test) + 0.02) / (OWN if test.file in own else 1.0)
+        ranked.append((cases[function] * dear, test.name, test))
     return [test for *_, test in sorted(ranked)]
 
 

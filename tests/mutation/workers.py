@@ -197,14 +197,14 @@ def _end_children() -> None:
             os.waitpid(child, 0)
 
 
-def finder(mutant: Mutant, tests: Sequence[str], own: Sequence[str]) -> str | None:
+def finder(mutant: Mutant, rounds: Sequence[Sequence[str]], own: Sequence[str]) -> str | None:
     """The first test that finds a fault; None if none does. Tests that fail without it are left out.
 
     Args:
-        tests: of which the fast ones are run, in this order.
+        rounds: tests of which the fast ones are run, in this order.
         own: of which the slow ones are run after them.
     """
-    for marker, some in (("not slow", tests), ("slow", own)):
+    for marker, some in (*(("not slow", tests) for tests in rounds), ("slow", own)):
         if some and (found := _finder(mutant, ["-m", marker, *some])) is not None:
             return found
     return None
@@ -228,7 +228,7 @@ def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
 
 def finders(
     mutants: Sequence[Mutant],
-    tests: Callable[[Mutant], tuple[Sequence[str], Sequence[str]]],
+    tests: Callable[[Mutant], tuple[Sequence[Sequence[str]], Sequence[str]]],
     sound: Collection[str],
     number: int,
 ) -> Iterator[tuple[Mutant, str | None]]:
