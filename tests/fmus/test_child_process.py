@@ -12,6 +12,7 @@ from time import monotonic, sleep
 import pytest
 
 from driveline.fmus.child_process import output_of, run
+from tests.signals import heed_signals
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems tell no program that its parent is gone")
 
@@ -49,7 +50,8 @@ def begun(tmp_path: Path):
     def begin(code: str) -> tuple["subprocess.Popen[bytes]", list[int]]:
         environment = os.environ | {"CC": str(program), "TMPDIR": str(temporary)}
         command = [sys.executable, "-c", code.replace("{program!r}", repr(str(program)))]
-        processes.append(subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL))
+        quiet = subprocess.DEVNULL
+        processes.append(subprocess.Popen(command, env=environment, stderr=quiet, preexec_fn=heed_signals))
         wait_until(notes.exists)
         return processes[-1], [int(number) for number in notes.read_text().split()]
 

@@ -22,7 +22,6 @@ from tests import ROOT
 from tests.signals import STOPPING, started
 from tests.slow import slow
 
-
 TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
 """Environment of a command with workers."""
 
