@@ -1,6 +1,7 @@
 """Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its
 unit and meaning, or writes them to a file that the other commands take as --parameters. What the vehicle
-file does not name is that of the default car. docs/control.md says how the gains come about.
+file does not name is that of the default car. docs/control.md says how the gains come about. A file of parameters
+can set limits: with its T_take_max and T_add_max the control never takes or adds more, whatever the car would need.
 
 With --search the parameters of the law are searched instead, for this or another controller: by a cost over all
 manoeuvres on both plants and at corners of the parameter box, see docs/tuning.md. The folder gets all candidates
@@ -23,6 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...fmus.building.options import file
+from ..base.errors import DrivelineError
 from .options import add_printing, add_replace
 from .printing import Printer
 from .search_options import add_search, require_search, run_search, write_toml
@@ -36,7 +38,11 @@ Drive train: {alone.frequency:.2f} Hz; damped: {damped.frequency:.2f} Hz, dampin
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    for option, meaning in (("--vehicle", "the car (default: that of all blocks)"), ("--output", "for the gains")):
+    for option, meaning in (
+        ("--vehicle", "the car (default: that of all blocks)"),
+        ("--parameters", "with limits, T_take_max and T_add_max"),
+        ("--output", "for the gains"),
+    ):
         parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
     add_search(parser)
     add_replace(parser)
@@ -45,9 +51,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     if args.search is not None:
+        if args.parameters is not None:
+            raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
         return run_search(args)
     require_search(args)
-    text, out = designed(args.vehicle), Printer(args)
+    text, out = designed(args.vehicle, limits=args.parameters), Printer(args)
     if args.output is None:
         out.say(text.rstrip())
     else:
@@ -56,24 +64,26 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def designed(vehicle: Path | None = None, weights: "Weights | None" = None) -> str:
+def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limits: Path | None = None) -> str:
     """The file of gains for the car of a vehicle file, by default for the default car.
 
     Args:
         weights: of the design (default: those of the default gains).
+        limits: file with the most that the control may take and add.
 
     Raises:
-        ParameterFileError: the vehicle file is refused.
+        ParameterFileError: a file is refused, or the limits have something else.
         DesignError: there is no controller for this car.
     """
-    from ...fmus.building.parameter_files import read_vehicle
-    from ..design.design import gains_file, gains_of
+    from ...fmus.building.parameter_files import read_parameters, read_vehicle, require_taken
+    from ..design.design import AUTHORITY, gains_file, gains_of
     from ..design.design_weights import WEIGHTS, records
     from ..design.kalman import DesignError
     from ..studies.margins.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
-    gains = gains_of(plant, motor, can, weights or WEIGHTS)
+    require_taken(limits, AUTHORITY, "a file of limits")
+    gains = gains_of(plant, motor, can, weights or WEIGHTS, read_parameters(limits) if limits else {})
     alone, damped = swing(plant, motor, gains)
     if damped.damping_ratio <= alone.damping_ratio:
         raise DesignError(

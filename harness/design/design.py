@@ -6,7 +6,7 @@ held, and the loop acts T_dead late.
 """
 
 from collections.abc import Mapping
-from math import sqrt
+from math import inf, sqrt
 from typing import Any
 
 from ...fmus.building.parameter_files import of_vehicle
@@ -27,8 +27,13 @@ from .design_weights import (
 )
 from .kalman import DesignError, estimator_gains
 
+AUTHORITY = ("T_take_max", "T_add_max")
+"""How much the control may change of the demand: the design asks for what it needs, a user may allow less."""
 
-def design(vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS) -> dict[str, float]:
+
+def design(
+    vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS, limits: Mapping[str, float] | None = None
+) -> dict[str, float]:
     """All parameters of the controller that are designed for a car, by name, in SI units.
 
         gains = driveline.design({"m": 1900.0, "C": 150.0})
@@ -38,16 +43,21 @@ def design(vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS)
         vehicle: entries of a vehicle file, in SI units, as `read_vehicle` gives them; what they do not name follows
             from them or is that of the default car.
         weights: what the designer decides.
+        limits: the most that T_take_max and T_add_max may be, in N.m, by these names.
 
     Raises:
         ParameterFileError: one is not known, no number or out of range; they disagree, or there is no such car.
         DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
     """
-    return gains_of(*records(of_vehicle(vehicle)), weights)
+    return gains_of(*records(of_vehicle(vehicle)), weights, limits)
 
 
 def gains_of(
-    plant: Plant = PLANT, motor: Motor = MOTOR, can: Can = CAN, weights: Weights = WEIGHTS
+    plant: Plant = PLANT,
+    motor: Motor = MOTOR,
+    can: Can = CAN,
+    weights: Weights = WEIGHTS,
+    limits: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
     """The same for the records of a car.
 
@@ -61,7 +71,10 @@ def gains_of(
     of_messages = possible({"T_age": train.T_age})
     gains = estimator_gains(plant, motor, can, train, weights)
     law = damping_law(plant, motor, train, weights)
-    return possible({"lambda_v": train.lambda_v, **gains, **of_messages, **law})
+    allowed = {
+        name: min(asked, (limits or {}).get(name, inf)) for name, asked in authority(plant, motor, weights).items()
+    }
+    return possible({"lambda_v": train.lambda_v, **gains, **of_messages, **law, **allowed})
 
 
 def literal_observer(
@@ -92,12 +105,13 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
 
     In contact k_d damps the drive train with the ratio k_d/(2 J_1 omega_0). Above the resonance, where J_1 alone
     is left, the loop crosses over at k_d/J_1, and there the dead time takes the phase T_dead k_d/J_1. After a step
-    of the torque the washout of k_T takes its impulse away for k_T/omega_w.
+    of the torque the washout of k_T takes its impulse away for k_T/omega_w. What the estimate is taken ahead makes up
+    for the part omega_0 T_dead of the dead time: the slower the motor is for its drive train, the more it has to.
     """
     k_d = plant.J_1 * max(2.0 * weights.damping_ratio * train.omega_0, weights.phase / train.T_dead)
     omega_w = weights.washout * train.omega_0
     return {
-        "T_pred": weights.look_ahead * sqrt(2.0) * motor.tau,
+        "T_pred": min(weights.look_ahead * train.omega_0 * train.T_dead**2, PARAMETERS["T_pred"].bounds()[1]),
         "k_d": k_d,
         "k_T": omega_w * weights.withheld / train.omega_v,
         "omega_w": omega_w,
@@ -121,6 +135,20 @@ def largest_landing(plant: Plant, motor: Motor, weights: Weights) -> float:
     T_peak, flight = weights.impact * motor.T_max, 2.0 * weights.brake * plant.C * plant.phi_B
     bearable = T_peak**2 / (flight + sqrt(flight**2 + (weights.bounce * T_peak) ** 2))
     return min(weights.landing * motor.T_max, bearable)
+
+
+def authority(plant: Plant, motor: Motor, weights: Weights) -> dict[str, float]:
+    """What the control may take from and add to the demand, in N.m.
+
+    Both are shares of T_max, as the steps of the demand are. A landing takes more in a wide gap: T_max over the whole
+    gap makes J_1 so fast that its impact twists the drive train by the torque T_flight,
+    T_flight^2/(2 C) = 2 phi_B T_max.
+    """
+    T_flight = 2.0 * sqrt(plant.C * plant.phi_B * motor.T_max)
+    return {
+        "T_take_max": max(weights.take * motor.T_max, weights.catch * T_flight),
+        "T_add_max": weights.add * motor.T_max,
+    }
 
 
 def gains_file(parameters: Mapping[str, float], comment: str, declared: Mapping[str, Variable] = PARAMETERS) -> str:

@@ -52,7 +52,7 @@ class Weights:
         damping_ratio: of the drive train with the feedback of the speed difference alone, at the least.
         phase: that the dead time may take where the loop crosses over, rad; a drive train that is damped well with
             less is damped more.
-        look_ahead: time that the estimate is taken ahead, over the lag of the motor, sqrt(2) tau.
+        look_ahead: time that the estimate is taken ahead, over omega_0 T_dead^2.
         k_gap: factor on the damping inside the gap.
         washout: its corner frequency, over omega_0.
         withheld: time by which the feedback of the gear torque delays the driver's impulse, times omega_v.
@@ -62,6 +62,9 @@ class Weights:
         recent: corner frequency that tells which change of the demand is recent, over omega_v.
         comeback: time constant with which the torque that a landing withheld comes back, times omega_0.
         longest_landing: how long a landing may last, times omega_v.
+        take, add: what may be taken from the demand at the least, and added to it, over T_max.
+        catch: what may be taken, over the torque by which the drive train would be twisted if T_max accelerated the
+            motor from flank to flank.
     """
 
     wheel_share: float = 0.5235932
@@ -73,18 +76,21 @@ class Weights:
     message_error: float = 0.4698217
     damping_ratio: float = 0.4978043
     phase: float = 0.31
-    look_ahead: float = 0.2357023
+    look_ahead: float = 0.4093712
     k_gap: float = 0.6
     washout: float = 0.06442173
     withheld: float = 0.008063731
     landing: float = 0.6111111
-    impact: float = 0.4300085
+    impact: float = 0.5
     bounce: float = 0.4
     brake: float = 0.5
     haste: float = 1.1
     recent: float = 1.612157
     comeback: float = 0.1629885
     longest_landing: float = 0.8063731
+    take: float = 0.5555556
+    add: float = 0.3333333
+    catch: float = 0.868
 
 
 WEIGHTS = Weights()

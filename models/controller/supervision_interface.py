@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple, Protocol
 
 from ..block.declaration import Boolean, Integer, Real
 from ..physics.vehicle import CAR, MotorInertia, MotorLag
+from .gains import GAINS
 
 
 def speed(meaning: str) -> Real:
@@ -19,9 +20,9 @@ class Parameters(NamedTuple):
     J_1: MotorInertia = CAR.J_1
     T_take_max: Annotated[
         float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0)
-    ] = 100.0
+    ] = GAINS["T_take_max"]
     T_add_max: Annotated[float, Real("N.m", "largest torque added to the demand, or taken by damping", 0.0, 2000.0)] = (
-        60.0
+        GAINS["T_add_max"]
     )
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02

@@ -20,7 +20,7 @@ def test_the_table_has_each_entry_and_what_comes_of_them(capsys: pytest.CaptureF
     assert "52333.7 N.m/rad   follows (C)" in rows["k_s"]
     assert "design plant, vehicle, bus" in rows["i"]
     assert "backlash at the wheel: 3.00 degrees" in text
-    assert "takes up to 100 N.m from the demand and adds up to 60 N.m, of T_max = 250 N.m" in text
+    assert "takes up to 188.378 N.m from the demand and adds up to 83.3333 N.m, of T_max = 250 N.m" in text
     assert rows["TwoMassDriveline"].split()[1] == "6.95"
     assert rows["ValidationVehicle"].split()[1] == "7.50"
 
@@ -39,10 +39,10 @@ def test_tools_get_one_document(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 def test_a_car_without_a_controller_has_no_damped_mode(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     car = tmp_path / "car.toml"
-    car.write_text("tau = 0.1\n", encoding="utf-8")
+    car.write_text("T_cyc = 0.2\n", encoding="utf-8")
     assert main(["car", str(car), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["gains"].startswith("no gains: T_pred would be 0.03333; the controller takes")
+    assert found["gains"].startswith("no gains: T_age would be 0.113; the controller takes")
     assert [plant["damped"] for plant in found["properties"]["plants"]] == [None, None]
 
 

@@ -20,7 +20,7 @@ def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.Ca
     assert lines[0].startswith(
         "# Gains of the DampingController for van.toml, by `driveline design` (driveline-damping"
     )
-    assert lines[1] == "# Drive train: 6.97 Hz; damped: 8.12 Hz, damping ratio 0.60."
+    assert lines[1] == "# Drive train: 6.97 Hz; damped: 8.14 Hz, damping ratio 0.60."
     expected = design(read_vehicle(VAN))
     assert tomllib.loads(text) == pytest.approx(expected, rel=1e-5)
     assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)
@@ -34,6 +34,19 @@ def test_the_gains_are_written_to_a_file_that_the_other_commands_take(
     assert capsys.readouterr().out == f"gains: {path}\n"
     assert read_parameters(path)["k_d"] == pytest.approx(design(read_vehicle(VAN))["k_d"], rel=1e-5)
     assert [file.name for file in path.parent.iterdir()] == ["gains.toml"]
+
+
+def test_limits_of_a_user_are_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    limits, more = tmp_path / "limits.toml", tmp_path / "more.toml"
+    limits.write_text("T_take_max = 120\nT_add_max = 500\n", encoding="utf-8")
+    assert main(["design", "--vehicle", str(VAN), "--parameters", str(limits)]) == 0
+    asked = design(read_vehicle(VAN))
+    assert tomllib.loads(capsys.readouterr().out) == pytest.approx(asked | {"T_take_max": 120.0}, rel=1e-5)
+    more.write_text("k_d = 3\n", encoding="utf-8")
+    assert main(["design", "--parameters", str(more)]) == 2
+    assert capsys.readouterr().err == f"driveline design: {more}: a file of limits has no parameter k_d\n"
+    assert main(["design", "--parameters", str(limits), "--search", str(tmp_path / "search")]) == 2
+    assert "leave it out, or --search" in capsys.readouterr().err
 
 
 def test_nothing_depends_on_the_working_directory(
@@ -50,8 +63,8 @@ def test_nothing_depends_on_the_working_directory(
     ("text", "message"),
     [
         ("J1 = 0.09\n", "line 1: J1 is not known"),
-        ("tau = 0.1\n", "T_pred would be 0.03333; the controller takes"),
-        ("tau = 0.05\n", "the motor is too slow for this car (tau = 0.05 s, drive train 7.46 Hz): the damping ratio"),
+        ("T_cyc = 0.2\n", "T_age would be 0.113; the controller takes"),
+        ("tau = 0.06\n", "the motor is too slow for this car (tau = 0.06 s, drive train 7.46 Hz): the damping ratio"),
     ],
 )
 def test_a_car_without_a_controller_is_answered_with_exit_code_2(

@@ -9,7 +9,7 @@ import pytest
 
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.commands.design import designed
-from driveline.harness.design.design import design, gains_of, literal_observer
+from driveline.harness.design.design import AUTHORITY, design, gains_of, literal_observer
 from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
 from driveline.harness.design.kalman import DesignError, motor_speed_gains, process_noise, speed_noise, transition
 from driveline.harness.studies.margins.modes import swing
@@ -65,7 +65,7 @@ def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float
     """All inertias, stiffness and torques larger by one factor: the same motions, torques larger by that factor."""
     plant = PLANT._replace(J_1=scale * PLANT.J_1, J_2=scale * PLANT.J_2, C=scale * PLANT.C, m=scale * PLANT.m)
     gains, default = gains_of(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
-    with_torque = {"k_d", "T_gap", *(f"{L}_T_l" for L in ("L", "Lw", "Ls", "L_can"))}
+    with_torque = {"k_d", "T_gap", *AUTHORITY, *(f"{L}_T_l" for L in ("L", "Lw", "Ls", "L_can"))}
     for name, value in gains.items():
         assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
 
@@ -93,6 +93,18 @@ def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_t
     assert slow_motor["k_d"] == pytest.approx(default["k_d"] * sqrt(0.5), rel=STORED_DIGITS), "the ratio asks for more"
 
 
+def test_a_slower_motor_is_looked_ahead_further_as_far_as_the_controller_can() -> None:
+    """As the square of the dead time, of which 3 ms are not the motor's."""
+
+    def ahead(tau: float) -> float:
+        return gains_of(motor=MOTOR._replace(tau=tau))["T_pred"]
+
+    dead = [0.003 + sqrt(2.0) * tau for tau in (0.003, 0.012)]
+    assert ahead(0.012) / ahead(0.003) == pytest.approx((dead[1] / dead[0]) ** 2)
+    assert ahead(0.0206) < 0.02
+    assert ahead(0.0208) == 0.02
+
+
 def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
     """Washout, haste and return follow its frequencies, of which one is the motor's with it and one the vehicle's."""
     stiff, default = gains_of(PLANT._replace(C=4.0 * PLANT.C)), design()
@@ -112,6 +124,28 @@ def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_to
     assert begins(soft, narrow) < WEIGHTS.impact * MOTOR.T_max
     assert begins(hard, wide) == pytest.approx(WEIGHTS.impact * MOTOR.T_max)
     assert hard < WEIGHTS.landing * MOTOR.T_max
+
+
+def test_the_control_may_change_the_demand_by_shares_of_what_the_motor_can() -> None:
+    for T_max in (150.0, MOTOR.T_max, 500.0):
+        gains = gains_of(PLANT._replace(phi_B=0.5 * PLANT.phi_B), MOTOR._replace(T_max=T_max))
+        assert gains["T_take_max"] == pytest.approx(T_max * 100.0 / 180.0)
+        assert gains["T_add_max"] == pytest.approx(T_max * 60.0 / 180.0)
+
+
+def test_a_gap_that_is_wider_than_usual_may_take_more() -> None:
+    """The torque of an impact without landing grows with the root of the gap; the default gap is just not wide."""
+    default, wide = design(), gains_of(PLANT._replace(phi_B=4.0 * PLANT.phi_B))
+    assert wide["T_take_max"] == pytest.approx(2.0 * default["T_take_max"], rel=1e-3)
+    assert wide["T_add_max"] == default["T_add_max"]
+    assert gains_of(PLANT._replace(phi_B=1.001 * PLANT.phi_B))["T_take_max"] > default["T_take_max"]
+
+
+@pytest.mark.parametrize("name", AUTHORITY)
+def test_a_limit_that_a_user_sets_stays_a_limit(name: str) -> None:
+    asked = design()[name]
+    assert design(limits={name: 0.999 * asked})[name] == 0.999 * asked
+    assert design(limits={name: 1.001 * asked})[name] == asked
 
 
 def test_an_older_message_corrects_less() -> None:
@@ -135,7 +169,6 @@ def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
 @pytest.mark.parametrize(
     ("car", "message"),
     [
-        ({"tau": 0.1}, r"T_pred would be 0\.0333\d; the controller takes 0 to 0\.02 s"),
         ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.1 s"),
         ({"J_1": 10.0}, r"k_d would be .*; the controller takes 0 to 200 N\.m\.s/rad"),
         ({"sigma_omega": 0.0, "q_omega": 0.0}, "a motor speed without error leaves nothing to estimate"),

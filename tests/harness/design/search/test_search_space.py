@@ -7,7 +7,7 @@ import pytest
 from driveline.fmus.building.parameter_files import of_plants, read_vehicle
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.base.errors import DrivelineError
-from driveline.harness.design.design import design, literal_observer
+from driveline.harness.design.design import AUTHORITY, design, literal_observer
 from driveline.harness.design.design_weights import records
 from driveline.harness.design.search.search_space import Searched, space
 from driveline.harness.loop.places import PLACES
@@ -66,13 +66,13 @@ def test_others_take_what_they_have_in_common_with_ours() -> None:
     assert of_van.computed["L_phi"] == space(OURS, VAN).computed["L_phi"] != usual.computed["L_phi"]
     washout = space("SpeedWashout", VAN)
     assert [each.name for each in washout.searched] == ["k_v", "omega_v", "zeta_v"]
-    assert washout.computed == {}
+    assert washout.computed.keys() == set(AUTHORITY)
 
 
 def test_the_paper_s_observer_gets_the_gains_of_its_own_model() -> None:
     usual, of_van = space("PaperObserver", {}), space("PaperObserver", VAN)
     estimator = {name for name in declared("PaperObserver") if name.startswith("L")}
-    assert usual.computed == {name: declared("PaperObserver")[name].start for name in (*estimator, "T_age")}
+    assert usual.computed == {name: declared("PaperObserver")[name].start for name in (*estimator, "T_age", *AUTHORITY)}
     assert of_van.computed.keys() == usual.computed.keys()
     assert of_van.computed["L_phi"] == pytest.approx(literal_observer(*records(VAN))["L_phi"], rel=1e-5)
     assert of_van.computed["L_phi"] != pytest.approx(usual.computed["L_phi"], rel=0.01)
