@@ -92,7 +92,8 @@ def update(
     damping = clip(x.washout - changing, -p.T_add_max, p.T_add_max)
     T_next = T_driver + p.haste * (T_driver - x.slow)
 
-    floating = logical_and(in_gap(motion, p), abs(T_next) > p.T_still)
+    pushing = logical_and(abs(T_driver) > p.T_still, T_driver * T_next > 0.0)
+    floating = logical_and(in_gap(motion, p), pushing)
     afloat = where(floating, minimum(x.afloat + T_s, p.t_land + T_s), 0.0)
     landing = logical_and(afloat > 0.0, afloat < p.t_land + 0.5 * T_s)
     withheld = where(landing, T_driver + damping - landing_torque(ahead, T_next, p), x.withheld)

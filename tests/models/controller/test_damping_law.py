@@ -134,9 +134,14 @@ def test_a_demand_that_rises_will_rise_further(side: float) -> None:
     assert torques == pytest.approx(expected)
 
 
-def test_a_demand_that_turns_has_the_teeth_land_on_the_other_flank() -> None:
-    x = law.start(AFLOAT, 40.0, P)
-    assert added(AFLOAT, x, 4.0, P._replace(haste=1.0)) < -4.0
+def test_a_demand_that_falls_to_zero_is_not_led_through_the_gap_before_it_has_turned() -> None:
+    """It may stop there, and then no flank is asked for."""
+    p, x = P._replace(haste=1.0), law.start(AFLOAT, 40.0, P)
+    for T_driver in (4.0, 2.0, 0.0, -2.0):
+        assert added(AFLOAT, x, T_driver, p) == 0.0
+    assert added(AFLOAT, x, -just_above(2.0), p) == pytest.approx(-8.0)
+    assert law.update(x, AFLOAT, staying(AFLOAT), 20.0, T_S, p)[0].afloat == 0.0
+    assert law.update(x, AFLOAT, staying(AFLOAT), 21.0, T_S, p)[0].afloat == T_S
 
 
 @pytest.mark.parametrize("T_driver", [0.0, 2.0, -2.0])
