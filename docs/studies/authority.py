@@ -1,0 +1,137 @@
+"""What the designed authority is worth: twelve cars with the default gains and limits, and with their own.
+
+    python -m docs.studies.authority
+
+Steps of the demand are scaled with T_max. The estimator is told the true car in either case. Means over the noise of
+three seeds.
+"""
+
+from collections.abc import Mapping
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from driveline.harness.base.interruption import script
+from driveline.harness.design.design import design
+from driveline.harness.design.design_trials import loop_parameters
+from driveline.harness.design.design_weights import MOTOR, PLANT
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.manoeuvres.catalogue import KMH, step
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
+from driveline.harness.views.terminal import print_table
+
+SEEDS = (1, 2, 3)
+
+STEPS = {
+    "tip-in": (15 * KMH, -12.0, 100.0, 0.0),
+    "tip-out": (50 * KMH, 100.0, -30.0, 0.0),
+    "launch": (0.0, 0.0, 120.0, 0.1),
+}
+"""Start speed in m/s, torques in N.m before and after for the T_max of the default car, rise in s."""
+
+
+class Car(NamedTuple):
+    """What tells the cars apart, in SI units.
+
+    Attributes:
+        frequency: sqrt(C/J_1)/(2 pi) in Hz; that of the default car is 7.35.
+        gap: over that of the default car, both at the wheel.
+        grip: slip stiffness of the tyres over the weight, over that of the default car.
+    """
+
+    m: float
+    T_max: float
+    i: float
+    r: float
+    frequency: float
+    tau: float
+    gap: float
+    grip: float = 1.0
+
+    def entries(self) -> dict[str, float]:
+        """Of a vehicle file; inertias are the shares of the vehicle's that they are in the default car."""
+        M = self.m * self.r**2 / self.i**2
+        share = PLANT.i**2 / (PLANT.m * PLANT.r**2)
+        J_1 = PLANT.J_1 * share * M
+        return {
+            "m": self.m,
+            "r": self.r,
+            "i": self.i,
+            "T_max": self.T_max,
+            "tau": self.tau,
+            "J_1": J_1,
+            "J_2": PLANT.J_2 * share * M,
+            "C": J_1 * (2.0 * pi * self.frequency) ** 2,
+            "phi_B": PLANT.phi_B / PLANT.i * self.i * self.gap,
+            "c_slip": PLANT.c_slip / PLANT.m * self.m * self.grip,
+        }
+
+
+CARS = {
+    "small": Car(900.0, 150.0, 9.0, 0.28, 6.0, 0.003, 1.0),
+    "small, narrow gap": Car(900.0, 150.0, 9.0, 0.28, 7.35, 0.002, 0.5),
+    "compact, wide gap": Car(1450.0, 180.0, 9.0, 0.29, 7.35, 0.003, 2.0),
+    "compact, stiff": Car(1450.0, 180.0, 9.0, 0.29, 10.0, 0.003, 1.0, 1.5),
+    "compact, slow motor": Car(1450.0, 180.0, 9.0, 0.29, 7.35, 0.012, 1.0),
+    "mid-size": Car(2200.0, 250.0, 10.5, 0.34, 7.7, 0.0025, 0.5),
+    "sports": Car(1600.0, 400.0, 9.0, 0.33, 7.5, 0.002, 1.0),
+    "direct, i = 3": Car(1450.0, 500.0, 3.0, 0.29, 7.35, 0.003, 1.0),
+    "large": Car(2600.0, 310.0, 9.0, 0.36, 7.0, 0.004, 1.0),
+    "van, wide gap": Car(3500.0, 280.0, 12.0, 0.35, 6.9, 0.003, 2.0),
+    "light truck": Car(7500.0, 400.0, 16.0, 0.42, 6.5, 0.006, 1.5),
+    "truck": Car(12000.0, 500.0, 20.0, 0.5, 6.0, 0.008, 1.0),
+}
+
+
+class Trial(NamedTuple):
+    """A car, a plant and a step by name, with its own gains or the default ones."""
+
+    car: str
+    plant: str
+    step: str
+    own: bool
+
+
+def manoeuvre(name: str, T_max: float) -> Manoeuvre:
+    """A step of STEPS for a motor."""
+    v_0, before, after, rise = STEPS[name]
+    scale = T_max / MOTOR.T_max
+    return step(name, name, v_0, scale * before, scale * after, rise)
+
+
+def measured(trial: Trial) -> tuple[float, float]:
+    """Settling time in ms and overshoot in %, each the mean over the seeds."""
+    car = CARS[trial.car].entries()
+    gains: Mapping[str, float] = design(car) if trial.own else {}
+    course, given = manoeuvre(trial.step, car["T_max"]), loop_parameters({**car, **gains}, trial.plant)
+    found = [evaluate(simulate(course, trial.plant, parameters=given, seed=seed), course) for seed in SEEDS]
+    settling, overshoot = np.mean([(1e3 * each.settling_time, 1e2 * each.overshoot) for each in found], axis=0)
+    return float(settling), float(overshoot)
+
+
+def main() -> None:
+    trials = [
+        Trial(car, plant, name, own) for car in CARS for plant in PLANTS for name in STEPS for own in (False, True)
+    ]
+    found = dict(zip(trials, run_many(measured, trials), strict=True))
+    table = Table(title="overshoot in %; settling in ms: default gains / own gains, of both plants")
+    for heading in ("car", "takes / adds, N.m", *(f"{name}: {what}" for name in STEPS for what in ("%", "ms"))):
+        table.add_column(heading)
+    for car in CARS:
+        gains = design(CARS[car].entries())
+        cells = [car, f"{gains['T_take_max']:.0f} / {gains['T_add_max']:.0f}"]
+        for name in STEPS:
+            for k, form in ((1, ".0f"), (0, ".0f")):
+                pairs = [[found[Trial(car, plant, name, own)][k] for own in (False, True)] for plant in PLANTS]
+                cells.append(", ".join(f"{default:{form}} / {own:{form}}" for default, own in pairs))
+        table.add_row(*cells)
+    print_table(table)
+
+
+if __name__ == "__main__":
+    script(main)
