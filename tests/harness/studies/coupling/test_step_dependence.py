@@ -38,8 +38,9 @@ def test_anything_over_nothing_is_without_bound() -> None:
 
 
 ONE_SAMPLE = {("TwoMassDriveline", "launch_brake"): {"end_swing": 0.02}}
-"""Where a decision of the controller falls otherwise with the larger step, and what that may come to: the estimate 7.848 s
-after the start is so near a flank that the gain of the gap holds for one sample more. From 0.5 ms on it does not."""
+"""Where a decision of the controller falls otherwise with the larger step, and what that may come to: the estimate
+7.848 s after the start is so near a flank that the gain of the gap holds for one sample more. From 0.5 ms on it does
+not."""
 
 
 @pytest.mark.parametrize("manoeuvre", ["tipin15", "launch", "launch_brake", "hill_hold"])
