@@ -21,6 +21,7 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave
 from fmpy.sundials import CVodeSolver
 
+from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import BUILD, NATIVE, PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate, start
@@ -159,7 +160,7 @@ COLUMNS = ("manoeuvre", "FMU", "largest, N.m", "difference, N.m", "over it", "de
 ROW = "{:15}{:18}{:>12}{:>17}{:>10}{:>13}{:>8}{:>15}"
 
 
-def main(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
+def show(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
     """Prints a row for each run; manoeuvres on roads that the design model does not know are the other plant's."""
     print(ROW.format(*COLUMNS))
     for manoeuvre in manoeuvres:
@@ -175,7 +176,7 @@ def main(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
                 print(ROW.format(manoeuvre, run.name, *shown, *counts, moved), flush=True)
 
 
-if __name__ == "__main__":
+def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -183,4 +184,8 @@ if __name__ == "__main__":
     parser.add_argument("--tolerance", type=float, default=1e-8, help="relative tolerance of CVode (1e-8)")
     parser.add_argument("--folder", type=Path, default=BUILD, help="of the FMUs (build)")
     given = parser.parse_args()
-    main(given.manoeuvres.split(","), given.tolerance, given.folder)
+    show(given.manoeuvres.split(","), given.tolerance, given.folder)
+
+
+if __name__ == "__main__":
+    script(main)
