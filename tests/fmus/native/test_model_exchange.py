@@ -532,6 +532,9 @@ def test_a_jump_of_the_torque_is_an_event_of_the_host(native, name):
 WITHIN = 1e-5
 """Of the largest torque; `python -m benchmarks.model_exchange` shows what is reached in all manoeuvres."""
 
+STEP_ERROR = 1e-3
+"""In N.m: the error that the steps of the vehicle are chosen for (`python -m benchmarks.step_error`)."""
+
 
 @pytest.mark.parametrize(("manoeuvre", "plant"), [("tipin15", PLANTS[0]), ("launch", PLANTS[1])])
 def test_plant_and_motor_give_the_torque_of_co_simulation(both_built, manoeuvre, plant):
@@ -555,5 +558,6 @@ def test_with_the_tolerance_the_difference_vanishes(both_built, manoeuvre, plant
     run, _ = recorded(manoeuvre, plant, both_built)
     path = both_built / NATIVE / f"{plant}.fmu"
     expected = stepped(run, path)
-    allowed = WITHIN * np.max(np.abs(expected)) + 5.0 * sensitivity(run, path, expected)
+    own_error = STEP_ERROR if plant == PLANTS[1] else 0.0
+    allowed = own_error + WITHIN * np.max(np.abs(expected)) + 5.0 * sensitivity(run, path, expected)
     assert np.max(np.abs(integrated(run, path, 1e-11).output - expected)) < allowed
