@@ -75,16 +75,19 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limi
         ParameterFileError: a file is refused, or the limits have something else.
         DesignError: there is no controller for this car.
     """
-    from ...fmus.building.parameter_files import read_parameters, read_vehicle, require_taken
+    from ...fmus.building.parameter_files import ParameterFileError, read_parameters, read_vehicle, require_taken
     from ..design.design import AUTHORITY, gains_file, gains_of
     from ..design.design_weights import WEIGHTS, records
     from ..design.kalman import DesignError
     from ..studies.margins.modes import swing
 
     plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
-    require_taken(limits, AUTHORITY, "a file of limits")
-    gains = gains_of(plant, motor, can, weights or WEIGHTS, read_parameters(limits) if limits else {})
-    alone, damped = swing(plant, motor, gains)
+    require_taken(limits, AUTHORITY, f"a file of limits ({' and '.join(AUTHORITY)})")
+    most = read_parameters(limits) if limits else {}
+    if nothing := [name for name in most if most[name] == 0.0]:
+        raise ParameterFileError(f"{limits}: {nothing[0]} = 0: a limit must be above 0 N.m")
+    gains = gains_of(plant, motor, can, weights or WEIGHTS, most)
+    alone, damped = swing(plant, motor, gains | dict.fromkeys(AUTHORITY, motor.T_max))  # too small for any limit
     if damped.damping_ratio <= alone.damping_ratio:
         raise DesignError(
             f"the motor is too slow for this car (tau = {motor.tau:g} s, drive train {alone.frequency:.2f} Hz): "

@@ -44,9 +44,21 @@ def test_limits_of_a_user_are_kept(tmp_path: Path, capsys: pytest.CaptureFixture
     assert tomllib.loads(capsys.readouterr().out) == pytest.approx(asked | {"T_take_max": 120.0}, rel=1e-5)
     more.write_text("k_d = 3\n", encoding="utf-8")
     assert main(["design", "--parameters", str(more)]) == 2
-    assert capsys.readouterr().err == f"driveline design: {more}: a file of limits has no parameter k_d\n"
+    refusal = f"driveline design: {more}: a file of limits (T_take_max and T_add_max) has no parameter k_d\n"
+    assert capsys.readouterr().err == refusal
     assert main(["design", "--parameters", str(limits), "--search", str(tmp_path / "search")]) == 2
     assert "leave it out, or --search" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["T_take_max", "T_add_max"])
+def test_a_limit_may_be_small_but_not_zero(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    limits = tmp_path / "limits.toml"
+    limits.write_text(f"{name} = 1e-3\n", encoding="utf-8")
+    assert main(["design", "--parameters", str(limits)]) == 0
+    assert tomllib.loads(capsys.readouterr().out)[name] == 1e-3
+    limits.write_text(f"{name} = 0\n", encoding="utf-8")
+    assert main(["design", "--parameters", str(limits)]) == 2
+    assert capsys.readouterr().err == f"driveline design: {limits}: {name} = 0: a limit must be above 0 N.m\n"
 
 
 def test_nothing_depends_on_the_working_directory(
