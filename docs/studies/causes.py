@@ -22,8 +22,8 @@ def after(row: Cause) -> str:
 
 def causes() -> str:
     """The table in Markdown."""
-    rows = [(f"`{row.word}`", row.finding, after(row), row.heals) for row in (*FAILURES, FEEDING)]
-    return markdown_table(("cause", "found", "counts after", "heals by"), rows, labels=4)
+    rows = [(str(row.number), f"`{row.word}`", row.finding, after(row), row.heals) for row in (*FAILURES, FEEDING)]
+    return markdown_table(("number", "cause", "found", "counts after", "heals by"), rows, labels=5)
 
 
 def main(arguments: list[str] | None = None) -> None:
