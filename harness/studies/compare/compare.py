@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ...base.known_names import require_different
 from ...cosimulation.results import Results
 from ...loop.settings import Settings
-from ...manoeuvres.catalogue import MANOEUVRES
+from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
 from ...metrics.run_metrics import Metrics
@@ -22,7 +22,8 @@ from ...views.figure_options import PLAIN, FigureOptions
 from ...views.metrics_table import Row, values, write_markdown, write_metrics
 from ...views.signals_file import write_signals
 
-CLOSE_UPS = ("tipin15", "tipin50", "tipout", "launch")
+DRAWN = ("tipin15", "tipin50", "tipout", "launch", "drive")
+"""Of the manoeuvres that are compared unless others are named, those with a figure."""
 
 Manoeuvres = Mapping[str, Manoeuvre]
 """By name."""
@@ -124,18 +125,16 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
 def write_figures(
     outcomes: Sequence[Outcome], folder: Path, options: FigureOptions = PLAIN, manoeuvres: Manoeuvres = MANOEUVRES
 ) -> list[Path]:
-    """Draws the test drive and the close-ups of the steps that were run, and what else is not of the catalogue; returns
-    the files."""
+    """Draws steps close up and all else whole, but for the usual manoeuvres that are not `DRAWN`; returns the files."""
     from ...views.drive_figure import plot_drive  # not for the workers, which draw nothing
     from ...views.step_figure import plot_step
 
     files = []
     for off, on in zip(outcomes[::2], outcomes[1::2], strict=True):
         name = off.case.manoeuvre
-        drawn = {"drive": plot_drive, **dict.fromkeys(CLOSE_UPS, plot_step)}
-        whole = plot_drive if manoeuvres[name].dT is None else plot_step
-        plot = drawn.get(name) if manoeuvres[name] is MANOEUVRES.get(name) else whole
-        if plot:
+        usual = manoeuvres[name] is MANOEUVRES.get(name) and name in COMPARED
+        if name in DRAWN or not usual:
+            plot = plot_drive if manoeuvres[name].dT is None else plot_step
             runs = (off.results, on.results)
             stem = folder / f"{off.case.plant_name}_{name}"
             files += plot(runs, manoeuvres[name], off.case.plant_name, stem, options)

@@ -10,7 +10,8 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
-from driveline.harness.studies.compare.compare import cases, run_cases, write_figures, write_tables
+from driveline.harness.studies.compare.compare import Outcome, cases, run_cases, write_figures, write_tables
+from driveline.harness.views import drive_figure, step_figure
 
 
 def test_runs_without_and_with_damping_are_neighbours():
@@ -19,6 +20,17 @@ def test_runs_without_and_with_damping_are_neighbours():
         "A_drive_off", "A_drive_on", "A_creep_off", "A_creep_on",
         "B_drive_off", "B_drive_on", "B_creep_off", "B_creep_on",
     ]  # fmt: skip
+
+
+def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten(monkeypatch, tmp_path):
+    drawn = []
+    for kind, module in (("drive", drive_figure), ("step", step_figure)):
+        monkeypatch.setattr(module, f"plot_{kind}", lambda *given, kind=kind: drawn.append((kind, given[3].name)) or [])
+    metrics: Any = None
+    results: Any = None
+    names = ["tipin15", "tipin15r", "creep", "drive", "prbs", "hill_start", "regen"]
+    write_figures([Outcome(each, metrics, results) for each in cases(["A"], names)], tmp_path)
+    assert drawn == [("step", "A_tipin15"), ("drive", "A_drive"), ("drive", "A_hill_start"), ("step", "A_regen")]
 
 
 def test_plants_of_the_same_name_are_refused():
