@@ -90,10 +90,16 @@ def _one(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], 
     record, signals = (args.output / f"case_{args.case}{ending}" for ending in (".json", ".csv"))
     with job(args, record, same | {"case": args.case}, systems, [signals]) as made:
         made.begin()
-        outcome, files = write_case(args.case, args.seed, runner, args.output, caption(args), plan)
+        outcome, files = write_case(args.case, args.seed, runner, args.output, case_caption(args), plan)
         made.wrote(*files)
         made.out.say(f"case {outcome.case}")
         return _tell(made, [outcome], runner)
+
+
+def case_caption(args: argparse.Namespace) -> str:
+    """What the figure of a case says of the options: the campaign too, as each counts its own cases."""
+    campaign = f"--campaign {args.campaign}" if args.campaign not in (None, "dry") else ""
+    return f"{campaign} {caption(args)}".strip()
 
 
 def _tell(made: Job, outcomes: "Sequence[Outcome]", runner: "FaultRunner") -> int:

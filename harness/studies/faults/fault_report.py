@@ -13,6 +13,7 @@ from ...views.terminal import print_table
 from .evidence import REFERENCE_AFTER, SHARE, WRONG_SPEED
 from .fault_campaign import Outcome, count, judged, plan_of
 from .fault_cases import PLANS, Plan, case
+from .fault_catalogue import NOTHING
 from .fault_figures import plot_case, plot_matrix, plot_pairs
 from .fault_injection import FaultRunner
 from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
@@ -89,6 +90,7 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
     """
     singles = [outcome for outcome in outcomes if len(outcome.kinds) == 1]
     pairs = [outcome for outcome in outcomes if len(outcome.kinds) == 2]
+    nothing = sum(NOTHING.name in outcome.kinds for outcome in singles)
     failed = sum(bool(outcome.failed) for outcome in outcomes)
     plan = plan_of(outcomes)
     durations = sorted({situation.duration for situation in plan.situations.values()})
@@ -99,7 +101,8 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
         cases=len(outcomes),
         clean=len(outcomes) - failed,
         failed=failed,
-        singles=len(singles),
+        nothing=f"{nothing} have no fault, " if nothing else "",
+        singles=len(singles) - nothing,
         pairs=len(pairs),
         kinds=markdown_table(["kind", "what"], ((kind.name, kind.meaning) for kind in plan.kinds.values()), labels=2),
         situations=markdown_table(

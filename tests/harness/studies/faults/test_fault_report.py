@@ -16,9 +16,11 @@ from driveline.harness.commands.settings import as_given
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
-from driveline.harness.studies.faults.fault_campaign import campaign, table
+from driveline.harness.studies.faults.fault_campaign import Outcome, campaign, table
+from driveline.harness.studies.faults.fault_cases import PLANS, case
 from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS
 from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
+from driveline.harness.studies.faults.judges import JUDGES
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
@@ -71,6 +73,28 @@ def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
     assert [kind for kind in IN_SITUATIONS if f" {kind} " in message] == [
         kind for kind in IN_SITUATIONS if kind in bad[0].kinds
     ]
+
+
+def test_cases_without_a_fault_are_not_counted_as_single_faults():
+    measured = dict.fromkeys((judge.name for judge in JUDGES), -1e6)
+    on_roads = [Outcome(case(number, 1, PLANTS, PLANS["roads"]), measured) for number in range(1, 101)]
+    none = sum(outcome.kinds == ("nothing",) for outcome in on_roads)
+    assert 0 < none < 50
+    assert f"{none} have no fault, {50 - none} have one fault, 50 a pair." in page(on_roads, "")
+
+
+@pytest.mark.parametrize(
+    ("options", "caption"),
+    [
+        ([], ""),
+        (["--campaign", "dry", "--seed", "3"], "--seed 3"),
+        (["--campaign", "roads", "--seed", "3"], "--campaign roads --seed 3"),
+    ],
+)
+def test_the_figure_of_a_case_names_its_campaign(options, caption):
+    parser = ArgumentParser()
+    faults.add_arguments(parser)
+    assert faults.case_caption(parser.parse_args(options)) == caption
 
 
 def test_the_page_tells_how_a_case_is_run_again(outcomes):
