@@ -45,7 +45,8 @@ def add_arguments(parser: ArgumentParser, folder: Path) -> None:
     parser.add_argument(
         "--platform", choices=PLATFORMS, default="host", help="of the native build (default: %(default)s)"
     )
-    parser.add_argument("--fmi", type=int, choices=FMIS, default=2, help="2.0 or 3.0 (default: %(default)s)")
+    versions = [str(fmi) for fmi in FMIS]
+    parser.add_argument("--fmi", choices=versions, default=versions[0], help="2.0 or 3.0 (default: %(default)s)")
     add_parameter_files(parser)
     parser.add_argument(
         "--output", type=output_folder, default=str(folder), metavar="FOLDER", help="(default: %(default)s)"
@@ -60,6 +61,6 @@ def run(args: Namespace) -> None:
         BuildError: see `fmus.building.builds.build_fmus`.
     """
     files = args.vehicle, args.parameters
-    for path in build_fmus(args.names, args.output, args.build, args.platform, *files, args.fmi):
+    for path in build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi)):
         if not args.quiet:
             print(f"{path}  {path.stat().st_size / 1024:.0f} kB")

@@ -126,6 +126,8 @@ def test_the_version_is_that_of_the_package(capsys):
         (["replay", "trip.csv", "--held", "0"], "'0' is not a time above 0 s"),
         (["build", "TwoMass"], "did you mean TwoMassDriveline"),
         (["build", "nothing.py"], "there is no file nothing.py"),
+        (["build", "--fmi", "4"], "--fmi: 4 is unknown; known are: 2, 3"),
+        (["build", "--fmi", "3.0"], "--fmi: 3.0 is unknown; known are: 2, 3"),
         (["check", "nothing.fmu"], "there is no FMU nothing.fmu"),
         (["check", "nothing.fmu", "--json", "--format", "junit"], "--format: not allowed with argument --json"),
         (["check", "nothing.fmu", "--format", "text", "--json"], "--json: not allowed with argument --format"),
