@@ -5,13 +5,14 @@ import pickle
 import subprocess
 import sys
 import time
+import zipfile
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.base.errors import SimulationError, UnpackingError, WiringError
 from driveline.harness.cosimulation import isolated_process
 from driveline.harness.cosimulation.call_trace import current, note
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
@@ -207,6 +208,16 @@ def test_nothing_that_a_stranger_writes_among_the_answers_is_run(tmp_path, noted
 def test_what_is_no_answer_to_the_question_is_forged(bytes_):
     with pytest.raises(InvalidAnswer):
         receive(BytesIO(bytes_).read, lambda: 3)
+
+
+def test_a_stranger_without_a_binary_for_this_machine_tells_of_the_machine_and_not_of_the_run(tmp_path, native):
+    path = tmp_path / "Theirs.fmu"
+    with zipfile.ZipFile(native / "TwoMassDriveline.fmu") as whole, zipfile.ZipFile(path, "w") as without:
+        for name in whole.namelist():
+            if not name.startswith("binaries/"):
+                without.writestr(name, whole.read(name))
+    with pytest.raises(UnpackingError, match=r"^Theirs\.fmu has no binary for \w+; it has: none$"):
+        run(System({"plant": path}), Experiment("", 0.01))
 
 
 def test_an_answer_arrives_as_it_was_sent():
