@@ -10,7 +10,7 @@ from ...cosimulation.wiring import Fit
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim
 from .structure import DICTIONARY, structure
-from .variables import Value, outputs, require_no_conversion, typed, units, values
+from .variables import Value, outputs, require_fmi_2, require_no_conversion, typed, units, values
 from .xml import VERSION, Element, document, element
 
 
@@ -37,10 +37,11 @@ def package(variants: Mapping[str, Variant], manoeuvre: Manoeuvre) -> dict[str, 
         variants: by their names, the default first.
 
     Raises:
-        DrivelineError: an FMU needs a conversion of units; two FMUs have the same file name.
+        DrivelineError: an FMU is of FMI 3.0, or needs a conversion of units; two FMUs have the same file name.
     """
     files: dict[str, bytes] = {}
     for number, (name, variant) in enumerate(variants.items()):
+        require_fmi_2(variant.fitted)
         require_no_conversion(variant.fitted)
         for path, content in _files(name, variant, manoeuvre, DEFAULT if number == 0 else f"{name}.ssd").items():
             if files.setdefault(path, content) != content and path != DICTIONARY:

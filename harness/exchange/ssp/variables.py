@@ -66,6 +66,18 @@ def require_no_conversion(fitted: Fit) -> None:
                 )
 
 
+def require_fmi_2(fitted: Fit) -> None:
+    """
+    Raises:
+        DrivelineError: an FMU is of FMI 3.0, which SSP knows from version 2.0 on.
+    """
+    for instance, interface in fitted.interfaces.items():
+        if interface.fmi != 2:
+            raise DrivelineError(
+                f"{instance}: {interface.path.name} is of FMI {interface.fmi}.0; allowed in SSP 1.0 is FMI 2.0"
+            )
+
+
 def typed(prefix: str, kind: str, unit: str | None, value: object = None) -> Element:
     """The element of a type, such as `ssc:Real`, with its unit and with a value if there is one."""
     attributes = {} if value is None else {"value": value}

@@ -216,6 +216,11 @@ def test_units_that_no_tool_would_convert_are_refused(fmus, tmp_path, capsys) ->
     assert "it must be in m/s" in message
 
 
+def test_fmi_3_is_refused_as_ssp_1_does_not_know_it(fmus, fmi3, tmp_path, capsys) -> None:
+    message = refused(fmus, tmp_path / "out", capsys, "--plant", str(fmi3 / "TwoMassDriveline.fmu"))
+    assert message.endswith("plant: TwoMassDriveline.fmu is of FMI 3.0; allowed in SSP 1.0 is FMI 2.0\n")
+
+
 @pytest.mark.parametrize("name", ["creep", "prbs"])
 def test_a_demand_that_is_not_made_of_straight_lines_is_refused(fmus, tmp_path, capsys, name) -> None:
     message = refused(fmus, tmp_path / "out", capsys, "--manoeuvre", name)
