@@ -131,12 +131,17 @@ RARE = ("start", "start_tangent", "output_tangent", "derivative_tangent")
 
 
 def functions(
-    traced: Iterable[Traced], records: dict[str, Any], precision: Precision, names: Names = IN_FMU
+    traced: Iterable[Traced],
+    records: dict[str, Any],
+    precision: Precision,
+    names: Names = IN_FMU,
+    computed_once: bool = True,
 ) -> Functions:
     """The traced functions, and one that computes what depends on parameters alone.
 
     Args:
         records: one of each record of the block, by their letters.
+        computed_once: else each function computes that by itself, and parameters can be changed without a call.
     """
     terms, held = Terms(f"p->{TERMS}"), Terms("w")
     heads, texts = list[tuple[str, str]](), list[str]()
@@ -147,7 +152,7 @@ def functions(
 
     for each in traced:
         graph = TracedGraph(each.function, [_lvalues(name, records) for name in each.arguments])
-        if each.name not in RARE:
+        if computed_once and each.name not in RARE:
             terms.take(graph, [each.arguments.index("p")])
         if each.name == "derivative":
             held.take(graph, [each.arguments.index("u"), each.arguments.index("p"), len(graph.inputs) - 1])
@@ -164,7 +169,8 @@ def functions(
                 "    derivative_held(x, u, p, w, dx);",
             ]
         add(each.name, arguments, lines, each.arguments)
-    add("compute_terms", [f"{names.struct}Parameters *p"], Statements(terms, terms.names(), precision).lines, "p")
+    if computed_once:
+        add("compute_terms", [f"{names.struct}Parameters *p"], Statements(terms, terms.names(), precision).lines, "p")
     declared = terms.values(list(map(float, records["p"])))
     return Functions(heads, "\n\n".join(texts), declared, len(held.outputs))
 

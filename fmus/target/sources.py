@@ -4,9 +4,6 @@ Files without any FMI in them: the same structs and arithmetic as in the FMU, bu
 project, and in single precision if wanted.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
-
 from ...models.block.declaration import Enumeration, variables
 from ...models.block.types import SampledBlock
 from ..catalogue import EVERY
@@ -14,7 +11,6 @@ from ..fmu import Fmu
 from ..native.records import Names, records_of, structs
 from ..native.source import functions
 from ..native.statements import DOUBLE, SINGLE, Precision, constant
-from ..native.terms import TERMS
 from ..native.trace import trace
 
 CONTROLLERS = {name: fmu for name, fmu in EVERY.items() if "T_driver" in fmu.block.Input._fields}
@@ -33,7 +29,6 @@ Written by `driveline target export` from {module}, which is its documentation:
 #define {guard}
 
 #define {macro}_SAMPLE_TIME {sample_time} /* s */
-#define {macro}_SET ({set}u * sizeof({real})) /* bytes of the parameters, before what compute_terms makes of them */
 
 {structs}
 
@@ -76,12 +71,10 @@ typedef {struct}Output ControllerOutput;
 
 #define CONTROLLER_NAME "{struct}"
 #define CONTROLLER_SAMPLE_TIME {macro}_SAMPLE_TIME
-#define CONTROLLER_SET {macro}_SET
 #define controller_parameters {function}parameters
 #define controller_start {function}start
 #define controller_output {function}output
 #define controller_update {function}update
-#define controller_compute_terms {function}compute_terms
 
 #endif
 """
@@ -99,7 +92,7 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
     file = fmu.module.rpartition(".")[2]
     names = Names(precision.real, fmu.name, f"{file}_")
     records = records_of(block)
-    made = functions(trace(block), records, precision, names)
+    made = functions(trace(block), records, precision, names, computed_once=False)
     about = {"description": block.description, "module": fmu.module, "file": file, **names._asdict()}
     header = HEADER.format(
         **about,
@@ -107,27 +100,18 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
         guard=f"{file.upper()}_H",
         macro=file.upper(),
         sample_time=constant(block.sample_time, precision),
-        set=len(records["p"]),
-        structs="\n\n".join(structs(records, names, len(made.terms))),
+        structs="\n\n".join(structs(records, names)),
         enumerations="\n\n".join(_enumerations(block.Output, names)),
         prototypes="\n".join(f"/* {meaning} */\n{head};" for head, meaning in made.heads),
     )
     source = SOURCE.format(
         **about,
-        parameters="\n".join(_initializers(records["p"]._asdict(), made.terms, precision)),
+        parameters="\n".join(
+            f"    .{name} = {constant(float(value), precision)}," for name, value in records["p"]._asdict().items()
+        ),
         functions=made.text,
     )
     return {f"{file}.h": header, f"{file}.c": source, "controller.h": ANY.format(**about, macro=file.upper())}
-
-
-def _initializers(parameters: Mapping[str, Any], terms: Sequence[float], precision: Precision) -> Iterator[str]:
-    """Of the record of the parameters."""
-    for name, value in parameters.items():
-        yield f"    .{name} = {constant(float(value), precision)},"
-    if terms:
-        yield f"    .{TERMS} = {{"
-        yield from (f"        {constant(value, precision)}," for value in terms)
-        yield "    },"
 
 
 def _enumerations(record: type, names: Names) -> list[str]:

@@ -24,7 +24,7 @@ static ControllerOutput y;
 
 static void send_sizes(void)
 {
-    const uint32_t sizes[4] = {sizeof u, sizeof y, sizeof *x, CONTROLLER_SET};
+    const uint32_t sizes[4] = {sizeof u, sizeof y, sizeof *x, sizeof calibration};
     board_send(sizes, sizeof sizes);
 }
 
@@ -64,13 +64,6 @@ static void outputs(void)
     controller_output(x, &u, &calibration, &y);
 }
 
-/* What was set may be a parameter. */
-static void calibrate(void)
-{
-    controller_compute_terms(&calibration);
-    outputs();
-}
-
 /* What lies at an address that the other side has from the linker. */
 static void *at(uint32_t address)
 {
@@ -105,9 +98,9 @@ static bool obeyed(uint8_t command)
         }
         break;
     case PARAMETERS:
-        known = board_receive(&calibration, CONTROLLER_SET);
+        known = board_receive(&calibration, sizeof calibration);
         if (known) {
-            answer(calibrate);
+            answer(outputs);
         }
         break;
     case READ:
@@ -122,7 +115,7 @@ static bool obeyed(uint8_t command)
             known = board_receive(at(place[0]), place[1]);
         }
         if (known) {
-            answer(calibrate);
+            answer(outputs);
         }
         break;
     default:

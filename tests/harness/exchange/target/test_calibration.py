@@ -46,8 +46,18 @@ def test_everything_that_is_declared_is_described_with_unit_limits_and_meaning(m
 
 
 def test_the_words_of_the_status_are_those_of_the_declaration(module: Any) -> None:
-    (table,) = module.COMPU_VTAB
-    assert [pair.OutVal.Value for pair in table.InValOutVal] == [
+    status, cause = module.COMPU_VTAB
+    assert [pair.OutVal.Value for pair in cause.InValOutVal] == [
+        "none",
+        "speed_range",
+        "speed_jump",
+        "speed_frozen",
+        "torque_implausible",
+        "wheel_contradicts",
+        "wrong_direction",
+        "feeds_oscillation",
+    ]
+    assert [pair.OutVal.Value for pair in status.InValOutVal] == [
         "off",
         "damping_with_wheel_speed",
         "damping_without_wheel_speed",

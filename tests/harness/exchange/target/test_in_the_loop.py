@@ -51,7 +51,9 @@ def test_the_loop_gives_what_the_same_c_gives_off_line(
 ) -> None:
     results = at_samples(simulated(on_target, both_built, plant=plant, scheme=scheme))
     sources = {name: name for name in signals(TIPIN)} | {to: source for source, to, _ in CONNECTIONS}
-    inputs = np.column_stack([np.asarray(results[sources[f"controller.{n}"]], float) for n in BLOCK.Input._fields])
+    free = {f"controller.{name}": value for name, value in BLOCK.Input()._asdict().items()}
+    unconnected = {name: np.full(len(results), value) for name, value in free.items() if name not in sources}
+    inputs = np.column_stack([results[sources[n]] if n in sources else unconnected[n] for n in free])
     if scheme is Scheme.PROPAGATED:  # the others give the controller its inputs a step late
         off_line = responses(target.single(), Case("", BLOCK.Input._fields, inputs))
         assert [answer.outputs[0] for answer in off_line] == results["controller.T_ref"].tolist()
