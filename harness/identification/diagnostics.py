@@ -51,6 +51,10 @@ COLOURED = 0.3
 """Power of the motor speed in the last quarter of its band over that in the second, from which on it counts as white;
 0.5 and more as sampled, 0.25 and less interpolated or held."""
 
+MOVED = 60.0
+"""Frequency in Hz below which the drive train itself moves: with samples 4 ms apart the second quarter begins at 31 Hz
+and has 8 to 20 times the power of the noise."""
+
 EXPLAINS = 0.8
 """Share that a tyre must explain of what the spectra of load torque and wheel speed tell."""
 
@@ -139,17 +143,22 @@ def diagnose_outliers(through: Filtered, T_s: float) -> list[str]:
     ]
 
 
-def is_coloured(omega_1: np.ndarray) -> bool:
-    """Whether the motor speed has less noise at high frequencies than a sensor has, as what was interpolated."""
+def is_coloured(omega_1: np.ndarray, T_s: float) -> bool:
+    """Whether the motor speed has less noise at high frequencies than a sensor has, as what was interpolated.
+
+    Args:
+        T_s: its sample time in s.
+    """
     f, power = welch(np.diff(omega_1), nperseg=min(1024, len(omega_1) - 1))
     f, power = f[1:-1], power[1:-1] / np.sin(np.pi * f[1:-1]) ** 2  # of the speed, not of its differences
-    last, second = (float(np.median(power[(f > low) & (f < low + 0.125)])) for low in (0.375, 0.125))
-    return last < COLOURED * second
+    lower = min(max(0.125, MOVED * T_s), 0.25)
+    last, before = (float(np.median(power[(f > low) & (f < low + 0.125)])) for low in (0.375, lower))
+    return last < COLOURED * before
 
 
-def diagnose_spectrum(omega_1: np.ndarray) -> list[str]:
+def diagnose_spectrum(omega_1: np.ndarray, T_s: float) -> list[str]:
     """Whether the motor speed has the white noise that a sensor has."""
-    if not is_coloured(omega_1):
+    if not is_coloured(omega_1, T_s):
         return []
     return [
         "the motor speed has no white noise (it looks interpolated, filtered or calculated): "

@@ -178,7 +178,7 @@ def identify(
     warnings = (
         *recording.warnings,
         *(diagnose_demand(demand, drive.T_s, tau) if demand else ()),
-        *diagnose_spectrum(recording.omega_1),
+        *diagnose_spectrum(recording.omega_1, drive.T_s),
         *diagnose_outliers(filter_run, drive.T_s),
         *(diagnose_offsets(filter_run, estimate.p) if measured else ()),
         *diagnose_delays(estimate.p, estimate.deviations),
@@ -209,7 +209,8 @@ def of_sensors(recording: Measurement, loop: FittedLoop | None) -> Noise:
     """The noise that the recording shows; none of the motor torque if that is the answer of motor control."""
     T_mot = 0.0 if loop else white_noise(recording.T_mot)
     T_load = 0.0 if recording.T_load is None else white_noise(recording.T_load)
-    return Noise(white_noise(recording.omega_1, is_coloured(recording.omega_1)), T_mot, T_load)
+    coloured = is_coloured(recording.omega_1, float(np.median(np.diff(recording.time))))
+    return Noise(white_noise(recording.omega_1, coloured), T_mot, T_load)
 
 
 def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], log: Log) -> Estimate:

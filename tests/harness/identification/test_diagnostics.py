@@ -309,9 +309,17 @@ def test_what_comes_before_the_filter_has_settled_is_no_outlier() -> None:
 def test_a_motor_speed_that_was_interpolated_is_named() -> None:
     sampled = simulated(seed=6).omega_1
     at = np.arange(0.0, len(sampled) - 1, 0.25)
-    assert diagnose_spectrum(sampled) == []
-    assert diagnose_spectrum(np.interp(at, np.arange(len(sampled)), sampled))
-    assert diagnose_spectrum(np.repeat(sampled, 4))
+    assert diagnose_spectrum(sampled, T_S) == []
+    assert diagnose_spectrum(np.interp(at, np.arange(len(sampled)), sampled), T_S / 4)
+    assert diagnose_spectrum(np.repeat(sampled, 4), T_S / 4)
+
+
+@pytest.mark.parametrize(("T_s", "named"), [(0.004, False), (0.002, True)])
+def test_what_the_drive_train_does_is_not_taken_for_the_noise_of_a_slow_recording(T_s: float, named: bool) -> None:
+    """White noise, and ten times as much in the second quarter of the band: up to 62 Hz, and up to 125 Hz."""
+    spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
+    below = np.arange(len(spectrum)) < 0.47 * len(spectrum)
+    assert bool(diagnose_spectrum(np.fft.irfft(np.where(below, 10.0, 1.0) * spectrum), T_s)) == named
 
 
 def test_noise_counts_as_white_down_to_its_threshold() -> None:
@@ -319,4 +327,4 @@ def test_noise_counts_as_white_down_to_its_threshold() -> None:
     spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
     for share, named in ((0.8 * COLOURED, True), (1.2 * COLOURED, False)):
         shaped = spectrum * np.where(np.arange(len(spectrum)) > 0.7 * len(spectrum), np.sqrt(share), 1.0)
-        assert bool(diagnose_spectrum(np.fft.irfft(shaped))) == named
+        assert bool(diagnose_spectrum(np.fft.irfft(shaped), T_S)) == named
