@@ -53,11 +53,29 @@ RUN = """
 #include "explicit.c"
 #include "implicit.c"
 #include "integrator.c"
-void start_at(const Input *u, const Parameters *p, State *x) { start(u, p, x); }
-void outputs(const State *x, const Input *u, const Parameters *p, Output *y) { output(x, u, p, y); }
-int run(const Input *u, const Parameters *p, double duration, State *x)
+#include <stddef.h>
+#include <string.h>
+static Parameters complete(const double declared[])
 {
-    const Problem problem = {u, 0, p, 0, 0};
+    Parameters p;
+    memcpy(&p, declared, offsetof(Parameters, terms));
+    compute_terms(&p);
+    return p;
+}
+void start_at(const Input *u, const double declared[], State *x)
+{
+    const Parameters p = complete(declared);
+    start(u, &p, x);
+}
+void outputs(const State *x, const Input *u, const double declared[], Output *y)
+{
+    const Parameters p = complete(declared);
+    output(x, u, &p, y);
+}
+int run(const Input *u, const double declared[], double duration, State *x)
+{
+    const Parameters p = complete(declared);
+    const Problem problem = {u, 0, &p, 0, 0};
     return integrate(&problem, duration, x, x);
 }
 """

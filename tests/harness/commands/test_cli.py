@@ -359,7 +359,8 @@ def test_compare_as_a_document_has_every_metric_of_every_run(capsys, both_built,
     assert (off["plant"], off["manoeuvre"], off["control"], on["control"]) == (PLANTS[0], "prbs15", False, True)
     assert set(off) == {"plant", "manoeuvre", "control", "absent", *(metric.key for metric in declared(Metrics))}
     assert (off["settling_time_s"], off["absent"]["settling_time_s"]) == (None, "the manoeuvre is no step")
-    assert document["files"] == [str(tmp_path / "table.md"), str(tmp_path / "metrics.csv")]
+    drawn = [f"{PLANTS[0]}_prbs15.{kind}" for kind in ("png", "pdf")]
+    assert document["files"] == [str(tmp_path / name) for name in ("table.md", "metrics.csv", *drawn)]
     # without gain only what it does in the gap and with the estimated torque is left
     assert 0.0 < on["added_torque_rms_N_m"] < 20.0
 
