@@ -125,7 +125,8 @@ def with_fmpy(begin: Sequence[Call], end: Sequence[Call], row: bytearray, known:
             (getattr(instance.slave, f"get{type_of(v)}"), v.valueReference, f"{instance.name}.{v.name}")
             for v in instance.interface.of_causality("output")
         ]
-        plans.append((inputs, instance.slave.doStep, outputs))
+        slave: Any = instance.slave
+        plans.append((inputs, slave.doStep, outputs))
     values: dict[str, Any] = {}
 
     def steps(table: np.ndarray, numbers: range) -> None:

@@ -84,7 +84,7 @@ class _Traced:
         result = cast(Any, super())._call(fname, *args)
         if cast(Any, self)._functions[fname].restype == c_int and result < fmi2OK:
             raise FMICallException(function=fname, status=result)
-        return cast(Any, result)
+        return result
 
 
 class FMU2Traced(_Traced, FMU2Slave):

@@ -4,9 +4,11 @@ An FMU of FMI 3.0 is called, and what it says is read, in the words of FMI 2.0, 
 """
 
 import re
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import pytest
@@ -30,9 +32,9 @@ def in_words_of_fmi2(text):
 
 
 @cache
-def description(path, _changed):
+def description(path, _changed) -> Any:
     """The model description of an FMU, read once; types have the names of FMI 2.0."""
-    found = fmpy.read_model_description(str(path))
+    found: Any = fmpy.read_model_description(str(path))
     for variable in found.modelVariables if found.fmiVersion == "3.0" else ():
         variable.type = variable.type if variable.type == "Enumeration" else in_words_of_fmi2(variable.type)
     return found
@@ -73,7 +75,7 @@ class FMU3AsFMU2(FMU3Slave):
 class Host:
     """One instance of an FMU, the last message it logged, under which name, and the status of the last refusal."""
 
-    def __init__(self, path, unpacked, name="instance", kind=FMU2Slave):
+    def __init__(self, path, unpacked, name="instance", kind: Any = FMU2Slave) -> None:
         self.description = description(path, Path(path).stat().st_mtime_ns)
         moving = [v for v in self.description.modelVariables if v.derivative is not None and v.causality == "input"]
         self.variables = {v.name: v for v in self.description.modelVariables if v not in moving}
@@ -141,7 +143,7 @@ class Host:
 
 
 @contextmanager
-def opened(path, folder, name="instance", kind=FMU2Slave):
+def opened(path, folder, name="instance", kind: Any = FMU2Slave) -> Iterator[Any]:
     """An instance of the FMU, what it needs to run unpacked into the folder if that is empty, and freed at the end.
 
     Args:

@@ -81,7 +81,7 @@ class ExchangeHost:
             swing = 0.1 * float(v.nominal or 1.0) * sin(6.0 * (time - self.first) / (self.duration or 1.0))
             values.append(min(max(float(v.start or 0.0) + swing, float(v.min or -inf)), float(v.max or inf)))
         if values:
-            self.instance.slave.setReal([v.valueReference for v in self._inputs], values)
+            cast(Any, self.instance.slave).setReal([v.valueReference for v in self._inputs], values)
 
     def _iterate(self) -> None:
         for _ in range(MOST_ITERATIONS):

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from math import inf, sin
-from typing import Any
+from typing import Any, cast
 
 from fmpy.fmi2 import fmi2Discard
 from fmpy.model_description import ModelVariable
@@ -59,7 +59,7 @@ class Host:
         try:
             self.instance.call("doStep", self.time, size)
         except SimulationError:
-            if self.instance.status != fmi2Discard or not self.instance.slave.has_ended():
+            if self.instance.status != fmi2Discard or not cast(Any, self.instance.slave).has_ended():
                 raise
             self.ended = True
 

@@ -3,6 +3,7 @@
 import ctypes
 import re
 import zipfile
+from typing import Any
 
 import fmpy
 import pytest
@@ -104,7 +105,7 @@ def test_all_functions_of_the_standard_are_there_and_nothing_else_is(fmi3, tmp_p
 @every_fmu
 def test_value_references_are_those_of_fmi_2_and_behind_them_come_time_and_rates(fmi3, name):
     block = FMUS[name].block
-    variables = fmpy.read_model_description(str(fmi3 / f"{name}.fmu")).modelVariables
+    variables: Any = fmpy.read_model_description(str(fmi3 / f"{name}.fmu")).modelVariables
     ours = interface(block)
     assert [(v.name, v.valueReference) for v in variables[: len(ours)]] == [(v.name, v.reference) for v in ours]
     time, *rates = variables[len(ours) :]
@@ -297,7 +298,7 @@ def test_what_cannot_be_instantiated_is_said(fmi3, tmp_path):
         token = host.description.instantiationToken.encode()
         binary = ctypes.CDLL(host.fmu.dll._name)
 
-        def made(name=b"one", token=token, event=False, variables=0):
+        def made(name: Any = b"one", token: Any = token, event: Any = False, variables: Any = 0):
             function = binary.fmi3InstantiateCoSimulation
             function.restype = ctypes.c_void_p
             truth = ctypes.c_bool(True), ctypes.c_bool(event), ctypes.c_bool(True)

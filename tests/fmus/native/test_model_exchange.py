@@ -4,6 +4,7 @@ import ctypes
 import math
 import random
 from contextlib import contextmanager
+from typing import Any
 
 import fmpy
 import numpy as np
@@ -83,7 +84,7 @@ def test_a_sampled_block_has_no_model_exchange(native, name):
 
 @every_continuous
 def test_states_and_derivatives_have_the_references_behind_all_others(native, name):
-    block = FMUS[name].block
+    block: Any = FMUS[name].block
     variables = fmpy.read_model_description(str(native / f"{name}.fmu")).modelVariables
     assert [v.valueReference for v in variables] == list(range(len(variables)))
     shown = [v for v in variables if v.causality == "local"]
@@ -93,8 +94,8 @@ def test_states_and_derivatives_have_the_references_behind_all_others(native, na
     for v in shown[len(names) :]:
         assert v.derivative is not None
         assert v.name == f"der({v.derivative.name})"
-        state = base_exponents(v.derivative.unit)
-        assert base_exponents(v.unit) == {k: n for k, n in (state | {"s": state.get("s", 0) - 1}).items() if n}
+        state = base_exponents(v.derivative.unit or "")
+        assert base_exponents(v.unit or "") == {k: n for k, n in (state | {"s": state.get("s", 0) - 1}).items() if n}
 
 
 @pytest.mark.parametrize(
@@ -123,7 +124,8 @@ def test_nominal_values_are_those_of_the_description(native, tmp_path, name):
 @every_continuous
 def test_no_dependency_of_an_output_or_derivative_is_missing(native, tmp_path, name):
     """Directional derivatives are zero along whatever is not among the dependencies."""
-    block, draw = FMUS[name].block, random.Random(name)
+    block: Any = FMUS[name].block
+    draw = random.Random(name)
     with exchanged(native, tmp_path, name) as host:
         host.fmu.enterContinuousTimeMode()
         variables = host.description.modelVariables
@@ -144,7 +146,8 @@ def test_no_dependency_of_an_output_or_derivative_is_missing(native, tmp_path, n
 
 @every_continuous
 def test_derivatives_and_indicators_are_those_of_the_block(native, tmp_path, name):
-    block, draw = FMUS[name].block, random.Random(name)
+    block: Any = FMUS[name].block
+    draw = random.Random(name)
     u, p = block.Input(), block.Parameters()
     with exchanged(native, tmp_path, name) as host:
         assert states(host) == list(block.start(u, p))
@@ -160,7 +163,7 @@ def test_derivatives_and_indicators_are_those_of_the_block(native, tmp_path, nam
 
 @every_continuous
 def test_states_are_variables_too_in_co_simulation_as_well(native, tmp_path, name):
-    block = FMUS[name].block
+    block: Any = FMUS[name].block
     with opened(native / f"{name}.fmu", tmp_path) as host:
         host.initialize()
         host.step(0.0, 0.01)
@@ -173,7 +176,7 @@ def test_states_are_variables_too_in_co_simulation_as_well(native, tmp_path, nam
 
 @every_continuous
 def test_directional_derivatives_along_states_are_differences(native, tmp_path, name):
-    block = FMUS[name].block
+    block: Any = FMUS[name].block
     start = {"v_0": 8.0, "T_0": 20.0} if name in PLANTS else {"T_ref": 50.0, "q_omega": 0.0}
     with exchanged(native, tmp_path, name, **start) as host:
         host.fmu.enterContinuousTimeMode()
@@ -198,7 +201,7 @@ def test_directional_derivatives_along_states_are_differences(native, tmp_path, 
 
 @every_continuous
 def test_co_simulation_gives_the_same_linear_model(native, tmp_path, name):
-    block = FMUS[name].block
+    block: Any = FMUS[name].block
     with exchanged(native, tmp_path, name) as host, opened(native / f"{name}.fmu", tmp_path) as stepped:
         references = [host.variables[name].valueReference for name in (*host.names("input"), *host.names("output"))]
         inputs = len(host.names("input"))

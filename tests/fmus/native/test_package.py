@@ -89,7 +89,7 @@ def test_the_description_differs_from_that_of_the_python_build_only_where_the_bu
         for unknown in root.iterfind("ModelStructure/*/Unknown"):
             if int(unknown.get("index", 0)) <= count:
                 on = [k for k in unknown.get("dependencies", "").split() if int(k) <= count]
-                known.append((unknown.get("index"), on))
+                known.append(repr((unknown.get("index"), on)).encode())
         return known
 
     for name in FMUS:

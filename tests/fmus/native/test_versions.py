@@ -19,7 +19,7 @@ def test_fmpy_gets_the_results_of_fmi_2(native, fmi3, name):
         if v.causality == "input":
             wave = {"slope": 0.1}.get(v.name, 10.0) * np.sin(3.0 * time + k) + (v.name == "T_brake") * 10.0
             columns[v.name] = {"Real": wave, "Integer": np.arange(len(time)) % 7, "Boolean": time > 1.0}[v.fmi_type]
-    inputs = np.rec.fromarrays([*columns.values()], names=[*columns])
+    inputs = np.rec.fromarrays([*columns.values()], names=[*columns])  # pyright: ignore[reportArgumentType]
     results = [
         fmpy.simulate_fmu(
             str(path),

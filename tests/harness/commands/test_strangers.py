@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import time
+from typing import Any
 
 import pytest
 
@@ -38,7 +39,7 @@ def drive(native, tmp_path):
 @pytest.mark.parametrize("command", slow(COMMANDS, but=["simulate", "compare"]))
 def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
     start, temporary = drive
-    does = {"IN_DO_STEP": 'puts("hello"); if (time > 0.5) exit(0)'}
+    does: Any = {"IN_DO_STEP": 'puts("hello"); if (time > 0.5) exit(0)'}
     running = start(command, build_stranger(tmp_path, **does))
     out, error = running.communicate()
     assert running.returncode == 1

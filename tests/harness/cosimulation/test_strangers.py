@@ -8,6 +8,7 @@ import time
 import zipfile
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -217,7 +218,7 @@ def test_a_stranger_without_a_binary_for_this_machine_tells_of_the_machine_and_n
             if not name.startswith("binaries/"):
                 without.writestr(name, whole.read(name))
     with pytest.raises(UnpackingError, match=r"^Theirs\.fmu has no binary for \w+; it has: none$"):
-        run(System({"plant": path}), Experiment("", 0.01))
+        run(System({"plant": path}), Experiment(0.01))
 
 
 def test_an_answer_arrives_as_it_was_sent():
@@ -273,7 +274,7 @@ def test_a_slow_stranger_may_take_longer_than_one_call(tmp_path):
 
 
 def test_a_stranger_keeps_its_process_and_gets_a_new_one_after_a_crash(tmp_path, unpacked):
-    crash = {"IN_DO_STEP": "if (time > 0.1) raise(SIGSEGV)"}
+    crash: Any = {"IN_DO_STEP": "if (time > 0.1) raise(SIGSEGV)"}
     system = System({"car": build_stranger(tmp_path, **crash)})
     with kept_loaded():
         run(system, Experiment(0.1))
