@@ -173,11 +173,11 @@ def builders(builds: str | None, platform: str = "host", fmi: int = 2) -> list[B
     if fmi == 3 and builds in ("python", "both"):
         raise NotPossible("for FMI 3.0 there are native builds only")
     if fmi == 3:
-        return [_native_builder(platform, fmi)]
+        return [_native_builder(platform, fmi, FMI3_FOLDER)]
     if builds == "python":
         return [build]
     try:
-        native = _native_builder(platform, fmi)
+        native = _native_builder(platform, fmi, NATIVE_FOLDER)
     except NotPossible as reason:
         if builds is None and platform == "host":
             LOG.warning("there is no native build: %s", reason)
@@ -186,7 +186,25 @@ def builders(builds: str | None, platform: str = "host", fmi: int = 2) -> list[B
     return [native] if builds == "native" else [build, native]
 
 
-def _native_builder(platform: str, fmi: int) -> Builder:
+def sender_builder(database: bytes, platform: str = "host") -> Builder:
+    """What makes FMUs of FMI 3.0 that send their frames over a bus (FMI-LS-BUS).
+
+    Args:
+        database: DBC of the bus.
+        platform: one of PLATFORMS.
+
+    Raises:
+        NotPossible: they cannot be made here.
+    """
+    return _native_builder(platform, 3, "", database)
+
+
+def _native_builder(platform: str, fmi: int, own_folder: str, database: bytes = b"") -> Builder:
+    """
+    Args:
+        own_folder: of the files, in the folder that the builder gets.
+        database: as of `build_native`.
+    """
     if find_spec("casadi") is None:
         raise NotPossible(
             "the native build needs the package casadi: "
@@ -203,8 +221,7 @@ def _native_builder(platform: str, fmi: int) -> Builder:
     except compiler.CompilerError as reason:
         raise NotPossible(str(reason)) from reason
     binaries = compiler.all_binaries if platform == "all" else compiler.host_binaries
-    own_folder = FMI3_FOLDER if fmi == 3 else NATIVE_FOLDER
-    return lambda fmu, folder: build_native(fmu, folder / own_folder, binaries, fmi)
+    return lambda fmu, folder: build_native(fmu, folder / own_folder, binaries, fmi, database)
 
 
 def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:

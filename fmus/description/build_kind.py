@@ -19,6 +19,7 @@ class BuildKind:
         source_files: C files in the folder sources that together are the FMU.
         version: of FMI.
         picture: path of the picture in the archive, where that version has it.
+        has_terminal: it sends its frames over a bus.
     """
 
     tool: str
@@ -31,3 +32,4 @@ class BuildKind:
     source_files: tuple[str, ...] = ()
     version: str = "2.0"
     picture: str = "model.png"
+    has_terminal: bool = False

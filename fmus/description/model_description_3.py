@@ -10,6 +10,7 @@ from ..release import ABOUT, date, tool
 from .build_kind import BuildKind
 from .dependencies import initial_dependencies, output_dependencies
 from .elements import add_categories, add_experiment, add_units, check_names, limits, text, written
+from .terminal import add_members, members, outputs
 from .variables import Variable, interface, rate_of, time_and_rates
 
 CAPABILITIES = {
@@ -50,7 +51,9 @@ def model_description_3(fmu: Fmu, kind: BuildKind, token: str) -> bytes:
     listed = SubElement(root, "ModelVariables")
     for variable in all_variables:
         _add_variable(listed, variable, fmu)
-    _add_structure(root, fmu)
+    if kind.has_terminal:
+        add_members(listed, fmu.block)
+    _add_structure(root, fmu, kind)
     return written(root)
 
 
@@ -114,11 +117,12 @@ def _type(declaration: Declaration) -> tuple[str, dict[str, str]]:
             return "Float64", {"unit": declaration.unit, **limits(declaration, Real("1", ""))}
 
 
-def _add_structure(root: Element, fmu: Fmu) -> None:
-    references = {v.name: v.reference for v in interface(fmu.block)}
+def _add_structure(root: Element, fmu: Fmu, kind: BuildKind) -> None:
+    references = {v.name: v.reference for v in interface(fmu.block)} | members(fmu.block)
+    of_terminal = dict.fromkeys(outputs(fmu.block) if kind.has_terminal else (), frozenset[str]())
     structure = SubElement(root, "ModelStructure")
     for element, dependencies in (
-        ("Output", output_dependencies(fmu.block)),
+        ("Output", output_dependencies(fmu.block) | of_terminal),
         ("InitialUnknown", initial_dependencies(fmu.block)),
     ):
         for output, on in dependencies.items():

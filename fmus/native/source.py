@@ -27,6 +27,7 @@ MEANINGS = {
     "that move at the rates du.",
     "next_event": "The time in s until outputs jump by themselves.",
     "update": "The state at the next sample.",
+    "frame": "What the bits of the signals of the frame hold, as whole numbers.",
     "output_rate": "The rate of change of the outputs when state and inputs change at the rates dx and du.",
     "output_tangent": "The change of the outputs with small changes dx, du and dp, to first order.",
     "derivative_tangent": "The change of the derivative then.",
@@ -62,15 +63,18 @@ SOURCE = """/* {name}: arithmetic, written by build_fmus.py from {module}. */
 """
 
 
-def block_sources(fmu: Fmu, precision: Precision = DOUBLE, exchanges: bool = True) -> dict[str, str]:
+def block_sources(
+    fmu: Fmu, precision: Precision = DOUBLE, exchanges: bool = True, others: tuple[Traced, ...] = ()
+) -> dict[str, str]:
     """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI.
 
     Args:
         exchanges: whether that is among them which model exchange alone asks.
+        others: functions beside those of the block.
     """
     block = fmu.block
     records, traced = records_of(block), trace(block)
-    traced = tuple(each for each in traced if exchanges or each.name != "next_event")
+    traced = (*(each for each in traced if exchanges or each.name != "next_event"), *others)
     made = functions(traced, records, precision)
     about = {"name": fmu.name, "description": block.description, "module": fmu.module}
     header = HEADER.format(

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import casadi
 
 from ...models.block.declaration import is_tuple
+from ...models.block.frame import count, layout
 from ...models.block.types import Block, ContinuousBlock
 from .symbol import CasadiSymbol, expression
 
@@ -21,7 +22,7 @@ class Traced(NamedTuple):
 
     Attributes:
         function: its inputs are the flattened records `arguments`, its output the flattened `result`.
-        arguments: of x, u, p, and dx, du, dp for rates of change of these, h for a time.
+        arguments: of x, u, y, p, and dx, du, dp for rates of change of these, h for a time.
         result: x, dx, ddx, y, dy or, for numbers that are no record, z.
     """
 
@@ -88,6 +89,21 @@ def exact() -> Iterator[None]:
 def leaves(value: Any) -> list[Any]:
     """The numbers in nested tuples, in their order."""
     return [leaf for item in value for leaf in leaves(item)] if is_tuple(value) else [value]
+
+
+def trace_frame(block: Block) -> Traced:
+    """What the bits of the signals of the block's frame hold, in the layout of its start values.
+
+    Raises:
+        ValueError: the bits of a signal do not hold its largest value.
+    """
+    declared = block.Parameters()
+    x0 = block.start(block.Input(), declared)
+    p, y = _symbols("p", declared), _symbols("y", block.output(x0, block.Input(), declared))
+    contents = [(content, layout(content, declared)) for content in block.frames[0].contents]
+    with exact():
+        counts = tuple(count(content, of, getattr(y, content.quantity), p) for content, of in contents)
+    return _traced("frame", {"y": _vector(y), "p": _vector(p)}, "z", _vector(counts))
 
 
 def _symbols(name: str, template: Any) -> Any:

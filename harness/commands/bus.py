@@ -2,33 +2,53 @@
 ABS unit sends it (identifier, cycle, resolution, range), and what motor control says of the motor and is asked to make.
 With it other tools, and `driveline replay --dbc`, read logs of that bus; `driveline simulate --frames blf` writes some.
 
+With --fmu it also builds WheelSpeedCan as an FMU of FMI 3.0 that sends its frames to other FMUs or to a simulation of
+the bus, as binary variables with clocks (FMI-LS-BUS); the database is in it.
+
 The cycle and the resolution are those of the car of a vehicle file (T_cyc, q_v). Needs the extra `recordings`.
 
 examples:
   driveline bus
+  driveline bus --fmu
   driveline bus --vehicle examples/cars/van.toml --output results/van_bus
 """
 
 import argparse
 
+from ..base.atomic_files import complete
 from ..loop.places import PLACES
 from .options import add_output, add_printing
 from .printing import Printer
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    from ...fmus.building.builds import PLATFORMS
     from ...fmus.building.options import file
 
     parser.add_argument("--vehicle", type=file, metavar="FILE.toml", help="what belongs to the car")
+    parser.add_argument(
+        "--fmu",
+        choices=PLATFORMS,
+        nargs="?",
+        const=PLATFORMS[0],
+        metavar="PLATFORM",
+        help="build the FMU too, for this machine, or for Linux, Windows and macOS (all)",
+    )
     add_output(parser, "results/bus", "the database")
     add_printing(parser)
 
 
 def run(args: argparse.Namespace) -> int:
+    from ...fmus import wheel_speed_can
+    from ...fmus.building.builds import sender_builder
     from ...fmus.building.parameter_files import read_vehicle
-    from ..exchange.bus.database import telegrams, write_dbc
+    from ..exchange.bus.database import dbc, telegrams
 
     car, path = read_vehicle(args.vehicle) if args.vehicle else {}, args.output / "driveline.dbc"
-    write_dbc(telegrams(dict.fromkeys(PLACES, car)), path)
-    Printer(args).files([path])
+    database = dbc(telegrams(dict.fromkeys(PLACES, car)))
+    build = sender_builder(database, args.fmu) if args.fmu else None
+    with complete(path) as unfinished:
+        unfinished.write_bytes(database)
+    built = [build(wheel_speed_can.FMU.started_with(car), args.output)] if build else []
+    Printer(args).files([path, *built])
     return 0

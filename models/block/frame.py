@@ -6,9 +6,13 @@ parameters is a function of them.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from .declaration import Record
+from .operators import clip, floor
+
+MOST_BITS = 32
+"""Of a whole number on the bus."""
 
 
 def one(p: Record) -> float:
@@ -60,3 +64,45 @@ class Frame:
     cycle: Callable[[Any], float]
     contents: tuple[Content, ...]
     counter: str = ""
+
+
+class Layout(NamedTuple):
+    """What the bits of a content are, for a car.
+
+    Attributes:
+        resolution: value on the bus of one count; None: single precision.
+        bits: that it has.
+        largest: value on the bus; None: what single precision holds.
+    """
+
+    resolution: float | None
+    bits: int
+    largest: float | None
+
+
+def layout(content: Content, p: Any) -> Layout:
+    """
+    Raises:
+        ValueError: the bits do not hold the largest value in its resolution.
+    """
+    if content.resolution is None:
+        return Layout(None, content.bits, None)
+    resolution = content.resolution(p)
+    largest = content.largest(p) if content.largest else resolution * (2**content.bits - 1)
+    counts = largest / resolution if resolution > 0.0 else 2.0**MOST_BITS
+    bits = max(content.bits, int(counts + 0.5).bit_length())
+    if bits > MOST_BITS:
+        raise ValueError(
+            f"{content.name} in steps of {resolution:g} {content.unit}: {MOST_BITS} bits do not hold "
+            f"{largest:g} {content.unit} in such steps; its resolution must be larger"
+        )
+    return Layout(resolution, bits, largest)
+
+
+def count(content: Content, of: Layout, value: float, p: Any) -> float:
+    """What the bits of a content hold that is a whole number, for a value of its quantity."""
+    assert of.resolution is not None
+    whole = 2.0**of.bits
+    if content.largest is None:
+        return value - whole * floor(value / whole)
+    return clip(floor(value * content.factor(p) / of.resolution + 0.5), 0.0, whole - 1.0)

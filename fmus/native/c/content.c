@@ -82,9 +82,9 @@ static Status check_states(const Instance *instance, const Memory *memory)
 Status check_content(const Instance *instance, Memory *memory)
 {
     const int64_t mode = memory->mode;
-    const int exchanged = mode == EVENT || mode == CONTINUOUS_TIME;
+    const int exchanged = mode == CONTINUOUS_TIME || (mode == EVENT && !instance->has_events);
     if (mode != INSTANTIATED && mode != INITIALIZATION && mode != STEPPING && mode != TERMINATED
-        && !(exchanged && allows_model_exchange))
+        && !(exchanged && allows_model_exchange) && !(mode == EVENT && instance->has_events))
         return refuse(instance, DAMAGED_STATE);
     if (instance->exchanges ? mode == STEPPING : exchanged)
         return refuse(instance, "the FMU state is refused: its instance was made for %s",
@@ -97,6 +97,10 @@ Status check_content(const Instance *instance, Memory *memory)
             instance, "du", input_names, (const double *)(const void *)&memory->du, sizeof(Input) / sizeof(double));
     if (status == OK && mode != INSTANTIATED && mode != INITIALIZATION)
         status = check_states(instance, memory);
+#ifdef TERMINAL
+    if (status == OK)
+        status = check_terminal(instance, &memory->terminal);
+#endif
     compute_terms(&memory->values.p);
     return status;
 }

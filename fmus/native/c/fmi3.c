@@ -69,7 +69,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
         why = "fmi3InstantiateCoSimulation: an instance needs a name";
     else if (!instantiationToken || strcmp(instantiationToken, model_guid) != 0)
         why = "fmi3InstantiateCoSimulation: the instantiation token is that of another FMU";
-    else if (eventModeUsed)
+    else if (eventModeUsed && !allows_event_mode)
         why = "fmi3InstantiateCoSimulation: the FMU has no event mode";
     else if (nRequiredIntermediateVariables)
         why = "fmi3InstantiateCoSimulation: the FMU has no intermediate update";
@@ -81,6 +81,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
         return NULL;
     const Host host = {calloc, log_for, component, {0}};
     component->instance.host = host;
+    component->instance.has_events = eventModeUsed;
     component->log_message = logMessage;
     component->environment = instanceEnvironment;
     set_logging(&component->instance, loggingOn, 0, NULL);
@@ -124,7 +125,7 @@ fmi3Status fmi3EnterInitializationMode(
     }
 
 CHANGE(fmi3ExitInitializationMode, INITIALIZATION, leave_initialization(instance))
-CHANGE(fmi3Terminate, STEPPING, instance->memory.mode = TERMINATED)
+CHANGE(fmi3Terminate, RUNNING, instance->memory.mode = TERMINATED)
 CHANGE(fmi3Reset, ANY_MODE, renew(instance))
 
 /* The input whose rate of change a value reference stands for; NULL if there is none. */
@@ -331,8 +332,14 @@ fmi3Status fmi3DoStep(
     Instance *instance = ready(c, STEPPING, complete, __func__);
     if (!instance)
         return fmi3Error;
+#ifdef TERMINAL
+    const Status status = step_and_send(instance, currentCommunicationPoint, communicationStepSize);
+    *eventHandlingNeeded = instance->has_events && instance->memory.terminal.tx_size > 0;
+#else
     const Status status = make_step(instance, currentCommunicationPoint, communicationStepSize);
-    *eventHandlingNeeded = *terminateSimulation = *earlyReturn = fmi3False;
+    *eventHandlingNeeded = fmi3False;
+#endif
+    *terminateSimulation = *earlyReturn = fmi3False;
     *lastSuccessfulTime = instance->memory.time;
     return in_fmi3(status);
 }

@@ -57,6 +57,7 @@ NO_VARIABLE(UInt32)
 NO_VARIABLE(UInt64)
 NO_VARIABLE(String)
 
+#ifndef TERMINAL
 fmi3Status fmi3GetBinary(
     fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, size_t valueSizes[], fmi3Binary values[],
     size_t nValues)
@@ -89,46 +90,47 @@ NOT_OFFERED(
     (fmi3Instance c, fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
      fmi3Boolean *nominalsOfContinuousStatesChanged, fmi3Boolean *valuesOfContinuousStatesChanged,
      fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime))
-NOT_OFFERED("event mode", fmi3EvaluateDiscreteStates, (fmi3Instance c))
+#endif
+NOT_OFFERED("evaluation of discrete states", fmi3EvaluateDiscreteStates, (fmi3Instance c))
 
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3GetIntervalDecimal,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 intervals[],
      fmi3IntervalQualifier qualifiers[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3GetIntervalFraction,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
      fmi3IntervalQualifier qualifiers[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3GetShiftDecimal,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 shifts[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3GetShiftFraction,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3UInt64 counters[], fmi3UInt64 resolutions[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3SetIntervalDecimal,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 intervals[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3SetIntervalFraction,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3UInt64 counters[],
      const fmi3UInt64 resolutions[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3SetShiftDecimal,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 shifts[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3SetShiftFraction,
     (fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3UInt64 counters[],
      const fmi3UInt64 resolutions[]))
 NOT_OFFERED(
-    "clocks",
+    "time-based clocks",
     fmi3ActivateModelPartition,
     (fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime))
 

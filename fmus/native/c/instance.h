@@ -9,6 +9,13 @@ outside the one file that is compiled, all.c, so FMUs can be linked with each ot
 #include "shared.h"
 #include "variables.h"
 
+#ifdef TERMINAL
+#include "terminal.h"
+enum { allows_event_mode = 1 };
+#else
+enum { allows_event_mode = 0 };
+#endif
+
 #include <stdint.h>
 
 /* How a call ended. Of a refused one the host was told why, and nothing has changed. */
@@ -39,11 +46,15 @@ typedef struct {
     int64_t mode;
     int64_t outputs_known;
     int64_t last_step;     /* status of the last step */
+#ifdef TERMINAL
+    Terminal terminal;
+#endif
 } Memory;
 
 typedef struct {
     Host host;
-    int exchanges; /* the host integrates (model exchange); else it asks for steps (co-simulation) */
+    int exchanges;  /* the host integrates (model exchange); else it asks for steps (co-simulation) */
+    int has_events; /* in co-simulation: the host handles events, in event mode */
     Memory memory;
 } Instance;
 
@@ -114,6 +125,14 @@ static const Variable *variable_of(const Instance *instance, Reference reference
 static const char *write_value(char text[NUMBER_LENGTH], Type type, double value);
 static double *place_of(Values *values, const Variable *variable);
 static double *rate_of(Input *du, const Variable *input);
+
+#ifdef TERMINAL
+/* terminal.c */
+static void open_terminal(Memory *memory);
+static Status step_and_send(Instance *instance, double time, double step_size); /* make_step, and what arrives in it */
+static void update_terminal(Terminal *terminal); /* what was to be sent has been; what has come in is answered */
+static Status check_terminal(const Instance *instance, const Terminal *terminal); /* of a saved state */
+#endif
 
 /* state.c */
 static Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */

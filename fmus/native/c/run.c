@@ -50,7 +50,10 @@ void leave_initialization(Instance *instance)
     Memory *memory = &instance->memory;
     start(&memory->values.u, &memory->values.p, &memory->x);
     memory->coming = memory->x;
-    memory->mode = instance->exchanges ? EVENT : STEPPING;
+    memory->mode = instance->exchanges || instance->has_events ? EVENT : STEPPING;
+#ifdef TERMINAL
+    open_terminal(memory);
+#endif
 }
 
 static Status check_step(Instance *instance, double time, double step_size)

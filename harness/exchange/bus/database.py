@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ....fmus.catalogue import FMUS
 from ....models.block.declaration import variables
-from ....models.block.frame import Content, Frame
+from ....models.block.frame import Content, Frame, layout
 from ....models.block.types import Block
 from ...base.atomic_files import complete
 from ...base.errors import WiringError
@@ -17,9 +17,6 @@ from ...loop.places import CONNECTIONS, PLACES
 
 if TYPE_CHECKING:
     from cantools.database.can import Database, Message
-
-MOST_BITS = 32
-"""Of a whole number on the bus."""
 
 DIGITS = 12
 """To which numbers of the database are rounded: 0.0625/3.6*3.6 is 0.0625."""
@@ -86,18 +83,11 @@ def _signal(place: str, block: Block, content: Content, p: Any) -> Signal:
     if content.quantity not in meanings:  # it is an input, and the results have what feeds it
         meanings |= {quantity.name: quantity.declaration.description for quantity in variables(block.Input)}
         column = sources[column]
-    resolution, bits, largest = content.resolution and content.resolution(p), content.bits, None
-    if resolution is not None:
-        largest = content.largest(p) if content.largest else resolution * (2**bits - 1)
-        counts = largest / resolution if resolution > 0.0 else 2.0**MOST_BITS
-        bits = max(bits, int(counts + 0.5).bit_length())
-        if bits > MOST_BITS:
-            raise WiringError(
-                f"{content.name} in steps of {resolution:g} {content.unit}: {MOST_BITS} bits do not hold "
-                f"{largest:g} {content.unit} in such steps; its resolution must be larger"
-            )
     meaning = content.meaning or meanings[content.quantity]
-    return Signal(content, meaning, column, content.factor(p), resolution, bits, largest)
+    try:
+        return Signal(content, meaning, column, content.factor(p), *layout(content, p))
+    except ValueError as error:
+        raise WiringError(str(error)) from error
 
 
 def messages(sent: Iterable[Telegram]) -> list[Message]:
@@ -163,12 +153,21 @@ def database(made: Iterable[Message]) -> Database:
     return Database(messages=every, nodes=[Node(name) for name in nodes], version="")
 
 
-def write_dbc(sent: Iterable[Telegram], path: Path) -> None:
-    """Writes the database as DBC, with the line ends of such files.
+def dbc(sent: Iterable[Telegram]) -> bytes:
+    """The database as DBC, with the line ends of such files.
 
     Raises:
         MissingExtra: cantools is not installed.
     """
-    text = database(messages(sent)).as_dbc_string()
+    return database(messages(sent)).as_dbc_string().encode("ascii")
+
+
+def write_dbc(sent: Iterable[Telegram], path: Path) -> None:
+    """Writes the database as DBC.
+
+    Raises:
+        MissingExtra: cantools is not installed.
+    """
+    made = dbc(sent)
     with complete(path) as unfinished:
-        unfinished.write_bytes(text.encode("ascii"))
+        unfinished.write_bytes(made)
