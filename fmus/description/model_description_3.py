@@ -119,11 +119,12 @@ def _type(declaration: Declaration) -> tuple[str, dict[str, str]]:
 
 def _add_structure(root: Element, fmu: Fmu, kind: BuildKind) -> None:
     references = {v.name: v.reference for v in interface(fmu.block)} | members(fmu.block)
-    of_terminal = dict.fromkeys(outputs(fmu.block) if kind.has_terminal else (), frozenset[str]())
+    sent = dict.fromkeys(outputs(fmu.block) if kind.has_terminal else (), frozenset[str]())
+    clocks = {name: on for name, on in sent.items() if name.endswith("Clock")}  # what is clocked has no initial value
     structure = SubElement(root, "ModelStructure")
     for element, dependencies in (
-        ("Output", output_dependencies(fmu.block) | of_terminal),
-        ("InitialUnknown", initial_dependencies(fmu.block)),
+        ("Output", output_dependencies(fmu.block) | sent),
+        ("InitialUnknown", initial_dependencies(fmu.block) | clocks),
     ):
         for output, on in dependencies.items():
             known = sorted(references[name] for name in on)

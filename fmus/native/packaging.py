@@ -55,7 +55,7 @@ FOR_CONTINUOUS = (
     "integrator.h",
 )
 FOR_SAMPLED = ("sampled.c",)
-FOR_TERMINAL = ("fmi3_terminal.c", "terminal.c", "terminal.h")
+FOR_TERMINAL = ("fmi3_terminal.c", "frames.c", "terminal.c", "terminal.h")
 
 NEEDS = """The model is compiled code in this file and needs nothing else; its C source is in the
 folder <code>sources</code>."""
@@ -121,7 +121,12 @@ def build_native(
 def c_sources(fmu: Fmu, fmi: int = 2, sends: bool = False) -> dict[str, bytes]:
     """All C files of an FMU by name, with an empty GUID."""
     continuous = isinstance(fmu.block, ContinuousBlock)
-    names = ADAPTERS[fmi] + FOR_ALL + (FOR_TERMINAL if sends else ()) + (FOR_CONTINUOUS + FOR_EXCHANGE[fmi] if continuous else FOR_SAMPLED)
+    names = (
+        ADAPTERS[fmi]
+        + FOR_ALL
+        + (FOR_TERMINAL if sends else ())
+        + (FOR_CONTINUOUS + FOR_EXCHANGE[fmi] if continuous else FOR_SAMPLED)
+    )
     sources = {name: (C_FILES / name).read_bytes() for name in names}
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob(f"fmi{fmi}*.h")}
     generated = block_sources(fmu, exchanges=fmi == 2, others=(trace_frame(fmu.block),) if sends else ()) | {

@@ -15,7 +15,6 @@ examples:
 
 import argparse
 
-from ..base.atomic_files import complete
 from ..loop.places import PLACES
 from .options import add_output, add_printing
 from .printing import Printer
@@ -42,13 +41,12 @@ def run(args: argparse.Namespace) -> int:
     from ...fmus import wheel_speed_can
     from ...fmus.building.builds import sender_builder
     from ...fmus.building.parameter_files import read_vehicle
-    from ..exchange.bus.database import dbc, telegrams
+    from ..exchange.bus.database import dbc, telegrams, write_dbc
 
     car, path = read_vehicle(args.vehicle) if args.vehicle else {}, args.output / "driveline.dbc"
-    database = dbc(telegrams(dict.fromkeys(PLACES, car)))
-    build = sender_builder(database, args.fmu) if args.fmu else None
-    with complete(path) as unfinished:
-        unfinished.write_bytes(database)
-    built = [build(wheel_speed_can.FMU.started_with(car), args.output)] if build else []
-    Printer(args).files([path, *built])
+    sent, made = telegrams(dict.fromkeys(PLACES, car)), [path]
+    if args.fmu:
+        made.append(sender_builder(dbc(sent), args.fmu)(wheel_speed_can.FMU.started_with(car), args.output))
+    write_dbc(sent, path)
+    Printer(args).files(made)
     return 0

@@ -129,9 +129,12 @@ static double *rate_of(Input *du, const Variable *input);
 #ifdef TERMINAL
 /* terminal.c */
 static void open_terminal(Memory *memory);
-static Status step_and_send(Instance *instance, double time, double step_size); /* make_step, and what arrives in it */
+static int send_frame(Memory *memory); /* if its counter has gone on; 0 if there is no room for it */
 static void update_terminal(Terminal *terminal); /* what was to be sent has been; what has come in is answered */
 static Status check_terminal(const Instance *instance, const Terminal *terminal); /* of a saved state */
+
+/* frames.c */
+static Status step_and_send(Instance *instance, double time, double step_size); /* make_step, and its frames sent */
 #endif
 
 /* state.c */

@@ -54,8 +54,7 @@ static void pack(const double counts[FRAME_SIGNALS], unsigned char data[FRAME_LE
             data[at / 8] |= (unsigned char)((count >> bit & 1U) << at % 8);
 }
 
-/* Sends the frame if its counter has gone on; 0 if there is no room for it. */
-static int send_frame(Memory *memory)
+int send_frame(Memory *memory)
 {
     const Values *values = &memory->values;
     Terminal *terminal = &memory->terminal;
@@ -72,34 +71,6 @@ static int send_frame(Memory *memory)
     append_data(terminal, data, FRAME_LENGTH);
     terminal->sent = values->y.FRAME_COUNTER;
     return 1;
-}
-
-/* A communication step; one in which frames have arrived is made again sample by sample, so that none is missed. */
-Status step_and_send(Instance *instance, double time, double step_size)
-{
-    Memory *memory = &instance->memory;
-    const Memory before = *memory;
-    const double end = time + step_size;
-    char text[NUMBER_LENGTH];
-    Status status = make_step(instance, time, step_size);
-    if (status != OK || !instance->has_events || memory->values.y.FRAME_COUNTER == before.terminal.sent)
-        return status;
-    *memory = before;
-    while (status == OK && time < end) {
-        const int last = end - time <= SAMPLE_TIME * (1.0 + TICK_TOLERANCE);
-        status = make_step(instance, time, last ? end - time : SAMPLE_TIME);
-        time = memory->time = last ? end : memory->time;
-        if (status == OK && !send_frame(memory))
-            status = discard(
-                instance,
-                "the step of %s s is refused; Tx_Data has no room for the frames that arrive in it; "
-                "shorter steps are allowed",
-                write_number(text, step_size));
-    }
-    if (status != OK)
-        *memory = before;
-    memory->last_step = status;
-    return status;
 }
 
 static uint32_t number_at(const unsigned char bytes[4])

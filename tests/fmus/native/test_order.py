@@ -18,20 +18,23 @@ ORDERS = {
         "integrator.c",
         "continuous.c",
         "sampled.c",
+        "terminal.c",
         "content.c",
         "state.c",
         "run.c",
+        "frames.c",
         "calls.c",
         "fmi2.c",
         "model_exchange.c",
         "fmi2_model_exchange.c",
         "fmi3.c",
         "fmi3_refused.c",
+        "fmi3_terminal.c",
     ),
     TARGET_FILES: ("board_host.c", "board_mps2.c", "link.c", "scheduler.c"),
 }
 
-DEFINED = re.compile(r"^(?:__attribute__\(\(weak\)\) )?[a-zA-Z].*?(\w+)\([^;{]*\)\n\{", re.MULTILINE)
+DEFINED = re.compile(r"^(?:__attribute__\(\(weak\)\) )?[a-zA-Z].*?(\w+)\([^;{#]*\)\n\{", re.MULTILINE)
 CALLED = re.compile(r"\b(\w+)\(")
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 ENTRY = "main"
