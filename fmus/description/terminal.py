@@ -13,7 +13,7 @@ MEMBERS = ("Tx_Data", "Tx_Clock", "Rx_Data", "Rx_Clock")
 """Of a terminal, in the order of their value references."""
 
 OPERATIONS_SIZE = 2048
-"""In bytes, as in terminal.h: most that the operations of one communication step take."""
+"""In bytes, most that the operations of one communication step take."""
 
 BAUD_RATE = 500_000
 """In bit/s, told to a simulation of the bus."""

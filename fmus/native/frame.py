@@ -1,7 +1,7 @@
 """frame.h: the frame that an FMU with a terminal sends, and the names of the members of that."""
 
 from ...models.block.frame import layout
-from ..description.terminal import BAUD_RATE, members
+from ..description.terminal import BAUD_RATE, OPERATIONS_SIZE, members
 from ..fmu import Fmu
 
 HEADER = """/* {frame}: the frame that is sent, and the terminal; written by build_fmus.py from {module}. */
@@ -11,7 +11,7 @@ HEADER = """/* {frame}: the frame that is sent, and the terminal; written by bui
 #define FRAME_COUNTER {counter} /* among the outputs: one more with every frame */
 
 enum {{ FRAME_IDENTIFIER = {identifier:#x}, FRAME_SIGNALS = {signals}, FRAME_LENGTH = {length} /* bytes */ }};
-enum {{ BAUD_RATE = {baud_rate} /* bit/s */ }};
+enum {{ BAUD_RATE = {baud_rate} /* bit/s */, OPERATIONS_SIZE = {size} /* bytes, at most */ }};
 enum {{ TX_DATA = {first}, TX_CLOCK, RX_DATA, RX_CLOCK }}; /* value references */
 
 static const unsigned frame_bits[FRAME_SIGNALS] = {{{bits}}};
@@ -33,6 +33,7 @@ def frame_header(fmu: Fmu) -> str:
         signals=len(bits),
         length=(sum(bits) + 7) // 8,
         baud_rate=BAUD_RATE,
+        size=OPERATIONS_SIZE,
         first=min(terminal.values()),
         bits=", ".join(map(str, bits)),
         names=", ".join(f'"{name}"' for name in terminal),

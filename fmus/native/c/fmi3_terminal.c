@@ -2,7 +2,6 @@
 
 Tx_Clock is active in event mode while there is something to be sent. */
 #include "fmi3Functions.h"
-#include "frame.h"
 #include "instance.h"
 
 #include <string.h>

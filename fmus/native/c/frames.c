@@ -1,5 +1,4 @@
 /* Steps of an FMU with a terminal: the frames that arrive in them are sent. */
-#include "frame.h"
 #include "instance.h"
 
 /* A step in which frames have arrived is made again sample by sample, so that none is missed. */

@@ -1,5 +1,4 @@
 /* The terminal of a CAN bus: sends a frame whenever its counter has gone on, and answers what comes in. */
-#include "frame.h"
 #include "instance.h"
 
 #include <string.h>
@@ -78,12 +77,16 @@ static uint32_t number_at(const unsigned char bytes[4])
     return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
 
-static int is_known(uint32_t code)
+/* Whether there is an operation of that code and length. */
+static int is_known(uint32_t code, size_t length)
 {
-    static const uint32_t codes[] = {0x01, 0x10, 0x11, 0x12, 0x20, 0x30, 0x31, 0x40, 0x41, 0x42};
-    for (unsigned k = 0; k < sizeof codes / sizeof *codes; k++)
-        if (codes[k] == code)
-            return 1;
+    static const struct {
+        uint32_t code, least;
+    } known[] = {
+        {0x01, 10}, {0x10, 16}, {0x11, 17}, {0x12, 22}, {0x20, 12}, {0x30, 12}, {0x31, 15}, {0x40, 9}, {0x41, 9}, {0x42, 8}};
+    for (unsigned k = 0; k < sizeof known / sizeof *known; k++)
+        if (known[k].code == code)
+            return length >= known[k].least;
     return 0;
 }
 
@@ -96,7 +99,7 @@ static void receive(Terminal *terminal)
         size = left < HEAD_SIZE ? 0 : number_at(&bytes[4]);
         const int whole = size >= HEAD_SIZE && size <= left;
         size = whole ? size : left;
-        if ((!whole || !is_known(number_at(bytes))) && begin(terminal, FORMAT_ERROR, 2 + size))
+        if ((!whole || !is_known(number_at(bytes), size)) && begin(terminal, FORMAT_ERROR, 2 + size))
             append_data(terminal, bytes, size);
     }
 }

@@ -2,9 +2,9 @@
 #ifndef TERMINAL_H
 #define TERMINAL_H
 
-#include <stdint.h>
+#include "frame.h"
 
-enum { OPERATIONS_SIZE = 2048 }; /* bytes */
+#include <stdint.h>
 
 /* Whole multiples of 8 bytes, as it is part of a saved state. */
 typedef struct {

@@ -247,8 +247,9 @@ MODES = {
     "fmi3Reset": {BEFORE, DURING, AFTER, ENDED},
 }
 NOT_OFFERED = {
-    "event mode": ("EnterEventMode", "EnterStepMode", "UpdateDiscreteStates", "EvaluateDiscreteStates"),
-    "clocks": ("GetIntervalDecimal", "SetShiftFraction", "ActivateModelPartition"),
+    "event mode": ("EnterEventMode", "EnterStepMode", "UpdateDiscreteStates"),
+    "evaluation of discrete states": ("EvaluateDiscreteStates",),
+    "time-based clocks": ("GetIntervalDecimal", "SetShiftFraction", "ActivateModelPartition"),
     "structural parameters": ("EnterConfigurationMode", "ExitConfigurationMode"),
     "adjoint derivatives": ("GetAdjointDerivative",),
     "array variables": ("GetNumberOfVariableDependencies", "GetVariableDependencies"),

@@ -1,20 +1,15 @@
 """The FMU that sends its frames over a bus sends those of a run."""
 
-import zipfile
 from pathlib import Path
 from typing import Any
 
-import cantools
 import pytest
 
-from driveline.fmus.building.builds import NotPossible
-from driveline.fmus.native.compiler import CompilerError
-from driveline.harness.commands.cli import main
 from driveline.harness.exchange.bus.database import messages, telegrams
 from driveline.harness.exchange.bus.log import frames
 from driveline.models.wheel_speed_can import FRAME
 from tests import ROOT
-from tests.fmus.bus import CONFIGURATION, Node, Operation, frame_in
+from tests.fmus.bus import Node, frame_in
 
 VAN = ROOT / "examples" / "cars" / "van.toml"
 STEP = 1e-3
