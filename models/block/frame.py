@@ -80,7 +80,7 @@ class Layout(NamedTuple):
     largest: float | None
 
 
-def layout(content: Content, p: Any) -> Layout:
+def layout(content: Content, p: Record) -> Layout:
     """
     Raises:
         ValueError: the bits do not hold the largest value in its resolution.
@@ -99,7 +99,7 @@ def layout(content: Content, p: Any) -> Layout:
     return Layout(resolution, bits, largest)
 
 
-def count(content: Content, of: Layout, value: float, p: Any) -> float:
+def count(content: Content, of: Layout, value: float, p: Record) -> float:
     """What the bits of a content hold that is a whole number, for a value of its quantity."""
     assert of.resolution is not None
     whole = 2.0**of.bits
