@@ -52,12 +52,13 @@ class Node:
             fmpy.extract(str(path), str(folder))
         self.description: Any = fmpy.read_model_description(str(folder), validate=False)
         self.references = {v.name: v.valueReference for v in self.description.modelVariables}
+        members = ("Tx_Data", "Tx_Clock", "Rx_Data", "Rx_Clock")
         self.members = {
-            name: self.references.get(f"{terminal}.{name}") for name in ("Tx_Data", "Tx_Clock", "Rx_Data", "Rx_Clock")
+            name: self.references[f"{terminal}.{name}"] for name in members if f"{terminal}.{name}" in self.references
         }
         self.told: list[str] = []
         self.time = 0.0
-        self.fmu = FMU3Slave(
+        self.fmu: Any = FMU3Slave(
             guid=self.description.guid,
             unzipDirectory=str(folder),
             modelIdentifier=self.description.coSimulation.modelIdentifier,

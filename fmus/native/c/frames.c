@@ -4,12 +4,14 @@
 /* A step in which frames have arrived is made again sample by sample, so that none is missed. */
 Status step_and_send(Instance *instance, double time, double step_size)
 {
+    if (!instance->has_events)
+        return make_step(instance, time, step_size);
     Memory *memory = &instance->memory;
     const Memory before = *memory;
     const double end = time + step_size;
     char text[NUMBER_LENGTH];
     Status status = make_step(instance, time, step_size);
-    if (status != OK || !instance->has_events || memory->values.y.FRAME_COUNTER == before.terminal.sent)
+    if (status != OK || memory->values.y.FRAME_COUNTER == before.terminal.sent)
         return status;
     *memory = before;
     while (status == OK && time < end) {

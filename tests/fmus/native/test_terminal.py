@@ -9,7 +9,7 @@ import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
-from lxml import etree
+from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from driveline.fmus.building.builds import NotPossible, sender_builder
 from driveline.fmus.catalogue import FMUS

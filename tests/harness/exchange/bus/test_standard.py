@@ -15,7 +15,7 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
-from lxml import etree
+from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from driveline.fmus.description.terminal import FOLDER
 from driveline.fmus.native.compiler import host_compiler
@@ -42,7 +42,8 @@ def example(name: str, folder: Path) -> Path:
     made = folder / name
     made.mkdir()
     copyfile(described, made / described.name)
-    identifier = fmpy.read_model_description(str(made), validate=False).coSimulation.modelIdentifier
+    described_as: Any = fmpy.read_model_description(str(made), validate=False)
+    identifier = described_as.coSimulation.modelIdentifier
     binary = made / "binaries" / str(fmpy.platform_tuple) / f"{identifier}{fmpy.sharedLibraryExtension}"
     binary.parent.mkdir(parents=True)
     flags = ("-shared", "-fPIC", "-D_strdup=strdup", "-D_GNU_SOURCE", "-DFMI3_OVERRIDE_FUNCTION_PREFIX")
