@@ -9,6 +9,8 @@ import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from hypothesis import given
+from hypothesis import strategies as st
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from driveline.fmus.building.builds import NotPossible, sender_builder
@@ -216,6 +218,28 @@ def test_what_is_no_operation_is_sent_back_and_what_is_before_it_counts(node, da
     node.fmu.enterEventMode()
     node.receive(written(Operation(CONFIRM, bytes(4))) + data)
     assert node.flush() == [Operation(FORMAT_ERROR, struct.pack("<H", len(data)) + data)]
+
+
+def test_of_any_bytes_what_is_no_operation_comes_back(node):
+    started(node)
+    pieces = st.one_of(
+        st.binary(max_size=40),
+        st.builds(lambda code, data: written(Operation(code, data)), st.integers(0, 0x50), st.binary(max_size=20)),
+    )
+
+    @given(st.lists(pieces, max_size=12).map(b"".join))
+    def answered(data):
+        node.fmu.enterEventMode()
+        node.receive(data)
+        found = node.flush()
+        assert {operation.code for operation in found} <= {FORMAT_ERROR}
+        at = 0
+        for operation in found:
+            (size,) = struct.unpack_from("<H", operation.arguments)
+            assert len(operation.arguments) == 2 + size
+            at = data.index(operation.arguments[2:], at) + size
+
+    answered()
 
 
 def test_what_comes_without_its_clock_is_not_looked_at(node):
