@@ -10,12 +10,13 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.python.packaging import build
 from driveline.harness.recordings import bounded_reading
 from tests.browser import browser
 from tests.compiling import caching_compiler
+from tests.skipping import skipped_if_impossible
 
 # the same examples in every run, and nothing timed
 settings.register_profile("driveline", deadline=None, derandomize=True)
@@ -50,10 +51,8 @@ def built(tmp_path_factory):
 @pytest.fixture(scope="session")
 def native_builder():
     """Builds an FMU natively for this machine; skips where that is not possible."""
-    try:
+    with skipped_if_impossible():
         (builder,) = builders("native")
-    except NotPossible as reason:
-        pytest.skip(str(reason))
     return builder
 
 
@@ -68,10 +67,8 @@ def native(native_builder, tmp_path_factory):
 @pytest.fixture(scope="session")
 def fmi3(tmp_path_factory):
     """Folder with the FMI 3.0 builds of all FMUs."""
-    try:
+    with skipped_if_impossible():
         (build,) = builders(None, fmi=3)
-    except NotPossible as reason:
-        pytest.skip(str(reason))
     folder = tmp_path_factory.mktemp("fmi3")
     paths = [build(fmu, folder) for fmu in FMUS.values()]
     return paths[0].parent

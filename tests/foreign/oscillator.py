@@ -1,13 +1,8 @@
 """An FMU in C for model exchange alone that misbehaves: it does what a test puts into its calls."""
 
-import subprocess
 from pathlib import Path
-from zipfile import ZipFile
 
-import fmpy
-import pytest
-
-from driveline.fmus.native.compiler import CompilerError, host_compiler
+from tests.foreign.compiled import foreign_fmu
 
 SOURCE = Path(__file__).with_name("oscillator.c")
 
@@ -30,15 +25,4 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 
 def build_oscillator(folder: Path, description: str = DESCRIPTION, **does: str) -> Path:
     """Builds oscillator.fmu; `does` is C by the macro of oscillator.c whose place it takes."""
-    try:
-        compiler = host_compiler()
-    except CompilerError as reason:
-        pytest.skip(str(reason))
-    library = folder / f"oscillator{fmpy.sharedLibraryExtension}"
-    macros = [f"-D{macro}={code}" for macro, code in does.items()]
-    subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, SOURCE, "-o", library, "-lm"], check=True)
-    path = folder / "oscillator.fmu"
-    with ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", description)
-        archive.write(library, f"binaries/{fmpy.platform}/{library.name}")
-    return path
+    return foreign_fmu(folder / "oscillator.fmu", "oscillator", description, SOURCE, does)

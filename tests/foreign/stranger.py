@@ -1,15 +1,12 @@
 """Plants in C that misbehave: they stand still, and do what a test puts into their calls."""
 
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
-from zipfile import ZipFile
 
 import fmpy
-import pytest
 
-from driveline.fmus.native.compiler import CompilerError, host_compiler
 from tests.foreign import UNITS
+from tests.foreign.compiled import foreign_fmu
 
 SOURCES = {fmi: Path(__file__).with_name(name) for fmi, name in {2: "stranger.c", 3: "stranger3.c"}.items()}
 
@@ -38,19 +35,8 @@ def build_stranger(
     folder: Path, name: str = "stranger", libraries: Sequence[str] = ("-lm",), fmi: int = 2, **does: str
 ) -> Path:
     """Builds NAME.fmu with these libraries; `does` is C by the macro of stranger.c whose place it takes."""
-    try:
-        compiler = host_compiler()
-    except CompilerError as reason:
-        pytest.skip(str(reason))
-    library = folder / f"{name}{fmpy.sharedLibraryExtension}"
-    macros = [f"-D{macro}={code}" for macro, code in does.items()]
-    subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, SOURCES[fmi], "-o", library, *libraries], check=True)
-    path = folder / f"{name}.fmu"
-    with ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", description() if fmi == 2 else description_3())
-        platform = fmpy.platform if fmi == 2 else fmpy.platform_tuple
-        archive.write(library, f"binaries/{platform}/stranger{fmpy.sharedLibraryExtension}")
-    return path
+    described, platform = {2: (description, fmpy.platform), 3: (description_3, fmpy.platform_tuple)}[fmi]
+    return foreign_fmu(folder / f"{name}.fmu", "stranger", described(), SOURCES[fmi], does, libraries, platform)
 
 
 def description() -> str:

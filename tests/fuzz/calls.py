@@ -24,7 +24,7 @@ CALLS = 300
 """Of a sequence."""
 
 SANITIZED = (
-    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wno-strict-prototypes"),
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"),
     "-ffp-contract=off",
     *("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"),
 )
@@ -44,21 +44,21 @@ def as_fmi2(description: ModelDescription) -> list[str]:
     if description.fmiVersion == "2.0":
         return []
     time = next(v.valueReference for v in description.modelVariables if v.causality == "independent")
-    return [f"-DTIME={time}u", f"-I{AS_FMI2}", f"-I{FMI_HEADERS}"]
+    return [f"-DTIME={time}u", "-Wno-strict-prototypes", f"-I{AS_FMI2}", f"-I{FMI_HEADERS}"]
 
 
-def program(fmu: Path, folder: Path) -> list[str]:
-    """The command that makes random calls to a native FMU, compiled from its sources.
+def program(fmu: Path, folder: Path, host: Path = HOST) -> list[str]:
+    """The command of a host that makes calls to a native FMU, compiled with the sources of the FMU.
 
     Raises:
         NotPossible: the compiler has no sanitizers.
     """
     fmpy.extract(str(fmu), str(folder))
     sources = folder / "sources"
-    made = folder.resolve() / "host"
+    made = folder.resolve() / host.stem
     description = fmpy.read_model_description(str(fmu))
     options = [*SANITIZED, *numbers(description), *as_fmi2(description)]
-    command = [host_compiler(), *options, "-I.", str(HOST), "all.c", "-o", str(made), "-lm"]
+    command = [host_compiler(), *options, "-I.", str(host.resolve()), "all.c", "-o", str(made), "-lm"]
     compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         raise NotPossible("the compiler has no sanitizers")

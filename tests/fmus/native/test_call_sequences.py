@@ -25,14 +25,12 @@ from hypothesis.stateful import (
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import Variable, interface
-from driveline.fmus.native.compiler import host_compiler
 from driveline.harness.loop.places import NATIVE
-from tests.fuzz.calls import numbers
+from tests.fuzz.calls import program
+from tests.skipping import skipped_if_impossible
 from tests.slow import slow
 
 PROGRAM = Path(__file__).parent / "calls.c"
-WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion")
-SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1", "-ffp-contract=off")
 OK, DISCARD, ERROR = 0, 2, 3
 BEFORE, DURING, AFTER, ENDED, EVENT, CONTINUOUS_TIME = range(6)
 EXAMPLES, CALLS = 60, 40
@@ -57,7 +55,7 @@ class Expected:
 class Calls(RuleBasedStateMachine):
     """One instance of an FMU, run by calls.c."""
 
-    command: tuple[str, ...]
+    command: list[str]
     reals: tuple[Variable, ...]
     states: int
     indicators: int
@@ -264,27 +262,22 @@ class Calls(RuleBasedStateMachine):
         assert (self.program.returncode, message) == (0, "")
 
 
-@pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
-def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_nothing(both_built, tmp_path, name):
-    path = both_built / NATIVE / f"{name}.fmu"
-    fmpy.extract(str(path), str(tmp_path))
-    sources = tmp_path / "sources"
-    program = tmp_path / "calls"
-    description = fmpy.read_model_description(str(path))
-    options = [*WARNINGS, *SANITIZERS, *numbers(description)]
-    command = [host_compiler(), *options, "-I.", PROGRAM, "all.c", "-o", program, "-lm"]
-    compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
-    if "cannot find" in compiled.stderr:
-        pytest.skip("the compiler has no sanitizers")
-    assert compiled.returncode == 0, compiled.stderr
-    block = FMUS[name].block
+def run_calls(calls: type[Calls], fmu: Path, folder: Path) -> None:
+    with skipped_if_impossible():
+        of_fmu = program(fmu, folder, PROGRAM)
+    block, described = FMUS[fmu.stem].block, fmpy.read_model_description(str(fmu))
 
-    class CallsOfThisFmu(Calls):
-        command = (str(program), str(description.guid))
-        states, indicators = description.numberOfContinuousStates, description.numberOfEventIndicators
+    class CallsOfThisFmu(calls):
+        command = of_fmu
+        states, indicators = described.numberOfContinuousStates, described.numberOfEventIndicators
         reals = tuple(v for v in interface(block) if v.fmi_type == "Real")
         tolerates_bad_input = block.tolerates_bad_input
 
     run_state_machine_as_test(
         CallsOfThisFmu, settings=settings(max_examples=EXAMPLES, stateful_step_count=CALLS, deadline=None)
     )
+
+
+@pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
+def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_nothing(both_built, tmp_path, name):
+    run_calls(Calls, both_built / NATIVE / f"{name}.fmu", tmp_path)

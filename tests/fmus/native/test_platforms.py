@@ -8,9 +8,10 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
+from tests.skipping import skipped_if_impossible
 from tests.slow import slow
 
 LARGEST = 255 * 1024
@@ -20,10 +21,8 @@ LARGEST = 255 * 1024
 
 @pytest.fixture(scope="module")
 def builder():
-    try:
+    with skipped_if_impossible():
         (made,) = builders("native", "all")
-    except NotPossible as reason:
-        pytest.skip(str(reason))
     return made
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from driveline.fmus.native.compiler import CompilerError, host_compiler
+from driveline.fmus.native.compiler import host_compiler
+from tests.skipping import skipped_if_impossible
 
 SOURCE = Path(__file__).parent / "exit_host.c"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -37,10 +38,8 @@ def command(built, tmp_path_factory) -> list[str]:
     """The host with one FMU."""
     folder = tmp_path_factory.mktemp("host")
     fmpy.extract(str(built / "MotorTorqueLoop.fmu"), str(folder))
-    try:
+    with skipped_if_impossible():
         compiler = host_compiler()
-    except CompilerError as reason:
-        pytest.skip(str(reason))
     subprocess.run([compiler, *FLAGS, f"-I{FMI_HEADERS}", SOURCE, "-o", folder / "host", "-ldl"], check=True)
     library = folder / "binaries" / "linux64" / "MotorTorqueLoop.so"
     return [str(folder / "host"), str(library), (folder / "resources").as_uri()]

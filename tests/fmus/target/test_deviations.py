@@ -11,16 +11,15 @@ from driveline.fmus.native.statements import SINGLE
 from driveline.fmus.target.deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
 from driveline.fmus.target.image import require_packages
 from driveline.fmus.target.sources import CONTROLLERS, target_sources
+from tests.skipping import skipped_if_impossible
 
 SOURCES = target_sources(CONTROLLERS["DampingController"], SINGLE)
 
 
 @pytest.fixture(scope="module")
 def _checkable() -> None:
-    try:
+    with skipped_if_impossible():
         require_packages(CHECKER)
-    except CompilerError as why:
-        pytest.skip(str(why))
 
 
 @pytest.mark.usefixtures("_checkable")

@@ -53,16 +53,22 @@ def test_our_python_fmus_need_only_that_the_host_lends_them_python(built, name):
         assert (severity, text.partition(" and ")[0].partition(" needs ")[2][:3]) == ("error", "_Py")
 
 
+IN_BOTH = (
+    (r' description="speed of the motor"', "", "omega_1 has no description"),
+    (r'min="-2000.0" ', 'min="1.0" ', r"T_mot starts at .* out of \[1\.0"),
+    (r'name="T_brake"', 'name="T_mot"', "not unique"),
+    (r"<DefaultExperiment[^>]*>", "", "DefaultExperiment"),
+)
+"""Faults that descriptions of FMI 2.0 and 3.0 can have."""
+
+
 @pytest.mark.parametrize(
     ("pattern", "replacement", "finding"),
     [
         (r' unit="m/s2"', "", "a_body has no unit"),
         (r'<Unknown index="\d+" dependencies="[^"]*"', lambda m: m[0].split(" dep")[0], "its dependencies"),
         (r"<InitialUnknowns>.*?</InitialUnknowns>", "", "InitialUnknowns"),
-        (r' description="speed of the motor"', "", "omega_1 has no description"),
-        (r'min="-2000.0" ', 'min="1.0" ', r"T_mot starts at .* out of \[1\.0"),
-        (r'name="T_brake"', 'name="T_mot"', "not unique"),
-        (r"<DefaultExperiment[^>]*>", "", "DefaultExperiment"),
+        *IN_BOTH,
         (r' fmiVersion="2.0"', ' fmiVersion="1.5"', "cannot be read|FMI 1.5"),
     ],
 )
@@ -80,10 +86,7 @@ def test_a_fault_in_the_description_is_found(built, tmp_path, pattern, replaceme
         (r'(name="a_body"[^>]*) unit="m/s2"', r"\1", "a_body has no unit"),
         (r'<Output valueReference="\d+" dependencies="[^"]*"', lambda m: m[0].split(" dep")[0], "its dependencies"),
         (r"<InitialUnknown [^>]*>", "", "InitialUnknowns"),
-        (r' description="speed of the motor"', "", "omega_1 has no description"),
-        (r'min="-2000.0" ', 'min="1.0" ', r"T_mot starts at .* out of \[1\.0"),
-        (r'name="T_brake"', 'name="T_mot"', "not unique"),
-        (r"<DefaultExperiment[^>]*>", "", "DefaultExperiment"),
+        *IN_BOTH,
         (r'<Float64 name="time"[^>]*>', "", "independent variable"),
         (r' fmiVersion="3.0"', ' fmiVersion="3.1"', "FMI 3.1; only Co-Simulation of FMI 2.0 and 3.0 runs here"),
         (r' instantiationToken="[^"]*"', "", "fmiModelDescription has no instantiationToken"),

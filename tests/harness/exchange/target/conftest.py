@@ -6,17 +6,15 @@ import pytest
 
 pytest.importorskip("casadi", reason="the extra `native` is not installed")
 
-from driveline.fmus.native.compiler import CompilerError
 from driveline.fmus.target.image import require_packages
 from driveline.harness.exchange.target.programs import Programs, programs
+from tests.skipping import skipped_if_impossible
 
 
 @pytest.fixture(scope="session")
 def target() -> Iterator[Programs]:
     """Our controller on the emulated target and on this machine."""
-    try:
+    with skipped_if_impossible():
         require_packages()
-    except CompilerError as reason:
-        pytest.skip(str(reason))
     with programs("DampingController", {}) as made:
         yield made
