@@ -1,8 +1,10 @@
 """What several tests share."""
 
+import gc
 import os
 import pickle
 import tempfile
+from collections.abc import Generator
 from pathlib import Path
 from shutil import copytree
 from typing import Any
@@ -31,6 +33,18 @@ def pytest_configure(config: pytest.Config) -> None:
         command = caching_compiler(config.cache.mkdir("compiled"))
         if command:
             os.environ["CC"] = str(command)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """What is collected, and the modules that this imports, stay until the end: no collection of garbage looks for
+    any in them, while they are made or later. It took a fifth of the time of all collecting."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture

@@ -81,7 +81,7 @@ FAULTS = {
 def test_single_precision_recognises_a_fault_within_a_sample(
     fault: str, programs: dict[str, Path], both_built: Path
 ) -> None:
-    inputs = fed("drive", both_built).inputs.copy()
+    inputs = fed("drive", both_built).inputs[:2500].copy()  # to a second after the damping is back
     name, value = FAULTS[fault]
     column = CONTROLLER.Input._fields.index(name)
     inputs[1000:1200, column] = inputs[1000, column] if value is None else value

@@ -7,6 +7,7 @@ import sys
 import time
 import zipfile
 from io import BytesIO
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from driveline.harness.cosimulation.system import System
 from driveline.harness.loop.settings import loop as looped
 from tests import ROOT
 from tests.foreign.stranger import build_stranger, in_words_of
+from tests.slow import slow
 
 LATER = "if (time > 0.0995)"
 
@@ -77,8 +79,14 @@ FAULTS = {
 every_fmi = pytest.mark.parametrize("fmi", [2, 3])
 
 
-@every_fmi
-@pytest.mark.parametrize("fault", FAULTS)
+OF_EACH_CALL = ("exits in a step", "is not instantiated", "aborts", "crashes when freed", "puts out NaN")
+"""Faults that meet every call whose name and arguments are others in FMI 3.0."""
+
+
+@pytest.mark.parametrize(
+    ("fault", "fmi"),
+    slow(product(FAULTS, (2, 3)), but=[*((fault, 2) for fault in FAULTS), *((fault, 3) for fault in OF_EACH_CALL)]),
+)
 def test_a_stranger_is_named_with_its_call(tmp_path, unpacked, fault, fmi):
     does, message = FAULTS[fault]
     system = System({"car": build_stranger(tmp_path, fmi=fmi, **does)}, limits=Limits(call=0.5))
