@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from rich.table import Table
 
+from driveline.fmus import signal_faults
 from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
@@ -35,8 +36,9 @@ from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults.fault_injection import with_faults
 from driveline.harness.views.terminal import print_table
 from driveline.models.controller.supervision import FALLBACK
+from driveline.models.signal_faults import FRAME, LATE, MOTOR_SPEED, MOTOR_TORQUE
 
-from .frame_errors import FMU
+from . import periodic_errors
 
 PLANT, OURS = "ValidationVehicle", "DampingController"
 QUIET_PEAK, QUIET_RMS = 20.0, 1.0
@@ -59,7 +61,8 @@ class Run:
     Attributes:
         group: row of the tables.
         seen_from: instant in s from which the torque counts.
-        errors: parameters of FrameErrors.
+        begin: of the errors of the frame in s; None: there are none.
+        errors: parameters of SignalFaults, or of PeriodicErrors where they have a frequency.
         plant: parameters of the plant.
     """
 
@@ -67,12 +70,13 @@ class Run:
     manoeuvre: Manoeuvre
     seen_from: float = 1.0
     plant: Mapping[str, float] = field(default_factory=dict)
+    begin: float | None = None
     errors: Mapping[str, float] = field(default_factory=dict)
     seed: int = 1
 
     def __str__(self) -> str:
         """What it is within its group."""
-        begin = (f"wrong from {self.errors['begin']:g} s on",) if self.errors else ()
+        begin = () if self.begin is None else (f"wrong from {self.begin:g} s on",)
         return ", ".join((self.manoeuvre.name, *(f"{name} {value:g}" for name, value in self.plant.items()), *begin))
 
 
@@ -148,27 +152,28 @@ DRIVES = (MANOEUVRES["launch"], hill_start(0.12), MANOEUVRES["tipin15"], MANOEUV
 
 def with_wrong_frames() -> Iterator[Run]:
     for late in (0.01, 0.02, 0.03, 0.04, 0.052, 0.062, 0.08, 0.1):
-        for what, errors in (
-            ("speed", {"late_omega_1": late}),
-            ("torque", {"late_T_mot": late}),
-            ("frame", {"late_omega_1": late, "late_T_mot": late}),
-        ):
+        for what, signal in (("speed", MOTOR_SPEED), ("torque", MOTOR_TORQUE), ("frame", FRAME)):
             for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
-                given = {**errors, "begin": begin}
-                yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, given)
+                end = manoeuvre.duration
+                given = {"kind_1": LATE, "signal_1": signal, "begin_1": begin, "end_1": end, "size_1": late}
+                yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, begin, given)
     for frequency in (2.0, 4.0, 6.0, 8.0, 10.0, 14.0):
         for what, errors in (("speed off by 7 rad/s", {"e_omega_1": 7.0}), ("torque off by 40 N.m", {"e_T_mot": 40.0})):
             for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
                 given = {**errors, "begin": begin, "frequency": frequency}
-                yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, given)
+                yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, begin, given)
 
 
 STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
 
 
-def gear_torque(each: Run, settings: Settings, injector: Path) -> tuple[np.ndarray, float]:
+INJECTORS = {False: signal_faults.FMU, True: periodic_errors.FMU}
+"""What makes the errors of the frame: by whether they are periodic."""
+
+
+def gear_torque(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -> tuple[np.ndarray, float]:
     """In N.m at the samples that count, and the time in fallback in s."""
-    system = with_faults(loop(settings), injector)
+    system = with_faults(loop(settings), injectors["frequency" in each.errors])
     parameters = start(each.manoeuvre, each.seed) | dict(settings.parameters)
     parameters |= {f"plant.{name}": value for name, value in each.plant.items()}
     parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
@@ -178,9 +183,9 @@ def gear_torque(each: Run, settings: Settings, injector: Path) -> tuple[np.ndarr
     return rows["plant.T_gear"][rows["time"] >= each.seen_from], fallback
 
 
-def ratios(each: Run, settings: Settings, injector: Path) -> Ratios:
-    off, _ = gear_torque(each, settings.replace(control=False), injector)
-    on, fallback = gear_torque(each, settings, injector)
+def ratios(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -> Ratios:
+    off, _ = gear_torque(each, settings.replace(control=False), injectors)
+    on, fallback = gear_torque(each, settings, injectors)
     return Ratios(
         peak=float(np.abs(on).max() / max(np.abs(off).max(), QUIET_PEAK)),
         rms=band_rms(on, T_S) / max(band_rms(off, T_S), QUIET_RMS),
@@ -208,10 +213,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--fmus", type=Path, default=BUILD, help="folder of the FMUs")
     parser.add_argument("--workers", type=int, help="processes (default: one a core)")
     options = parser.parse_args(arguments)
-    injector = made_if_missing(FMU, options.fmus, NATIVE).absolute()
+    injectors = {key: made_if_missing(fmu, options.fmus, NATIVE).absolute() for key, fmu in INJECTORS.items()}
     for controller, study in product(options.controller or [OURS], options.study or STUDIES):
         runs, settings = list(STUDIES[study]()), built(PLANT, controller=controller, folder=options.fmus, build=NATIVE)
-        measure = partial(ratios, settings=settings, injector=injector)
+        measure = partial(ratios, settings=settings, injectors=injectors)
         show(runs, run_many(measure, runs, options.workers, study), f"{controller}: {study}")
 
 

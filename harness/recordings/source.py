@@ -103,4 +103,6 @@ def samples(
 
 def not_finite(path: Path, where: str, column: Column, value: str) -> RecordingError:
     """The message about a value that cannot be used."""
-    return RecordingError(f"{path}, {where}, column {column.heading}: {value or 'nothing'} is not a finite number")
+    return RecordingError(
+        f"{path}, {where}, column {column.heading}: {value or 'an empty cell'} is not a finite number"
+    )

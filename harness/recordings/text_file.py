@@ -81,7 +81,7 @@ class TextFile:
             return cells
         values = seconds(cells.tolist())
         if isinstance(values, int):
-            cell = plain(cells[values], LONGEST_CELL) or "nothing"
+            cell = plain(cells[values], LONGEST_CELL) or "an empty cell"
             raise RecordingError(
                 f"{self.path}, {where(values)}, column {self.columns[place].heading}: {cell} is no time as in the "
                 f"first row, such as {EXAMPLES}"

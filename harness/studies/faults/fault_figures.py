@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 
+from ....models.controller.causes import OUTPUT
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import matrix_axes, plot, sheet
@@ -21,6 +22,9 @@ SHARES = LinearSegmentedColormap.from_list("shares", ("#DDEEF8", "#E69F00", "#D5
 
 STATUS = {1.0: "off", 2.0: "wheel", 3.0: "no wheel", 4.0: "fallback"}
 """Of the controller."""
+
+CAUSES = {number: word.replace("_", " ") for number, (word, _) in enumerate(OUTPUT.items, 1)}
+"""Why it does not damp, or less."""
 
 
 def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Path]:
@@ -103,12 +107,17 @@ def case_panels(case: Case, runs: Runs) -> list[Panel]:
         )
         for name in ("plant.T_gear", "controller.T_damp", "controller.status")
     )
-    return [
+    panels = [
         Panel("speed in rad/s", [lasting, *speeds]),
         Panel("gear torque in N·m", [lasting, without, *torques]),
         Panel("added torque in N·m", [lasting, *added]),
         Panel("status", [lasting, *status], bounds=(0.7, 4.3), ticks=STATUS, height=0.55),
     ]
+    if "controller.cause" in (faulty.dtype.names or ()):  # a controller of somebody else's need not have it
+        found = {float(number): CAUSES[number] for number in np.unique(faulty["controller.cause"]).astype(int)}
+        cause = drawn(faulty, "controller.cause", "with the fault", VERMILION, 1.0, held=True)
+        panels.append(Panel("cause", [lasting, cause], bounds=(0.5, len(CAUSES) + 0.5), ticks=found, height=0.55))
+    return panels
 
 
 def plot_case(case: Case, runs: Runs, verdict: str, stem: Path, caption: str = "") -> list[Path]:

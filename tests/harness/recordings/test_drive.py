@@ -153,7 +153,7 @@ def test_the_largest_values_that_can_be_are_taken(write):
 
 
 def test_a_short_line_is_refused(write):
-    with pytest.raises(RecordingError, match=r"line 4, column Motor Torque.*nothing"):
+    with pytest.raises(RecordingError, match=r"line 4, column Motor Torque.*: an empty cell is"):
         read_drive(write(*rows(2), "0.2,36,500"))
 
 

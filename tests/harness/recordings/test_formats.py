@@ -49,7 +49,9 @@ def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant
     cells[1] = cell
     lines[-4] = f"{quote}{separator}{quote}".join(cells)
     path.write_bytes("\n".join(lines).encode(encoding))
-    with pytest.raises(RecordingError, match=rf"line {len(lines) - 3}, column .?[Vv]elocity.*: {cell or 'nothing'} is"):
+    with pytest.raises(
+        RecordingError, match=rf"line {len(lines) - 3}, column .?[Vv]elocity.*: {cell or 'an empty cell'} is"
+    ):
         read_drive(path)
 
 

@@ -7,6 +7,7 @@ from argparse import ArgumentParser
 from dataclasses import replace
 from math import inf, isnan, nan
 
+import numpy as np
 import pytest
 
 from driveline.harness.base.errors import DrivelineError
@@ -19,6 +20,7 @@ from driveline.harness.studies.faults import fault_injection
 from driveline.harness.studies.faults.fault_campaign import Outcome, campaign, table
 from driveline.harness.studies.faults.fault_cases import PLANS, case
 from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS
+from driveline.harness.studies.faults.fault_figures import case_panels
 from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
 from driveline.harness.studies.faults.judges import JUDGES
 
@@ -50,6 +52,17 @@ def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_pa
     for name in ("faults", "fault_pairs"):
         assert f"figures/{name}.png" in page
         assert (tmp_path / "figures" / f"{name}.png").is_file()
+
+
+def test_the_figure_of_a_case_names_the_causes_that_were_found():
+    names = ("faults.omega_2_can", "faults.omega_1_meas", "plant.omega_1", "plant.T_gear", "controller.T_damp")
+    types = [(name, float) for name in ("time", *names, "controller.status", "controller.cause")]
+    run = np.ones(3, dtype=types)
+    run["controller.cause"] = 1, 4, 1
+    *others, panel = case_panels(case(1, 1, PLANTS), fault_injection.Runs(run, run, run))
+    assert (panel.label, panel.ticks) == ("cause", {1.0: "none", 4.0: "speed frozen"})
+    bare = run[[name for name in run.dtype.names if name != "controller.cause"]]
+    assert len(case_panels(case(1, 1, PLANTS), fault_injection.Runs(bare, bare, bare))) == len(others)
 
 
 def test_pairs_that_are_not_clean_are_named_too(outcomes):
