@@ -91,6 +91,7 @@ class Loop:
                 if refusal:
                     begun = refusal.status == NOT_FINITE
                     _check(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
+                table.passed(len(chunk))
                 done(chunk.stop)
         for instance in self._instances:
             instance.call("terminate")
@@ -127,7 +128,7 @@ class Loop:
         Raises:
             SimulationError: an FMU refuses, or the outputs do not settle: an algebraic loop.
         """
-        stop = float(table["time"][-1])
+        stop = float(table[-1]["time"])
         for instance in self._instances:
             prefix = f"{instance.name}."
             own = {name.removeprefix(prefix): parameters[name] for name in parameters if name.startswith(prefix)}

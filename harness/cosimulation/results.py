@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
+
+from .row_file import RESIDENT, RowFile
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -14,25 +16,50 @@ if TYPE_CHECKING:
 class Results(np.ndarray):
     """A row an instant, the columns `time` and `instance.variable`.
 
-    Some of its rows or columns are Results again; a single column is an ordinary array.
+    Some of its rows or columns are Results again; a single column is an ordinary array. Those of a long run are in a
+    file: a column is a copy then, which cannot be written to, and no more of the others is in memory than a piece.
 
     Attributes:
         units: by column; what has none is not in it.
+        file: in which the rows are; None: in memory.
     """
 
     units: Mapping[str, str]
+    file: RowFile | None
 
-    def __new__(cls, table: np.ndarray, units: Mapping[str, str]) -> Self:
+    def __new__(cls, table: np.ndarray, units: Mapping[str, str], file: RowFile | None = None) -> Self:
         made = table.view(cls)
-        made.units = units
+        made.units, made.file = units, file
         return made
 
     def __array_finalize__(self, source: Any) -> None:
         self.units = getattr(source, "units", {})
+        self.file = getattr(source, "file", None)
 
     def __getitem__(self, key: Any) -> Any:
         found = super().__getitem__(key)
-        return np.asarray(found) if isinstance(key, str) else found
+        if not isinstance(key, str):
+            return found
+        column = np.asarray(found)
+        if self.file is None:
+            return column
+        read = np.empty(column.shape, column.dtype)
+        for rows in self.pieces():
+            read[rows] = column[rows]
+        read.flags.writeable = False
+        return read
+
+    def pieces(self) -> Iterator[slice]:
+        """The rows, piece by piece; what has been done with a piece takes no memory at the next one."""
+        each = max(1, RESIDENT // self.itemsize)
+        for start in range(0, len(self), each):
+            yield slice(start, start + each)
+            self.passed(min(each, len(self) - start))
+
+    def passed(self, count: int) -> None:
+        """So many rows more have been read or written."""
+        if self.file is not None:
+            self.file.touched(count * abs(self.strides[0]))
 
     def __reduce__(self) -> Any:
         make, arguments, state = super().__reduce__()  # type: ignore[misc]

@@ -17,6 +17,7 @@ from ..base.errors import WiringError
 from ..base.plain_text import plain
 from .interface import Interface, type_of, unit_of
 from .results import Results
+from .row_file import zeros
 
 
 def require_fit(name: str, kind: str, samples: NDArray[np.generic]) -> None:
@@ -92,24 +93,29 @@ class Layout:
         """First byte of a column in a row."""
         return self._offsets[name]
 
-    def table(self, time: NDArray[np.float64], inputs: Mapping[str, NDArray[np.generic]]) -> np.ndarray:
+    def table(self, time: NDArray[np.float64], inputs: Mapping[str, NDArray[np.generic]]) -> Results:
         """A row for each instant, with what is known in advance; zeros for the rest.
 
         Raises:
             WiringError: an input does not take its samples.
+            MemoryError: there is no room for so many rows.
         """
         for name, samples in inputs.items():
             require_fit(name, self._types[name], samples)
-        table = np.zeros(len(time), self.dtype)
-        for name, samples in {"time": time, **inputs}.items():
-            table[name] = samples
+        rows, file = zeros(len(time), self.dtype)
+        table = Results(rows, self.units, file)
+        for piece in table.pieces():
+            for name, samples in {"time": time, **inputs}.items():
+                rows[name][piece] = samples[piece] if samples.shape else samples
         return table
 
-    def results(self, table: np.ndarray) -> Results:
+    def results(self, table: Results) -> Results:
         """The same memory with the Booleans as such."""
-        for name in self._truths:
-            table[name] = table[name] != 0
-        return Results(table.view(self.recorded), self.units)
+        rows = np.asarray(table)
+        for piece in table.pieces():
+            for name in self._truths:
+                rows[name][piece] = rows[name][piece] != 0
+        return table.view(self.recorded)
 
 
 def units(interfaces: Mapping[str, Interface], inputs: Collection[str]) -> dict[str, str]:

@@ -5,7 +5,7 @@ Filters are of Butterworth, of order 4, run forwards and backwards, so that noth
 
 import numpy as np
 
-from .oscillation import SPAN
+from .oscillation import SPAN, forwards_and_backwards
 from .spectrum import DRIVE_TRAIN, TO_50_HZ
 
 HIGHEST = 0.9
@@ -15,14 +15,14 @@ HIGHEST = 0.9
 def band_part(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN) -> np.ndarray:
     """The part of x (N samples, T_s apart) within a band in Hz that begins at 0 or above; NaN if the samples are too
     far apart to have any of it."""
-    from scipy.signal import butter, sosfiltfilt  # takes longer to load than many a run does
+    from scipy.signal import butter  # takes longer to load than many a run does
 
     low, high = band[0], min(band[1], HIGHEST / (2.0 * T_s))
     if low >= high:
         return np.full(len(x), np.nan)
     kind, corners = ("bandpass", (low, high)) if low else ("lowpass", high)
     sos = butter(4, corners, kind, fs=1.0 / T_s, output="sos")
-    return np.asarray(sosfiltfilt(sos, x, padlen=min(round(SPAN / T_s), len(x) - 1)))
+    return forwards_and_backwards(sos, x, min(round(SPAN / T_s), len(x) - 1))
 
 
 def envelope(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN) -> np.ndarray:

@@ -53,37 +53,45 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     """
     require_kind("results", results, np.ndarray, "results of a run, as simulate gives them")
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    sampled = at_samples(results, T_s)
-    t, T_gear, T_driver = sampled["time"], sampled["plant.T_gear"], sampled["controller.T_driver"]
-    e = added_torque(T_driver, sampled["controller.T_ref"])
-    t_0 = manoeuvre.t_0
+    sampled, t_0 = at_samples(results, T_s), manoeuvre.t_0
 
+    # columns are read when they are needed: all those of a long run would not fit in memory
+    def t() -> np.ndarray:
+        return sampled["time"]
+
+    def T_gear() -> np.ndarray:
+        return sampled["plant.T_gear"]
+
+    def e() -> np.ndarray:
+        return added_torque(sampled["controller.T_driver"], sampled["controller.T_ref"])
+
+    @cache
     def dT() -> float:
-        return height_of_step(manoeuvre, t)
+        return height_of_step(manoeuvre, t())
 
     @cache
     def step() -> Response:
-        return response(t, T_gear, t_0, dT())
+        return response(t(), T_gear(), t_0, dT())
 
     def windowed(signal: np.ndarray) -> np.ndarray:
-        return signal if manoeuvre.dT is None else _piece(signal, t, t_0 + WINDOW[0], t_0 + WINDOW[1])
+        return signal if manoeuvre.dT is None else _piece(signal, t(), t_0 + WINDOW[0], t_0 + WINDOW[1])
 
     computed = {
-        "settling_time": lambda: settling_time(T_gear, T_s, t_0, dT()),
+        "settling_time": lambda: settling_time(T_gear(), T_s, t_0, dT()),
         "overshoot": lambda: step().overshoot,
         "damping_ratio": lambda: step().damping_ratio,
-        "gear_torque_rms": lambda: band_rms(windowed(T_gear), T_s),
+        "gear_torque_rms": lambda: band_rms(windowed(T_gear()), T_s),
         "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, derivative=True),
         "impact_speed": lambda: impact_speed(results, t_0),
         "response_delay": lambda: step().delay,
-        "withheld_time": lambda: withheld_time(_piece(e, t, t_0, t_0 + WITHHELD), T_s, dT()),
-        "stationary_torque_change": lambda: stationary_change(T_driver, e, T_s),
+        "withheld_time": lambda: withheld_time(_piece(e(), t(), t_0, t_0 + WITHHELD), T_s, dT()),
+        "stationary_torque_change": lambda: stationary_change(sampled["controller.T_driver"], e(), T_s),
         "jerk_rms_to_50_Hz": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, TO_50_HZ, derivative=True),
-        "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e) ** 2))),
-        "added_torque_peak": lambda: float(np.abs(windowed(e)).max()),
-        "gear_torque_peak": lambda: float(np.abs(windowed(T_gear)).max()),
-        "end_swing": lambda: float(amplitude(T_gear, T_s)[-round(1.0 / T_s) :].max()),
-        "plateau_swing": lambda: plateau_swing(t, T_gear, manoeuvre.plateau_ends),
+        "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e()) ** 2))),
+        "added_torque_peak": lambda: float(np.abs(windowed(e())).max()),
+        "gear_torque_peak": lambda: float(np.abs(windowed(T_gear())).max()),
+        "end_swing": lambda: float(amplitude(T_gear(), T_s)[-round(1.0 / T_s) :].max()),
+        "plateau_swing": lambda: plateau_swing(t(), T_gear(), manoeuvre.plateau_ends),
     }
     return Metrics(**measured(computed, none_because=not_finite(results)))
 
@@ -115,7 +123,7 @@ def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
     Raises:
         ValueError: T_s is not a multiple of the interval of the results.
     """
-    interval = float(results["time"][1] - results["time"][0])
+    interval = float(np.diff(results[:2]["time"])[0])
     stride = round(T_s / interval)
     if stride < 1 or abs(stride * interval - T_s) > 1e-6 * T_s:
         raise ValueError(
@@ -148,7 +156,7 @@ def impact_speed(results: np.ndarray, t_0: float) -> float:
     Raises:
         Absent: T_gear goes from one sign to the other without ever staying zero between them: there is no backlash.
     """
-    side = np.sign(results["plant.T_gear"])
+    side = np.sign(results["plant.T_gear"]).astype(np.int8)
     closes = np.flatnonzero((side[1:] != 0) & (side[1:] != side[:-1]))
     loaded = np.flatnonzero(side)
     rows_apart = np.diff(loaded)[np.diff(side[loaded]) != 0]

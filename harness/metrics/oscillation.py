@@ -5,10 +5,15 @@ from math import log, pi, sqrt
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from ..base.progress import chunks
 from .declaration import Absent
 
 SPAN = 0.2
 """Length in s of the piece within which a swing is measured: more than one period of the drive train."""
+
+
+FILTERED = 2**17
+"""Samples that are filtered at a time."""
 
 
 def amplitude(x: np.ndarray, T_s: float) -> np.ndarray:
@@ -31,15 +36,29 @@ def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> fl
     zeta = s/sqrt(pi^2 + s^2). With fewer than three it follows from the overshoot alone, the
     decrement of one half period.
     """
-    from scipy.signal import butter, sosfiltfilt  # takes longer to load than many a run does
+    from scipy.signal import butter  # takes longer to load than many a run does
 
     low_pass = butter(2, 12.0, fs=1.0 / T_s, output="sos")
-    extremes = _alternating_extremes(np.asarray(sosfiltfilt(low_pass, y))[first:], round(0.03 / T_s))[:30]
+    extremes = _alternating_extremes(forwards_and_backwards(low_pass, y, 9)[first:], round(0.03 / T_s))[:30]
     if len(extremes) >= 3:
         s = -Polynomial.fit(np.arange(len(extremes)), np.log(np.abs(extremes)), 1).convert().coef[1]
     else:
         s = -log(max(1e-4, overshoot))
     return min(1.0, float(s / sqrt(pi**2 + s**2)))
+
+
+def forwards_and_backwards(sos: np.ndarray, x: np.ndarray, ends: int) -> np.ndarray:
+    """x filtered without shift: the numbers of `scipy.signal.sosfiltfilt` with padlen = ends < len(x), which takes
+    four times the memory."""
+    from scipy.signal import sosfilt, sosfilt_zi
+
+    y = np.concatenate((2.0 * x[0] - x[ends:0:-1], x, 2.0 * x[-1] - x[-2 : -ends - 2 : -1]))
+    for direction in (y, y[::-1]):
+        state = sosfilt_zi(sos) * direction[0]
+        for piece in chunks(len(y), FILTERED):
+            rows = slice(piece.start, piece.stop)
+            direction[rows], state = sosfilt(sos, direction[rows], zi=state)
+    return y[ends : len(y) - ends]
 
 
 def _alternating_extremes(y: np.ndarray, least_distance: int) -> list[float]:

@@ -32,7 +32,7 @@ def height_of_step(manoeuvre: Manoeuvre, t: np.ndarray) -> float:
         raise Absent("the manoeuvre is no step")
     if t[-1] < manoeuvre.t_0 + FITTED:
         raise Absent(f"the run ends less than {FITTED:g} s after the step")
-    demand = np.asarray(manoeuvre.T_driver(t), dtype=float) * np.ones(len(t))
+    demand = np.broadcast_to(np.asarray(manoeuvre.T_driver(t), dtype=float), t.shape)
     before, after = demand[t < manoeuvre.t_0 - 1e-9], demand[t > t[-1] - FITTED]
     start = before[0] if len(before) else demand[0]
     tolerance = 1e-6 * abs(manoeuvre.dT)
@@ -58,21 +58,36 @@ def settling_time(T_gear: np.ndarray, T_s: float, t_0: float, dT: float) -> floa
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """T_gear from the step on, relative to its way, one element a sample.
+    """What T_gear makes of a step, one element a sample.
 
     Attributes:
-        z: from its initial value.
-        y: about the line of its final value, from the beginning of the run.
-        final: that line in N.m, from the beginning of the run.
+        T_gear: in N.m, from the beginning of the run.
+        final: the line of its final value in N.m, from the beginning of the run.
+        initial: its value before the step in N.m.
         first: sample of the step.
         T_s: time between samples in s.
     """
 
-    z: np.ndarray
-    y: np.ndarray
+    T_gear: np.ndarray
     final: np.ndarray
+    initial: float
     first: int
     T_s: float
+
+    @property
+    def way(self) -> float:
+        """From the initial value to the line, at the step, in N.m."""
+        return self.final[self.first] - self.initial
+
+    @property
+    def z(self) -> np.ndarray:
+        """T_gear from its initial value, over its way, from the step on."""
+        return (self.T_gear[self.first :] - self.initial) / self.way
+
+    @property
+    def y(self) -> np.ndarray:
+        """T_gear about the line of its final value, over its way."""
+        return (self.T_gear - self.final) / self.way
 
     @property
     def overshoot(self) -> float:
@@ -110,11 +125,10 @@ def response(t: np.ndarray, T_gear: np.ndarray, t_0: float, dT: float) -> Respon
     last = fitted(t)
     final = Polynomial.fit(t[last], T_gear[last], 1)(t)
     first = round(t_0 / T_s)
-    initial = initial_value(T_gear, first)
-    way = final[first] - initial
-    if not abs(way) >= LEAST_WAY * abs(dT):
+    found = Response(T_gear, final, initial_value(T_gear, first), first, T_s)
+    if not abs(found.way) >= LEAST_WAY * abs(dT):
         raise Absent("the gear torque hardly follows the step of the demand")
-    return Response((T_gear[first:] - initial) / way, (T_gear - final) / way, final, first, T_s)
+    return found
 
 
 def fitted(t: np.ndarray) -> np.ndarray:

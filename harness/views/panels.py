@@ -158,6 +158,40 @@ class Panel:
     x: Axis | None = None
 
 
+DRAWN = 30_000
+"""Values of a part up to which all are drawn."""
+
+PIECES = 3200
+"""Of a part with more values, each drawn as its least and its largest: more than a figure has points beside each
+other."""
+
+MOST_SPANS = 300
+"""Up to which all are drawn; of more those that are nearer to each other than a piece is long are one."""
+
+
+def seen(part: Part, start: float, end: float) -> Part:
+    """What a figure can show of a part of a long run within a window; nothing keeps the whole part in memory."""
+    match part:
+        case Spans(x, until) if len(x) > MOST_SPANS:
+            apart = x[1:] - until[:-1] > (end - start) / PIECES
+            return part._replace(x=x[np.append(True, apart)], end=until[np.append(apart, True)])
+        case Curve() | Band() if len(part.x) > DRAWN:
+            rows = slice(*np.searchsorted(part.x, (start - 1e-9, end + 1e-9)))
+            return _drawn(part._replace(**{name: getattr(part, name)[rows] for name in part.ARRAYS}))
+    return part
+
+
+def _drawn(part: Curve | Band) -> Curve | Band:
+    if len(part.x) <= DRAWN:
+        return part._replace(**{name: getattr(part, name).copy() for name in part.ARRAYS})
+    first = np.arange(0, len(part.x), -(-len(part.x) // PIECES))
+    if isinstance(part, Band):
+        least, most = np.fmin.reduceat(part.low, first), np.fmax.reduceat(part.high, first)
+        return part._replace(x=part.x[first], low=least, high=most)
+    both = np.fmin.reduceat(part.y, first), np.fmax.reduceat(part.y, first)
+    return part._replace(x=part.x[first].repeat(2), y=np.stack(both, axis=1).ravel())
+
+
 def within(panels: Sequence[Panel], start: float, end: float) -> list[Panel]:
     """The panels less what is outside of a window."""
 

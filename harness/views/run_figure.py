@@ -9,7 +9,7 @@ from .annotations import GAP, gap, in_words, marks_of_step, metrics_of
 from .colours import GREEN, GREY
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import plot
-from .panels import DASH_DOT, Axis
+from .panels import DASH_DOT, Axis, seen
 from .signal_lines import (
     ACCELERATION,
     GEAR_TORQUE,
@@ -50,17 +50,17 @@ def plot_run(
     Returns:
         The files written.
     """
-    window = options.clipped(float(results["time"][0]), float(results["time"][-1]))
-    metrics, apart = metrics_of(results, manoeuvre), gap(results)
-    marks = marks_of_step(results, manoeuvre, metrics, window)
+    window = options.clipped(*map(float, results[[0, -1]]["time"]))
+    metrics, apart = metrics_of(results, manoeuvre), seen(gap(results), *window)
+    marks = [seen(mark, *window) for mark in marks_of_step(results, manoeuvre, metrics, window)]
     note = in_words(metrics, "overshoot", "settling_time", "gear_torque_rms")
     panels = [
-        GEAR_TORQUE.of(results, apart, *marks, note=note),
-        MOTOR_TORQUE.of(results, apart),
-        ALL_SPEEDS.of(results, apart._replace(label=GAP)),
-        ENVELOPES.of(results, apart, bounds=(0.0, None)),
-        ACCELERATION.of(results, apart),
-        JERK_UP_TO_50_HZ.of(results, apart, note=in_words(metrics, "jerk_rms")),
-        VEHICLE.of(results, apart),
+        GEAR_TORQUE.of(results, apart, *marks, window=window, note=note),
+        MOTOR_TORQUE.of(results, apart, window=window),
+        ALL_SPEEDS.of(results, apart._replace(label=GAP), window=window),
+        ENVELOPES.of(results, apart, window=window, bounds=(0.0, None)),
+        ACCELERATION.of(results, apart, window=window),
+        JERK_UP_TO_50_HZ.of(results, apart, window=window, note=in_words(metrics, "jerk_rms")),
+        VEHICLE.of(results, apart, window=window),
     ]
     return plot([[panel] for panel in panels], Axis("time in s", window), title, stem, options, size=(7.2, 1.35))

@@ -4,13 +4,14 @@ Lines of one panel differ in their dashes or in how light they are, so that they
 """
 
 from collections.abc import Callable
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..metrics.band_filter import derivative, envelope
 from .colours import BLACK, BLUE, GREEN, GREY, VERMILION
-from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Curve, Dashes, Panel, Part
+from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Curve, Dashes, Panel, Part, seen
 
 KMH = 3.6
 
@@ -39,7 +40,7 @@ def envelope_of(name: str, factor: float = 1.0) -> Signal:
 
 def interval(run: np.ndarray) -> float:
     """Time between the rows in s."""
-    return float(run["time"][1] - run["time"][0])
+    return float(np.diff(run[:2]["time"])[0])
 
 
 WHEEL = Signal(
@@ -84,9 +85,14 @@ class Row(NamedTuple):
     label: str
     lines: tuple[Line, ...]
 
-    def of(self, run: np.ndarray, *behind: Part, **more: Any) -> Panel:
-        """The panel of a run, with what is behind its lines and whatever else `Panel` takes."""
-        return Panel(self.label, [*behind, *(curve for line in self.lines for curve in line.of(run))], **more)
+    def of(self, run: np.ndarray, *behind: Part, window: tuple[float, float] | None = None, **more: Any) -> Panel:
+        """The panel of a run, with what is behind its lines and whatever else `Panel` takes.
+
+        Args:
+            window: from and to when in s it is drawn in a file; of a long run that alone is kept which can be seen.
+        """
+        parts = chain(behind, (curve for line in self.lines for curve in line.of(run)))
+        return Panel(self.label, [seen(part, *window) if window else part for part in parts], **more)
 
 
 DEMAND = Line(column("controller.T_driver"), r"$T_{driver}$, demand", BLACK, DOTTED, 1.1)

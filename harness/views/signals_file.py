@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..base.atomic_files import complete
 from ..base.csv_file import write_csv
@@ -41,14 +41,26 @@ def _parquet(results: np.ndarray, path: Path) -> None:
     """The unit of a column stands in its metadata as `unit`, and where pandas reads `DataFrame.attrs` from."""
     arrow = required("pyarrow", "writing Parquet files", "recordings")
     parquet = required("pyarrow.parquet", "writing Parquet files", "recordings")
-    fields, columns, attributes = [], [], {}
+    fields, attributes = [], {}
     for column, name, unit in _columns(results):
-        columns.append(arrow.array(results[column]))
-        fields.append(arrow.field(name, columns[-1].type, metadata={"unit": unit} if unit else None))
+        kind = arrow.from_numpy_dtype(results.dtype[column])
+        fields.append(arrow.field(name, kind, metadata={"unit": unit} if unit else None))
         attributes |= {name: unit} if unit else {}
     schema = arrow.schema(fields, metadata={"PANDAS_ATTRS": json.dumps({"units": attributes})})
-    with complete(path) as unfinished, unfinished.open("wb") as file:
-        parquet.write_table(arrow.table(columns, schema=schema), file)
+    with (
+        complete(path) as unfinished,
+        unfinished.open("wb") as file,
+        parquet.ParquetWriter(file, schema) as writer,
+    ):
+        for piece in _pieces(results):
+            columns = [arrow.array(piece[name]) for name in results.dtype.names or ()]
+            writer.write_table(arrow.table(columns, schema=schema))
+
+
+def _pieces(results: np.ndarray) -> Iterator[np.ndarray]:
+    """The rows, of which no more are copied at a time."""
+    for start in range(0, len(results), ROWS_AT_ONCE):
+        yield results[start : start + ROWS_AT_ONCE]
 
 
 def _mdf(results: np.ndarray, path: Path) -> None:
@@ -58,20 +70,31 @@ def _mdf(results: np.ndarray, path: Path) -> None:
 
     from asammdf.blocks.v4_blocks import FileHistory
 
-    (clock, *_), *others = _columns(results)
-    signals = []
-    for column, name, unit in others:
-        samples = results[column].astype("u1") if results.dtype[column].kind == "b" else results[column].copy()
-        signals.append(asammdf.Signal(samples, results[clock].copy(), name=name, unit=unit or ""))
     history = FileHistory()
     history.time_stamp = NO_DATE
     history.comment = HISTORY.format(version("driveline-damping"))
     with asammdf.MDF(version=MDF_VERSION) as made:
         made.start_time = NO_DATE
-        made.append(signals, common_timebase=True)
+        for piece in _pieces(results):
+            signals = _signals(piece, asammdf.Signal)
+            if made.groups:
+                samples = signals[0].timestamps, *(signal.samples for signal in signals)
+                made.extend(0, [(values, None) for values in samples])
+            else:
+                made.append(signals, common_timebase=True)
         made.file_history.append(history)
         with complete(path) as unfinished, unfinished.open("wb+") as file:
             made.save(file, compression=TRANSPOSED_DEFLATE, add_history_block=False)
+
+
+def _signals(piece: np.ndarray, make: Callable[..., Any]) -> list[Any]:
+    """Of asammdf."""
+    (clock, *_), *others = _columns(piece)
+    signals = []
+    for column, name, unit in others:
+        samples = piece[column].astype("u1") if piece.dtype[column].kind == "b" else piece[column].copy()
+        signals.append(make(samples, piece[clock].copy(), name=name, unit=unit or ""))
+    return signals
 
 
 def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
@@ -82,6 +105,10 @@ def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
     for column in results.dtype.names or ():
         name, unit = split(column)
         yield column, name, unit or units.get(column)
+
+
+ROWS_AT_ONCE = 100_000
+"""That are copied at a time to be written."""
 
 
 class Format(NamedTuple):
