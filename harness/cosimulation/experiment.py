@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.errors import WiringError
+from ..base.progress import chunks
 from .system import Scheme
 
 Source = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
-"""An input from outside: a constant, a sample for each instant, or a function of the instants."""
+"""An input from outside: a constant, a sample for each instant, or a function of instants, which is asked for some at a
+time in a long run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +49,11 @@ class Experiment:
 MOST_STEPS = 2**53
 """From here on a double does not tell the number of a step from that of the next."""
 
-BYTES_OF_A_ROW = 500.0
-"""About what an instant of the loop takes, with the copy that becomes the results."""
+AT_ONCE = 2**18
+"""Instants at which an input is evaluated at a time."""
+
+BYTES_OF_A_ROW = 50.0
+"""About what an instant of the loop takes in memory; its row is in a file where there are many."""
 
 
 def memory() -> float:
@@ -100,7 +105,15 @@ def sampled(name: str, source: Source, time: NDArray[np.float64]) -> NDArray[np.
     Raises:
         WiringError: there are more or fewer samples than instants.
     """
-    samples = np.asarray(source(time) if callable(source) else source)
+    samples = _evaluated(source, time) if callable(source) else np.asarray(source)
     if samples.shape not in ((), time.shape):
         raise WiringError(f"{name} has {samples.shape} samples; the run has {len(time)} instants")
     return samples
+
+
+def _evaluated(source: Callable[[NDArray[np.float64]], ArrayLike], time: NDArray[np.float64]) -> NDArray[np.generic]:
+    """What a function gives for the instants."""
+    if len(time) <= AT_ONCE:
+        return np.asarray(source(time))
+    pieces = (time[rows.start : rows.stop] for rows in chunks(len(time), AT_ONCE))
+    return np.concatenate([np.broadcast_to(np.asarray(source(piece)), piece.shape) for piece in pieces])

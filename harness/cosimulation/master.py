@@ -81,6 +81,7 @@ class Loop:
         samples = self._present(experiment.samples(time))
         wires = self._wired(Scheme(experiment.scheme), tuple(samples))
         table = wires.layout.table(time, samples)
+        del samples  # the table has them
         self.reset()
         self._is_new = False
         self._step_size.value = experiment.step_size

@@ -3,7 +3,9 @@
 from collections.abc import Iterator, Mapping
 from math import inf
 
-from ..cosimulation.experiment import instants
+import numpy as np
+
+from ..cosimulation.experiment import instants, sampled
 from ..cosimulation.wiring import Fit, beyond_bounds
 from ..loop.places import INPUTS, PARAMETERS, STEP_SIZE
 from .manoeuvre import Manoeuvre
@@ -47,7 +49,7 @@ def _problems(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float]
     T_max = fitted.parameters(parameters)["motor"].get("T_max", inf)
     for port in INPUTS:
         if hasattr(manoeuvre, port.variable):
-            values = getattr(manoeuvre, port.variable)(time) + 0.0 * time
+            values = np.broadcast_to(sampled(port.name, getattr(manoeuvre, port.variable), time), time.shape)
             for k in (values.argmin(), values.argmax()):
                 problem = beyond_bounds(fitted, "input", port.name, values[k])
                 if port.variable == "T_driver" and abs(values[k]) > T_max:

@@ -12,7 +12,7 @@ from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
-from .oscillation import amplitude
+from .oscillation import SPAN, amplitude
 from .run_metrics import Metrics
 from .spectrum import TO_50_HZ, band_rms
 from .step_response import Response, height_of_step, response, settling_time
@@ -90,7 +90,7 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e()) ** 2))),
         "added_torque_peak": lambda: float(np.abs(windowed(e())).max()),
         "gear_torque_peak": lambda: float(np.abs(windowed(T_gear())).max()),
-        "end_swing": lambda: float(amplitude(T_gear(), T_s)[-round(1.0 / T_s) :].max()),
+        "end_swing": lambda: float(amplitude(T_gear()[-round((1.0 + SPAN) / T_s) :], T_s)[-round(1.0 / T_s) :].max()),
         "plateau_swing": lambda: plateau_swing(t(), T_gear(), manoeuvre.plateau_ends),
     }
     return Metrics(**measured(computed, none_because=not_finite(results)))
@@ -135,7 +135,10 @@ def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
 
 def added_torque(T_driver: np.ndarray, T_ref: np.ndarray) -> np.ndarray:
     """e = T_ref - T_driver in N.m, the demand delayed by the one sample that every controller needs."""
-    return T_ref - np.concatenate((T_driver[:1], T_driver[:-1]))
+    e = np.array(T_ref)
+    e[0] -= T_driver[0]
+    e[1:] -= T_driver[:-1]
+    return e
 
 
 def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
@@ -158,16 +161,22 @@ def impact_speed(results: np.ndarray, t_0: float) -> float:
     """
     side = np.sign(results["plant.T_gear"]).astype(np.int8)
     closes = np.flatnonzero((side[1:] != 0) & (side[1:] != side[:-1]))
-    loaded = np.flatnonzero(side)
-    rows_apart = np.diff(loaded)[np.diff(side[loaded]) != 0]
-    if len(rows_apart) and (rows_apart == 1).all():
+    if _never_apart(side):
         raise Absent("the gear torque is never zero between both flanks: the plant shows no backlash")
     closes = closes[(results["time"][closes] >= t_0 - 1e-9) & (closes > 0) & (closes < len(side) - 2)]
-    speed = np.abs(results["plant.omega_1"] - results["plant.omega_2"])
+    around = closes + np.array([[-1], [0], [1]])
+    before, speed, after = np.abs(results["plant.omega_1"][around] - results["plant.omega_2"][around])
     in_gap = (side[closes - 1] == 0) & (side[closes] == 0)
-    growth = np.where(in_gap, speed[closes] - speed[closes - 1], speed[closes + 1] - speed[closes])
+    growth = np.where(in_gap, speed - before, after - speed)
     part = _part_of_interval(results["plant.T_gear"], closes)
-    return float((speed[closes] + part * growth).max(initial=0.0))
+    return float((speed + part * growth).max(initial=0.0))
+
+
+def _never_apart(side: np.ndarray) -> bool:
+    """Whether the torque goes from one sign to the other, and always from one row to the next."""
+    loaded = np.flatnonzero(side)
+    rows_apart = np.diff(loaded)[np.diff(side[loaded]) != 0]
+    return len(rows_apart) > 0 and bool((rows_apart == 1).all())
 
 
 def _part_of_interval(T_gear: np.ndarray, closes: np.ndarray) -> np.ndarray:

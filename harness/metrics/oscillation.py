@@ -25,7 +25,9 @@ def amplitude(x: np.ndarray, T_s: float) -> np.ndarray:
     if len(x) < round(SPAN / T_s):
         raise Absent(f"the run is shorter than {SPAN:g} s")
     pieces = np.lib.stride_tricks.sliding_window_view(x, round(SPAN / T_s))
-    return np.ptp(pieces, axis=1) / 2.0
+    swing = np.ptp(pieces, axis=1)
+    swing /= 2.0
+    return swing
 
 
 def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> float:

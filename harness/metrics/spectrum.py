@@ -48,7 +48,8 @@ def band_parts(
     within = np.flatnonzero((f >= band[0]) & (f <= band[1]))
     if band[0] * n * T_s < 1.0 and band[0] > 0.0:
         raise Absent(f"the run is shorter than a period of {band[0]:g} Hz")
-    x = x - np.linspace(x[0], x[-1], n)
+    line = np.linspace(x[0], x[-1], n)
+    x = np.subtract(x, line, out=line)
     X = np.fft.rfft(x, axis=0)[within] if n <= MOST_AT_ONCE else _in_blocks(x, within)
     if derivative:
         X = (X.T * (2j * np.pi * f[within])).T

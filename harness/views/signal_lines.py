@@ -4,7 +4,6 @@ Lines of one panel differ in their dashes or in how light they are, so that they
 """
 
 from collections.abc import Callable
-from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +29,7 @@ class Signal(NamedTuple):
 
 def column(name: str, factor: float = 1.0) -> Signal:
     """A column as it is, or times a factor."""
-    return Signal((name,), lambda run: factor * run[name])
+    return Signal((name,), lambda run: run[name] if factor == 1.0 else factor * run[name])
 
 
 def envelope_of(name: str, factor: float = 1.0) -> Signal:
@@ -73,10 +72,17 @@ class Line(NamedTuple):
     dashes: Dashes = SOLID
     width: float = 1.0
 
-    def of(self, run: np.ndarray) -> list[Curve]:
-        """The curve; none where FMUs of others do not have what it needs."""
-        there = set(self.signal.columns) <= set(run.dtype.names or ())
-        return [Curve(run["time"], self.signal.of(run), *self[1:])] if there else []
+    def of(self, run: np.ndarray, window: tuple[float, float] | None = None) -> list[Part]:
+        """The curve; none where FMUs of others do not have what it needs.
+
+        Args:
+            window: from and to when in s it is drawn in a file; of a long run that alone is kept which can be seen.
+        """
+        if not set(self.signal.columns) <= set(run.dtype.names or ()):
+            return []
+        y = self.signal.of(run)
+        curve = Curve(run["time"], y, *self[1:])
+        return [seen(curve, *window) if window else curve]
 
 
 class Row(NamedTuple):
@@ -86,13 +92,8 @@ class Row(NamedTuple):
     lines: tuple[Line, ...]
 
     def of(self, run: np.ndarray, *behind: Part, window: tuple[float, float] | None = None, **more: Any) -> Panel:
-        """The panel of a run, with what is behind its lines and whatever else `Panel` takes.
-
-        Args:
-            window: from and to when in s it is drawn in a file; of a long run that alone is kept which can be seen.
-        """
-        parts = chain(behind, (curve for line in self.lines for curve in line.of(run)))
-        return Panel(self.label, [seen(part, *window) if window else part for part in parts], **more)
+        """The panel of a run, with what is behind its lines and whatever else `Panel` takes; `window` as of `Line`."""
+        return Panel(self.label, [*behind, *(curve for line in self.lines for curve in line.of(run, window))], **more)
 
 
 DEMAND = Line(column("controller.T_driver"), r"$T_{driver}$, demand", BLACK, DOTTED, 1.1)

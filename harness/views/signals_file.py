@@ -107,7 +107,7 @@ def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
         yield column, name, unit or units.get(column)
 
 
-ROWS_AT_ONCE = 100_000
+ROWS_AT_ONCE = 2**15
 """That are copied at a time to be written."""
 
 
