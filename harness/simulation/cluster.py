@@ -6,8 +6,8 @@ the same paths.
 """
 
 import asyncio
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
@@ -33,12 +33,15 @@ TIMEOUT = 10.0
 """Seconds in which the scheduler must answer."""
 
 MOST_UNDER_WAY = 64
-"""Cases that are sent at a time, unless the cluster has more than half as many threads."""
+"""Batches that are sent at a time, unless the cluster has more than half as many threads."""
 
 
 @contextmanager
-def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callable[[Any], Any]]:
-    """What submits a case and gives its future.
+def on_cluster(
+    function: Callable[[Any], Any], address: str
+) -> Iterator[tuple[Callable[[Sequence[Any]], "Future[Any]"], int]]:
+    """What submits a batch of cases and gives the future of what `answered_by` gives for them, and how many batches
+    should be under way.
 
     Args:
         function: of a case; its systems of FMUs stay loaded on the workers.
@@ -54,9 +57,10 @@ def on_cluster(function: Callable[[Any], Any], address: str) -> Iterator[Callabl
         except Exception as refusal:
             raise DrivelineError(f"a worker of {address} cannot be used: {refusal}") from refusal
         threads: Any = client.nthreads()
-        pool = ThreadPoolExecutor(max(MOST_UNDER_WAY, 2 * sum(threads.values())))
+        most = max(MOST_UNDER_WAY, 2 * sum(threads.values()))
+        pool = ThreadPoolExecutor(most)
         try:
-            yield lambda case: pool.submit(_result, client, name, address, case)
+            yield lambda batch: pool.submit(_result, client, name, address, batch), most
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
             with suppress(OSError):  # the scheduler may have gone
@@ -87,18 +91,18 @@ async def _knock(address: str) -> None:
         await (await connect(address, timeout=TIMEOUT)).close()
 
 
-def _result(client: Client, name: str, address: str, case: Any) -> Any:
-    """Of one case. The thread that waits for it fetches it at once, before its worker can be lost."""
+def _result(client: Client, name: str, address: str, batch: Sequence[Any]) -> Any:
+    """Of one batch. The thread that waits for it fetches it at once, before its worker can be lost."""
     try:
-        return client.submit(_run, dumps(case), runner=name, pure=False).result()
+        return client.submit(_run, dumps(batch), runner=name, pure=False).result()
     except CancelledError as reason:
         raise SimulationError(f"the Dask scheduler at {address} has gone") from reason
 
 
-def _run(case: bytes, runner: str) -> Any:
-    """On a worker: what its plugin of that name makes of a case."""
+def _run(batch: bytes, runner: str) -> Any:
+    """On a worker: what its plugin of that name makes of cases."""
     plugin: Any = get_worker().plugins[runner]
-    return plugin.answer(loads(case))
+    return plugin.answer(loads(batch))
 
 
 class Runner(WorkerPlugin):
@@ -123,7 +127,7 @@ class Runner(WorkerPlugin):
         self._here = local()
         self._ended = False
 
-    def answer(self, case: Any) -> Any:
+    def answer(self, batch: Sequence[Any]) -> Any:
         """In one of the threads of the worker."""
         if not hasattr(self._here, "thread"):
             self._here.thread = Thread(self._folder)
@@ -131,7 +135,7 @@ class Runner(WorkerPlugin):
         thread: Thread = self._here.thread
         with thread.busy:
             with kept_by(thread.loops):
-                answer = answered_by(self._function, case)
+                answer = answered_by(self._function, batch)
             if self._ended:
                 thread.loops.close()
             return answer

@@ -10,13 +10,14 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 ```
 """
 
-from collections.abc import Callable, Iterable, Iterator, MutableMapping
+from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import shorten
-from typing import NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
@@ -24,6 +25,12 @@ from ..base.optional_packages import required
 from ..base.plain_text import words
 from ..base.progress import progress
 from ..cosimulation.runs import kept_loaded
+
+if TYPE_CHECKING:
+    from .workers import Submitted
+
+AHEAD = 4
+"""Batches a process that are submitted at a time, the one at work among them."""
 
 Case = TypeVar("Case")
 Answer = TypeVar("Answer")
@@ -36,6 +43,7 @@ def run_many(
     label: str = "simulating",
     scheduler: str | None = None,
     known: MutableMapping[Case, Answer] | None = None,
+    batch: int = 1,
 ) -> list[Answer]:
     """What a function gives for each of the cases, in their order.
 
@@ -48,6 +56,7 @@ def run_many(
         scheduler: address of that of a Dask cluster, whose workers share the cases then.
         known: answers by cases, which are hashable then. They are not asked for again; those that are missing are
             added, in the order of the cases, each as soon as it is there.
+        batch: cases that a worker is given at a time; more where many are brief and workers are far.
 
     Raises:
         Exception: what the function raised first in the order of the cases; its message or a note names the case.
@@ -57,7 +66,7 @@ def run_many(
     every, answers = list(cases), []
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
     count = min(workers or _cores(), max(len(todo), 1))
-    with many(function, count, scheduler if todo else None) as answered, progress(len(every), label) as done:
+    with many(function, count, scheduler if todo else None, batch) as answered, progress(len(every), label) as done:
         done(len(every) - len(todo))
         for case, answer in zip(todo, answered(todo), strict=True):
             if known is not None:
@@ -69,21 +78,25 @@ def run_many(
 
 @contextmanager
 def many(
-    function: Callable[[Case], Answer], workers: int | None = None, scheduler: str | None = None
+    function: Callable[[Case], Answer], workers: int | None = None, scheduler: str | None = None, batch: int = 1
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     """What gives the answers for cases, in their order, and can be asked again: processes and FMUs stay loaded.
 
-    Args and errors as of `run_many`.
+        with driveline.many(settling) as answers:
+            for time in answers(case for case in range(10_000_000)):
 
-    Args:
-        scheduler: address of that of a Dask cluster, whose workers share the cases then.
+    Cases are asked for a few ahead of the answers, and neither are kept: ten million take the memory of a hundred.
+
+    Args and errors as of `run_many`.
     """
     require_workers(workers)
+    if not (isinstance(batch, int) and batch >= 1):
+        raise DrivelineError(f"batch = {batch!r}: it must be a whole number from 1 on")
     count = workers or _cores()
     if scheduler is not None:
-        where = _on_cluster(function, scheduler)
+        where = _on_cluster(function, scheduler, batch)
     else:
-        where = _here(function) if count == 1 else _in_workers(function, count)
+        where = _here(function) if count == 1 else _in_workers(function, count, batch)
     with where as answered:
         yield answered
 
@@ -116,16 +129,16 @@ def _here(function: Callable[[Case], Answer]) -> Iterator[Callable[[Iterable[Cas
 
 @contextmanager
 def _in_workers(
-    function: Callable[[Case], Answer], count: int
+    function: Callable[[Case], Answer], count: int, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
-    from .workers import Lost, Workers
+    from .workers import Lost, Workers, in_order
 
     with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
         workers = Workers(function, count, Path(folder))
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-            for case, future in workers.answered(list(cases)):
-                yield _gathered(case, future, Lost)
+            for each in in_order(workers.submit, batched(cases, batch), AHEAD * count, workers.mend):
+                yield from _gathered(each, workers.submit, Lost)
 
         unfinished = True
         try:
@@ -137,37 +150,57 @@ def _in_workers(
 
 @contextmanager
 def _on_cluster(
-    function: Callable[[Case], Answer], scheduler: str
+    function: Callable[[Case], Answer], scheduler: str, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     required("distributed", "a Dask cluster", "cluster")
     from .cluster import Lost, on_cluster
+    from .workers import in_order
 
-    with on_cluster(function, scheduler) as submit:
+    with on_cluster(function, scheduler) as (submit, most):
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-            todo = list(cases)
-            for case, future in zip(todo, [submit(case) for case in todo], strict=True):
-                yield _gathered(case, future, Lost)
+            for each in in_order(submit, batched(cases, batch), most):
+                yield from _gathered(each, submit, Lost)
 
         yield answered
 
 
-def _gathered(case: object, future: "Future[tuple[Answer, list[str]]]", loss: type[Exception]) -> Answer:
-    """The answer of a worker, whose warnings are logged here.
+def batched(cases: Iterable[Case], size: int) -> Iterator[list[Case]]:
+    """So many at a time, the last ones fewer; what comes later is not asked for yet."""
+    left = iter(cases)
+    while batch := list(islice(left, size)):
+        yield batch
+
+
+def _gathered(
+    submitted: "Submitted", submit: "Callable[[Sequence[Any]], Future[Any]]", loss: type[Exception]
+) -> Iterator[Any]:
+    """The answers of a worker, whose warnings are logged here.
 
     Args:
-        future: of what `answered_by` gives for the case.
-        loss: is raised where the case ended its process each time.
+        submitted: cases, and the future of what `answered_by` gives for them.
+        submit: what is left of them, where one raised an error or ended its process.
+        loss: is raised where the cases ended their process each time.
     """
-    try:
-        answer, warnings = future.result()
-    except loss as error:
-        raise SimulationError(f"a process crashed in {_text(case)}, and again when that was run once more") from error
-    except (Exception, SystemExit) as error:
-        _raise(error, case)
-    for text in warnings:
-        warn_once(text)
-    return answer
+    batch, future = submitted.batch, submitted.future
+    while batch:
+        try:
+            answers = future.result()
+        except loss as error:
+            if len(batch) == 1:
+                text = f"a process crashed in {_text(batch[0])}, and again when that was run once more"
+                raise SimulationError(text) from error
+            for case in batch:
+                yield from _gathered(submitted._replace(batch=[case], future=submit([case])), submit, loss)
+            return
+        except (Exception, SystemExit) as error:
+            _raise(error, batch[0])
+        for answer, warnings in answers:
+            for text in warnings:
+                warn_once(text)
+            yield answer
+        if batch := batch[len(answers) :]:
+            future = submit(batch)
 
 
 def _raise(error: BaseException, case: object) -> NoReturn:

@@ -5,14 +5,16 @@ import gc
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import ExitStack
+from itertools import accumulate
 from multiprocessing import resource_tracker
 from pathlib import Path
 from pickle import loads
 from shutil import rmtree
-from typing import Any
+from typing import Any, NamedTuple
 
 from cloudpickle import dumps
 from loky import ProcessPoolExecutor
@@ -49,23 +51,40 @@ class Workers:
                 tracker.ensure_running()
         self._begin()
 
-    def answered(self, cases: Sequence[Any]) -> Iterator[tuple[Any, "Future[Any]"]]:
-        """The cases with their answers, in their order, as of `answered_by`; a case whose process was lost is run once
-        more."""
-        futures, again = [self._submit(case) for case in cases], -1
-        for k, case in enumerate(cases):
-            if k > again and _is_lost(futures[k]):
-                # The lost process had one of the first cases that are not answered, and nobody tells which. Each of
-                # these is run by itself, so that one that ends its process again takes no other with it.
-                lost = [j for j in range(k, len(cases)) if _is_lost(futures[j])]
-                self._begin_again()
-                for again in lost[: self._count]:
-                    futures[again] = self._submit(cases[again])
-                    if _is_lost(futures[again]):
-                        self._begin_again()
-                for j in lost[self._count :]:
-                    futures[j] = self._submit(cases[j])
-            yield case, futures[k]
+    def submit(self, batch: Sequence[Any]) -> "Future[Any]":
+        """The future of what `answered_by` gives for the cases."""
+        try:
+            with uninterrupted_children():
+                return self._pool.submit(_answer, batch)
+        except Lost as loss:
+            future: Future[Any] = Future()
+            future.set_exception(loss)
+            return future
+
+    def mend(self, waiting: "deque[Submitted]") -> None:
+        """Runs once more what was lost with a process, if the first batch was.
+
+        The lost process had one of the first batches that are not answered, and nobody tells which. Each case of these
+        is run by itself, so that one that ends its process again takes no other with it.
+        """
+        if waiting[0].again or not _is_lost(waiting[0].future):
+            return
+        lost = [_is_lost(each.future) and not each.again for each in waiting]
+        self._begin_again()
+        mended: list[Submitted] = []
+        for each, is_lost, before in zip(waiting, lost, accumulate(lost), strict=True):
+            suspected = is_lost and before <= self._count
+            mended += map(self._by_itself, each.batch) if suspected else [each]
+        waiting.clear()
+        for each in mended:
+            left = not each.again and _is_lost(each.future)
+            waiting.append(each._replace(future=self.submit(each.batch)) if left else each)
+
+    def _by_itself(self, case: Any) -> "Submitted":
+        alone = Submitted([case], self.submit([case]), again=True)
+        if _is_lost(alone.future):
+            self._begin_again()
+        return alone
 
     def end(self, unfinished: bool) -> None:
         """Nothing of them is left.
@@ -84,14 +103,36 @@ class Workers:
         self.end(unfinished=True)
         self._begin()
 
-    def _submit(self, case: Any) -> "Future[Any]":
-        try:
-            with uninterrupted_children():
-                return self._pool.submit(_answer, case)
-        except Lost as loss:
-            future: Future[Any] = Future()
-            future.set_exception(loss)
-            return future
+
+class Submitted(NamedTuple):
+    """Cases that a process is given together, and the future of their answers.
+
+    Attributes:
+        again: they were lost once.
+    """
+
+    batch: Sequence[Any]
+    future: "Future[Any]"
+    again: bool = False
+
+
+def in_order(
+    submit: Callable[[Sequence[Any]], "Future[Any]"],
+    batches: Iterable[Sequence[Any]],
+    most: int,
+    mend: Callable[["deque[Submitted]"], None] = lambda _: None,
+) -> Iterator[Submitted]:
+    """Batches as they are answered, no more than so many of them submitted at a time; `mend` may replace some before
+    the first is waited for."""
+    waiting: deque[Submitted] = deque()
+    for batch in batches:
+        waiting.append(Submitted(batch, submit(batch)))
+        if len(waiting) >= most:
+            mend(waiting)
+            yield waiting.popleft()
+    while waiting:
+        mend(waiting)
+        yield waiting.popleft()
 
 
 def _is_lost(future: "Future[Any]") -> bool:
@@ -123,22 +164,27 @@ def collect_warnings() -> logging.Logger:
     return LOG
 
 
-def _answer(case: Any) -> tuple[Any, list[str]]:
-    return answered_by(_function, case)
+def _answer(batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
+    return answered_by(_function, batch)
 
 
-def answered_by(function: Callable[[Any], Any], case: Any) -> tuple[Any, list[str]]:
-    """In a worker: the answer and what was warned of; what cannot be sent to the process that waits is told in
-    words."""
-    _collected.texts.clear()
-    try:
-        with hidden():
-            return function(case), list(_collected.texts)
-    except SystemExit:
-        raise
-    except BaseException as error:
+def answered_by(function: Callable[[Any], Any], batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
+    """In a worker: the answers and what was warned of, up to a case that raises an error, which is raised if it is the
+    first; what cannot be sent to the process that waits is told in words."""
+    answers: list[tuple[Any, list[str]]] = []
+    for case in batch:
+        _collected.texts.clear()
         try:
-            loads(dumps(error))
-        except Exception:
-            raise SimulationError(words(error)) from None
-        raise
+            with hidden():
+                answers.append((function(case), list(_collected.texts)))
+        except BaseException as error:
+            if answers:
+                break
+            if isinstance(error, SystemExit):
+                raise
+            try:
+                loads(dumps(error))
+            except Exception:
+                raise SimulationError(words(error)) from None
+            raise
+    return answers
