@@ -94,9 +94,9 @@ def run(args: argparse.Namespace) -> int:
         results = simulate(manoeuvre, given)
         made.begin()
         write_run(args, made, given, manoeuvre, results, results)
+        _tell(made, given, manoeuvre, results)
         if args.plot:
             _draw(args, made, given, manoeuvre, results, options)
-        _tell(made, given, manoeuvre, results)
     return 0
 
 

@@ -115,5 +115,10 @@ def _evaluated(source: Callable[[NDArray[np.float64]], ArrayLike], time: NDArray
     """What a function gives for the instants."""
     if len(time) <= AT_ONCE:
         return np.asarray(source(time))
-    pieces = (time[rows.start : rows.stop] for rows in chunks(len(time), AT_ONCE))
-    return np.concatenate([np.broadcast_to(np.asarray(source(piece)), piece.shape) for piece in pieces])
+    samples = np.concatenate(
+        [
+            np.broadcast_to(np.asarray(source(time[rows.start : rows.stop])), len(rows))
+            for rows in chunks(len(time), AT_ONCE)
+        ]
+    )
+    return samples[0] if (samples == samples[0]).all() else samples

@@ -2,6 +2,8 @@
 
 import mmap
 import os
+import platform
+from ctypes import CDLL
 from pathlib import Path
 from tempfile import TemporaryFile
 
@@ -10,11 +12,17 @@ import numpy as np
 MOST_IN_MEMORY = 2**26
 """Bytes of rows from which on they are in a file: 5 minutes of the loop at 1 ms."""
 
-RESIDENT = 2**24
+RESIDENT = 2**22
 """Bytes of the file that are in memory at a time."""
 
 ON_DISK = Path("/var/tmp")
 """Where systems keep temporary files on a disk; /tmp is memory on many."""
+
+LARGE = 2**20
+"""Bytes of an array."""
+
+M_MMAP_THRESHOLD = -3
+"""Of malloc.h."""
 
 
 class RowFile:
@@ -28,6 +36,7 @@ class RowFile:
     """
 
     def __init__(self, size: int) -> None:
+        _give_back()
         folder = os.environ.get("TMPDIR", ON_DISK if os.access(ON_DISK, os.W_OK) else None)
         with TemporaryFile(dir=folder) as file:
             try:
@@ -47,6 +56,13 @@ class RowFile:
         if self._touched >= RESIDENT and hasattr(self.memory, "madvise"):
             self.memory.madvise(mmap.MADV_DONTNEED)
             self._touched = 0
+
+
+def _give_back() -> None:
+    """From now on the C library gives memory of LARGE and more back to the system when it is free. That of GNU keeps
+    holes as long as columns of an hour otherwise."""
+    if platform.libc_ver()[0] == "glibc":
+        CDLL(None).mallopt(M_MMAP_THRESHOLD, LARGE)
 
 
 def _allocate(file: int, size: int) -> None:

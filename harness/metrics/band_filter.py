@@ -30,9 +30,20 @@ def envelope(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN)
     from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
     width = 2 * round(0.5 * SPAN / T_s) + 1
-    return uniform_filter1d(maximum_filter1d(np.abs(band_part(x, T_s, band)), width), width)
+    part = band_part(x, T_s, band)
+    del x  # of an hour each array counts, and the filters take two more
+    np.abs(part, out=part)
+    for filtered in (maximum_filter1d, uniform_filter1d):
+        filtered(part, width, output=part)
+    return part
 
 
 def derivative(x: np.ndarray, T_s: float, band: tuple[float, float] = TO_50_HZ) -> np.ndarray:
     """dx/dt of the part of x within a band."""
-    return np.gradient(band_part(x, T_s, band), T_s)
+    y = band_part(x, T_s, band)
+    slope = np.empty_like(y)
+    slope[[0, -1]] = y[1] - y[0], y[-1] - y[-2]
+    np.subtract(y[2:], y[:-2], out=slope[1:-1])
+    slope[1:-1] /= 2.0
+    slope /= T_s
+    return slope

@@ -29,12 +29,16 @@ class Signal(NamedTuple):
 
 def column(name: str, factor: float = 1.0) -> Signal:
     """A column as it is, or times a factor."""
-    return Signal((name,), lambda run: run[name] if factor == 1.0 else factor * run[name])
+    return Signal((name,), lambda run: _times(factor, run[name]))
 
 
 def envelope_of(name: str, factor: float = 1.0) -> Signal:
     """The envelope of a column from 5 to 50 Hz, or times a factor."""
-    return Signal((name,), lambda run: factor * envelope(run[name], interval(run)))
+    return Signal((name,), lambda run: _times(factor, envelope(run[name], interval(run))))
+
+
+def _times(factor: float, x: np.ndarray) -> np.ndarray:
+    return x if factor == 1.0 else factor * x
 
 
 def interval(run: np.ndarray) -> float:
