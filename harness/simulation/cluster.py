@@ -6,6 +6,7 @@ the same paths.
 """
 
 import asyncio
+import gc
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -126,6 +127,7 @@ class Runner(WorkerPlugin):
         self._threads: list[Thread] = []
         self._here = local()
         self._ended = False
+        gc.freeze()  # the garbage of all that is imported is looked for again and again else
 
     def answer(self, batch: Sequence[Any]) -> Any:
         """In one of the threads of the worker."""

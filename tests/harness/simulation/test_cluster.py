@@ -21,7 +21,8 @@ from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import many
+from driveline.harness.simulation.case_archive import CaseArchive, Table
+from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.faults.fault_campaign import campaign
 from driveline.harness.studies.faults.fault_injection import FaultRunner
@@ -65,6 +66,22 @@ def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
     assert [case for case, _ in first + rest] == list(range(300))
     again = sum(times(case) for case in range(300)) - 300
     assert again <= MOST_UNDER_WAY  # and not the hundred that the lost one had answered
+
+
+def test_a_worker_that_is_lost_leaves_an_archive_with_each_case_once(cluster, tmp_path):
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write("x")
+        if case == 30 and (tmp_path / "30").stat().st_size == 1:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return -case
+
+    table = Table(["case", "answer"], lambda *row: row, lambda cells: (int(cells[0]), int(cells[1])))
+    archive = CaseArchive(tmp_path / "archive.csv", table)
+    found = run_many(run, range(60), scheduler=cluster.scheduler_address, known=archive, batch=4)
+    assert found == [-case for case in range(60)]
+    lines = (tmp_path / "archive.csv").read_text().split()
+    assert lines == ["case,answer", *(f"{case},{-case}" for case in range(60))]
 
 
 def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):

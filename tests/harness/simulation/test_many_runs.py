@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -207,6 +208,61 @@ def test_what_is_known_is_not_asked_again_and_what_is_answered_is_known():
     assert run_many(ask, [2, 3, 4, 2], workers=1, known=known) == ["2", "known", "4", "2"]
     assert asked == [2, 4]
     assert known == {3: "known", 9: "of no use here", 2: "2", 4: "4"}
+
+
+@pytest.mark.parametrize(("workers", "batch", "most"), [(1, 1, 0), (2, 1, 8), (2, 3, 24)])
+def test_cases_are_taken_a_few_ahead_of_the_answers(workers, batch, most):
+    taken = []
+
+    def cases():
+        for case in range(100):
+            taken.append(case)
+            yield case
+
+    with many(str, workers=workers, batch=batch) as answered:
+        for number, answer in enumerate(answered(cases())):
+            assert answer == str(number)
+            assert len(taken) <= number + 1 + most
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_answers_that_nobody_keeps_are_gone(workers):
+    alive = weakref.WeakSet()
+    with many(replaced, workers=workers) as answered:
+        for answer in answered(range(60)):
+            alive.add(answer)
+            assert len(alive) <= 10, "those that are under way, and this one and the one before"
+
+
+def replaced(duration):
+    return replace(TIPIN, duration=duration)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_error_in_a_batch_comes_after_the_answers_before_it(workers):
+    known = {}
+    with pytest.raises(ZeroDivisionError) as error:
+        run_many(lambda case: 6 // case, [3, 2, 1, 0, 6], workers, known=known, batch=5)
+    assert error.value.__notes__ == ["in case 0"]
+    assert known == {3: 2, 2: 3, 1: 6}
+
+
+def test_a_case_that_ends_its_process_is_found_in_its_batch(tmp_path):
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write("x")
+        return os._exit(3) if case == 5 else case
+
+    known = {}
+    with pytest.raises(SimulationError, match="a process crashed in case 5, and again"):
+        run_many(run, range(12), workers=2, known=known, batch=4)
+    assert known == {case: case for case in range(5)}
+
+
+@pytest.mark.parametrize("batch", [0, 1.5])
+def test_a_size_of_batches_that_is_none_is_refused(batch):
+    with pytest.raises(DrivelineError, match="batch = "):
+        run_many(str, [1], batch=batch)
 
 
 SCRIPT = """
