@@ -83,8 +83,9 @@ def main() -> None:
         there, here = on_workers(count, args.runs, args.batch)
         table.add_row(f"{count}", f"{1e3 * there:.2f}", f"{one / there:.2f}", f"{1e3 * here:.2f}")
     Console().print(table)
-    answer = tip_in(1)
-    print(f"bytes of {args.batch} answers: {len(dumps([(answer, [])] * args.batch))}")
+    batch = range(args.batch)
+    answers = [(tip_in(seed), list[str]()) for seed in batch]
+    print(f"bytes of a batch: cases {len(dumps(list(batch)))}, answers {len(dumps(answers))}")
 
 
 if __name__ == "__main__":

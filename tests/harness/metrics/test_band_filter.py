@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
+from driveline.harness.metrics import oscillation, spectrum
 from driveline.harness.metrics.band_filter import band_part, derivative, envelope
+from driveline.harness.metrics.oscillation import forwards_and_backwards
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
 
 T_S = 0.002
 T = T_S * np.arange(3000)
@@ -35,6 +39,36 @@ def test_nothing_is_shifted() -> None:
 def test_the_derivative_of_what_is_slow_is_that_of_the_signal() -> None:
     expected = 2.0 * np.pi * 8.0 * 3.0 * np.cos(2.0 * np.pi * 8.0 * T)
     assert derivative(wave(8.0), T_S)[MIDDLE] == pytest.approx(expected[MIDDLE], abs=1.0)
+
+
+@pytest.mark.parametrize("at_once", [100, 2**17])
+@pytest.mark.parametrize("ends", [0, 9, 200])
+def test_a_filter_in_pieces_gives_what_scipy_gives(at_once: int, ends: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(oscillation, "FILTERED", at_once)
+    x, sos = (
+        np.random.default_rng(2).standard_normal(1001).cumsum(),
+        butter(4, (5.0, 50.0), "band", fs=500.0, output="sos"),
+    )
+    np.testing.assert_array_equal(forwards_and_backwards(sos, x, ends), sosfiltfilt(sos, x, padlen=ends))
+
+
+def test_the_derivative_is_that_of_numpy() -> None:
+    x = np.random.default_rng(3).standard_normal(len(T))
+    np.testing.assert_array_equal(derivative(x, T_S), np.gradient(band_part(x, T_S, TO_50_HZ), T_S))
+
+
+@pytest.mark.parametrize(("band", "of_slope"), [(DRIVE_TRAIN, False), (TO_50_HZ, True)])
+@pytest.mark.parametrize("length", [999, 1000, 1009])
+def test_a_spectrum_block_by_block_is_that_of_all_at_once(
+    band: tuple[float, float], of_slope: bool, length: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    x = np.random.default_rng(4).standard_normal(length).cumsum()
+    expected = band_parts(x, T_S, band, of_slope)
+    monkeypatch.setattr(spectrum, "MOST_AT_ONCE", length - 1)
+    monkeypatch.setattr(spectrum, "BLOCK", 256)
+    found = band_parts(x, T_S, band, of_slope)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13 * abs(expected).max())
+    assert not np.array_equal(found, expected), "it is computed otherwise"
 
 
 def test_samples_that_are_too_far_apart_have_nothing_of_a_band() -> None:

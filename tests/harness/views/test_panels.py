@@ -10,7 +10,23 @@ from matplotlib.figure import Figure
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.figure_style import plot
 from driveline.harness.views.html.linked_figures import linked, tables
-from driveline.harness.views.panels import Arrow, Axis, Band, Bars, Curve, Level, Panel, Part, Points, Spans, within
+from driveline.harness.views.panels import (
+    DRAWN,
+    MOST_SPANS,
+    PIECES,
+    Arrow,
+    Axis,
+    Band,
+    Bars,
+    Curve,
+    Level,
+    Panel,
+    Part,
+    Points,
+    Spans,
+    seen,
+    within,
+)
 
 T = np.linspace(0.0, 4.0, 5)
 X = Axis("time in s", (0.0, 4.0))
@@ -50,6 +66,49 @@ def test_outside_of_a_window_nothing_is_left_but_the_gaps_between_curves() -> No
     assert level is PARTS[Level]
     np.testing.assert_array_equal(spans.x, [1.0, 1.5])
     np.testing.assert_array_equal(spans.end, [1.2, 2.0])
+
+
+def test_of_a_long_curve_the_extremes_of_each_piece_within_the_window_are_drawn() -> None:
+    x = np.linspace(0.0, 100.0, 100_001)
+    y = np.sin(x)
+    y[[50_000, 70_000]] = 7.0, -9.0
+    all_of_it, half, brief = (seen(Curve(x, y), *window) for window in ((0.0, 100.0), (40.0, 60.0), (50.0, 51.0)))
+    assert isinstance(all_of_it, Curve)
+    assert isinstance(half, Curve)
+    assert isinstance(brief, Curve)
+    assert len(all_of_it.x) == len(all_of_it.y) <= 2 * PIECES
+    assert (all_of_it.y.min(), all_of_it.y.max()) == (-9.0, 7.0)
+    assert (half.x[0], half.x[-1], half.y.max()) == (40.0, 60.0, 7.0)
+    np.testing.assert_array_equal(brief.y, y[50_000:51_001])
+    assert brief.y.base is None, "it does not keep the rest"
+
+
+def test_a_short_curve_is_drawn_as_it_is() -> None:
+    x = np.arange(float(DRAWN))
+    curve = Curve(x, x)
+    assert seen(curve, 10.0, 20.0) is curve
+    cut = seen(Curve(np.append(x, DRAWN), np.append(x, 0.0)), 10.0, 20.0)
+    assert isinstance(cut, Curve)
+    np.testing.assert_array_equal(cut.x, np.arange(10.0, 21.0))
+
+
+def test_a_long_band_is_drawn_as_wide_as_it_is() -> None:
+    x = np.linspace(0.0, 1.0, DRAWN + 1)
+    band = seen(Band(x, -x, x), 0.0, 1.0)
+    assert isinstance(band, Band)
+    assert len(band.x) <= PIECES
+    assert (band.low.min(), band.high.max()) == (-1.0, 1.0)
+
+
+def test_of_many_spans_those_that_nobody_can_tell_apart_are_one() -> None:
+    near = np.arange(MOST_SPANS + 1) * 1e-4
+    spans = Spans(np.append(near, 5.0), np.append(near + 5e-5, 6.0))
+    found = seen(spans, 0.0, 10.0)
+    assert isinstance(found, Spans)
+    np.testing.assert_array_equal(found.x, [0.0, 5.0])
+    np.testing.assert_array_equal(found.end, [near[-1] + 5e-5, 6.0])
+    few = spans._replace(x=spans.x[-MOST_SPANS:], end=spans.end[-MOST_SPANS:])
+    assert seen(few, 0.0, 10.0) is few
 
 
 def test_on_a_page_what_has_the_same_abscissas_is_one_table() -> None:

@@ -11,6 +11,7 @@ from driveline.harness.base.errors import MissingExtra
 from driveline.harness.cosimulation.results import Results
 from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.format_detection import opened
+from driveline.harness.views import signals_file
 from driveline.harness.views.signals_file import FORMATS, require_format, signals_path, write_signals
 
 UNITS = {"time": "s", "plant.v": "m/s", "plant.T_gear": "N.m", "controller.T_driver": "N.m", "plant.phi": "rad"}
@@ -48,6 +49,15 @@ def test_what_is_written_is_read_again_with_its_times_and_units(tmp_path: Path, 
             np.testing.assert_array_equal(samples.time, RESULTS["time"])
         if name != "csv":  # whose units stand in the record beside it
             assert column.unit == UNITS.get(column.name)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("rows", [100, 167, 501])
+def test_what_is_written_piece_by_piece_is_read_again(
+    tmp_path: Path, name: str, rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(signals_file, "ROWS_AT_ONCE", rows)
+    test_what_is_written_is_read_again_with_its_times_and_units(tmp_path, name)
 
 
 @pytest.mark.parametrize("name", [name for name in FORMATS if name != "csv"])
