@@ -1,14 +1,15 @@
 """What tip-ins with metrics cost on a Dask cluster of this machine.
 
-Efficiency is the processor time of the runs themselves, as their threads count it, over all that the workers use from
-the first run to the last: both are of the same moment, whatever else the machine does. Beside it stands what a run costs
-in scheduler and waiting process, and the bytes of a batch.
+Efficiency is the processor time of the runs themselves, as their threads count it, over all that the workers use
+from the first run to the last: both are of the same moment, whatever else the machine does. Beside it stands what a
+run costs in scheduler and waiting process, and the bytes of a batch.
 """
 
 import argparse
 from pickle import dumps
 from resource import RUSAGE_SELF, getrusage
 from time import process_time, thread_time
+from typing import Any
 
 from distributed import Client, LocalCluster
 from rich.console import Console
@@ -44,16 +45,19 @@ def processor_time() -> float:
 
 def on_workers(count: int, runs: int, batch: int) -> tuple[float, float, float]:
     """Seconds of processor time a run: of the run itself, of its worker, and of what sends and receives it."""
+    given: Any = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
     with (
-        LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None) as cluster,
+        LocalCluster(**given) as cluster,
         Client(cluster, set_as_default=False) as client,
-        many(tip_in, scheduler=cluster.scheduler_address, batch=batch) as answers,
+        many(tip_in, scheduler=str(cluster.scheduler_address), batch=batch) as answers,
     ):
         for _ in answers(range(4 * count * batch)):  # all have loaded their loop
             pass
-        before, began = client.run(processor_time), process_time()
+        before: Any = client.run(processor_time)
+        began = process_time()
         alone = sum(seconds for _, seconds in answers(range(runs)))
-        after, here = client.run(processor_time), process_time() - began
+        here = process_time() - began
+        after: Any = client.run(processor_time)
     return alone / runs, (sum(after.values()) - sum(before.values())) / runs, here / runs
 
 

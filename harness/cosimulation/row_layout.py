@@ -115,7 +115,7 @@ class Layout:
         for piece in table.pieces():
             for name in self._truths:
                 rows[name][piece] = rows[name][piece] != 0
-        return table.view(self.recorded)
+        return Results(table.view(self.recorded), self.units, table.file)
 
 
 def units(interfaces: Mapping[str, Interface], inputs: Collection[str]) -> dict[str, str]:

@@ -1,6 +1,7 @@
 """How far a record swings, and how fast the swinging fades."""
 
 from math import log, pi, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -49,7 +50,7 @@ def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> fl
     return min(1.0, float(s / sqrt(pi**2 + s**2)))
 
 
-def forwards_and_backwards(sos: np.ndarray, x: np.ndarray, ends: int) -> np.ndarray:
+def forwards_and_backwards(sos: Any, x: np.ndarray, ends: int) -> np.ndarray:
     """x filtered without shift: the numbers of `scipy.signal.sosfiltfilt` with padlen = ends < len(x), which takes
     four times the memory."""
     from scipy.signal import sosfilt, sosfilt_zi
