@@ -24,8 +24,6 @@ class Place(NamedTuple):
     y: float
 
 
-CANVAS = Box(0.0, 0.0, 1000.0, 310.0)
-
 BOXES = {
     SOURCE: Box(20.0, 160.0, 170.0, 260.0),
     "controller": Box(270.0, 160.0, 440.0, 260.0),

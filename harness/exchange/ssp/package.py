@@ -1,16 +1,15 @@
-"""The files of the archive: the structure, parameter sets (SSV), the signal dictionary (SSB), the FMUs."""
+"""The files of the archive: the structure, parameter sets (SSV), the FMUs."""
 
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import NamedTuple
 
 from ...base.errors import DrivelineError
-from ...cosimulation.interface import unit_of
 from ...cosimulation.wiring import Fit
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim
-from .structure import DICTIONARY, structure
-from .variables import Value, outputs, require_fmi_2, require_no_conversion, typed, units, values
+from .structure import structure
+from .variables import Value, require_fmi_2, require_no_conversion, typed, units, values
 from .xml import VERSION, Element, document, element
 
 
@@ -44,7 +43,7 @@ def package(variants: Mapping[str, Variant], manoeuvre: Manoeuvre) -> dict[str, 
         require_fmi_2(variant.fitted)
         require_no_conversion(variant.fitted)
         for path, content in _files(name, variant, manoeuvre, DEFAULT if number == 0 else f"{name}.ssd").items():
-            if files.setdefault(path, content) != content and path != DICTIONARY:
+            if files.setdefault(path, content) != content:
                 raise DrivelineError(f"two files are to be {path} in the archive; rename one of the FMUs")
     return files
 
@@ -56,7 +55,6 @@ def _files(name: str, variant: Variant, manoeuvre: Manoeuvre, ssd: str) -> dict[
     description = f"{manoeuvre.description}, {name}"
     return {
         ssd: structure(name, description, tool, fitted, sets, manoeuvre.duration),
-        DICTIONARY: dictionary(fitted, tool),
         **{path: parameter_set(fitted, tool, {"": found[instance]}) for instance, path in sets.items()},
         f"resources/{name}.ssv": parameter_set(fitted, tool, {f"{i}.": every for i, every in found.items()}),
         **{f"resources/{one.path.name}": one.path.read_bytes() for one in fitted.interfaces.values()},
@@ -90,23 +88,3 @@ def _parameter(prefix: str, value: Value) -> Element:
     described = {"description": value.description} if value.description else {}
     content = typed("ssv", value.type, value.unit, value.value)
     return element("ssv:Parameter", {"name": f"{prefix}{value.name}", **described}, [content])
-
-
-def dictionary(fitted: Fit, tool: str) -> bytes:
-    """The file of the dictionary, by names `instance.variable`; of Reals alone, as others stop FMPy."""
-    signals = {name: variable for name, variable in outputs(fitted).items() if variable.type == "Real"}
-    entries = [
-        element(
-            "ssb:DictionaryEntry",
-            {"name": name, "description": variable.description or name},
-            [typed("ssc", "Real", unit_of(variable))],
-        )
-        for name, variable in signals.items()
-    ]
-    return document(
-        element(
-            "ssb:SignalDictionary",
-            {"version": VERSION, "generationTool": tool},
-            [*entries, *units("ssb", fitted, map(unit_of, signals.values()))],
-        )
-    )

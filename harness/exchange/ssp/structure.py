@@ -4,7 +4,8 @@ Some tools know less than the standard. What is written for them:
 - libcosim: connections are between components alone, every element has a source, the step stands in an annotation,
   and values belong to components;
 - FMPy: every input that is declared is connected;
-- OMSimulator: the type of a component is said even where it is the usual one.
+- OMSimulator: the type of a component is said even where it is the usual one, the step stands in an annotation of the
+  system, and there is neither a signal dictionary nor a geometry of the system, at which its command line stops.
 """
 
 from collections.abc import Mapping
@@ -19,11 +20,8 @@ from . import layout
 from .variables import outputs, their_name, typed, units
 from .xml import VERSION, Element, document, element
 
-DICTIONARY = "resources/signals.ssb"
-"""File of the signal dictionary."""
-
-OSP = "com.opensimulationplatform"
-"""Owner of the annotation that libcosim reads."""
+OSP, OMS = "com.opensimulationplatform", "org.openmodelica"
+"""Owners of the annotations that libcosim and OMSimulator read."""
 
 
 def structure(name: str, description: str, tool: str, fitted: Fit, sets: Mapping[str, str], stop_time: float) -> bytes:
@@ -42,11 +40,7 @@ def structure(name: str, description: str, tool: str, fitted: Fit, sets: Mapping
         [
             element("ssd:Elements", children=[_component(fitted, i, shown, sets) for i in fitted.interfaces]),
             element("ssd:Connections", children=[_connection(fitted, c) for c in fitted.system.connections]),
-            element(
-                "ssd:SignalDictionaries",
-                children=[element("ssd:SignalDictionary", {"name": "signals", "source": DICTIONARY})],
-            ),
-            element("ssd:SystemGeometry", layout.CANVAS._asdict()),
+            _annotation(OMS, "oms:Annotations", element("oms:SimulationInformation", children=[_oms_step()])),
         ],
     )
     return document(
@@ -115,11 +109,16 @@ def _connection(fitted: Fit, connection: Connection) -> Element:
     return made
 
 
+def _oms_step() -> Element:
+    return element("oms:FixedStepMaster", {"description": "oms-ma", "stepSize": STEP_SIZE, "relativeTolerance": 1e-4})
+
+
 def _experiment(stop_time: float) -> Element:
     step = element("osp:FixedStepAlgorithm", {"baseStepSize": STEP_SIZE})
-    annotation = element("ssc:Annotation", {"type": OSP}, [element("osp:Algorithm", children=[step])])
-    return element(
-        "ssd:DefaultExperiment",
-        {"startTime": 0.0, "stopTime": stop_time},
-        [element("ssd:Annotations", children=[annotation])],
-    )
+    times = {"startTime": 0.0, "stopTime": stop_time}
+    return element("ssd:DefaultExperiment", times, [_annotation(OSP, "osp:Algorithm", step)])
+
+
+def _annotation(owner: str, root: str, content: Element) -> Element:
+    made = element("ssc:Annotation", {"type": owner}, [element(root, children=[content])])
+    return element("ssd:Annotations", children=[made])
