@@ -2,8 +2,8 @@
 
 Each runs the same manoeuvre of the same package in a process of its own, in steps of 1 ms. The differences are those
 of the gear torque at the ends of the steps, from our master under Jacobi, whose loop is not read from the package and
-is given the manoeuvre from outside; the last row is our master under its default scheme. MasterSim takes part where
-its solver `mastersim` is on the path.
+is given the manoeuvre from outside; the last row is our master under its default scheme. MasterSim and OMSimulator take
+part where their programs `mastersim` and `OMSimulator` are on the path.
 """
 
 import argparse
@@ -91,7 +91,7 @@ def ecos(ssp: Path, variant: str, steps: int) -> Signals:
 
     with TemporaryDirectory() as folder:
         archive = _with_default(ssp, variant, Path(folder))
-        names = [name for name in _outputs(archive) if name.partition(".")[2] not in ("valid", "counter")]
+        names = [name for name in _outputs(archive) if name.partition(".")[2] not in ("valid", "counter", "enable")]
         with EcosSimulation(STEP_SIZE, ssp_path=str(archive)) as simulation:
             simulation.init(parameter_set="start")
             rows = []
@@ -117,13 +117,33 @@ def mastersim(ssp: Path, variant: str, steps: int) -> Signals:
     return {name: found[1:, column] for column, name in enumerate(names) if column > 0}
 
 
-HOSTS: Mapping[str, Host] = {"FMPy": fmpy, "libcosim": libcosim, "ecos": ecos, "MasterSim": mastersim}
+def omsimulator(ssp: Path, variant: str, steps: int) -> Signals:
+    """Its command line; of the rows of an instant the last one counts."""
+    with TemporaryDirectory() as folder:
+        archive = _with_default(ssp, variant, Path(folder)).absolute()
+        options = [f"--stopTime={steps * STEP_SIZE!r}", "--resultFile=values.csv"]
+        subprocess.run(["OMSimulator", *options, archive], cwd=folder, capture_output=True, check=True)
+        lines = Path(folder, "values.csv").read_text().splitlines()
+    names = [name.strip('"').partition(".loop.")[2] for name in lines[0].split(",")]
+    rows = {round(float(line.partition(",")[0]) / STEP_SIZE): line for line in lines[1:]}
+    values = np.array([[float(value) for value in rows[k].split(",")] for k in range(1, steps + 1)])
+    return {name: values[:, column] for column, name in enumerate(names) if name}
+
+
+HOSTS: Mapping[str, Host] = {
+    "FMPy": fmpy,
+    "libcosim": libcosim,
+    "ecos": ecos,
+    "MasterSim": mastersim,
+    "OMSimulator": omsimulator,
+}
 
 PRESENT = {
     "FMPy": True,
     "libcosim": find_spec("libcosimpy") is not None,
     "ecos": find_spec("ecospy") is not None,
     "MasterSim": which("mastersim") is not None,
+    "OMSimulator": which("OMSimulator") is not None,
 }
 
 

@@ -1,21 +1,34 @@
-"""What driver, brakes and road do, as straight lines between points in time: a source for tools that have none.
+"""What driver, brakes and road do: a source for tools that have none.
+
+Demand, brake and slope are straight lines between points in time,
 
     y(t) = y_k + (y_(k+1) - y_k) (t - time_k) / (time_(k+1) - time_k)    for time_k <= t < time_(k+1)
 
 held before the first point and behind the last that is used: the others are at the instant 1e6 s. Two points at one
-instant are a jump, from which on the later one counts. Instants are taken as whole nanoseconds.
+instant are a jump, from which on the later one counts. On the demand come a sine whose crests are cut off, and a binary
+torque,
+
+    sine_amplitude clip(sine_steepness sin(2 pi sine_frequency t), -1, 1)
+    bit_amplitude (2 b_k - 1),    k = floor(t/bit_time)
+
+whose bits are 50 each in whole numbers, the first one the lowest; the last one is held. Instants are taken as whole
+nanoseconds.
 """
 
 from dataclasses import replace
+from math import pi
 from typing import Annotated, Any, NamedTuple
 
-from .block.declaration import Real, Record, quantities, variables
-from .block.operators import floor, logical_and, where
+from .block.declaration import Boolean, Real, Record, quantities, variables
+from .block.operators import clip, floor, logical_and, minimum, sin, where
 from .block.types import ContinuousBlock
 from .physics.plant import Input as PlantInput
 
-POINTS = 32
+POINTS = 64
 """That a manoeuvre has at the most."""
+
+WORDS, WORD = 8, 50
+"""Numbers with bits, and bits in each: a float holds 53 exactly."""
 
 NEVER = 1e6
 """Instant in s of points that are not used."""
@@ -36,6 +49,7 @@ class Output(NamedTuple):
     T_driver: Annotated[float, Real("N.m", "torque that the driver demands")]
     T_brake: Annotated[float, Real("N.m", "brake torque capacity of the driven wheels, wheel side", nominal=1000.0)]
     slope: Annotated[float, Real("rad", "slope of the road, positive uphill", nominal=0.1)]
+    enable: Annotated[bool, Boolean("whether damping is to be on")]
 
 
 _PLANT = {q.name: q.declaration for q in variables(PlantInput)}
@@ -50,7 +64,31 @@ def _point(k: int) -> dict[str, tuple[Any, float]]:
     return {f"time_{k}": (time, NEVER)} | {f"{name}_{k}": (Annotated[float, q], 0.0) for name, q in signals.items()}
 
 
-Parameters = quantities("Parameters", {name: q for k in range(1, POINTS + 1) for name, q in _point(k).items()})
+def _real(unit: str, description: str, low: float, high: float, start: float) -> tuple[Any, float]:
+    return Annotated[float, Real(unit, description, low, high)], start
+
+
+_TORQUE = _SIGNALS["T_driver"]
+
+Parameters = quantities(
+    "Parameters",
+    {name: q for k in range(1, POINTS + 1) for name, q in _point(k).items()}
+    | {
+        "sine_amplitude": (Annotated[float, replace(_TORQUE, description="of the sine on the demand")], 0.0),
+        "sine_frequency": _real("Hz", "of the sine on the demand", 0.0, 100.0, 1.0),
+        "sine_steepness": _real("1", "of its flanks; above 1 its crests are cut off", 0.0, 100.0, 1.0),
+        "bit_amplitude": (Annotated[float, replace(_TORQUE, description="of the binary torque on the demand")], 0.0),
+        "bit_time": _real("s", "for which a bit of it lasts", 1e-3, NEVER, 1.0),
+    }
+    | {
+        f"bits_{k}": _real("1", f"its bits {WORD * (k - 1)} to {WORD * k - 1}, as a whole number", 0.0, 2.0**WORD, 0.0)
+        for k in range(1, WORDS + 1)
+    }
+    | {
+        "enable_from": _real("s", "instant from which on damping is to be on", 0.0, NEVER, 0.0),
+        "enable_until": _real("s", "instant from which on it is to be off", 0.0, NEVER, NEVER),
+    },
+)
 
 
 def start(u: Input, p: Record) -> State:
@@ -63,7 +101,29 @@ def derivative(x: State, u: Input, p: Record) -> State:
 
 def output(x: State, u: Input, p: Record) -> Output:
     t = floor(x.t * NANOSECONDS + 0.5) / NANOSECONDS
-    return Output(*(_line(t, name, p) for name in Output._fields))
+    return Output(
+        T_driver=_line(t, "T_driver", p) + _sine(t, p) + _binary(t, p),
+        T_brake=_line(t, "T_brake", p),
+        slope=_line(t, "slope", p),
+        enable=logical_and(t >= p.enable_from, t < p.enable_until),
+    )
+
+
+def _sine(t: float, p: Record) -> float:
+    return p.sine_amplitude * clip(p.sine_steepness * sin(2.0 * pi * p.sine_frequency * t), -1.0, 1.0)
+
+
+def _binary(t: float, p: Record) -> float:
+    k = minimum(floor(t / p.bit_time + 1e-6), WORDS * WORD - 1.0)
+    number = p.bits_1
+    for word in range(1, WORDS):
+        number = where(k >= WORD * word, getattr(p, f"bits_{word + 1}"), number)
+    place = k - WORD * floor(k / WORD)
+    for shift in (32, 16, 8, 4, 2, 1):  # the number without its lowest bits, as many as the place says
+        number = where(place >= shift, floor(number / 2.0**shift), number)
+        place = where(place >= shift, place - shift, place)
+    bit = number - 2.0 * floor(0.5 * number)
+    return p.bit_amplitude * (2.0 * bit - 1.0)
 
 
 def _line(t: float, name: str, p: Record) -> float:
@@ -81,7 +141,7 @@ def _line(t: float, name: str, p: Record) -> float:
 
 BLOCK = ContinuousBlock(
     name="Manoeuvre",
-    description="What driver, brakes and road do, as straight lines between points in time",
+    description="What driver, brakes and road do",
     module=__name__,
     Parameters=Parameters,
     Input=Input,

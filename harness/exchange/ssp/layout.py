@@ -34,9 +34,11 @@ BOXES = {
 
 PLACES = {
     f"{SOURCE}.T_driver": Place(1.0, 0.7),
+    f"{SOURCE}.enable": Place(1.0, 0.3),
     f"{SOURCE}.T_brake": Place(0.4, 1.0),
     f"{SOURCE}.slope": Place(0.7, 1.0),
     "controller.T_driver": Place(0.0, 0.7),
+    "controller.enable": Place(0.0, 0.3),
     "controller.T_ref": Place(1.0, 0.7),
     "controller.T_mot_est": Place(1.0, 0.4),
     "controller.omega_1_meas": Place(1.0, 0.2),

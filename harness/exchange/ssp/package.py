@@ -4,12 +4,13 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import NamedTuple
 
+from ...base.collected_warnings import warn_once
 from ...base.errors import DrivelineError
 from ...cosimulation.wiring import Fit
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim
 from .structure import structure
-from .variables import Value, require_fmi_2, require_no_conversion, typed, units, values
+from .variables import Value, conversion, require_fmi_2, typed, units, values
 from .xml import VERSION, Element, document, element
 
 
@@ -36,12 +37,11 @@ def package(variants: Mapping[str, Variant], manoeuvre: Manoeuvre) -> dict[str, 
         variants: by their names, the default first.
 
     Raises:
-        DrivelineError: an FMU is of FMI 3.0, or needs a conversion of units; two FMUs have the same file name.
+        DrivelineError: an FMU is of FMI 3.0; two FMUs have the same file name.
     """
     files: dict[str, bytes] = {}
     for number, (name, variant) in enumerate(variants.items()):
         require_fmi_2(variant.fitted)
-        require_no_conversion(variant.fitted)
         for path, content in _files(name, variant, manoeuvre, DEFAULT if number == 0 else f"{name}.ssd").items():
             if files.setdefault(path, content) != content:
                 raise DrivelineError(f"two files are to be {path} in the archive; rename one of the FMUs")
@@ -53,12 +53,18 @@ def _files(name: str, variant: Variant, manoeuvre: Manoeuvre, ssd: str) -> dict[
     found = values(fitted, variant.given)
     sets = {i: f"resources/{i}_{interface.path.stem}.ssv" for i, interface in fitted.interfaces.items()}
     description = f"{manoeuvre.description}, {name}"
+    project = f"{mastersim.FOLDER}/{name}.msim"
+    if converted := [c.source for c in fitted.system.connections if conversion(fitted, c) != 1.0]:
+        warn_once(
+            f"{', '.join(converted)}: converted to another unit by a LinearTransformation, which libcosim and ecos "
+            "apply, FMPy and OMSimulator leave out; there is no project of MasterSim"
+        )
     return {
         ssd: structure(name, description, tool, fitted, sets, manoeuvre.duration),
         **{path: parameter_set(fitted, tool, {"": found[instance]}) for instance, path in sets.items()},
         f"resources/{name}.ssv": parameter_set(fitted, tool, {f"{i}.": every for i, every in found.items()}),
         **{f"resources/{one.path.name}": one.path.read_bytes() for one in fitted.interfaces.values()},
-        f"{mastersim.FOLDER}/{name}.msim": mastersim.project(fitted, found, manoeuvre.duration),
+        **({} if converted else {project: mastersim.project(fitted, found, manoeuvre.duration)}),
     }
 
 

@@ -17,7 +17,7 @@ from ...cosimulation.system import Connection
 from ...cosimulation.wiring import Fit
 from ...loop.places import STEP_SIZE
 from . import layout
-from .variables import outputs, their_name, typed, units
+from .variables import as_it_is, conversion, outputs, their_name, typed, units
 from .xml import VERSION, Element, document, element
 
 OSP, OMS = "com.opensimulationplatform", "org.openmodelica"
@@ -53,12 +53,9 @@ def structure(name: str, description: str, tool: str, fitted: Fit, sets: Mapping
 
 
 def _connectors(fitted: Fit) -> dict[str, ModelVariable]:
-    """All outputs, and the inputs that are connected."""
-    inputs = {}
-    for connection in fitted.system.connections:
-        instance, _, name = connection.target.partition(".")
-        inputs[connection.target] = fitted.interfaces[instance].variables[name]
-    return outputs(fitted) | inputs
+    """All outputs, and the inputs that are connected, as their FMUs have them."""
+    targets = [connection.target for connection in fitted.system.connections]
+    return {name: as_it_is(fitted, name) for name in (*outputs(fitted), *targets)}
 
 
 def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], sets: Mapping[str, str]) -> Element:
@@ -102,7 +99,10 @@ def _connection(fitted: Fit, connection: Connection) -> Element:
     for end, name in {"start": connection.source, "end": connection.target}.items():
         ends[f"{end}Element"] = name.partition(".")[0]
         ends[f"{end}Connector"] = their_name(fitted.system, name)
-    made = element("ssd:Connection", ends)
+    factor = conversion(fitted, connection)
+    made = element("ssd:Connection", ends | ({"suppressUnitConversion": True} if factor != 1.0 else {}))
+    if factor != 1.0:
+        made.append(element("ssc:LinearTransformation", {"factor": factor}))
     if corners := layout.corners(connection.source, connection.target):
         along = {f"points{axis}": " ".join(repr(corner[k]) for corner in corners) for k, axis in enumerate("XY")}
         made.append(element("ssd:ConnectionGeometry", along))

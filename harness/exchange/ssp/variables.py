@@ -7,7 +7,7 @@ from fmpy.model_description import BaseUnit, ModelVariable
 
 from ...base.errors import DrivelineError
 from ...cosimulation.interface import type_of, unit_of
-from ...cosimulation.system import System
+from ...cosimulation.system import Connection, System
 from ...cosimulation.wiring import Fit
 from .xml import Element, element
 
@@ -39,11 +39,11 @@ def values(fitted: Fit, given: Mapping[str, float]) -> dict[str, list[Value]]:
                 continue
             name, kind = f"{instance}.{ours}", type_of(variable)
             start = variable.start if kind in NUMBERS else None
-            value = given.get(name, start)
+            value = given[name] / _factor(fitted, name) if name in given else start
             if value is not None:
                 as_typed = {"Real": float, "Integer": int, "Boolean": bool}[kind](value)
-                theirs = their_name(fitted.system, name)
-                found[instance].append(Value(theirs, kind, as_typed, unit_of(variable), variable.description))
+                own = as_it_is(fitted, name)
+                found[instance].append(Value(str(own.name), kind, as_typed, unit_of(own), own.description))
     return found
 
 
@@ -52,18 +52,21 @@ def their_name(system: System, name: str) -> str:
     return system.mapping.get(name, name.partition(".")[2])
 
 
-def require_no_conversion(fitted: Fit) -> None:
-    """
-    Raises:
-        DrivelineError: a variable is converted on its way into the loop.
-    """
-    for instance, interface in fitted.interfaces.items():
-        for name, factor in interface.factors.items():
-            if factor != 1.0:
-                raise DrivelineError(
-                    f"{instance}.{name}: {interface.path.name} has it in another unit, and tools that open an SSP "
-                    f"convert none; it must be in {unit_of(interface.variables[name])}"
-                )
+def as_it_is(fitted: Fit, name: str) -> ModelVariable:
+    """The variable of the FMU, with its own name and unit, behind `instance.variable` of the loop."""
+    theirs = their_name(fitted.system, name)
+    described = fitted.interfaces[name.partition(".")[0]].description
+    return next(variable for variable in described.modelVariables if variable.name == theirs)
+
+
+def conversion(fitted: Fit, connection: Connection) -> float:
+    """What the values of the output are multiplied by to be in the unit of the input."""
+    return _factor(fitted, connection.source) / _factor(fitted, connection.target)
+
+
+def _factor(fitted: Fit, name: str) -> float:
+    instance, _, variable = name.partition(".")
+    return fitted.interfaces[instance].factors.get(variable, 1.0)
 
 
 def require_fmi_2(fitted: Fit) -> None:

@@ -24,19 +24,17 @@ TOLERANCE = 1e-9
 FED_ALREADY = {"ecos": {"motor.omega_1_meas"}}
 """What a tool shows as it follows from inputs that it has just handed on; what it hands on itself is as everywhere."""
 
-QUIET = {"motor.sigma_T": 0.0, "motor.sigma_omega": 0.0}
-
 
 def host(name: str) -> Any:
     return pytest.param(name, marks=pytest.mark.skipif(not PRESENT[name], reason=f"{name} is not installed"))
 
 
-def compare(theirs: dict[str, np.ndarray], ours: np.ndarray, expected: set[str]) -> None:
+def compare(theirs: dict[str, np.ndarray], ours: np.ndarray, expected: set[str], steps: int = STEPS) -> None:
     """Fails unless all signals agree at the ends of the first steps; NaN is a row that is not there."""
     common = theirs.keys() & set(ours.dtype.names or ())
     assert expected <= common
     for name in common:
-        values, right = theirs[name][:STEPS].astype(float), ours[name][1 : STEPS + 1].astype(float)
+        values, right = theirs[name][:steps].astype(float), ours[name][1 : steps + 1].astype(float)
         there = ~np.isnan(values)
         assert np.mean(there) > 0.99, name
         error = np.abs(values - right)[there].max()
@@ -54,11 +52,21 @@ def test_tools_that_hand_on_after_the_step_get_what_our_master_gets_under_jacobi
     compare({column: theirs[column] for column in theirs.keys() - FED_ALREADY.get(name, set())}, ours, OUTPUTS)
 
 
-@pytest.mark.parametrize("plant", PLANTS)
-def test_fmpy_gets_that_too_where_the_zeros_are_right_that_it_begins_with(packaged, fmus, plant) -> None:
-    ours = simulate(MANOEUVRES["launch"], plant, parameters=QUIET, scheme=Scheme.JACOBI, folder=fmus)
-    quiet = [option for name, value in QUIET.items() for option in ("--set", f"{name}={value}")]
-    compare(run_in("FMPy", packaged("--manoeuvre", "launch", *quiet), plant, STEPS), ours, OUTPUTS)
+@pytest.mark.parametrize("name", ["creep", "prbs15"])
+@pytest.mark.parametrize("host", [host("libcosim"), host("ecos"), host("MasterSim")])
+def test_a_sine_and_a_binary_torque_are_driven_there_too(packaged, fmus, host, name) -> None:
+    ours = simulate(MANOEUVRES[name], scheme=Scheme.JACOBI, folder=fmus, build="native")
+    theirs = run_in(host, packaged("--manoeuvre", name), PLANTS[0], 200)
+    compare({column: theirs[column] for column in theirs.keys() - FED_ALREADY.get(host, set())}, ours, OUTPUTS, 200)
+
+
+def test_the_command_line_of_omsimulator_runs_it(packaged, fmus) -> None:
+    """It hands on motor.omega_1_meas within the instant: a step less of delay."""
+    if not PRESENT["OMSimulator"]:
+        pytest.skip("OMSimulator is not installed")
+    ours = simulate(MANOEUVRES["tipin15"], scheme=Scheme.JACOBI, folder=fmus, build="native")["plant.T_gear"]
+    theirs = run_in("OMSimulator", packaged(), PLANTS[0], 6000)["plant.T_gear"]
+    assert theirs[-1] == pytest.approx(ours[-1], abs=0.05)
 
 
 @pytest.mark.parametrize("plant", PLANTS)
@@ -73,5 +81,5 @@ def test_fmpy_gets_what_our_master_would_get_if_all_inputs_began_with_zero(packa
     system = with_source(loop(plant, folder=fmus, build="native"), fmus / "native" / "Manoeuvre.fmu")
     given = start(manoeuvre) | points(manoeuvre, fit(system))
     duration = STEPS * STEP_SIZE
-    ours = run(system, Experiment(duration, STEP_SIZE, {"controller.enable": True}, given, Scheme.JACOBI))
+    ours = run(system, Experiment(duration, STEP_SIZE, {}, given, Scheme.JACOBI))
     compare(run_in("FMPy", packaged(), plant, STEPS), ours, OUTPUTS)

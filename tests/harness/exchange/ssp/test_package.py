@@ -2,8 +2,10 @@
 
 import tomllib
 import zipfile
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import fmpy.ssp
 import numpy as np
@@ -11,25 +13,29 @@ import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
+from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
-from driveline.harness.exchange.ssp.layout import BOXES, CANVAS, PLACES
-from driveline.harness.exchange.ssp.loop_with_source import SIGNALS, SOURCE
-from driveline.harness.loop.places import CONNECTIONS, PLANTS
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.exchange.ssp.layout import BOXES, PLACES
+from driveline.harness.exchange.ssp.loop_with_source import SIGNALS, SOURCE, points, with_source
+from driveline.harness.loop.places import CONNECTIONS, PLANTS, STEP_SIZE
+from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.signals import FlatSine, Held
+from driveline.models.manoeuvre import BLOCK, Input, State
 from tests import ROOT
 from tests.foreign import build_car
 
 SCHEMAS = {
     ".ssd": "SystemStructureDescription.xsd",
     ".ssv": "SystemStructureParameterValues.xsd",
-    ".ssb": "SystemStructureSignalDictionary.xsd",
 }
 
 NS = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
     "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
-    "ssb": "http://ssp-standard.org/SSP1/SystemStructureSignalDictionary",
+    "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
 }
 
 SSDS = ("SystemStructure.ssd", "ValidationVehicle.ssd")
@@ -53,7 +59,7 @@ def test_every_document_is_valid_by_the_schemas_of_the_standard(packaged) -> Non
     folder = Path(fmpy.ssp.__file__).parent / "schema"
     with zipfile.ZipFile(packaged()) as archive:
         documents = [name for name in archive.namelist() if Path(name).suffix in SCHEMAS]
-        assert len(documents) == 2 + 1 + 6 + 2
+        assert len(documents) == 2 + 6 + 2
         for name in documents:
             schema = etree.XMLSchema(file=folder / SCHEMAS[Path(name).suffix])
             schema.assertValid(etree.fromstring(archive.read(name)))
@@ -84,6 +90,7 @@ def test_the_connections_are_those_of_the_loop_and_of_the_source(packaged, name)
     found = {tuple(ends(connection)) for connection in parsed(packaged(), name).iterfind(".//ssd:Connection", NS)}
     fed = {"T_driver": "controller.T_driver", "T_brake": "plant.T_brake", "slope": "plant.slope"}
     sources = {(f"{SOURCE}.{signal}", fed[signal]) for signal in SIGNALS}
+    sources.add((f"{SOURCE}.enable", "controller.enable"))
     assert found == sources | {(connection.source, connection.target) for connection in CONNECTIONS}
 
 
@@ -93,6 +100,10 @@ def test_it_keeps_to_what_the_tools_know_of_the_standard(packaged, name) -> None
     assert root.find("ssd:System/ssd:Connectors", NS) is None, "libcosim: connections are between components"
     assert {child.tag for child in root.find("ssd:System/ssd:Elements", NS)} == {f"{{{NS['ssd']}}}Component"}
     assert root.find(".//ssc:Enumeration", NS) is None, "libcosim stops at one"
+    known = {f"{{{NS['ssd']}}}{name}" for name in ("Elements", "Connections", "Annotations")}
+    assert {child.tag for child in root.find("ssd:System", NS)} == known, "OMSimulator's command line stops at others"
+    step = root.find("ssd:System/ssd:Annotations//oms:SimulationInformation/oms:FixedStepMaster", NS)
+    assert (step.get("description"), float(step.get("stepSize"))) == ("oms-ma", STEP_SIZE), "OMSimulator stops without"
     fed = {ends(connection)[1] for connection in root.iterfind(".//ssd:Connection", NS)}
     for component in root.iterfind(".//ssd:Component", NS):
         assert component.get("type"), "OMSimulator has no default"
@@ -101,7 +112,7 @@ def test_it_keeps_to_what_the_tools_know_of_the_standard(packaged, name) -> None
 
 
 @pytest.mark.parametrize("name", SSDS)
-def test_fmpy_reads_its_connectors_units_parameters_and_signals(packaged, name, tmp_path) -> None:
+def test_fmpy_reads_its_connectors_units_and_parameters(packaged, name, tmp_path) -> None:
     copy = tmp_path / "copy.ssp"
     with zipfile.ZipFile(packaged()) as source, zipfile.ZipFile(copy, "w") as target:
         for entry in source.namelist():
@@ -110,9 +121,9 @@ def test_fmpy_reads_its_connectors_units_parameters_and_signals(packaged, name, 
     ssd = read_ssd(copy)
     assert ssd.system is not None
     assert {component.name for component in ssd.system.elements} == BOXES.keys()
-    signals = {entry.name: entry.unit for entry in ssd.system.signalDictionaries[0].entries}
-    assert signals["plant.T_gear"] == "N.m"
-    assert signals["motor.omega_1_meas"] == "rad/s"
+    units = {f"{one.name}.{c.name}": c.unit for one in ssd.system.elements for c in one.connectors}
+    assert units["plant.T_gear"] == "N.m"
+    assert units["motor.omega_1_meas"] == "rad/s"
     assert all(component.parameterBindings[0].parameterValues[0].parameters for component in ssd.system.elements)
 
 
@@ -145,22 +156,17 @@ def test_a_vehicle_file_its_gains_and_what_is_set_are_the_parameter_sets(package
         assert {name: every[f"plant.{name}"] for name in found} == found
 
 
-CURVED = ("creep", "prbs", "prbs15", "throttle", "abs")
-"""Manoeuvres that are no straight lines, or too many."""
-
-
-@pytest.mark.parametrize("name", [name for name, each in MANOEUVRES.items() if name not in CURVED and not each.road])
-def test_the_points_of_the_source_are_the_manoeuvre(packaged, name) -> None:
+@pytest.mark.parametrize("name", [name for name, each in MANOEUVRES.items() if not each.road])
+def test_the_source_makes_the_signals_of_every_manoeuvre(packaged, name) -> None:
     manoeuvre = MANOEUVRES[name]
-    found = values(packaged("--manoeuvre", name), "resources/manoeuvre_Manoeuvre.ssv")
-    count = sum(found[each] < 1e6 for each in found if each.startswith("time_"))
-    times = [found[f"time_{k}"] for k in range(1, count + 1)]
-    assert times == sorted(times)
-    instants = np.arange(round(manoeuvre.duration / 1e-3)) * 1e-3
+    p: Any = BLOCK.Parameters(**values(packaged("--manoeuvre", name), "resources/manoeuvre_Manoeuvre.ssv"))
+    instants = np.arange(0, round(manoeuvre.duration / STEP_SIZE) + 1, 40) * STEP_SIZE  # at jumps, as prbs has them
+    made = [BLOCK.output(State(t), Input(), p) for t in instants]
     for signal in SIGNALS:
-        corners = [found[f"{signal}_{k}"] for k in range(1, count + 1)]
-        drawn = np.interp(np.round(instants, 9), times, corners)
-        np.testing.assert_allclose(drawn, getattr(manoeuvre, signal)(instants), atol=1e-10, err_msg=signal)
+        expected = getattr(manoeuvre, signal)(instants)
+        drawn = [getattr(one, signal) for one in made]
+        np.testing.assert_allclose(drawn, expected, atol=1e-10, err_msg=signal)
+    assert all(one.enable for one in made)
 
 
 def test_the_grip_of_the_road_is_a_parameter_of_the_plant(packaged) -> None:
@@ -178,8 +184,8 @@ def test_it_starts_and_ends_as_the_manoeuvre_does(packaged) -> None:
 def test_in_the_picture_no_block_stands_on_another_and_lines_run_along_the_axes(packaged) -> None:
     boxes = list(BOXES.values())
     for k, a in enumerate(boxes):
-        assert CANVAS.x1 <= a.x1 < a.x2 <= CANVAS.x2
-        assert CANVAS.y1 <= a.y1 < a.y2 <= CANVAS.y2
+        assert a.x1 < a.x2
+        assert a.y1 < a.y2
         assert all(a.x2 < b.x1 or b.x2 < a.x1 or a.y2 < b.y1 or b.y2 < a.y1 for b in boxes[k + 1 :])
     for connection in parsed(packaged(), SSDS[0]).iterfind(".//ssd:Connection", NS):
         start, end = ends(connection)
@@ -209,11 +215,21 @@ def refused(fmus, folder: Path, capsys, *options: str) -> str:
     return capsys.readouterr().err
 
 
-def test_units_that_no_tool_would_convert_are_refused(fmus, tmp_path, capsys) -> None:
-    car = build_car(tmp_path / "car", v=("v", "km/h", 1 / 3.6))
-    message = refused(fmus, tmp_path / "out", capsys, "--plant", str(car), "--map", "plant.v=v")
-    assert "plant.v: Theirs.fmu has it in another unit" in message
-    assert "it must be in m/s" in message
+def test_other_units_are_converted_on_the_connections_and_in_the_parameters(fmus, tmp_path, capsys) -> None:
+    car = build_car(tmp_path / "car", omega_1=("n", "rev/min", 2.0 * np.pi / 60.0), v_0=("start", "km/h", 1 / 3.6))
+    given = ["--plant", str(car), "--map", "plant.omega_1=n", "--map", "plant.v_0=start", "--output", str(tmp_path)]
+    assert main(["ssp", "--fmus", str(fmus), *given]) == 0
+    assert "plant.omega_1: converted to another unit by a LinearTransformation" in capsys.readouterr().err
+    ssp = tmp_path / "driveline.ssp"
+    root = parsed(ssp, SSDS[0])
+    (changed,) = root.iterfind(".//ssc:LinearTransformation/..", NS)
+    assert ends(changed) == ["plant.n", "motor.omega_1"]
+    assert changed.get("suppressUnitConversion") == "true"
+    assert float(changed[0].get("factor")) == pytest.approx(2.0 * np.pi / 60.0)
+    assert root.find(".//ssd:Connector[@name='n']/ssc:Real", NS).get("unit") == "rev/min"
+    assert values(ssp, "resources/plant_Theirs.ssv")["start"] == pytest.approx(15.0)
+    with zipfile.ZipFile(ssp) as archive:
+        assert not [name for name in archive.namelist() if name.endswith(".msim")]
 
 
 def test_fmi_3_is_refused_as_ssp_1_does_not_know_it(fmus, fmi3, tmp_path, capsys) -> None:
@@ -221,14 +237,27 @@ def test_fmi_3_is_refused_as_ssp_1_does_not_know_it(fmus, fmi3, tmp_path, capsys
     assert message.endswith("plant: TwoMassDriveline.fmu is of FMI 3.0; allowed in SSP 1.0 is FMI 2.0\n")
 
 
-@pytest.mark.parametrize("name", ["creep", "prbs"])
-def test_a_demand_that_is_not_made_of_straight_lines_is_refused(fmus, tmp_path, capsys, name) -> None:
-    message = refused(fmus, tmp_path / "out", capsys, "--manoeuvre", name)
-    assert f"{name}: T_driver is not made of straight lines" in message
-    assert message.count("\n") == 1
+def held(count: int, *levels: float) -> Held:
+    return Held(0.01, [levels[k % len(levels)] for k in range(count)])
 
 
-@pytest.mark.parametrize(("count", "fits"), [(32, True), (33, False)])
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"T_driver": held(9, 1.0, 2.0, 3.0)}, "T_driver is not made of straight lines, a sine or a binary torque"),
+        ({"T_brake": FlatSine(5.0, 5.0, 1.0, 1.0)}, "T_brake is not made of straight lines, and"),
+        ({"T_driver": held(401, 1.0, 2.0)}, "its binary torque has 401 bits; other tools are given at most 400"),
+    ],
+)
+def test_what_the_source_cannot_make_is_refused(fmus, change, message) -> None:
+    fitted = fit(with_source(loop(folder=fmus, build="native"), fmus / "native" / "Manoeuvre.fmu"))
+    manoeuvre = MANOEUVRES["tipin15"]
+    points(replace(manoeuvre, T_driver=held(400, 1.0, 2.0)), fitted)
+    with pytest.raises(DrivelineError, match=message):
+        points(replace(manoeuvre, **change), fitted)
+
+
+@pytest.mark.parametrize(("count", "fits"), [(64, True), (65, False)])
 def test_more_points_than_the_source_has_are_refused(fmus, tmp_path, capsys, count, fits) -> None:
     table = tmp_path / "zigzag.csv"
     rows = [f"{0.1 * k:.1f},{k % 2}" for k in range(count)]
@@ -238,7 +267,7 @@ def test_more_points_than_the_source_has_are_refused(fmus, tmp_path, capsys, cou
         assert main(["ssp", "--fmus", str(fmus), "--output", str(tmp_path / "out"), *options]) == 0
     else:
         message = refused(fmus, tmp_path / "out", capsys, *options)
-        assert "zigzag: its lines have 33 points; other tools are given at most 32" in message
+        assert "zigzag: its lines have 65 points; other tools are given at most 64" in message
 
 
 def test_a_package_of_another_loop_stays_without_replace(fmus, tmp_path, capsys) -> None:
