@@ -92,13 +92,14 @@ $(SITE): $(READY)
 site: $(SITE) ## the documentation as a site, into site/; once its packages are installed, without network
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
-dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked
-	$(INSTALL) '.[publish]'
+dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked, and an archive of FMUs for all platforms
+	$(INSTALL) '.[publish,cross]'
 	rm -rf dist
 	$(BIN)/python -m build --no-isolation
 	PATH="$(BIN):$$PATH" auditwheel repair --wheel-dir dist dist/*-linux_*.whl
 	rm dist/*-linux_*.whl
 	$(BIN)/twine check --strict dist/*
+	$(BIN)/python -m docs.studies.archive dist
 	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
 
 clean: ## everything that was made

@@ -217,7 +217,7 @@ def _native_builder(platform: str, fmi: int, own_folder: str, database: bytes = 
         if platform == "all":
             compiler.zig_compiler()
         else:
-            compiler.host_compiler()
+            compiler.host_command()
     except compiler.CompilerError as reason:
         raise NotPossible(str(reason)) from reason
     binaries = compiler.all_binaries if platform == "all" else compiler.host_binaries

@@ -1,4 +1,4 @@
-"""Compiling the C of an FMU: for this machine with its own compiler, for all platforms with that of Zig."""
+"""Compiling the C of an FMU: for this machine with its own compiler or that of Zig, for all platforms with that one."""
 
 import os
 import shutil
@@ -65,8 +65,26 @@ def host_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict
         CompilerError: see there.
     """
     folder = str(fmpy.platform_tuple if fmi == 3 else fmpy.platform)
-    path = f"binaries/{folder}/{name}{fmpy.sharedLibraryExtension}"
-    return {path: _compiled([host_compiler()], name + fmpy.sharedLibraryExtension, sources)}
+    binary = name + fmpy.sharedLibraryExtension
+    if sys.platform == "win32":
+        return {f"binaries/{folder}/{binary}": _compiled_for_windows(zig_compiler(), binary, sources)}
+    return {f"binaries/{folder}/{binary}": _compiled(host_command(), binary, sources)}
+
+
+def host_command() -> list[str]:
+    """The command of the C compiler for FMUs of this machine: its own, or where there is none and on Windows Zig's.
+
+    Raises:
+        CompilerError: there is neither.
+    """
+    if sys.platform == "win32":
+        return zig_compiler()
+    try:
+        return [host_compiler()]
+    except CompilerError as reason:
+        if "CC" in os.environ or find_spec("ziglang") is None:
+            raise CompilerError(f"{reason}; pip install ziglang has one as well") from reason
+        return zig_compiler()
 
 
 def all_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict[str, bytes]:
@@ -114,7 +132,7 @@ def zig_compiler() -> list[str]:
     """
     if find_spec("ziglang") is None:
         raise CompilerError(
-            "to compile for all platforms, install the extra `cross`, "
+            "to compile for all platforms, and on Windows, install the extra `cross`, "
             "as in pip install 'driveline-damping[native,cross]'"
         )
     return [sys.executable, "-m", "ziglang", "cc"]
