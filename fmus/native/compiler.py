@@ -81,9 +81,9 @@ def host_command() -> list[str]:
         return zig_compiler()
     try:
         return [host_compiler()]
-    except CompilerError as reason:
+    except CompilerError:
         if "CC" in os.environ or find_spec("ziglang") is None:
-            raise CompilerError(f"{reason}; pip install ziglang has one as well") from reason
+            raise
         return zig_compiler()
 
 
@@ -120,7 +120,9 @@ def host_compiler() -> str:
     """
     name = os.environ.get("CC", "cc")
     if shutil.which(name) is None:
-        raise CompilerError(f"there is no C compiler {name!r} (the environment variable CC can name another)")
+        raise CompilerError(
+            f"there is no C compiler {name!r} (the environment variable CC can name another, `pip install ziglang` has one)"
+        )
     return name
 
 

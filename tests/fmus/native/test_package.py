@@ -14,6 +14,7 @@ from fmpy.build import build_platform_binary
 
 from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native import compiler
 from tests import ROOT
 from tests.fmus.host import opened
 from tests.slow import slow
@@ -108,6 +109,16 @@ def test_what_is_missing_for_a_native_build_is_said_and_the_other_build_is_made(
     with pytest.raises(NotPossible, match=message):
         builders("native")
     assert len(builders(None)) == 1
+
+
+def test_where_there_is_no_compiler_that_of_zig_is_taken(monkeypatch):
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr("driveline.fmus.native.compiler.shutil.which", lambda name: None)
+    monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda name: object())
+    assert compiler.host_command() == [sys.executable, "-m", "ziglang", "cc"]
+    monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda name: None)
+    with pytest.raises(compiler.CompilerError, match=r"no C compiler 'cc' .*`pip install ziglang` has one"):
+        compiler.host_command()
 
 
 def test_both_builds_are_made_where_they_can_be(native_builder, tmp_path):
