@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.host_table import LINES
 from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.own_file import fmu_in
 from driveline.fmus.errors import BuildError
@@ -17,7 +18,7 @@ from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 
-EXAMPLE, FMPY, *_, EXCHANGE, LINEAR = re.findall(
+EXAMPLE, EXCHANGE, LINEAR = re.findall(
     r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S
 )
 
@@ -145,7 +146,7 @@ def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str
     ("lines", "answer"),
     [
         pytest.param(
-            FMPY + EXCHANGE.replace("result =", "exchanged =") + "print(exchanged['v'][-1])", None, id="speeds"
+            LINES["FMPy"] + EXCHANGE.replace("result =", "exchanged =") + "print(exchanged['v'][-1])", None, id="speeds"
         ),
         pytest.param(LINEAR, 7.69, id="frequency"),
     ],

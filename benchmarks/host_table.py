@@ -1,0 +1,94 @@
+"""What tools that we did not write make of the FMU TwoMassDriveline: the lines of docs/hosts.md are run for each of its
+kinds, and the table there is made of what they print.
+
+A tool takes part where its package can be imported; for OMSimulator PYTHONPATH may name the folder of a build of one's
+own. The FMUs are those of `build`, made by `driveline build` and `driveline build --fmi 3`.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from docs.studies.generated_sections import filled
+from docs.studies.imports import ROOT
+from driveline.harness.base.interruption import script
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Port, Scheme, System
+from driveline.harness.loop.places import BUILD, NATIVE
+
+PAGE = ROOT / "docs" / "hosts.md"
+
+LINES: dict[str, str] = dict(
+    re.findall(r"^## (\w+)\n.*?```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S | re.M)
+)
+"""Of each tool."""
+
+PACKAGES = {"FMPy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy", "OMSimulator": "OMSimulator"}
+
+KINDS = {
+    "co-simulation 2.0": ("", ""),
+    "model exchange 2.0": ('"CoSimulation"', '"ModelExchange"'),
+    "co-simulation 3.0": ("build/native", "build/fmi3"),
+}
+"""Of FMUs, with what is put in the place of what in the lines."""
+
+
+def ours() -> float:
+    """The speed in the end of the run of the page, in our master."""
+    system = System(
+        instances={"plant": BUILD / NATIVE / "TwoMassDriveline.fmu"},
+        inputs=(Port("plant.T_mot", "N.m"),),
+        outputs=(Port("plant.v", "m/s"),),
+    )
+    start = {"plant.v_0": 10.0, "plant.T_0": 40.0}
+    return float(run(system, Experiment(2.0, 1e-3, {"plant.T_mot": 100.0}, start, Scheme.JACOBI))["plant.v"][-1])
+
+
+def cell(host: str, kind: str, right: float) -> str:
+    """What comes of the lines of a host with FMUs of a kind."""
+    old, new = KINDS[kind]
+    lines = LINES[host]
+    if old not in lines:
+        return "no lines"
+    environment = os.environ | {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
+    with TemporaryDirectory() as folder:
+        Path(folder, "build").symlink_to(BUILD)
+        command = [sys.executable, "-c", lines.replace(old, new) if old else lines]
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode < 0:
+        return "ends the process"
+    printed = re.findall(r"([\d.]+)\]?\s*$", done.stdout)
+    return f"{abs(float(printed[-1]) / right - 1.0):.1g}" if printed and not done.returncode else "refused"
+
+
+def version_of(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "of one's own build"
+
+
+def table() -> str:
+    right = ours()
+    rows = ["| tool | " + " | ".join(KINDS) + " |", "|---|" + "---:|" * len(KINDS)]
+    for host, package in PACKAGES.items():
+        if find_spec(package):
+            cells = [cell(host, kind, right) for kind in KINDS]
+            rows.append(f"| {host} ({package} {version_of(package)}) | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
+def main() -> None:
+    made = table()
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), {"hosts": made}), encoding="utf-8")
+    print(made)
+
+
+if __name__ == "__main__":
+    script(main)
