@@ -55,7 +55,7 @@ def cell(host: str, kind: str, right: float) -> str:
     old, new = KINDS[kind]
     lines = LINES[host]
     if old not in lines:
-        return "no lines"
+        return ""
     environment = os.environ | {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
     with TemporaryDirectory() as folder:
         Path(folder, "build").symlink_to(BUILD)
@@ -71,7 +71,7 @@ def version_of(package: str) -> str:
     try:
         return version(package)
     except PackageNotFoundError:
-        return "of one's own build"
+        return "built from source"
 
 
 def table() -> str:
@@ -80,7 +80,7 @@ def table() -> str:
     for host, package in PACKAGES.items():
         if find_spec(package):
             cells = [cell(host, kind, right) for kind in KINDS]
-            rows.append(f"| {host} ({package} {version_of(package)}) | {' | '.join(cells)} |")
+            rows.append(f"| {host}, {version_of(package)} | {' | '.join(cells)} |")
     return "\n".join(rows)
 
 

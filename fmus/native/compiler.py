@@ -121,7 +121,8 @@ def host_compiler() -> str:
     name = os.environ.get("CC", "cc")
     if shutil.which(name) is None:
         raise CompilerError(
-            f"there is no C compiler {name!r} (the environment variable CC can name another, `pip install ziglang` has one)"
+            f"there is no C compiler {name!r} "
+            "(the environment variable CC can name another, `pip install ziglang` has one)"
         )
     return name
 

@@ -5,8 +5,8 @@ unpack it and open the project that it holds in MasterSim; docs/ssp.md has the s
 
 Its variants are the plants: the first one is what a tool opens that knows none (SystemStructure.ssd). The
 numbers of --vehicle, --parameters and --set, the start and the points of the manoeuvre are parameter sets (SSV),
-which can be edited there. The manoeuvre is one made of straight lines: of the catalogue all but creep and prbs, or a
-file of your own with steps, ramps, pulses or points (docs/manoeuvres.md).
+which can be edited there. A manoeuvre of your own is made of steps, ramps, pulses or points, or its demand is a sine
+or a binary torque (docs/manoeuvres.md).
 
 examples:
   driveline ssp

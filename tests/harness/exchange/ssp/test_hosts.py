@@ -16,6 +16,7 @@ from driveline.harness.loop.places import PLANTS, STEP_SIZE
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate, start
+from tests.foreign import build_car
 
 STEPS = 1200
 TOLERANCE = 1e-9
@@ -58,6 +59,18 @@ def test_a_sine_and_a_binary_torque_are_driven_there_too(packaged, fmus, host, n
     ours = simulate(MANOEUVRES[name], scheme=Scheme.JACOBI, folder=fmus, build="native")
     theirs = run_in(host, packaged("--manoeuvre", name), PLANTS[0], 200)
     compare({column: theirs[column] for column in theirs.keys() - FED_ALREADY.get(host, set())}, ours, OUTPUTS, 200)
+
+
+@pytest.mark.parametrize("host", [host("libcosim"), host("ecos")])
+def test_signals_in_other_units_are_converted(packaged, fmus, host, tmp_path) -> None:
+    car = build_car(tmp_path / "car", omega_1=("n", "rev/min", 2.0 * np.pi / 60.0), T_mot=("T", "kN.m", 1e3))
+    mapping = {"plant.omega_1": "n", "plant.T_mot": "T"}
+    given = (f"--map={name}={theirs}" for name, theirs in mapping.items())
+    ssp = packaged("--plant", str(car), "--manoeuvre", "launch", *given)
+    ours = simulate(MANOEUVRES["launch"], car, scheme=Scheme.JACOBI, folder=fmus, build="native", mapping=mapping)
+    theirs = run_in(host, ssp, "Theirs", STEPS)["plant.T_gear"]
+    assert max(theirs) > 50.0
+    np.testing.assert_allclose(theirs, ours["plant.T_gear"][1 : STEPS + 1], atol=1e-6)
 
 
 def test_the_command_line_of_omsimulator_runs_it(packaged, fmus) -> None:
