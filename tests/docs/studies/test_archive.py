@@ -1,4 +1,4 @@
-"""The archive for whoever has no Python: what is in it, and that its reference results are in the form they must have."""
+"""The archive for whoever has no Python: what is in it, and that its results are in the form they must have."""
 
 import zipfile
 from io import BytesIO
