@@ -105,25 +105,31 @@ def output(x: State, u: Input, p: Record) -> Output:
         T_driver=_line(t, "T_driver", p) + _sine(t, p) + _binary(t, p),
         T_brake=_line(t, "T_brake", p),
         slope=_line(t, "slope", p),
-        enable=logical_and(t >= p.enable_from, t < p.enable_until),
+        enable=logical_and(t >= _of(p, "enable_from"), t < _of(p, "enable_until")),
     )
 
 
 def _sine(t: float, p: Record) -> float:
-    return p.sine_amplitude * clip(p.sine_steepness * sin(2.0 * pi * p.sine_frequency * t), -1.0, 1.0)
+    wave = sin(2.0 * pi * _of(p, "sine_frequency") * t)
+    return _of(p, "sine_amplitude") * clip(_of(p, "sine_steepness") * wave, -1.0, 1.0)
 
 
 def _binary(t: float, p: Record) -> float:
-    k = minimum(floor(t / p.bit_time + 1e-6), WORDS * WORD - 1.0)
-    number = p.bits_1
+    k = minimum(floor(t / _of(p, "bit_time") + 1e-6), WORDS * WORD - 1.0)
+    number = _of(p, "bits_1")
     for word in range(1, WORDS):
-        number = where(k >= WORD * word, getattr(p, f"bits_{word + 1}"), number)
+        number = where(k >= WORD * word, _of(p, f"bits_{word + 1}"), number)
     place = k - WORD * floor(k / WORD)
     for shift in (32, 16, 8, 4, 2, 1):  # the number without its lowest bits, as many as the place says
         number = where(place >= shift, floor(number / 2.0**shift), number)
         place = where(place >= shift, place - shift, place)
     bit = number - 2.0 * floor(0.5 * number)
-    return p.bit_amplitude * (2.0 * bit - 1.0)
+    return _of(p, "bit_amplitude") * (2.0 * bit - 1.0)
+
+
+def _of(p: Record, name: str) -> float:
+    """The parameter of that name; the record is made of a table, so no type checker knows it."""
+    return getattr(p, name)
 
 
 def _line(t: float, name: str, p: Record) -> float:
