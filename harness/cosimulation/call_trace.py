@@ -46,6 +46,12 @@ FUNCTIONS = (
     "fmi3Terminate",
     "fmi3Reset",
     "fmi3FreeInstance",
+    "fmi3InstantiateModelExchange",
+    *(f"fmi3{mode}" for mode in ("EnterEventMode", "UpdateDiscreteStates", "EnterContinuousTimeMode")),
+    *("fmi3CompletedIntegratorStep", "fmi3SetTime", "fmi3SetContinuousStates"),
+    *("fmi3GetNumberOfContinuousStates", "fmi3GetNumberOfEventIndicators"),
+    *(f"fmi3Get{what}" for what in ("ContinuousStateDerivatives", "EventIndicators", "ContinuousStates")),
+    "fmi3GetNominalsOfContinuousStates",
 )
 """What is called, numbered from 1."""
 

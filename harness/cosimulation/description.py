@@ -26,33 +26,35 @@ WHOLE = re.compile(r"[+-]?[0-9]{1,19}")
 STEPPING = ("CoSimulation",)
 """The kind of FMU that runs in our loops."""
 
-EITHER = ("CoSimulation", "ModelExchange")
+KINDS = {
+    "CoSimulation": "co-simulation",
+    "ModelExchange": "model exchange",
+    "ScheduledExecution": "scheduled execution",
+}
+"""Elements of the kinds that there are, and what the standards call these."""
 
 
 def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPPING) -> ModelDescription:
     """The model description of an FMU.
 
     Args:
-        kinds: of FMUs of FMI 2.0 that are taken; those of FMI 3.0 must be for co-simulation.
+        kinds: of FMUs that are taken, of `KINDS`.
 
     Raises:
-        WiringError: it is not one of an FMU of these kinds, of FMI 2.0 or of FMI 3.0 for co-simulation, or what a run
-            relies on is missing or is no number.
+        WiringError: it is not one of an FMU of these kinds, of FMI 2.0 or 3.0, or what a run relies on is missing or
+            is no number.
     """
     if not path.is_file():
         raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
-    text = described(path, limits)
-    try:
-        root = ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
-    except Exception as error:  # what it raises depends on the encoding that the text claims to have
-        raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
+    root = _root(path, limits)
     version = root.get("fmiVersion")
-    offered = [element for kind in (kinds if version == "2.0" else STEPPING) for element in root.findall(kind)]
-    takes = version is not None and VERSION.fullmatch(version) is not None
-    if takes and not offered and root.find("ModelExchange") is not None:
-        raise WiringError(f"{path} is for model exchange alone; only Co-Simulation of FMI 2.0 and 3.0 runs here")
-    if root.tag != "fmiModelDescription" or not takes or not offered:
-        raise WiringError(f"{path} is of FMI {plain(version)}; only Co-Simulation of FMI 2.0 and 3.0 runs here")
+    if root.tag != "fmiModelDescription" or version is None or not VERSION.fullmatch(version):
+        raise WiringError(f"{path} is of FMI {plain(version)}; known are FMI 2.0 and FMI 3.0")
+    offered = [element for kind in kinds for element in root.findall(kind)]
+    if not offered:
+        others = [called for kind, called in KINDS.items() if root.find(kind) is not None]
+        taken = " or ".join(KINDS[kind] for kind in kinds)
+        raise WiringError(f"{path} is for {' and '.join(others) or 'nothing'} alone; it must be for {taken}")
     found = list(_problems(root, offered))
     if found:
         more = f" (and {len(found) - 1} more)" if found[1:] else ""
@@ -62,6 +64,26 @@ def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPP
     except Exception as error:  # fmpy raises bare exceptions
         reason = plain(error if type(error) is Exception else f"{type(error).__name__} {error}")
         raise WiringError(f"the model description of {path} cannot be read: {reason}") from error
+
+
+def attributes(path: Path, limits: Limits, where: str) -> Iterator[dict[str, str]]:
+    """The attributes as they stand in the model description of an FMU, without what is true by default.
+
+    Args:
+        where: path of the elements, as `ElementTree` takes it.
+
+    Raises:
+        WiringError: there is none that can be read.
+    """
+    return (element.attrib for element in _root(path, limits).iterfind(where))
+
+
+def _root(path: Path, limits: Limits) -> Element:
+    text = described(path, limits)
+    try:
+        return ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
+    except Exception as error:  # what it raises depends on the encoding that the text claims to have
+        raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
 
 
 class _Elements(ElementTree.TreeBuilder):

@@ -25,7 +25,7 @@ from fmpy.fmi2 import (
     fmi2Terminated,
     fmi2Warning,
 )
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi3 import _FMU3, FMU3Model, FMU3Slave
 from fmpy.logging import addLoggerProxy
 from fmpy.model_description import ModelVariable
 
@@ -106,20 +106,39 @@ class FMU2Traced(_Traced, FMU2Slave):
 class FMU2Exchanging(_Traced, FMU2Model):
     """An FMU of FMI 2.0 for model exchange."""
 
+    setFloat64 = FMU2Model.setReal
+    start = FMU2Traced.start
 
-class FMU3Traced(_Traced, FMU3Slave):
+
+class _OfFMI3(_FMU3):
     """An FMU of FMI 3.0, with the names of FMI 2.0 for what goes by another one."""
 
-    getFMUstate = FMU3Slave.getFMUState
-    setFMUstate = FMU3Slave.setFMUState
-    freeFMUstate = FMU3Slave.freeFMUState
-    serializeFMUstate = FMU3Slave.serializeFMUState
-    deSerializeFMUstate = FMU3Slave.deserializeFMUState
-    _ended = False
+    getFMUstate = _FMU3.getFMUState
+    setFMUstate = _FMU3.setFMUState
+    freeFMUstate = _FMU3.freeFMUState
+    serializeFMUstate = _FMU3.serializeFMUState
+    deSerializeFMUstate = _FMU3.deserializeFMUState
 
     def start(self, start_time: float, stop_time: float | None) -> None:
         """Enters initialization mode."""
         self.enterInitializationMode(startTime=start_time, stopTime=stop_time)
+
+
+class FMU3Exchanging(_Traced, _OfFMI3, FMU3Model):
+    """An FMU of FMI 3.0 for model exchange."""
+
+    newDiscreteStates = _FMU3.updateDiscreteStates
+    getDerivatives = FMU3Model.getContinuousStateDerivatives
+
+    def sizes(self) -> tuple[int, int]:
+        """Numbers of continuous states and of event indicators."""
+        return self.getNumberOfContinuousStates(), self.getNumberOfEventIndicators()
+
+
+class FMU3Traced(_Traced, _OfFMI3, FMU3Slave):
+    """An FMU of FMI 3.0 for co-simulation."""
+
+    _ended = False
 
     def doStep(self, *arguments: Any, **named: Any) -> Any:
         """Makes a step; one after which the FMU asks for the end of the simulation is discarded, as in FMI 2.0."""
@@ -134,6 +153,9 @@ class FMU3Traced(_Traced, FMU3Slave):
         return self._ended
 
 
+Slave = FMU2Traced | FMU2Exchanging | FMU3Traced | FMU3Exchanging
+
+
 class Instance:
     """An instantiated FMU.
 
@@ -145,9 +167,7 @@ class Instance:
         status: the worst so far.
     """
 
-    def __init__(
-        self, name: str, interface: Interface, slave: FMU2Traced | FMU2Exchanging | FMU3Traced, key: int
-    ) -> None:
+    def __init__(self, name: str, interface: Interface, slave: Slave, key: int) -> None:
         self.name = name
         self.number = slave.number
         self.interface = interface
@@ -257,6 +277,15 @@ def _typed(instance: str, name: str, kind: str, value: float) -> float:
     return int(value)
 
 
+TRACED: dict[tuple[int, bool], type[Slave]] = {
+    (2, False): FMU2Traced,
+    (2, True): FMU2Exchanging,
+    (3, False): FMU3Traced,
+    (3, True): FMU3Exchanging,
+}
+"""By FMI, and whether for model exchange."""
+
+
 @contextmanager
 def instantiated(name: str, fmu: Unpacked, number: int = 0, exchanging: bool = False) -> Iterator[Instance]:
     """The FMU as an instance of that name, freed at the end.
@@ -286,7 +315,7 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
     interface = fmu.interface
     exchange = interface.description.modelExchange
     try:
-        traced = FMU2Exchanging if exchanging else FMU3Traced if interface.fmi == 3 else FMU2Traced
+        traced = TRACED[interface.fmi, exchanging]
         slave = traced(
             number,
             guid=interface.description.guid,
@@ -294,7 +323,7 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
             modelIdentifier=str(exchange.modelIdentifier) if exchanging and exchange else interface.identifier,
             instanceName=name,
         )
-        if isinstance(slave, FMU3Traced):
+        if isinstance(slave, _OfFMI3):
             slave.instantiate(loggingOn=True, logMessage=partial(_log_of_fmi3, key))
         else:
             slave.instantiate(callbacks=_callbacks(key), loggingOn=True)

@@ -53,6 +53,7 @@ class Interface:
 
     Attributes:
         path: of the FMU.
+        limits: within which it is read.
         fmi: 2 or 3, for FMI 2.0 or 3.0.
         description: as fmpy read it, with our names of types.
         identifier: of the binary.
@@ -70,12 +71,13 @@ class Interface:
             kinds: of FMUs that are taken; of one that is of several the first counts.
 
         Raises:
-            WiringError: the file is no FMU of these kinds, of FMI 2.0 or of FMI 3.0 for co-simulation, or is not
-                one that can be used.
+            WiringError: the file is no FMU of these kinds, of FMI 2.0 or 3.0, or is not one that can be used.
         """
         self.path = path
+        self.limits = limits
         self.description = description.read(path, limits, kinds)
-        offered = self.description.coSimulation or self.description.modelExchange
+        found = self.description
+        offered = found.coSimulation or found.modelExchange or found.scheduledExecution
         assert offered is not None
         self.identifier = str(offered.modelIdentifier)
         self.fmi = self.description.fmiMajorVersion

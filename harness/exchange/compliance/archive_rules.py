@@ -8,7 +8,7 @@ from zipfile import ZipInfo
 
 from ...cosimulation import fmu_archive
 from ...cosimulation.limits import Limits
-from .rule import Rule, Rules, Severity
+from .rule import OURS, Clause, Rule, Rules, Severity
 
 PAGES = {
     ("documentation/index.html",): "the page that tools show",
@@ -31,28 +31,30 @@ class Archive(NamedTuple):
         return [entry.orig_filename for entry in self.entries]
 
 
-def _refusing(name: str, title: str) -> Rule:
+def _refusing(name: str, title: str, clause: Clause = OURS) -> Rule:
     """What `harness.cosimulation.fmu_archive` refuses under that name."""
 
     def problems(fmu: Archive) -> Iterator[str]:
         found = fmu_archive.problems(fmu.entries, fmu.limits)
         return (problem.text for problem in found if problem.rule == name)
 
-    return Rule(name, Severity.ERROR, title, problems)
+    return Rule(name, Severity.ERROR, title, clause, problems)
 
+
+ZIP = Clause("2.3", "2.5.1")
 
 REFUSING_RULES = (
     _refusing("archive-size", "the archive unpacks to no more than the limit"),
     _refusing("archive-path", "no entry of the archive leads outside"),
     _refusing("archive-link", "no entry of the archive is a link"),
     _refusing("archive-encrypted", "no entry of the archive is encrypted"),
-    _refusing("archive-method", "the archive is packed as FMI asks"),
+    _refusing("archive-method", "the archive is packed as FMI asks", ZIP),
 )
 
 ARCHIVE_RULES = Rules()
 
 
-@ARCHIVE_RULES.rule("archive-damaged", Severity.ERROR, "the archive is not damaged")
+@ARCHIVE_RULES.rule("archive-damaged", Severity.ERROR, "the archive is not damaged", ZIP)
 def damaged(fmu: Archive) -> Iterator[str]:
     """Entries that do not unpack to what they were."""
     if damage := fmu_archive.damage(fmu.path):
@@ -63,7 +65,7 @@ def damaged(fmu: Archive) -> Iterator[str]:
 def duplicates(fmu: Archive) -> Iterator[str]:
     """Entries of the same name."""
     for name, count in sorted(Counter(fmu.names).items()):
-        if count > 1:
+        if count > 1 and not name.endswith("/"):
             yield f"{name} is there more than once"
 
 
@@ -75,12 +77,12 @@ def not_ascii(fmu: Archive) -> Iterator[str]:
             yield f"{name} is not plain ASCII"
 
 
-@ARCHIVE_RULES.rule("archive-binary", Severity.WARNING, "there is a binary")
+@ARCHIVE_RULES.rule("archive-binary", Severity.ERROR, "there is a binary, or there are the sources", ZIP)
 def no_binary(fmu: Archive) -> Iterator[str]:
-    """Whether there are sources alone."""
+    """Whether anything can run."""
     binaries = {PurePosixPath(name).suffix for name in fmu.names if name.startswith("binaries/")}
-    if not EXTENSIONS & binaries:
-        yield "there is no binary for any platform"
+    if not EXTENSIONS & binaries and not any(name.startswith("sources/") for name in fmu.names):
+        yield "there is no binary for any platform, and there are no sources"
 
 
 @ARCHIVE_RULES.rule("archive-leftover", Severity.NOTE, "nothing was left behind in the archive")

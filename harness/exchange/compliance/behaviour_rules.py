@@ -5,7 +5,7 @@ from math import isfinite
 
 from ...cosimulation.unpacked_fmu import Unpacked
 from .host import Outputs, hosted
-from .rule import Rules, Severity
+from .rule import Clause, Rules, Severity
 
 STEPS = 100
 """Communication steps of a run that is compared with another."""
@@ -17,6 +17,8 @@ STEP_FACTORS = (1.0, 0.1, 3.7, 1e-3, 10.0, 1.0)
 """Communication steps of different sizes, relative to that of the default experiment."""
 
 RUNS = "the default experiment runs, outputs are finite"
+
+STEPPED = Clause("4.2.2", "4.2.1")
 
 
 def _claims(fmu: Unpacked, capability: str) -> bool:
@@ -43,7 +45,7 @@ def _differences(expected: list[Outputs], actual: list[Outputs], when: str) -> I
 BEHAVIOUR_RULES = Rules()
 
 
-@BEHAVIOUR_RULES.rule("runs", Severity.ERROR, RUNS)
+@BEHAVIOUR_RULES.rule("runs", Severity.ERROR, RUNS, STEPPED)
 def default_experiment(fmu: Unpacked, most_steps: int = MOST_STEPS) -> Iterator[str]:
     """Runs the default experiment; every variable can be read before and after."""
     with hosted(fmu) as host:
@@ -58,7 +60,9 @@ def default_experiment(fmu: Unpacked, most_steps: int = MOST_STEPS) -> Iterator[
     yield from _not_finite(last, "at the end")
 
 
-@BEHAVIOUR_RULES.rule("steps", Severity.ERROR, "steps of any size are accepted, if it claims so")
+@BEHAVIOUR_RULES.rule(
+    "steps", Severity.ERROR, "steps of any size are accepted, if it claims so", Clause("4.3.1", "4.4")
+)
 def any_step_size(fmu: Unpacked) -> Iterator[str]:
     """Small, large and odd steps, if the FMU says that it can handle them."""
     if not _claims(fmu, "canHandleVariableCommunicationStepSize"):
@@ -70,7 +74,7 @@ def any_step_size(fmu: Unpacked) -> Iterator[str]:
             yield from _not_finite(host.advance(size), f"after a step of {size:g} s")
 
 
-@BEHAVIOUR_RULES.rule("reset", Severity.ERROR, "a second run after reset is the same")
+@BEHAVIOUR_RULES.rule("reset", Severity.ERROR, "a second run after reset is the same", Clause("2.1.6", "2.3.1"))
 def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
     """The same run before and after fmi2Reset."""
     with hosted(fmu) as host:
@@ -81,7 +85,7 @@ def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
         yield from _differences(first, host.run(STEPS), "after reset")
 
 
-@BEHAVIOUR_RULES.rule("instances", Severity.ERROR, "two instances do not see each other")
+@BEHAVIOUR_RULES.rule("instances", Severity.ERROR, "two instances do not see each other", Clause("2.1.5", "2.3.1"))
 def instances_are_separate(fmu: Unpacked) -> Iterator[str]:
     """One instance alone, and the same beside another one that runs ahead of it."""
     if _claims(fmu, "canBeInstantiatedOnlyOncePerProcess"):
@@ -100,7 +104,9 @@ def instances_are_separate(fmu: Unpacked) -> Iterator[str]:
         yield from _differences(alone, beside, "beside another instance")
 
 
-@BEHAVIOUR_RULES.rule("states", Severity.ERROR, "saved states are restored, if it claims so")
+@BEHAVIOUR_RULES.rule(
+    "states", Severity.ERROR, "saved states are restored, if it claims so", Clause("2.1.8", "2.2.7.4")
+)
 def states_are_restored(fmu: Unpacked) -> Iterator[str]:
     """The run after a restored state is the one before, bit by bit, if the FMU claims so."""
     if not _claims(fmu, "canGetAndSetFMUstate"):
@@ -127,7 +133,7 @@ def states_are_restored(fmu: Unpacked) -> Iterator[str]:
 QUICK_RULES = Rules()
 
 
-@QUICK_RULES.rule("runs", Severity.ERROR, RUNS)
+@QUICK_RULES.rule("runs", Severity.ERROR, RUNS, STEPPED)
 def beginning(fmu: Unpacked) -> Iterator[str]:
     """The first steps of the default experiment."""
     yield from default_experiment(fmu, STEPS)

@@ -8,8 +8,9 @@ from pathlib import Path
 import fmpy
 
 from ....fmus.child_process import run
+from ...cosimulation.interface import Interface
 from ...cosimulation.unpacked_fmu import Unpacked
-from .rule import Rules, Severity
+from .rule import Clause, Rule, Rules, Severity
 
 MOST_NAMED = 3
 """Symbols that are named of those that are missing."""
@@ -19,10 +20,22 @@ LONGEST = 30.0
 
 MISSING = re.compile(r"undefined symbol: ([^\s,]+)|(\S+) => not found|symbol (\S+), version \S+ not defined")
 
+BINARIES = Clause("2.3", "2.5.1.4")
+
+
+def _no_binary_here(interface: Interface) -> Iterator[str]:
+    """Whether it can run on this machine; what it does is not tried elsewhere."""
+    platforms = fmpy.supported_platforms(str(interface.path))
+    if fmpy.platform not in platforms:
+        yield f"there is no binary for {fmpy.platform}, so it was not run; there are: {', '.join(platforms) or 'none'}"
+
+
+PLATFORM = Rule("platform", Severity.NOTE, "there is a binary for this machine", BINARIES, _no_binary_here)
+
 BINARY_RULES = Rules()
 
 
-@BINARY_RULES.rule("symbols", Severity.ERROR, "its binary names the libraries that it needs (Linux)")
+@BINARY_RULES.rule("symbols", Severity.ERROR, "its binary names the libraries that it needs (Linux)", BINARIES)
 def missing_symbols(fmu: Unpacked) -> Iterator[str]:
     """Symbols that no library defines that the binary names as needed.
 

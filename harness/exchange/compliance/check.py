@@ -1,4 +1,4 @@
-"""Whether an FMU keeps the standard: FMI 2.0, or FMI 3.0 for Co-Simulation; and our rules beyond it."""
+"""Whether an FMU keeps the standard, FMI 2.0 or 3.0, and our rules beyond it."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
@@ -7,23 +7,23 @@ from pathlib import Path
 from ...base.errors import DrivelineError, SimulationError
 from ...base.plain_text import plain
 from ...cosimulation import fmu_archive
-from ...cosimulation.description import EITHER
+from ...cosimulation.description import KINDS
 from ...cosimulation.interface import Interface
 from ...cosimulation.isolated_process import IsolatedProcess
 from ...cosimulation.limits import USUAL_LIMITS, Limits
 from ...cosimulation.unpacked_fmu import Unpacked, unpacked
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
-from .binary_rules import BINARY_RULES
+from .binary_rules import BINARY_RULES, PLATFORM
 from .description_rules import DESCRIPTION_RULES
 from .exchange_rules import EXCHANGE_RULES, QUICK_EXCHANGE_RULES
-from .rule import Rule, Severity, Verdict
+from .rule import Clause, Rule, Severity, Verdict
 
-READABLE = Rule("readable", Severity.ERROR, "it is an FMU of FMI 2.0, or for Co-Simulation of FMI 3.0")
+READABLE = Rule("readable", Severity.ERROR, "it is an FMU of FMI 2.0 or 3.0", Clause("2.2.1", "2.4.1"))
 
 RULES = (
     *(READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES),
-    *(*BINARY_RULES, *BEHAVIOUR_RULES, *EXCHANGE_RULES),
+    *(PLATFORM, *BINARY_RULES, *BEHAVIOUR_RULES, *EXCHANGE_RULES),
 )
 
 FIRST = {BEHAVIOUR_RULES[0].name, EXCHANGE_RULES[0].name}
@@ -65,7 +65,7 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
         return
     yield from (rule.judge(contents) for rule in kept(ARCHIVE_RULES))
     try:
-        interface = Interface(path, limits, EITHER)
+        interface = Interface(path, limits, list(KINDS))
     except DrivelineError as error:
         yield READABLE.verdict([str(error)])
         return
@@ -75,8 +75,13 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
     exchanging = QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
     description = interface.description
     tried = [*BINARY_RULES, *(stepping if description.coSimulation else ())]
-    tried += exchanging if description.modelExchange and interface.fmi == 2 else ()
-    yield from _behaviour(interface, list(kept(tried)), limits)
+    tried += exchanging if description.modelExchange else ()
+    platform = PLATFORM.judge(interface)
+    yield from (platform,) if PLATFORM.name not in ignored else ()
+    if platform.problems:
+        yield from (rule.verdict([], tried=False) for rule in kept(tried))
+    else:
+        yield from _behaviour(interface, list(kept(tried)), limits)
 
 
 def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> Iterator[Verdict]:

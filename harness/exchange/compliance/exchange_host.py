@@ -12,13 +12,16 @@ from fmpy.sundials import CVodeSolver
 
 from ...base.errors import SimulationError
 from ...base.plain_text import plain
-from ...cosimulation.instance import FMU2Exchanging, Instance, instantiated
+from ...cosimulation.instance import FMU2Exchanging, FMU3Exchanging, Instance, instantiated
 from ...cosimulation.unpacked_fmu import Unpacked
 
 TOLERANCE = 1e-6
 
 SHORTEST = 1e-12
 """Way to an event, over the time, that is not integrated."""
+
+UPDATES = {2: "fmi2NewDiscreteStates", 3: "fmi3UpdateDiscreteStates"}
+"""By FMI, what iterates at an event."""
 
 MOST_ITERATIONS = 100
 """Of an event, before it counts as one without end."""
@@ -60,6 +63,7 @@ class ExchangeHost:
         self.duration = float(default.stopTime or 1.0) - float(default.startTime or 0.0) if default else 1.0
         self.first = float(default.startTime or 0.0) if default else 0.0
         self.sizes = description.numberOfContinuousStates, description.numberOfEventIndicators
+        """Numbers of continuous states and of event indicators."""
         inputs = instance.interface.of_causality("input")
         self._inputs = [v for v in inputs if v.type == "Real" and v.variability in (None, "continuous")]
         self.time, self.events, self.ended, self._next = 0.0, 0, False, inf
@@ -68,10 +72,11 @@ class ExchangeHost:
     def start(self) -> None:
         """From instantiation or reset to continuous-time mode."""
         self.time, self.events, self.ended = self.first, 0, False
-        self.instance.call("setupExperiment", startTime=self.first)
-        self.instance.call("enterInitializationMode")
+        self.instance.call("start", self.first, None)
         self.apply(self.first)
         self.instance.call("exitInitializationMode")
+        if self.instance.interface.fmi == 3:  # where arrays have sizes that parameters may change
+            self.sizes = self.instance.call("sizes")
         self._iterate()
 
     def apply(self, time: float) -> None:
@@ -81,7 +86,7 @@ class ExchangeHost:
             swing = 0.1 * float(v.nominal or 1.0) * sin(6.0 * (time - self.first) / (self.duration or 1.0))
             values.append(min(max(float(v.start or 0.0) + swing, float(v.min or -inf)), float(v.max or inf)))
         if values:
-            cast(Any, self.instance.slave).setReal([v.valueReference for v in self._inputs], values)
+            cast(Any, self.instance.slave).setFloat64([v.valueReference for v in self._inputs], values)
 
     def _iterate(self) -> None:
         for _ in range(MOST_ITERATIONS):
@@ -91,7 +96,8 @@ class ExchangeHost:
                 break
         else:
             raise SimulationError(
-                f"fmi2NewDiscreteStates wants another iteration after {MOST_ITERATIONS} at {self.time:g} s"
+                f"{UPDATES[self.instance.interface.fmi]} wants another iteration after {MOST_ITERATIONS} "
+                f"at {self.time:g} s"
             )
         if not self.ended:
             self.instance.call("enterContinuousTimeMode")
@@ -151,7 +157,7 @@ class ExchangeHost:
         return met
 
     def _made(self) -> _Solver:
-        slave = cast(FMU2Exchanging, self.instance.slave)
+        slave = cast(FMU2Exchanging | FMU3Exchanging, self.instance.slave)
         return _Solver(
             nx=self.sizes[0],
             nz=self.sizes[1],

@@ -1,11 +1,11 @@
-"""Rules for what an FMU does in model exchange (FMI 2.0.4, chapter 3). Each function is given it unpacked."""
+"""Rules for what an FMU does in model exchange. Each function is given it unpacked."""
 
 from collections.abc import Iterator
 from math import isfinite
 
 from ...cosimulation.unpacked_fmu import Unpacked
 from .exchange_host import ExchangeHost, integrated
-from .rule import Rules, Severity
+from .rule import Clause, Rules, Severity
 
 POINTS = 100
 """Of a run, at which states, derivatives and event indicators are looked at."""
@@ -14,6 +14,8 @@ PART = 0.02
 """Of the default experiment, which is run for a comparison, or quickly."""
 
 RUNS = "in model exchange the default experiment runs, all values are finite"
+
+INTEGRATED = Clause("3.2.2", "3.2.1")
 
 Point = tuple[float, list[float], list[float]]
 """A time, states, derivatives."""
@@ -45,9 +47,9 @@ def _not_finite(host: ExchangeHost, points: list[Point]) -> Iterator[str]:
 EXCHANGE_RULES = Rules()
 
 
-@EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS)
+@EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS, INTEGRATED)
 def default_experiment(fmu: Unpacked, share: float = 1.0) -> Iterator[str]:
-    """Integrates the default experiment; an FMU may end it (3.2.2, terminateSimulation)."""
+    """Integrates the default experiment; an FMU may end it (terminateSimulation)."""
     with integrated(fmu) as host:
         host.start()
         points = _run(host, share, POINTS)
@@ -57,7 +59,9 @@ def default_experiment(fmu: Unpacked, share: float = 1.0) -> Iterator[str]:
         yield from _not_finite(host, points)
 
 
-@EXCHANGE_RULES.rule("exchange-nominals", Severity.ERROR, "nominal values of the states are above 0 (3.2.2)")
+@EXCHANGE_RULES.rule(
+    "exchange-nominals", Severity.ERROR, "nominal values of the states are above 0", Clause("3.2.2", "2.3.4")
+)
 def nominals(fmu: Unpacked) -> Iterator[str]:
     """What a solver divides by."""
     with integrated(fmu) as host:
@@ -67,9 +71,11 @@ def nominals(fmu: Unpacked) -> Iterator[str]:
                 yield f"the nominal value of the state of {name} is {value}"
 
 
-@EXCHANGE_RULES.rule("exchange-reset", Severity.ERROR, "in model exchange a second run after reset is the same")
+@EXCHANGE_RULES.rule(
+    "exchange-reset", Severity.ERROR, "in model exchange a second run after reset is the same", Clause("2.1.6", "2.3.1")
+)
 def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
-    """The same run before and after fmi2Reset (2.1.6)."""
+    """The same run before and after a reset."""
     with integrated(fmu) as host:
         host.start()
         first = _run(host, PART, POINTS)
@@ -77,12 +83,17 @@ def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
         host.begin_anew()
         host.start()
         if _run(host, PART, POINTS) != first:
-            yield "the run after fmi2Reset is another one"
+            yield f"the run after fmi{fmu.interface.fmi}Reset is another one"
 
 
-@EXCHANGE_RULES.rule("exchange-states", Severity.ERROR, "in model exchange saved states are restored, if it claims so")
+@EXCHANGE_RULES.rule(
+    "exchange-states",
+    Severity.ERROR,
+    "in model exchange saved states are restored, if it claims so",
+    Clause("2.1.8", "2.2.7.4"),
+)
 def states_are_restored(fmu: Unpacked) -> Iterator[str]:
-    """Time, states and derivatives of a saved state (2.1.8)."""
+    """Time, states and derivatives of a saved state."""
     kind = fmu.interface.description.modelExchange
     if kind is None or not kind.canGetAndSetFMUstate:
         return
@@ -103,7 +114,7 @@ def states_are_restored(fmu: Unpacked) -> Iterator[str]:
 QUICK_EXCHANGE_RULES = Rules()
 
 
-@QUICK_EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS)
+@QUICK_EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS, INTEGRATED)
 def beginning(fmu: Unpacked) -> Iterator[str]:
     """The first part of the default experiment."""
     yield from default_experiment(fmu, PART)

@@ -10,11 +10,26 @@ from ...base.plain_text import plain
 
 
 class Severity(Enum):
-    """How bad it is to break a rule: hosts fail, tools complain, or people miss something."""
+    """What the standard says of it: it must be so, it should be so, or nothing, but people miss something."""
 
     ERROR = "error"
     WARNING = "warning"
     NOTE = "note"
+
+
+class Clause(NamedTuple):
+    """Where the standard asks for it: sections of FMI 2.0.4 and of FMI 3.0.2; None: it does not."""
+
+    fmi2: str | None = None
+    fmi3: str | None = None
+
+    def __str__(self) -> str:
+        asking = (("FMI 2.0.4", self.fmi2), ("FMI 3.0.2", self.fmi3))
+        return "; ".join(f"{standard}, {sections}" for standard, sections in asking if sections)
+
+
+OURS = Clause()
+"""Of a rule that no standard has."""
 
 
 class Verdict(NamedTuple):
@@ -24,6 +39,7 @@ class Verdict(NamedTuple):
         rule: its name.
         severity: the value of its Severity.
         tried: whether it was; if not, it has found nothing.
+        clause: of the standard; empty if the rule is ours.
     """
 
     rule: str
@@ -31,6 +47,7 @@ class Verdict(NamedTuple):
     title: str
     problems: list[str]
     tried: bool = True
+    clause: str = ""
 
 
 Problems = Callable[..., Iterable[str]]
@@ -44,12 +61,14 @@ class Rule:
     Attributes:
         name: by which it can be ignored.
         title: what an FMU does that keeps it.
+        clause: of the standard.
         problems: lists what breaks it; nothing for a rule that is judged elsewhere.
     """
 
     name: str
     severity: Severity
     title: str
+    clause: Clause = OURS
     problems: Problems = lambda *_: ()
 
     def judge(self, *subject: Any) -> Verdict:
@@ -62,17 +81,17 @@ class Rule:
         return self.verdict(found)
 
     def verdict(self, problems: list[str], tried: bool = True) -> Verdict:
-        return Verdict(self.name, self.severity.value, self.title, problems, tried)
+        return Verdict(self.name, self.severity.value, self.title, problems, tried, str(self.clause))
 
 
 class Rules(list[Rule]):
     """Rules for one subject, in the order in which they stand there."""
 
-    def rule(self, name: str, severity: Severity, title: str) -> Callable[[Problems], Problems]:
+    def rule(self, name: str, severity: Severity, title: str, clause: Clause = OURS) -> Callable[[Problems], Problems]:
         """What lists the problems of a rule becomes one of these."""
 
         def enter(problems: Problems) -> Problems:
-            self.append(Rule(name, severity, title, problems))
+            self.append(Rule(name, severity, title, clause, problems))
             return problems
 
         return enter
