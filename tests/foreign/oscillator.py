@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import fmpy
+
 from tests.foreign.compiled import foreign_fmu
 
-SOURCE = Path(__file__).with_name("oscillator.c")
+SOURCES = {fmi: Path(__file__).with_name(name) for fmi, name in {2: "oscillator.c", 3: "oscillator3.c"}.items()}
 
 DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="oscillator" guid="oscillator" numberOfEventIndicators="0">
@@ -22,7 +24,33 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 </ModelStructure>
 </fmiModelDescription>"""
 
+DESCRIPTION_3 = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="oscillator" instantiationToken="oscillator">
+<ModelExchange modelIdentifier="oscillator"/>
+<DefaultExperiment stopTime="1" stepSize="0.01"/>
+<ModelVariables>
+<Float64 name="time" valueReference="9" causality="independent" variability="continuous"/>
+<Float64 name="s" valueReference="0" causality="local" initial="exact" start="1"/>
+<Float64 name="v" valueReference="1" causality="local" initial="exact" start="0"/>
+<Float64 name="der(s)" valueReference="2" causality="local" derivative="0"/>
+<Float64 name="der(v)" valueReference="3" causality="local" derivative="1"/>
+</ModelVariables>
+<ModelStructure>
+<ContinuousStateDerivative valueReference="2"/><ContinuousStateDerivative valueReference="3"/>
+<InitialUnknown valueReference="2"/><InitialUnknown valueReference="3"/>
+</ModelStructure>
+</fmiModelDescription>"""
 
-def build_oscillator(folder: Path, description: str = DESCRIPTION, **does: str) -> Path:
+WORDS_OF_FMI3 = {
+    "fmi2GetDerivatives": "fmi3GetContinuousStateDerivatives",
+    "fmi2NewDiscreteStates": "fmi3UpdateDiscreteStates",
+    "fmi2": "fmi3",
+}
+"""What messages about an oscillator of FMI 2.0 say of one of FMI 3.0."""
+
+
+def build_oscillator(folder: Path, description: str | None = None, fmi: int = 2, **does: str) -> Path:
     """Builds oscillator.fmu; `does` is C by the macro of oscillator.c whose place it takes."""
-    return foreign_fmu(folder / "oscillator.fmu", "oscillator", description, SOURCE, does)
+    described, platform = {2: (DESCRIPTION, fmpy.platform), 3: (DESCRIPTION_3, fmpy.platform_tuple)}[fmi]
+    path = folder / "oscillator.fmu"
+    return foreign_fmu(path, "oscillator", description or described, SOURCES[fmi], does, platform=platform)

@@ -85,7 +85,7 @@ def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
         yield from _differences(first, host.run(STEPS), "after reset")
 
 
-@BEHAVIOUR_RULES.rule("instances", Severity.ERROR, "two instances do not see each other", Clause("2.1.5", "2.3.1"))
+@BEHAVIOUR_RULES.rule("instances", Severity.ERROR, "two instances do not see each other", Clause("2.1.5", "2.4.2"))
 def instances_are_separate(fmu: Unpacked) -> Iterator[str]:
     """One instance alone, and the same beside another one that runs ahead of it."""
     if _claims(fmu, "canBeInstantiatedOnlyOncePerProcess"):

@@ -74,7 +74,8 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
     stepping = QUICK_RULES if quick else BEHAVIOUR_RULES
     exchanging = QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
     description = interface.description
-    tried = [*BINARY_RULES, *(stepping if description.coSimulation else ())]
+    clocked = any(variable.type == "Clock" for variable in description.modelVariables)
+    tried = [*BINARY_RULES, *(stepping if description.coSimulation and not clocked else ())]
     tried += exchanging if description.modelExchange else ()
     platform = PLATFORM.judge(interface)
     yield from (platform,) if PLATFORM.name not in ignored else ()

@@ -116,7 +116,8 @@ class ExchangeHost:
 
     def _numbers(self, function: str, size: int) -> list[float]:
         room = (c_double * size)()
-        self.instance.call(function, room, size)
+        if size:  # else there is nothing to ask for
+            self.instance.call(function, room, size)
         return list(room)
 
     def advance(self, end: float) -> None:
@@ -165,7 +166,7 @@ class ExchangeHost:
             set_x=slave.setContinuousStates,
             get_dx=slave.getDerivatives,
             get_z=slave.getEventIndicators,
-            get_nominals=slave.getNominalsOfContinuousStates,
+            get_nominals=self._scales,
             set_time=slave.setTime,
             input=self,
             startTime=self.time,
@@ -173,6 +174,11 @@ class ExchangeHost:
             relativeTolerance=TOLERANCE,
             maxNumSteps=100_000,
         )
+
+    def _scales(self, room: Any, _size: int) -> None:
+        """What the solver divides by: 1 for a nominal value that is none, which a rule of its own finds."""
+        for k, nominal in enumerate(self.nominals()):
+            room[k] = nominal if 0.0 < nominal < inf else 1.0
 
     def begin_anew(self) -> None:
         """After a reset or another state: the solver knows nothing any more."""

@@ -33,7 +33,8 @@ def _run(host: ExchangeHost, share: float, points: int) -> list[Point]:
 def _names(host: ExchangeHost) -> list[str]:
     """Those of the derivatives."""
     variables = [unknown.variable for unknown in host.instance.interface.description.derivatives]
-    return [str(variable.name) if variable else "a derivative" for variable in variables]
+    names = [str(variable.name) if variable else "a derivative" for variable in variables]
+    return names if len(names) == host.sizes[0] else [f"derivative {k}" for k in range(1, host.sizes[0] + 1)]
 
 
 def _not_finite(host: ExchangeHost, points: list[Point]) -> Iterator[str]:
@@ -60,7 +61,7 @@ def default_experiment(fmu: Unpacked, share: float = 1.0) -> Iterator[str]:
 
 
 @EXCHANGE_RULES.rule(
-    "exchange-nominals", Severity.ERROR, "nominal values of the states are above 0", Clause("3.2.2", "2.3.4")
+    "exchange-nominals", Severity.ERROR, "nominal values of the states are above 0", Clause("3.2.2", "2.3.3")
 )
 def nominals(fmu: Unpacked) -> Iterator[str]:
     """What a solver divides by."""
