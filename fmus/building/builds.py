@@ -68,6 +68,8 @@ def build_fmus(
         raise BuildError(f"{same[0]} is the name of several FMUs, which would overwrite each other")
     if own and builds in ("python", "both"):
         raise NotPossible(f"{own[0].name} has a native build only, as every block in a file of your own")
+    if builds == "python" and platform != "host":
+        raise BuildError(f"--platform {platform} is for native builds; a Python build runs wherever Python does")
     of_the_project = builders(builds, platform, fmi) if len(own) < len(fmus) else []
     files = [Path(name) for name in names if isinstance(name, str) and name.endswith(".py")]
     of_own = [_guarded(builder, files) for builder in builders("native", platform, fmi)] if own else []

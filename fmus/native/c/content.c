@@ -79,17 +79,30 @@ static Status check_states(const Instance *instance, const Memory *memory)
     return status == OK ? check_ticks(instance, memory) : status;
 }
 
+static int is_exchanged(const Instance *instance, int64_t mode)
+{
+    return mode == CONTINUOUS_TIME || (mode == EVENT && !instance->has_events);
+}
+
+Status check_kind(const Instance *instance, const Memory *memory)
+{
+    const int exchanged = is_exchanged(instance, memory->mode);
+    if (instance->exchanges ? memory->mode != STEPPING : !exchanged)
+        return OK;
+    return refuse(instance, "the FMU state is refused: its instance was made for %s",
+                  exchanged ? "model exchange" : "co-simulation");
+}
+
 Status check_content(const Instance *instance, Memory *memory)
 {
     const int64_t mode = memory->mode;
-    const int exchanged = mode == CONTINUOUS_TIME || (mode == EVENT && !instance->has_events);
+    const int exchanged = is_exchanged(instance, mode);
     if (mode != INSTANTIATED && mode != INITIALIZATION && mode != STEPPING && mode != TERMINATED
         && !(exchanged && allows_model_exchange) && !(mode == EVENT && instance->has_events))
         return refuse(instance, DAMAGED_STATE);
-    if (instance->exchanges ? mode == STEPPING : exchanged)
-        return refuse(instance, "the FMU state is refused: its instance was made for %s",
-                      exchanged ? "model exchange" : "co-simulation");
-    Status status = check_times(instance, memory);
+    Status status = check_kind(instance, memory);
+    if (status == OK)
+        status = check_times(instance, memory);
     if (status == OK)
         status = check_values(instance, memory);
     if (status == OK)

@@ -14,6 +14,13 @@ typedef struct {
 
 static const char *const type_names[] = {"Real", "Integer", "Boolean", "String", "Integer"};
 
+int name_of_adapter(char name[NAME_LENGTH], Reference reference)
+{
+    (void)name;
+    (void)reference;
+    return 0;
+}
+
 const char *fmi2GetTypesPlatform(void)
 {
     return fmi2TypesPlatform;
@@ -187,10 +194,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
 {
     Instance *instance = ready(c, ANY_MODE, FMUstate != NULL, __func__);
-    if (!instance)
-        return fmi2Error;
-    set_state(instance, FMUstate);
-    return fmi2OK;
+    return instance ? in_fmi(set_state(instance, FMUstate)) : fmi2Error;
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)

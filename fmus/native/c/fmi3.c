@@ -8,6 +8,7 @@ of the inputs, in the order of these. */
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -137,6 +138,18 @@ static const Variable *moving_input(Reference reference)
     return input->type == REAL ? input : NULL;
 }
 
+int name_of_adapter(char name[NAME_LENGTH], Reference reference)
+{
+    const Variable *input = moving_input(reference);
+    if (!input && reference != variable_count)
+        return 0;
+    if (input)
+        snprintf(name, NAME_LENGTH, "der(%s)", input->name);
+    else
+        strcpy(name, "time");
+    return 1;
+}
+
 static Status get_Float64(Instance *instance, Reference reference, double *value)
 {
     const Variable *input = moving_input(reference);
@@ -153,6 +166,11 @@ static Status set_Float64(Instance *instance, Reference reference, double value)
         return refuse(instance, "time is the independent variable and cannot be set");
     if (!input)
         return set_values(instance, REAL, &reference, 1, &value);
+    if (instance->memory.mode == TERMINATED) {
+        char name[NAME_LENGTH], text[NUMBER_LENGTH];
+        name_of_adapter(name, reference);
+        return refuse(instance, SET_TOO_LATE(name, write_number(text, value)));
+    }
     reference = (Reference)(input - variables);
     const unsigned modes = INSTANTIATED | INITIALIZATION | STEPPING;
     return in_mode(instance, modes, "fmi3SetFloat64") ? set_input_rates(instance, &reference, 1, &value) : ERROR;
@@ -245,10 +263,7 @@ fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *FMUState)
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState FMUState)
 {
     Instance *instance = ready(c, ANY_MODE, FMUState != NULL, __func__);
-    if (!instance)
-        return fmi3Error;
-    set_state(instance, FMUState);
-    return fmi3OK;
+    return instance ? in_fmi3(set_state(instance, FMUState)) : fmi3Error;
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *FMUState)

@@ -24,10 +24,7 @@ static fmi3Status no_variable(
         return fmi3Error;
     if (count == 0)
         return fmi3OK;
-    if (references[0] >= variable_count)
-        return in_fmi3(refuse(instance, UNKNOWN_REFERENCE(references[0], model_name, last_reference)));
-    const Variable *variable = &variables[references[0]];
-    return in_fmi3(refuse(instance, WRONG_TYPE(variable->name, type_names[variable->type], type)));
+    return in_fmi3(refuse_reference(instance, references[0], type));
 }
 
 #define NOT_OFFERED(what, function, arguments)       \

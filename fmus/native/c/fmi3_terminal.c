@@ -6,7 +6,7 @@ Tx_Clock is active in event mode while there is something to be sent. */
 
 #include <string.h>
 
-static fmi3Status refuse_reference(Instance *instance, Reference reference, const char *function, const char *type)
+static fmi3Status refuse_of_terminal(Instance *instance, Reference reference, const char *function, const char *type)
 {
     if (reference < TX_DATA || reference > RX_CLOCK)
         return no_variable(instance, &reference, 1, function, type);
@@ -24,7 +24,7 @@ fmi3Status fmi3GetBinary(
     const Terminal *terminal = &instance->memory.terminal;
     for (size_t k = 0; k < nvr; k++) {
         if (vr[k] != TX_DATA && vr[k] != RX_DATA)
-            return refuse_reference(instance, vr[k], __func__, "Binary");
+            return refuse_of_terminal(instance, vr[k], __func__, "Binary");
         values[k] = vr[k] == TX_DATA ? terminal->tx : terminal->rx;
         valueSizes[k] = vr[k] == RX_DATA ? terminal->rx_size : instance->memory.mode == EVENT ? terminal->tx_size : 0;
     }
@@ -45,7 +45,7 @@ fmi3Status fmi3SetBinary(
         if (vr[k] == TX_DATA)
             return in_fmi3(refuse(instance, OUTPUT_SET(terminal_names[0])));
         if (vr[k] != RX_DATA)
-            return refuse_reference(instance, vr[k], __func__, "Binary");
+            return refuse_of_terminal(instance, vr[k], __func__, "Binary");
         if (size > OPERATIONS_SIZE || (size > 0 && !values[k]))
             return in_fmi3(refuse(
                 instance, "%s with %lu bytes is refused; allowed are 0 to %d", terminal_names[RX_DATA - TX_DATA], size,
@@ -68,7 +68,7 @@ fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t nv
     const Terminal *terminal = &instance->memory.terminal;
     for (size_t k = 0; k < nvr; k++) {
         if (vr[k] != TX_CLOCK && vr[k] != RX_CLOCK)
-            return refuse_reference(instance, vr[k], __func__, "Clock");
+            return refuse_of_terminal(instance, vr[k], __func__, "Clock");
         const int sends = instance->memory.mode == EVENT && terminal->tx_size > 0;
         values[k] = vr[k] == TX_CLOCK ? sends : terminal->has_rx != 0;
     }
@@ -84,7 +84,7 @@ fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t nv
         if (vr[k] == TX_CLOCK)
             return in_fmi3(refuse(instance, OUTPUT_SET(terminal_names[TX_CLOCK - TX_DATA])));
         else if (vr[k] != RX_CLOCK)
-            return refuse_reference(instance, vr[k], __func__, "Clock");
+            return refuse_of_terminal(instance, vr[k], __func__, "Clock");
     for (size_t k = 0; k < nvr; k++)
         instance->memory.terminal.has_rx = values[k] != fmi3ClockInactive;
     return fmi3OK;

@@ -91,6 +91,8 @@ typedef struct {
 
 /* the adapter */
 static const char *const type_names[ENUMERATION + 1]; /* what its standard calls them */
+enum { NAME_LENGTH = 100 };
+static int name_of_adapter(char name[NAME_LENGTH], Reference reference); /* 0 if it has no variable there */
 
 /* calls.c */
 enum {
@@ -121,6 +123,7 @@ static State present_state(const Memory *memory);
 static Status compute_next_outputs(Instance *instance, const Next *next, double step_size); /* refused if not finite */
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
+static Status refuse_reference(const Instance *instance, Reference reference, const char *asked); /* ERROR */
 static const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
 static const char *write_value(char text[NUMBER_LENGTH], Type type, double value);
 static double *place_of(Values *values, const Variable *variable);
@@ -139,12 +142,13 @@ static Status step_and_send(Instance *instance, double time, double step_size); 
 
 /* state.c */
 static Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */
-static void set_state(Instance *instance, const void *state);
+static Status set_state(Instance *instance, const void *state); /* refused if it is of the other kind */
 static size_t serialized_size(void);
 static Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size);
 static Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state);
 
 /* content.c */
+static Status check_kind(const Instance *instance, const Memory *memory); /* whose instance does the same */
 static Status check_content(const Instance *instance, Memory *memory); /* of a saved state */
 
 /* continuous.c or sampled.c */

@@ -26,9 +26,12 @@ Status get_state(const Instance *instance, void **state)
     return keep(instance, &instance->memory, state);
 }
 
-void set_state(Instance *instance, const void *state)
+Status set_state(Instance *instance, const void *state)
 {
-    memcpy(&instance->memory, state, sizeof instance->memory);
+    const Status status = check_kind(instance, state);
+    if (status == OK)
+        memcpy(&instance->memory, state, sizeof instance->memory);
+    return status;
 }
 
 /* CRC-32 of IEEE 802.3 over all but the checksum itself. */

@@ -22,16 +22,24 @@ void set_start_values(Memory *memory)
     compute_terms(&memory->values.p);
 }
 
+Status refuse_reference(const Instance *instance, Reference reference, const char *asked)
+{
+    char name[NAME_LENGTH];
+    if (reference < reference_count)
+        return refuse(
+            instance, WRONG_TYPE(variables[reference].name, type_names[variables[reference].type], asked));
+    if (!name_of_adapter(name, reference))
+        return refuse(instance, UNKNOWN_REFERENCE(reference, model_name, last_reference));
+    if (strcmp(asked, type_names[REAL]) == 0)
+        return refuse(instance, "%s has no derivative here, and is none", name);
+    return refuse(instance, WRONG_TYPE(name, type_names[REAL], asked));
+}
+
 const Variable *variable_of(const Instance *instance, Reference reference, Type type)
 {
-    if (reference >= reference_count) {
-        refuse(instance, UNKNOWN_REFERENCE(reference, model_name, last_reference));
-        return NULL;
-    }
-    const Variable *variable = &variables[reference];
-    if (variable->type == type)
-        return variable;
-    refuse(instance, WRONG_TYPE(variable->name, type_names[variable->type], type_names[type]));
+    if (reference < reference_count && variables[reference].type == type)
+        return &variables[reference];
+    refuse_reference(instance, reference, type_names[type]);
     return NULL;
 }
 
@@ -107,6 +115,21 @@ Status compute_next_outputs(Instance *instance, const Next *next, double step_si
     return OK;
 }
 
+/* Whether outputs are numbers, which no step has made sure of where the host integrates; else they are discarded. */
+static int can_be_given(Memory *memory, const Instance *instance, const Reference references[], size_t count)
+{
+    for (size_t k = 0; k < count && instance->exchanges && !gives_bad_output; k++) {
+        const Variable *variable = &variables[references[k]];
+        const double value = variable->causality == OUTPUT ? *place_of(&memory->values, variable) : 0.0;
+        char text[NUMBER_LENGTH];
+        if (fabs(value) <= DBL_MAX)
+            continue;
+        discard(instance, "%s is refused; it would be %s", variable->name, write_number(text, value));
+        return 0;
+    }
+    return 1;
+}
+
 Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values)
 {
     Memory *memory = &instance->memory;
@@ -115,6 +138,8 @@ Status get_values(Instance *instance, Type type, const Reference references[], s
     for (size_t k = 0; k < count && !memory->outputs_known; k++)
         if (variables[references[k]].causality == OUTPUT)
             compute_outputs(memory);
+    if (!can_be_given(memory, instance, references, count))
+        return DISCARD;
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
         const int of_state = variable->causality == STATE || variable->causality == RATE;

@@ -123,7 +123,8 @@ def test_a_rate_holds_until_it_is_set(fmi3, tmp_path):
         host.step(0.03, 0.01)
         assert host.get("T_ref") == pytest.approx(15.0)
         host.fmu.terminate()
-        assert "is refused after termination" in host.refuses(ramp, host, T_ref=1.0)
+        message = host.refuses(ramp, host, T_ref=1.0)
+        assert message.startswith("der(T_ref) = 1.0 is refused; a parameter can be set until")
 
 
 def test_rates_are_part_of_a_saved_state_and_forgotten_by_a_reset(fmi3, tmp_path):
@@ -161,6 +162,18 @@ def test_time_is_told_and_cannot_be_set(fmi3, tmp_path):
         assert host.get("time") == 1.25
         assert host.fmu.doStep(1.25, 0.25) == (False, False, False, 1.5)
         assert host.refuses(host.set, time=0.0) == "time is the independent variable and cannot be set"
+
+
+def test_time_and_rates_have_a_type(fmi3, tmp_path):
+    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+        host.initialize()
+        names = {"time": host.variables["time"].valueReference, "der(T_ref)": host.fmu.rates[0]}
+        for name, reference in names.items():
+            for kind in ("Int32", "Int64", "Boolean", "Float32", "UInt8"):
+                told = host.refuses(getattr(host.fmu, f"get{kind}"), [reference])
+                assert re.fullmatch(rf"{re.escape(name)} is of type (Real|Float64), not \w+", told), kind
+            told = host.refuses(host.fmu.getDirectionalDerivative, [reference], [0], [1.0])
+            assert told == f"{name} has no derivative here, and is none"
 
 
 def test_an_enumeration_is_no_whole_number_and_a_type_without_variables_has_none(fmi3, tmp_path):

@@ -3,13 +3,14 @@
 import ctypes
 import math
 import random
+import re
 from contextlib import contextmanager
 from typing import Any
 
 import fmpy
 import numpy as np
 import pytest
-from fmpy.fmi2 import FMU2Model
+from fmpy.fmi2 import FMU2Model, fmi2Discard
 from fmpy.validation import validate_fmu
 
 from benchmarks.model_exchange import integrated, recorded, sensitivity, stepped
@@ -487,10 +488,28 @@ def test_a_saved_state_of_the_other_kind_is_refused(native, tmp_path, kind):
     (other,) = [each for each in kinds if each != kind]
     with opened(native / "TwoMassDriveline.fmu", tmp_path, **kinds[kind]) as host:
         host.initialize()
-        saved = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
-    with opened(native / "TwoMassDriveline.fmu", tmp_path, **kinds[other]) as host:
-        message = host.refuses(host.fmu.deSerializeFMUstate, saved)
-        assert message == f"the FMU state is refused: its instance was made for {kind}"
+        state = host.fmu.getFMUstate()
+        saved = bytes(host.fmu.serializeFMUstate(state))
+        with opened(native / "TwoMassDriveline.fmu", tmp_path, **kinds[other]) as taker:
+            for function, given in ((taker.fmu.deSerializeFMUstate, saved), (taker.fmu.setFMUstate, state)):
+                message = taker.refuses(function, given)
+                assert message == f"the FMU state is refused: its instance was made for {kind}"
+            taker.initialize()
+        host.fmu.freeFMUstate(state)
+
+
+def test_an_output_that_is_no_number_is_discarded(native, tmp_path):
+    """No step has looked at it, and a solver may try any state."""
+    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+        host.fmu.newDiscreteStates()
+        host.fmu.enterContinuousTimeMode()
+        x = states(host)
+        set_states(host, [1e308] * len(x))
+        assert re.fullmatch(r"T_gear is refused; it would be -?(inf|nan)", host.refuses(host.get, "T_gear"))
+        assert host.status == fmi2Discard
+        assert host.get("T_mot") == 0.0
+        set_states(host, x)
+        assert abs(host.get("T_gear")) < 1e3
 
 
 # a host that integrates
