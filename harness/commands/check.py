@@ -1,8 +1,8 @@
-"""Checks any FMU of FMI 2.0, or of FMI 3.0 for co-simulation: its archive, its model description (with fmpy, and
-what fmpy does not look at: units, dependencies, documentation) and its behaviour (default experiment, odd step sizes,
-reset, several instances, saved states), the latter in a process of its own.
+"""Checks any FMU of FMI 2.0 or 3.0: its archive, its model description (with fmpy, and what fmpy does not look at:
+aliases, units, dependencies, documentation), its binary and its behaviour in co-simulation and model exchange (default
+experiment, odd step sizes, reset, several instances, saved states), the latter in a process of its own.
 
-A finding is an error (hosts fail), a warning (tools complain) or a note (people miss something).
+A finding is an error (the standard demands it), a warning (it recommends it) or a note (people miss something).
 Exit code 0: no errors; 1: errors, with --strict also warnings; 2: no such file. docs/check.md lists the rules.
 
 examples:

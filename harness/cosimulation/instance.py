@@ -53,8 +53,24 @@ def _log_of_fmi3(key: int, _environment: int, status: int, category: bytes, mess
 
 # one callback for all, never freed: fmpy's proxy, which fills in the arguments of the message, knows one
 _logger = fmi2CallbackLoggerTYPE(_log)
-_allocate = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-_free = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+blocks = set[int]()
+"""Addresses of the memory that FMUs of FMI 2.0 have been given and have not given back."""
+
+
+def _given(count: int, size: int) -> int | None:
+    block = fmpy.calloc(count, size)
+    if block:
+        blocks.add(block)
+    return block
+
+
+def _given_back(block: int | None) -> None:
+    blocks.discard(block or 0)
+    fmpy.free(block)
+
+
+_allocate = fmi2CallbackAllocateMemoryTYPE(_given)
+_free = fmi2CallbackFreeMemoryTYPE(_given_back)
 
 
 def _callbacks(key: int) -> fmi2CallbackFunctions:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from math import isfinite
 
+from ...cosimulation import instance
 from ...cosimulation.unpacked_fmu import Unpacked
 from .host import Outputs, hosted
 from .rule import Clause, Rules, Severity
@@ -128,6 +129,17 @@ def states_are_restored(fmu: Unpacked) -> Iterator[str]:
             yield from _differences(first, host.run(STEPS), "after the state was written and read")
             host.instance.call("freeFMUstate", revived)
         host.instance.call("freeFMUstate", state)
+
+
+@BEHAVIOUR_RULES.rule("memory", Severity.ERROR, "memory of the host is given back", Clause("2.1.5"))
+def memory_is_given_back(fmu: Unpacked) -> Iterator[str]:
+    """What was allocated for an instance of FMI 2.0 when that has been freed; FMI 3.0 has no such function."""
+    before = set(instance.blocks)
+    with hosted(fmu) as host:
+        host.start()
+        host.run(STEPS)
+    if kept := instance.blocks - before:
+        yield f"{len(kept)} blocks of memory are not given back by fmi2FreeInstance"
 
 
 QUICK_RULES = Rules()

@@ -79,6 +79,17 @@ def aliases(interface: Interface) -> Iterator[str]:
             yield f"{names} have one value reference, but not one unit"
 
 
+@DESCRIPTION_RULES.rule("reinit", Severity.ERROR, "reinit is given only in model exchange", Clause("2.2.7"))
+def reinit(interface: Interface) -> Iterator[str]:
+    """In FMI 2.0 it must not be present where there is no model exchange."""
+    if interface.fmi == 2 and interface.description.modelExchange is None:
+        given = [
+            each for each in attributes(interface.path, interface.limits, "ModelVariables/*/*") if "reinit" in each
+        ]
+        if given:
+            yield f"{len(given)} variables have reinit, but the FMU is for co-simulation alone"
+
+
 LISTS = {
     "units": "UnitDefinitions/Unit",
     "types": "TypeDefinitions/*",

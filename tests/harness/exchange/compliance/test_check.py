@@ -77,6 +77,7 @@ IN_BOTH = (
         (r'(name="omega_2" valueReference=)"\d+"', r'\1"0"', "one value reference, but not one unit"),
         (r'(<Unit name="m/s2">.*?</Unit>)', r"\1\1", "2 units are called m/s2"),
         (r'(DateAndTime="[^"]*)Z"', r'\1+00:00"', r"generationDateAndTime is .*\+00:00"),
+        (r"<Real ", '<Real reinit="false" ', "1 variables have reinit"),
         (r' fmiVersion="2.0"', ' fmiVersion="1.5"', "cannot be read|FMI 1.5"),
     ],
 )
@@ -221,7 +222,7 @@ def test_a_hostile_archive_is_an_error_of_its_own_rule(tmp_path, unpacked, kind)
         ({"IN_RESET": "raise(SIGSEGV)"}, {"reset"}, r"crashed \(SIGSEGV\) in fmi2Reset"),
         (
             {"IN_DO_STEP": "return -1"},
-            {"runs", "steps", "reset", "instances"},
+            {"runs", "steps", "reset", "instances", "memory"},
             "answered fmi2DoStep with the status -1",
         ),
         ({"IN_GET_REAL": "values[0] = NAN"}, {"runs", "steps"}, "is nan"),
@@ -263,6 +264,13 @@ def test_an_end_that_the_fmu_wants_is_no_error(tmp_path, fmi):
     assert f"answered fmi{fmi}DoStep with discard" in broken(build_stranger(tmp_path, fmi=fmi, **ENDS))["runs"][1]
 
 
+def test_memory_of_the_host_that_is_kept_is_found(tmp_path):
+    keeps = "((void *(*)(size_t, size_t))((void **)callbacks)[1])(1, 8)"
+    found = broken(build_stranger(tmp_path, IN_INSTANTIATE=keeps))["memory"]
+    assert found == ("error", "1 blocks of memory are not given back by fmi2FreeInstance")
+    assert "memory" not in broken(build_stranger(tmp_path, "clean"))
+
+
 def test_many_short_calls_are_not_one_that_hangs(tmp_path):
     def change(xml):
         return xml.replace('stopTime="0.2"', 'stopTime="0.02"')
@@ -289,8 +297,8 @@ def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
     verdicts = list(check(path, ignored=["reset"]))
     assert {verdict.rule for verdict in verdicts if not verdict.tried} == names
     (suite,) = ElementTree.fromstring(junit({"stranger.fmu": verdicts}, ["error"]))
-    assert (suite.get("skipped"), suite.get("failures")) == ("3", "1")
-    assert len(suite.findall("testcase/skipped")) == 3
+    assert (suite.get("skipped"), suite.get("failures")) == ("4", "1")
+    assert len(suite.findall("testcase/skipped")) == 4
 
 
 def test_an_ignored_rule_is_not_tried(tmp_path):
