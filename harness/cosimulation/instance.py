@@ -25,7 +25,8 @@ from fmpy.fmi2 import (
     fmi2Terminated,
     fmi2Warning,
 )
-from fmpy.fmi3 import _FMU3, FMU3Model, FMU3Slave
+from fmpy.fmi3 import _FMU3 as FMU3Base  # pyright: ignore[reportPrivateUsage]
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 from fmpy.logging import addLoggerProxy
 from fmpy.model_description import ModelVariable
 
@@ -122,18 +123,21 @@ class FMU2Traced(_Traced, FMU2Slave):
 class FMU2Exchanging(_Traced, FMU2Model):
     """An FMU of FMI 2.0 for model exchange."""
 
-    setFloat64 = FMU2Model.setReal
     start = FMU2Traced.start
 
+    def setFloat64(self, references: Sequence[int], values: Sequence[float]) -> None:
+        """What FMI 3.0 calls it."""
+        cast(Any, self).setReal(references, values)
 
-class _OfFMI3(_FMU3):
+
+class _OfFMI3(FMU3Base):
     """An FMU of FMI 3.0, with the names of FMI 2.0 for what goes by another one."""
 
-    getFMUstate = _FMU3.getFMUState
-    setFMUstate = _FMU3.setFMUState
-    freeFMUstate = _FMU3.freeFMUState
-    serializeFMUstate = _FMU3.serializeFMUState
-    deSerializeFMUstate = _FMU3.deserializeFMUState
+    getFMUstate = FMU3Base.getFMUState
+    setFMUstate = FMU3Base.setFMUState
+    freeFMUstate = FMU3Base.freeFMUState
+    serializeFMUstate = FMU3Base.serializeFMUState
+    deSerializeFMUstate = FMU3Base.deserializeFMUState
 
     def start(self, start_time: float, stop_time: float | None) -> None:
         """Enters initialization mode."""
@@ -143,8 +147,11 @@ class _OfFMI3(_FMU3):
 class FMU3Exchanging(_Traced, _OfFMI3, FMU3Model):
     """An FMU of FMI 3.0 for model exchange."""
 
-    newDiscreteStates = _FMU3.updateDiscreteStates
-    getDerivatives = FMU3Model.getContinuousStateDerivatives
+    newDiscreteStates = FMU3Base.updateDiscreteStates
+
+    def getDerivatives(self, rates: Any, size: int) -> None:
+        """What FMI 2.0 calls it."""
+        self.getContinuousStateDerivatives(rates, size)
 
     def sizes(self) -> tuple[int, int]:
         """Numbers of continuous states and of event indicators."""
