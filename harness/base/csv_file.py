@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from .atomic_files import complete
 
@@ -15,12 +16,18 @@ if TYPE_CHECKING:
 ROWS_AT_ONCE = 1000
 
 
+@contextmanager
+def _begun(path: Path, headings: Sequence[str]) -> Iterator[TextIO]:
+    """The file with its headings."""
+    with complete(path) as unfinished, unfinished.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerow(headings)
+        yield file
+
+
 def write_rows(headings: Sequence[str], rows: Iterable[Sequence[object]], path: Path) -> None:
     """Writes one row a line."""
-    with complete(path) as unfinished, unfinished.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headings)
-        writer.writerows(rows)
+    with _begun(path, headings) as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
 
 
 def write_csv(results: np.ndarray, path: Path, headings: Sequence[str] | None = None) -> None:
@@ -31,14 +38,12 @@ def write_csv(results: np.ndarray, path: Path, headings: Sequence[str] | None = 
     Args:
         headings: of the columns; None: the names of the fields.
     """
-    write_rows(headings or results.dtype.names or (), _rows(results), path)
-
-
-def _rows(results: np.ndarray) -> Iterator[tuple[str, ...]]:
-    """The rows as texts, which take much more memory and so are made piece by piece."""
-    for start in range(0, len(results), ROWS_AT_ONCE):
-        piece = results[start : start + ROWS_AT_ONCE]
-        yield from zip(*(_texts(piece[name]) for name in results.dtype.names or ()), strict=True)
+    names = results.dtype.names or ()
+    with _begun(path, headings or names) as file:
+        for start in range(0, len(results), ROWS_AT_ONCE):  # texts take much more memory
+            piece = results[start : start + ROWS_AT_ONCE]
+            rows = zip(*(_texts(piece[name]) for name in names), strict=True)
+            file.writelines(f"{','.join(row)}\n" for row in rows)  # no number has to be quoted
 
 
 def _texts(column: np.ndarray) -> list[str]:

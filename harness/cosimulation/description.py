@@ -2,9 +2,11 @@
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from io import BytesIO
 from math import isfinite, isnan
 from pathlib import Path
+from typing import Any, cast
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
@@ -33,9 +35,15 @@ KINDS = {
 }
 """Elements of the kinds that there are, and what the standards call these."""
 
+OURS = {"Float64": "Real", "Int32": "Integer"}
+"""Types of FMI 3.0 by the names of FMI 2.0."""
+
+MOST_KEPT = 16
+"""Descriptions."""
+
 
 def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPPING) -> ModelDescription:
-    """The model description of an FMU.
+    """The model description of an FMU, with our names of types; one that was read before is not parsed again.
 
     Args:
         kinds: of FMUs that are taken, of `KINDS`.
@@ -46,7 +54,12 @@ def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPP
     """
     if not path.is_file():
         raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
-    root = _root(path, limits)
+    return _parsed(described(path, limits), path, tuple(kinds))
+
+
+@lru_cache(MOST_KEPT)
+def _parsed(text: bytes, path: Path, kinds: Sequence[str]) -> ModelDescription:
+    root = _root(text, path)
     version = root.get("fmiVersion")
     if root.tag != "fmiModelDescription" or version is None or not VERSION.fullmatch(version):
         raise WiringError(f"{path} is of FMI {plain(version)}; known are FMI 2.0 and FMI 3.0")
@@ -60,10 +73,14 @@ def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPP
         more = f" (and {len(found) - 1} more)" if found[1:] else ""
         raise WiringError(f"the model description of {path} cannot be used: {found[0]}{more}")
     try:
-        return fmpy.read_model_description(str(path), validate=False)
+        made = fmpy.read_model_description(str(path), validate=False)
     except Exception as error:  # fmpy raises bare exceptions
         reason = plain(error if type(error) is Exception else f"{type(error).__name__} {error}")
         raise WiringError(f"the model description of {path} cannot be read: {reason}") from error
+    for variable in made.modelVariables if version != "2.0" else ():
+        of_array = "array of " if variable.shape else ""
+        cast(Any, variable).type = of_array + OURS.get(str(variable.type), str(variable.type))
+    return made
 
 
 def attributes(path: Path, limits: Limits, where: str) -> Iterator[dict[str, str]]:
@@ -75,11 +92,10 @@ def attributes(path: Path, limits: Limits, where: str) -> Iterator[dict[str, str
     Raises:
         WiringError: there is none that can be read.
     """
-    return (element.attrib for element in _root(path, limits).iterfind(where))
+    return (element.attrib for element in _root(described(path, limits), path).iterfind(where))
 
 
-def _root(path: Path, limits: Limits) -> Element:
-    text = described(path, limits)
+def _root(text: bytes, path: Path) -> Element:
     try:
         return ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
     except Exception as error:  # what it raises depends on the encoding that the text claims to have

@@ -6,7 +6,7 @@ Types are called as in FMI 2.0, also those of FMI 3.0: a Float64 is a Real, an I
 from collections.abc import Sequence
 from ctypes import c_bool, c_double, c_int, c_int32, c_int64
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from fmpy.model_description import ModelDescription, ModelVariable
 
@@ -44,9 +44,6 @@ ACCESSES = {
 }
 """By FMI and type."""
 
-OURS = {"Float64": "Real", "Int32": "Integer"}
-"""Types of FMI 3.0 by the names of FMI 2.0."""
-
 
 class Interface:
     """What an FMU shows to the outside.
@@ -55,7 +52,7 @@ class Interface:
         path: of the FMU.
         limits: within which it is read.
         fmi: 2 or 3, for FMI 2.0 or 3.0.
-        description: as fmpy read it, with our names of types.
+        description: as fmpy read it, with our names of types; others share it.
         identifier: of the binary.
         variables: by name, in the order of the description; where they are mapped, as the loop sees them.
         factors: what values of mapped variables are multiplied by on their way into the loop.
@@ -82,9 +79,6 @@ class Interface:
         self.identifier = str(offered.modelIdentifier)
         self.fmi = self.description.fmiMajorVersion
         self.rates = _rates(self.description) if self.fmi == 3 else {}
-        for variable in self.description.modelVariables if self.fmi == 3 else ():
-            of_array = "array of " if variable.shape else ""
-            cast(Any, variable).type = of_array + OURS.get(str(variable.type), str(variable.type))
         self.variables: dict[str, ModelVariable] = {v.name: v for v in self.description.modelVariables}
         self.factors: dict[str, float] = {}
         self.refused: set[str] = set()
@@ -111,7 +105,7 @@ class Interface:
 
 
 def _rates(description: ModelDescription) -> dict[int, int]:
-    inputs = [v for v in description.modelVariables if v.causality == "input" and v.type == "Float64" and not v.shape]
+    inputs = [v for v in description.modelVariables if v.causality == "input" and v.type == "Real"]
     return {
         v.derivative.valueReference: v.valueReference
         for v in inputs

@@ -3,13 +3,19 @@
 Filters are of Butterworth, of order 4, run forwards and backwards, so that nothing is shifted.
 """
 
+from typing import Any
+
 import numpy as np
 
-from .oscillation import SPAN, forwards_and_backwards
+from ..base.progress import chunks
+from .oscillation import SPAN
 from .spectrum import DRIVE_TRAIN, TO_50_HZ
 
 HIGHEST = 0.9
 """Of half the sampling rate: the highest corner of a filter."""
+
+FILTERED = 2**17
+"""Samples that are filtered at a time."""
 
 
 def band_part(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN) -> np.ndarray:
@@ -23,6 +29,20 @@ def band_part(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN
     kind, corners = ("bandpass", (low, high)) if low else ("lowpass", high)
     sos = butter(4, corners, kind, fs=1.0 / T_s, output="sos")
     return forwards_and_backwards(sos, x, min(round(SPAN / T_s), len(x) - 1))
+
+
+def forwards_and_backwards(sos: Any, x: np.ndarray, ends: int) -> np.ndarray:
+    """x filtered without shift: the numbers of `scipy.signal.sosfiltfilt` with padlen = ends < len(x), which takes
+    four times the memory."""
+    from scipy.signal import sosfilt, sosfilt_zi
+
+    y = np.concatenate((2.0 * x[0] - x[ends:0:-1], x, 2.0 * x[-1] - x[-2 : -ends - 2 : -1]))
+    for direction in (y, y[::-1]):
+        state = sosfilt_zi(sos) * direction[0]
+        for piece in chunks(len(y), FILTERED):
+            rows = slice(piece.start, piece.stop)
+            direction[rows], state = sosfilt(sos, direction[rows], zi=state)
+    return y[ends : len(y) - ends]
 
 
 def envelope(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN) -> np.ndarray:

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from driveline.harness.metrics import oscillation, spectrum
-from driveline.harness.metrics.band_filter import band_part, derivative, envelope
-from driveline.harness.metrics.oscillation import forwards_and_backwards
+from driveline.harness.metrics import band_filter, spectrum
+from driveline.harness.metrics.band_filter import band_part, derivative, envelope, forwards_and_backwards
 from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
 
 T_S = 0.002
@@ -44,7 +43,7 @@ def test_the_derivative_of_what_is_slow_is_that_of_the_signal() -> None:
 @pytest.mark.parametrize("at_once", [100, 2**17])
 @pytest.mark.parametrize("ends", [0, 9, 200])
 def test_a_filter_in_pieces_gives_what_scipy_gives(at_once: int, ends: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(oscillation, "FILTERED", at_once)
+    monkeypatch.setattr(band_filter, "FILTERED", at_once)
     x, sos = (
         np.random.default_rng(2).standard_normal(1001).cumsum(),
         butter(4, (5.0, 50.0), "band", fs=500.0, output="sos"),
