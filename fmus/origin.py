@@ -5,6 +5,7 @@ import json
 import zipfile
 from collections.abc import Mapping
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +17,9 @@ ENTRY = "extra/driveline.damping/origin.json"
 PACKAGES, KINDS = ("models", "fmus"), (".py", ".c", ".h", ".toml")
 """What the sources of every FMU of the project are."""
 
+TOOLS = {"python": ("pythonfmu",), "native": ("casadi", "fmpy")}
+"""Packages that each build is made with."""
+
 
 class Origin(NamedTuple):
     """What an FMU tells of itself.
@@ -24,11 +28,13 @@ class Origin(NamedTuple):
         sources: digest of the sources that made it.
         start_values: of the parameters that a vehicle file or gains have set, by name.
         platforms: for which it has binaries.
+        tools: versions of the packages that it was made with.
     """
 
     sources: str
     start_values: Mapping[str, Any]
     platforms: frozenset[str]
+    tools: Mapping[str, str] = {}
 
 
 @cache
@@ -43,9 +49,14 @@ def sources_digest() -> str:
     return digest.hexdigest()
 
 
-def origin_entry(fmu: Fmu) -> dict[str, bytes]:
+def tools_of(build: str) -> dict[str, str]:
+    """Versions of the packages that a build, "python" or "native", is made with."""
+    return {name: version(name) for name in TOOLS[build]}
+
+
+def origin_entry(fmu: Fmu, build: str) -> dict[str, bytes]:
     """The file that tells it, by its name in the archive."""
-    entry = {"sources": sources_digest(), "start_values": dict(fmu.start_values)}
+    entry = {"sources": sources_digest(), "start_values": dict(fmu.start_values), "tools": tools_of(build)}
     return {ENTRY: json.dumps(entry, indent=2, sort_keys=True).encode() + b"\n"}
 
 
@@ -55,7 +66,7 @@ def origin_of(path: Path) -> Origin | None:
         with zipfile.ZipFile(path) as archive:
             entry = json.loads(archive.read(ENTRY))
             binaries = [name.split("/")[1] for name in archive.namelist() if name.startswith("binaries/")]
-        return Origin(entry["sources"], dict(entry["start_values"]), frozenset(binaries))
+        return Origin(entry["sources"], dict(entry["start_values"]), frozenset(binaries), entry.get("tools", {}))
     except Exception:  # whatever the bytes of a stranger lead zipfile to
         return None
 
@@ -64,3 +75,10 @@ def is_stale(path: Path) -> bool:
     """Whether an FMU of the project was not made from the sources that are there."""
     origin = origin_of(path)
     return origin is None or origin.sources != sources_digest()
+
+
+def is_as_made_now(path: Path, fmu: Fmu, build: str) -> bool:
+    """Whether the FMU at `path` was made from the sources, start values and tools that it would be made from now."""
+    origin = origin_of(path)
+    now = sources_digest(), dict(fmu.start_values), tools_of(build)
+    return origin is not None and (origin.sources, origin.start_values, origin.tools) == now

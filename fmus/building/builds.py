@@ -1,7 +1,9 @@
 """Building FMUs: those of the project by name, or one of a Python file of the user's own."""
 
 import logging
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from difflib import get_close_matches
 from importlib.util import find_spec
 from math import inf
@@ -11,7 +13,7 @@ from typing import Any
 from ..description.variables import interface
 from ..errors import BuildError
 from ..fmu import Fmu
-from ..origin import is_stale, origin_of
+from ..origin import is_as_made_now, is_stale, origin_of
 from .own_file import fmu_in, place
 
 BUILDS = ("python", "native", "both")
@@ -42,7 +44,9 @@ def build_fmus(
     parameters: Path | None = None,
     fmi: int = 2,
 ) -> Iterator[Path]:
-    """Builds FMUs, one after the other; yields the path of each file.
+    """Builds FMUs, as many at a time as there are cores; yields the path of each file in their order.
+
+    An FMU of the project that is there as it would be built is left as it is, unless CC names a compiler.
 
     Args:
         names: of FMUs of the project, or paths of Python files with a block of the user's own, of which there is a
@@ -71,14 +75,43 @@ def build_fmus(
     if builds == "python" and platform != "host":
         raise BuildError(f"--platform {platform} is for native builds; a Python build runs wherever Python does")
     of_the_project = builders(builds, platform, fmi) if len(own) < len(fmus) else []
+    if "CC" not in os.environ:
+        of_the_project = [_unless_made(build, platform, fmi) for build in of_the_project]
     files = [Path(name) for name in names if isinstance(name, str) and name.endswith(".py")]
     of_own = [_guarded(builder, files) for builder in builders("native", platform, fmi)] if own else []
     start_values = read_files(vehicle, parameters, own)
     require_taken(parameters, {name for fmu in fmus for name in fmu.block.Parameters._fields}, " or ".join(built))
-    for fmu in fmus:
-        of_car = of_one_car(start_values, fmu.block.Parameters._fields)
-        for build in of_own if fmu in own else of_the_project:
-            yield build(fmu.started_with(of_car), folder)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        try:
+            begun = [
+                pool.submit(build, fmu.started_with(of_one_car(start_values, fmu.block.Parameters._fields)), folder)
+                for fmu in fmus
+                for build in (of_own if fmu in own else of_the_project)
+            ]
+            for each in begun:
+                yield each.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _unless_made(builder: Builder, platform: str, fmi: int) -> Builder:
+    """The builder, which leaves what is there as it would build it."""
+    from ..python.packaging import build as in_python
+
+    kind = "python" if builder is in_python else "native"
+
+    def build(fmu: Fmu, folder: Path) -> Path:
+        path = folder / FMI3_FOLDER / f"{fmu.name}.fmu" if fmi == 3 else located(fmu.name, folder, kind)
+        there = is_as_made_now(path, fmu, kind) and (kind == "python" or _for_all(path) == (platform == "all"))
+        return path if there else builder(fmu, folder)
+
+    return build
+
+
+def _for_all(path: Path) -> bool:
+    """Whether a native FMU has binaries for more platforms than one."""
+    origin = origin_of(path)
+    return origin is not None and len(origin.platforms) > 1
 
 
 def _each_once(names: Sequence[str | Fmu]) -> list[str | Fmu]:
@@ -122,7 +155,7 @@ def rebuilt(fmu: Fmu, path: Path, folder: Path, build: str) -> list[Path]:
         NotPossible, BuildError: as of `refreshed`.
     """
     origin = origin_of(path)
-    platform = "all" if origin and build == "native" and len(origin.platforms) > 1 else "host"
+    platform = "all" if build == "native" and _for_all(path) else "host"
     made = _as_built(fmu, origin.start_values, path) if origin else fmu
     return [builder(made, folder) for builder in builders(build, platform)]
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
+from threading import Lock
 
 from ...models.block.types import ContinuousBlock
 from ..archive import guid_of, write_archive
@@ -83,6 +84,9 @@ arrived in the step as frames (FMI-LS-BUS); their database is in the folder <cod
 EXCHANGE = {"canNotUseMemoryManagementFunctions": "false", "providesDirectionalDerivative": "true"}
 """What model exchange can do in a native build."""
 
+TRACING = Lock()
+"""Held while a block is traced: how CasADi simplifies is set for all threads."""
+
 
 def build_native(
     fmu: Fmu,
@@ -91,7 +95,7 @@ def build_native(
     fmi: int = 2,
     database: bytes = b"",
 ) -> Path:
-    """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path.
+    """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path. Threads compile side by side.
 
     Args:
         binaries: compiles; `host_binaries` or `all_binaries` of .compiler.
@@ -103,11 +107,13 @@ def build_native(
         CompilerError: there is no compiler, or it refuses the source.
     """
     sends = bool(database)
-    sources, kind, describe = c_sources(fmu, fmi, sends), native_kind(fmu, fmi, sends), DESCRIPTIONS[fmi]
-    guid = guid_of(describe(fmu, kind, ""), sources)
-    sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
+    kind, describe = native_kind(fmu, fmi, sends), DESCRIPTIONS[fmi]
+    with TRACING:
+        sources = c_sources(fmu, fmi, sends)
+        guid = guid_of(describe(fmu, kind, ""), sources)
+        sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
     packed = {f"sources/{name}": content for name, content in sources.items()}
-    packed |= binaries(fmu.name, sources, fmi) | documentation(fmu, kind) | origin_entry(fmu)
+    packed |= binaries(fmu.name, sources, fmi) | documentation(fmu, kind) | origin_entry(fmu, "native")
     packed["modelDescription.xml"] = describe(fmu, kind, guid)
     if fmi == 3:
         packed["sources/buildDescription.xml"] = build_description(fmu, kind)

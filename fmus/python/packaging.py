@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import distribution, version
 from pathlib import Path, PurePosixPath
+from threading import Lock
 from types import ModuleType
 
 from pythonfmu.builder import FmuBuilder
@@ -40,13 +41,17 @@ Cortex-M4F that qemu-system-arm emulates, which must be on the PATH (on Linux)."
 SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
 """Modules of PythonFMU that an FMU needs when it runs."""
 
+PACKING = Lock()
+"""Held while PythonFMU packs, which imports the block as a module."""
+
 
 def build(fmu: Fmu, folder: Path) -> Path:
     """Builds `folder/<name>.fmu`, replacing one that is there, and returns its path."""
     kind = python_kind(on_target=bool(fmu.image))
-    files = _resources_and_binaries(fmu)
+    with PACKING:
+        files = _resources_and_binaries(fmu)
     guid = guid_of(model_description(fmu, kind, ""), files)
-    files |= documentation(fmu, kind) | _license_of_pythonfmu() | origin_entry(fmu)
+    files |= documentation(fmu, kind) | _license_of_pythonfmu() | origin_entry(fmu, "python")
     files["modelDescription.xml"] = model_description(fmu, kind, guid)
     target = folder / f"{fmu.name}.fmu"
     write_archive(files, target)

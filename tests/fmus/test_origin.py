@@ -6,7 +6,7 @@ import pytest
 
 from driveline.fmus import origin
 from driveline.fmus.building import builds
-from driveline.fmus.building.builds import NotPossible, refreshed
+from driveline.fmus.building.builds import NotPossible, build_fmus, refreshed
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.errors import BuildError
 from driveline.fmus.origin import is_stale, origin_of
@@ -41,6 +41,35 @@ def test_what_is_missing_or_stale_is_built_and_nothing_else(tmp_path: Path, late
     assert is_stale(path)
     assert refreshed([NAME], tmp_path, "python") == [path]
     assert not is_stale(path)
+
+
+def test_a_build_leaves_what_is_there_as_it_would_make_it(tmp_path: Path, later, monkeypatch) -> None:
+    monkeypatch.delenv("CC", raising=False)
+
+    def made_again(**files) -> bool:
+        before = path.stat().st_mtime_ns
+        assert list(build_fmus([NAME], tmp_path, "python", **files)) == [path]
+        return path.stat().st_mtime_ns != before
+
+    (path,) = build_fmus([NAME], tmp_path, "python")
+    assert not made_again()
+    (tmp_path / "car.toml").write_text("i = 12.0\n")
+    assert made_again(vehicle=tmp_path / "car.toml")
+    assert not made_again(vehicle=tmp_path / "car.toml")
+    assert made_again()
+    monkeypatch.setitem(origin.TOOLS, "python", ("numpy",))
+    assert made_again()
+    later()
+    assert made_again()
+    assert not made_again()
+    monkeypatch.setenv("CC", "cc")
+    assert made_again()
+
+
+def test_builds_side_by_side_are_those_one_after_the_other(tmp_path: Path, native: Path) -> None:
+    together = list(build_fmus([], tmp_path, "native"))
+    assert [path.stem for path in together] == list(FMUS)
+    assert all(path.read_bytes() == (native / path.name).read_bytes() for path in together)
 
 
 def test_an_fmu_stays_the_car_that_it_was_built_as(tmp_path: Path, later) -> None:
