@@ -72,15 +72,11 @@ cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
 	$(INSTALL) '.[cross]'
 	$(BIN)/driveline build --build native --platform all
 
-bench: $(READY) ## cost per communication step, side by side and in other hosts, and of the start of a command
+bench: $(READY) ## docs/speed.md: what a step, a run and a command take, side by side and in other hosts
 	$(BIN)/driveline build
-	$(BIN)/python -m benchmarks.step_cost
-	$(BIN)/python -m benchmarks.instructions
+	$(BIN)/python -m benchmarks.speed_page
 	$(BIN)/python -m benchmarks.step_error
 	$(BIN)/python -m benchmarks.standstill
-	$(BIN)/python -m benchmarks.start_up
-	$(BIN)/python -m benchmarks.hosts
-	$(BIN)/python -m benchmarks.many_runs
 
 docs: cross ## the pages of the documentation that are stale, made anew
 	$(BIN)/python -m docs.studies

@@ -22,6 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks import plain_loop
+from benchmarks.step_cost import with_fmpy
 from benchmarks.timed import Timed
 from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
@@ -64,6 +65,11 @@ def compiled(system: System, steps: int) -> Run:
 
 def in_python(system: System, steps: int) -> Run:
     return _in_our_master(system, steps, interpreted)
+
+
+def by_fmpy(system: System, steps: int) -> Run:
+    """fmpy with one call a variable."""
+    return _in_our_master(system, steps, with_fmpy)
 
 
 def _in_our_master(system: System, steps: int, make: MakeSteps) -> Run:
@@ -148,12 +154,13 @@ class Contender(NamedTuple):
 
 CONTENDERS = (
     Contender("our master", "native", compiled, LIBRARY is not None),
-    Contender("the same in Python", "native", in_python),
+    Contender("our steps in Python", "native", in_python),
     Contender("plain C loop", "native", plain_c, os.name == "posix" and which(os.environ.get("CC", "cc")) is not None),
     Contender("libcosim", "native", libcosim, find_spec("libcosimpy") is not None),
     Contender("Ecos", "native", ecos, find_spec("ecospy") is not None),
+    Contender("fmpy", "native", by_fmpy),
     Contender("our master", "python", compiled, LIBRARY is not None),
-    Contender("the same in Python", "python", in_python),
+    Contender("our steps in Python", "python", in_python),
 )
 
 
@@ -182,6 +189,11 @@ def table(plant: str, best: dict[Contender, Run]) -> Table:
     return result
 
 
+def find_libraries() -> None:
+    """Where the package tbb puts the library that Ecos needs; it is looked for when a process starts."""
+    os.environ["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -190,8 +202,7 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=5.0, help="of a run in s (default: %(default)s)")
     parser.add_argument("--turns", type=int, default=5, help="of each (default: %(default)s)")
     args = parser.parse_args()
-    # where the package tbb puts the library that Ecos needs; it is looked for when a process starts
-    os.environ["LD_LIBRARY_PATH"] = str(Path(sys.prefix) / "lib")
+    find_libraries()
     console = Console()
     for plant in args.plant or PLANTS:
         console.print(table(plant, measure(plant, round(args.duration / STEP_SIZE), args.turns)))

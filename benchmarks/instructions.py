@@ -91,7 +91,10 @@ def main() -> None:
         parts = ("\n".join((f"[{p}]", *(f"{name} = {n}" for name, n in c.items()))) for p, c in counts.items())
         KEPT.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
     elif worse := [p for p, c in counts.items() if c["loop"] > MORE * kept.get(p, {}).get("loop", float("inf"))]:
-        sys.exit(f"a step needs {MORE - 1.0:.0%} more instructions than was kept: {', '.join(worse)}")
+        sys.exit(
+            f"a step needs {MORE - 1.0:.0%} more instructions than was kept: {', '.join(worse)}; "
+            "if that is meant, `python -m benchmarks.instructions --keep`"
+        )
 
 
 if __name__ == "__main__":

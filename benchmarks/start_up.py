@@ -42,15 +42,20 @@ def seconds(arguments: tuple[str, ...], folder: str) -> float:
     return perf_counter() - began
 
 
+def measure(repetitions: int) -> dict[str, float]:
+    """The least time of each contender in s."""
+    turns = defaultdict(list)
+    with TemporaryDirectory() as folder:
+        for _ in range(repetitions):
+            for name, arguments in CONTENDERS.items():
+                turns[name].append(seconds(arguments, folder))
+    return {name: min(times) for name, times in turns.items()}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.start_up", description=__doc__)
     parser.add_argument("--repetitions", type=int, default=15, help="turns of each (default: %(default)s)")
-    turns = defaultdict(list)
-    with TemporaryDirectory() as folder:
-        for _ in range(parser.parse_args().repetitions):
-            for name, arguments in CONTENDERS.items():
-                turns[name].append(seconds(arguments, folder))
-    least = {name: min(times) for name, times in turns.items()}
+    least = measure(parser.parse_args().repetitions)
     table = Table("", "ms", "over import numpy", title="start-up")
     for name, time in least.items():
         table.add_row(name, f"{1e3 * time:.0f}", f"{time / least['python, import numpy']:.2f}")

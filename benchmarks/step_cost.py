@@ -112,7 +112,7 @@ class Stopwatch:
 
 
 def with_fmpy(begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> Steps:
-    """Steps under Gauss-Seidel with one call of FMU2Slave a variable; nothing is recorded."""
+    """Steps under Jacobi with one call of FMU2Slave a variable; the last row alone is recorded."""
     sources = {target: source for source, target, _ in CONNECTIONS} | {port.name: port.name for port in INPUTS}
     plans = []
     for instance in dict.fromkeys(call.instance for call in begin):
@@ -136,12 +136,15 @@ def with_fmpy(begin: Sequence[Call], end: Sequence[Call], row: bytearray, known:
         for k in numbers:
             for name, samples in given.items():
                 values[name] = samples[k - numbers.start]
-            for inputs, do_step, outputs in plans:
+            for inputs, do_step, _ in plans:
                 for set_value, reference, name in inputs:
                     set_value([reference], [values[name]])
                 do_step(k * STEP_SIZE, STEP_SIZE)
+            for _, _, outputs in plans:
                 for get_value, reference, name in outputs:
                     values[name] = get_value([reference])[0]
+        for name in (table.dtype.names or ())[1:]:
+            table[name][numbers.stop] = values[name]
 
     return steps
 
