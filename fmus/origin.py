@@ -4,7 +4,7 @@ import hashlib
 import json
 import zipfile
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -62,6 +62,16 @@ def origin_entry(fmu: Fmu, build: str) -> dict[str, bytes]:
 
 def origin_of(path: Path) -> Origin | None:
     """What the FMU at `path` tells; None if it tells nothing (it is somebody else's, or older than this)."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return _read(path.absolute(), found.st_ino, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(64)
+def _read(path: Path, *_: int) -> Origin | None:
+    """Of a file with these properties, which another would not have: every run asks for it."""
     try:
         with zipfile.ZipFile(path) as archive:
             entry = json.loads(archive.read(ENTRY))

@@ -1,7 +1,7 @@
 """Makes the runs of a request: without control, with ours, and with the controllers beside it."""
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from ..studies.drives.replay import car_of, followed
 from ..views.html.paired_runs import NEEDED, shown_at_first
 from .knobs import CAR, GAINS, Knob, knobs
 from .request import Request, characterised, parameters
+from .worker import Beside
 
 Given = Mapping[tuple[str, str], Settings]
 """The settings of the loops by the names of plant and controller."""
@@ -59,6 +60,7 @@ class RequestRunner:
     Attributes:
         controllers: by name; the first is the one whose gains can be turned.
         car, gains: what can be turned.
+        beside: makes the run without control while this thread makes the others; None: they follow each other.
 
     Raises:
         DrivelineError: a manoeuvre has the name of the recording.
@@ -78,6 +80,7 @@ class RequestRunner:
         self._manoeuvres = manoeuvres
         self._recording = recording
         self._undamped: tuple[Any, Run] | None = None
+        self.beside: Beside | None = None
         self.controllers = list(dict.fromkeys(controller for _, controller in given))
         fits = [self.fit(plant, self.controllers[0]) for plant in self.plants]
         start = {key: value for plant in self.plants for key, value in self.settings(plant).parameters.items()}
@@ -174,8 +177,11 @@ class RequestRunner:
             DrivelineError: as of `require`, or an FMU has ended a run.
         """
         self.require(request)
+        without = partial(self._without, request)
+        if self.beside is not None:
+            without = self.beside.begin(without)
         runs = {name: self._run(request, name, True) for name in self._controllers(request)}
-        return Answer(request, self._without(request), runs)
+        return Answer(request, without(), runs)
 
     def gains_of(self, request: Request) -> dict[str, float]:
         """The gains that our controller has, as they were changed and by the character."""

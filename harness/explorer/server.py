@@ -16,7 +16,7 @@ from ..base.interruption import between_callbacks
 from .admission import Admission
 from .request_runs import RequestRunner
 from .view import Save, Typed, View
-from .worker import Worker
+from .worker import Beside, Worker
 
 ADDRESS = "127.0.0.1"
 
@@ -47,6 +47,7 @@ def serve(
     port = free(port)
     hosts = [f"{host}:{port}" for host in (ADDRESS, "localhost")]
     worker = Worker()
+    runner.beside = beside = Beside()
     try:
         server = Server(
             {"/": Application(FunctionHandler(open_view))},
@@ -67,6 +68,8 @@ def serve(
             server.stop()
     finally:
         worker.close()
+        runner.beside = None
+        beside.close()
 
 
 def free(port: int) -> int:

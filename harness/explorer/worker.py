@@ -1,7 +1,9 @@
 """A thread that runs what tabs ask for, each time the latest, so that none waits for an outdated request."""
 
 from collections.abc import Callable, Hashable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from contextvars import copy_context
 from threading import Condition, Thread
 from typing import Any
 
@@ -10,6 +12,27 @@ from ..base.progress import hidden
 from ..cosimulation.runs import KeptLoops, kept_by
 
 Job = Callable[[], Any]
+
+
+class Beside:
+    """A thread for what is done while another thread does something else; systems stay loaded in it too."""
+
+    def __init__(self) -> None:
+        self._loops = KeptLoops(None)
+        self._thread = ThreadPoolExecutor(1, "beside")
+
+    def begin(self, job: Job) -> Job:
+        """What waits for the job and gives what it gives; it is abandoned as what the thread does that asks."""
+        return self._thread.submit(copy_context().run, self._do, job).result
+
+    def close(self) -> None:
+        """Waits for what has begun, and ends the thread."""
+        self._thread.submit(self._loops.close)
+        self._thread.shutdown()
+
+    def _do(self, job: Job) -> Any:
+        with kept_by(self._loops):
+            return job()
 
 
 class Worker:

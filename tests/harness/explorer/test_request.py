@@ -12,6 +12,7 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.runs import kept_loaded
 from driveline.harness.explorer.request import COMFORT, SPORT, Request, characterised, parameters
 from driveline.harness.explorer.request_runs import RequestRunner
+from driveline.harness.explorer.worker import Beside
 from driveline.harness.loop.settings import Settings
 from driveline.harness.recordings.drive import Drive
 
@@ -183,3 +184,19 @@ def test_sliders_end_within_what_every_fmu_takes(runner: RequestRunner) -> None:
                     runner.answer(
                         replace(request, car=turned) if knob in runner.car else replace(request, gains=turned)
                     )
+
+
+def test_two_runs_beside_each_other_are_those_one_after_the_other(runner: RequestRunner) -> None:
+    request = replace(REQUEST, plant="ValidationVehicle", car={"m": 1600.0})
+    expected = runner.answer(request)
+    runner.answer(REQUEST)
+    runner.beside = Beside()
+    try:
+        found = runner.answer(request)
+        assert np.array_equal(found.without.results, expected.without.results)
+        assert np.array_equal(found.runs["DampingController"].results, expected.runs["DampingController"].results)
+        with pytest.raises(DrivelineError):
+            runner.answer(replace(request, typed={"plant.m": 0.0}))
+        assert runner.answer(request).without is found.without
+    finally:
+        runner.beside.close()
