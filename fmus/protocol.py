@@ -60,8 +60,8 @@ UNKNOWN_REFERENCE = "value reference {reference:d} is unknown; {model} has 0 to 
 WRONG_TYPE = "{name} is of type {type}, not {asked}"
 OUTPUT_SET = "{name} is an output and cannot be set"
 SET_TOO_LATE = (
-    "{name} = {value!r} is refused; a parameter can be set until initialization mode is left, "
-    "an input until termination, and both again after a reset"
+    "{name} = {value!r} is refused; a fixed parameter can be set until initialization mode is left, a tunable one "
+    "between steps (in model exchange: in event mode), an input until termination, and all again after a reset"
 )
 BAD_VALUE = "{name} = {value!r}{unit} is refused; allowed is {allowed}"
 

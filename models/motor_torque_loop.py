@@ -31,17 +31,21 @@ OMEGA_MAX = 5000.0
 class Parameters(NamedTuple):
     tau: MotorLag = CAR.tau
     T_max: MotorTorque = CAR.T_max
-    g_T: Annotated[float, Real("1", "gain of the torque estimate", 0.5, 2.0)] = 1.0
-    o_T: Annotated[float, Real("N.m", "offset of the torque estimate", -50.0, 50.0)] = 0.0
-    sigma_T: Annotated[float, Real("N.m", "standard deviation of the torque estimate", 0.0, 50.0)] = 0.3
-    sigma_omega: Annotated[float, Real("rad/s", "standard deviation of the measured speed", 0.0, 10.0)] = 0.15
+    g_T: Annotated[float, Real("1", "gain of the torque estimate", 0.5, 2.0, tunable=True)] = 1.0
+    o_T: Annotated[float, Real("N.m", "offset of the torque estimate", -50.0, 50.0, tunable=True)] = 0.0
+    sigma_T: Annotated[float, Real("N.m", "standard deviation of the torque estimate", 0.0, 50.0, tunable=True)] = 0.3
+    sigma_omega: Annotated[
+        float, Real("rad/s", "standard deviation of the measured speed", 0.0, 10.0, tunable=True)
+    ] = 0.15
     q_omega: Annotated[float, Real("rad/s", "resolution of the measured speed, 0 for none", 0.0, 10.0)] = 0.1
     T_s: Annotated[float, Real("s", "interval for which a sample of the noise is held", 1e-4, 0.1)] = 0.002
     seed: Annotated[int, Integer("seed of the noise", 0, 1_000_000)] = 1
     t_dead: Annotated[float, Real("s", "dead time of the demand; below 0.1 ms none", 0.0, 0.01)] = 0.0
-    dT_max: Annotated[float, Real("N.m/s", "largest rate of the torque; 1e7 limits none", 10.0, 1e8)] = 1e7
+    dT_max: Annotated[float, Real("N.m/s", "largest rate of the torque; 1e7 limits none", 10.0, 1e8, tunable=True)] = (
+        1e7
+    )
     omega_base: Annotated[
-        float, Real("rad/s", "speed above which the power is constant; 5000 is never reached", 10.0, 1e4)
+        float, Real("rad/s", "speed above which the power is constant; 5000 is never reached", 10.0, 1e4, tunable=True)
     ] = OMEGA_MAX
 
 

@@ -73,7 +73,7 @@ class Parameters(NamedTuple):
     d_p: Annotated[float, Real("N.m.s/rad", "damping of the mounts", 0.0, 20000.0)] = 120.0
     c_slip: vehicle.SlipStiffness = CAR.c_slip
     sigma: Annotated[float, Real("m", "relaxation length of the tyres", 0.05, 1.0)] = 0.22
-    mu: Annotated[float, Real("1", "friction coefficient of the road", 0.05, 2.0)] = 1.0
+    mu: Annotated[float, Real("1", "friction coefficient of the road", 0.05, 2.0, tunable=True)] = 1.0
     C_x: Annotated[float, Real("1", "shape factor of the tyre characteristic", 1.0, 2.5)] = 1.65
     t_asym: Annotated[float, Real("1", "asymmetry of the tyre stiffness", -0.5, 0.5)] = 0.05
     F_z0: Annotated[float, Real("N", "static load of the driven axle", 500.0, 200000.0)] = 8500.0
@@ -107,8 +107,12 @@ class Parameters(NamedTuple):
     omega_sat: brake.BristleSpeedLimit = BRAKE.omega_sat
     v_0: vehicle.StartSpeed = 0.0
     T_0: vehicle.StartTorque = 0.0
-    g_muL: Annotated[float, Real("1", "friction of the road under the left wheel, over mu", 0.02, 2.0)] = 1.0
-    g_muR: Annotated[float, Real("1", "friction of the road under the right wheel, over mu", 0.02, 2.0)] = 1.0
+    g_muL: Annotated[
+        float, Real("1", "friction of the road under the left wheel, over mu", 0.02, 2.0, tunable=True)
+    ] = 1.0
+    g_muR: Annotated[
+        float, Real("1", "friction of the road under the right wheel, over mu", 0.02, 2.0, tunable=True)
+    ] = 1.0
 
 
 class State(NamedTuple):

@@ -52,9 +52,9 @@ class Parameters(NamedTuple):
     q_v: Annotated[float, Real("m/s", "resolution of the speed on the bus", 0.0, 1.0)] = 0.0625 / 3.6
     v_on: Annotated[float, Real("m/s", "speed above which the message becomes valid", 0.0, 20.0)] = 5.0 / 3.6
     v_off: Annotated[float, Real("m/s", "speed below which the message becomes invalid", 0.0, 20.0)] = 3.0 / 3.6
-    d_min: Annotated[float, Real("s", "shortest transport delay", 0.001, 0.05)] = 0.001
-    d_max: Annotated[float, Real("s", "longest transport delay", 0.001, 0.05)] = 0.025
-    loss: Annotated[float, Real("1", "probability that a message is lost", 0.0, 1.0)] = 0.0
+    d_min: Annotated[float, Real("s", "shortest transport delay", 0.001, 0.05, tunable=True)] = 0.001
+    d_max: Annotated[float, Real("s", "longest transport delay", 0.001, 0.05, tunable=True)] = 0.025
+    loss: Annotated[float, Real("1", "probability that a message is lost", 0.0, 1.0, tunable=True)] = 0.0
     seed: Annotated[int, Integer("seed of phase, teeth, delays and losses", 0, 1_000_000)] = 1
 
 

@@ -33,7 +33,7 @@ th, td {{ text-align: left; padding: .25em 1em .25em 0; border-bottom: 1px solid
 {tables}
 <h2>How it runs</h2>
 <p>{timing} {inputs} A parameter may be changed until initialization
-mode is left, and outputs are right from then on. A value that is not allowed is refused with a
+mode is left, and outputs are right from then on; a tunable one also between steps, for those that follow. A value that is not allowed is refused with a
 message to the logger, and everything stays as it was before the call{tolerance}.</p>
 <p>FMI {version} {kinds}, all quantities in SI units. {needs}</p>
 </body>
@@ -94,7 +94,7 @@ def timing(block: Block) -> str:
 def tables(block: Block) -> Iterator[tuple[str, list[tuple[str, ...]]]]:
     """Title and rows of the tables of inputs, outputs, parameters, if there are any; the first row is the heading."""
     for causality in ("input", "output", "parameter"):
-        heading = ("Name", "Unit", "Meaning", "Start", "Allowed")
+        heading = ("Name", "Unit", "Meaning", "Start", "Allowed", "In a run")
         rows = [_cells(v) for v in interface(block) if v.causality == causality]
         if rows:
             yield f"{causality.capitalize()}s", [heading[: len(rows[0])], *rows]
@@ -127,4 +127,5 @@ def _cells(variable: Variable) -> tuple[str, ...]:
     if variable.causality == "output":
         return cells
     start = variable.start
-    return (*cells, f"{start:g}" if isinstance(start, float) else str(start).lower(), variable.allowed())
+    cells = (*cells, f"{start:g}" if isinstance(start, float) else str(start).lower(), variable.allowed())
+    return (*cells, variable.variability) if variable.variability else cells

@@ -105,7 +105,7 @@ def variable_attributes(variable: Variable, block: Block) -> dict[str, str]:
         "causality": variable.causality,
     }
     if variable.causality == "parameter":
-        return attributes | {"variability": "fixed", "initial": "exact"}
+        return attributes | {"variability": variable.variability, "initial": "exact"}
     # what feeds a sampled block may change at any time; what leaves it may not
     sampled = isinstance(block, SampledBlock) and variable.causality == "output"
     discrete = sampled or not isinstance(variable.declaration, Real)

@@ -34,6 +34,13 @@ class Variable(NamedTuple):
         return "Boolean" if isinstance(self.declaration, Boolean) else "Integer"
 
     @property
+    def variability(self) -> str:
+        """Of a parameter: "tunable" if it can be set during a run, else "fixed"; of others empty."""
+        if self.causality != "parameter":
+            return ""
+        return "tunable" if isinstance(self.declaration, Real) and self.declaration.tunable else "fixed"
+
+    @property
     def unit(self) -> str:
         """Its unit; empty for what has none."""
         unit = self.declaration.unit if isinstance(self.declaration, Real) else ""

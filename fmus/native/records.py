@@ -97,5 +97,7 @@ def _meaning(record: Any) -> str:
 
 def _comment(quantity: Quantity) -> str:
     declaration = quantity.declaration
-    unit = declaration.unit if isinstance(declaration, Real) else "1"
-    return declaration.description if unit == "1" else f"{unit}: {declaration.description}"
+    if not isinstance(declaration, Real):
+        return declaration.description
+    text = declaration.description if declaration.unit == "1" else f"{declaration.unit}: {declaration.description}"
+    return f"{text} (tunable)" if declaration.tunable else text

@@ -285,7 +285,7 @@ def _written(variable: Variable, fmi_type: str, kind: str, place: str) -> str:
     low, high = variable.bounds()
     start = 0.0 if variable.start is None else variable.start
     numbers = ", ".join(_number(value) for value in (low, high, start))
-    kinds = f"{fmi_type}, {kind}"
+    kinds = f"{fmi_type}, {kind}, {int(variable.variability == 'tunable')}"
     unit = f" {variable.unit}" if variable.unit else ""
     return f'    {{"{variable.name}", "{unit}", "{variable.allowed()}", {kinds}, {place}, {numbers}}},'
 

@@ -20,10 +20,10 @@ FMI_DISCARD = 2
 SETTABLE = {
     Mode.INSTANTIATED: ("input", "parameter"),
     Mode.INITIALIZATION: ("input", "parameter"),
-    Mode.STEPPING: ("input",),
+    Mode.STEPPING: ("input", "tunable"),
     Mode.TERMINATED: (),
 }
-"""Causalities that can be set in each mode."""
+"""Causalities and variabilities that can be set in each mode."""
 
 NAMES = dict(zip(Mode, protocol.MODE_NAMES, strict=True))
 
@@ -149,7 +149,7 @@ class BlockSlave:
         """Advances the block from `elapsed` s after the start on, to finite outputs or not at all."""
         assert self.runner
         before, memory = self.runner.x, self.runner.memory
-        self.runner.elapsed = elapsed
+        self.runner.elapsed, self.runner.p = elapsed, self.values.p
         try:
             self.runner.advance(self.values.u, step_size)
             if self.runner.x is not before:

@@ -31,16 +31,17 @@ class Values:
         self.allow("input", "parameter")
         self._renew()
 
-    def allow(self, *causalities: str) -> None:
-        """Says which variables can be set from now on."""
-        self._tuning = "parameter" in causalities
-        self._bounds = {v.reference: v.bounds() for v in self.variables if v.causality in causalities}
+    def allow(self, *kinds: str) -> None:
+        """Says which variables can be set from now on, by their causality or variability."""
+        self._starting = "parameter" in kinds
+        settable = (v for v in self.variables if v.causality in kinds or v.variability in kinds)
+        self._bounds = {v.reference: v.bounds() for v in settable}
 
-    def _renew(self) -> None:
+    def _renew(self, parameters: bool = True) -> None:
         self.u = self.block.Input._make(self._all[: self.first_output])
-        if self._tuning:
+        if parameters:
             self.p = self.block.Parameters._make(self._all[self.first_parameter :])
-        if self._tuning or isinstance(self.block, ContinuousBlock):
+        if parameters or self._starting or isinstance(self.block, ContinuousBlock):
             self.up_to_date = False
 
     def get(self, fmi_type: str, references: list[int], x: Any) -> list[Any]:
@@ -92,7 +93,7 @@ class Values:
                 self._judge(self.variables[reference], value)
         for reference, value in zip(references, new, strict=True):
             self._all[reference] = value
-        self._renew()
+        self._renew(max(references, default=0) >= self.first_parameter)
 
     def restore(self, u: list[Any], p: list[Any]) -> None:
         """Puts back inputs and parameters as they were in `u` and `p`."""

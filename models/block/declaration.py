@@ -21,6 +21,7 @@ class Real:
     Attributes:
         search: range, for the default car, in which a search for the best value stays; None: it is given, as what
             belongs to the car is, or computed. Where it begins above 0 the search goes by factors.
+        tunable: of a parameter: a run may change it, and the state goes on without a jump.
     """
 
     unit: str
@@ -29,6 +30,7 @@ class Real:
     maximum: float = math.inf
     nominal: float | None = None
     search: tuple[float, float] | None = None
+    tunable: bool = False
 
 
 @dataclass(frozen=True)

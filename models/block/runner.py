@@ -26,11 +26,12 @@ class Runner(ABC):
 
     Attributes:
         x: its state now.
+        p: its parameters; those that are tunable may be changed between steps.
         elapsed: time since the start in s; a host with a clock of its own may put it right before a step.
     """
 
     def __init__(self, block: Block, u: object, p: object) -> None:
-        """At the start, with the inputs u of that instant and the parameters p of the whole run."""
+        """At the start, with the inputs u of that instant and the parameters p."""
         self.p = p
         self.x = block.start(u, p)
         self.elapsed = 0.0
@@ -104,7 +105,7 @@ class SampledRunner(Runner):
 
 
 def runner(block: Block, u: object, p: object) -> Runner:
-    """A block at its start, with the inputs u of that instant and the parameters p of the whole run."""
+    """A block at its start, with the inputs u of that instant and the parameters p."""
     if isinstance(block, ContinuousBlock):
         return ContinuousRunner(block, u, p)
     return SampledRunner(block, u, p)

@@ -18,11 +18,11 @@ from . import measured_speeds
 
 class DifferenceParameters(NamedTuple):
     k_delta: Annotated[
-        float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 200.0, search=(0.2, 10.0))
+        float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 200.0, search=(0.2, 10.0), tunable=True)
     ] = 2.53
-    omega_delta: Annotated[float, Real("rad/s", "corner frequency of its washout", 0.0, 400.0, search=(0.5, 200.0))] = (
-        5.81
-    )
+    omega_delta: Annotated[
+        float, Real("rad/s", "corner frequency of its washout", 0.0, 400.0, search=(0.5, 200.0), tunable=True)
+    ] = 5.81
 
 
 class DifferenceState(NamedTuple):

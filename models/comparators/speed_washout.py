@@ -16,9 +16,15 @@ from . import measured_speeds
 
 
 class WashoutParameters(NamedTuple):
-    k_v: Annotated[float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 200.0, search=(0.2, 10.0))] = 2.80
-    omega_v: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(1.0, 200.0))] = 10.3
-    zeta_v: Annotated[float, Real("1", "damping ratio of the washout", 0.1, 10.0, search=(0.2, 5.0))] = 0.426
+    k_v: Annotated[
+        float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 200.0, search=(0.2, 10.0), tunable=True)
+    ] = 2.80
+    omega_v: Annotated[
+        float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(1.0, 200.0), tunable=True)
+    ] = 10.3
+    zeta_v: Annotated[float, Real("1", "damping ratio of the washout", 0.1, 10.0, search=(0.2, 5.0), tunable=True)] = (
+        0.426
+    )
 
 
 class WashoutState(NamedTuple):

@@ -30,36 +30,64 @@ class Parameters(NamedTuple):
     J_1: MotorInertia = CAR.J_1
     C: Stiffness = CAR.C
     phi_B: HalfGap = CAR.phi_B
-    T_pred: Annotated[float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02, search=(0.0, 0.006))] = (
-        GAINS["T_pred"]
-    )
-    k_d: Annotated[float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 200.0, search=(0.3, 10.0))] = (
-        GAINS["k_d"]
-    )
+    T_pred: Annotated[
+        float, Real("s", "time that the estimate is taken ahead", 0.0, 0.02, search=(0.0, 0.006), tunable=True)
+    ] = GAINS["T_pred"]
+    k_d: Annotated[
+        float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 200.0, search=(0.3, 10.0), tunable=True)
+    ] = GAINS["k_d"]
     k_T: Annotated[float, Real("1", "damping over the gear torque", 0.0, 5.0, search=(0.001, 5.0))] = GAINS["k_T"]
-    omega_w: Annotated[float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(0.5, 300.0))] = (
-        GAINS["omega_w"]
+    omega_w: Annotated[
+        float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(0.5, 300.0), tunable=True)
+    ] = GAINS["omega_w"]
+    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0, search=(0.1, 2.0), tunable=True)] = (
+        GAINS["k_gap"]
     )
-    k_gap: Annotated[float, Real("1", "factor on k_d inside the gap", 0.0, 2.0, search=(0.1, 2.0))] = GAINS["k_gap"]
     T_gap: Annotated[
         float,
-        Real("N.m", "largest torque that the speed of a landing is derived from", 0.0, 2000.0, search=(20.0, 180.0)),
+        Real(
+            "N.m",
+            "largest torque that the speed of a landing is derived from",
+            0.0,
+            2000.0,
+            search=(20.0, 180.0),
+            tunable=True,
+        ),
     ] = GAINS["T_gap"]
     bounce: Annotated[
-        float, Real("1", "twist that an impact alone may make, over that of the demand", 0.0, 5.0, search=(0.0, 1.5))
+        float,
+        Real(
+            "1",
+            "twist that an impact alone may make, over that of the demand",
+            0.0,
+            5.0,
+            search=(0.0, 1.5),
+            tunable=True,
+        ),
     ] = GAINS["bounce"]
     brake: Annotated[
-        float, Real("1", "torque that can brake before an impact, over the demand", 0.0, 5.0, search=(0.0, 1.5))
+        float,
+        Real("1", "torque that can brake before an impact, over the demand", 0.0, 5.0, search=(0.0, 1.5), tunable=True),
     ] = GAINS["brake"]
     haste: Annotated[
-        float, Real("1", "expected further change of the demand, over the recent one", 0.0, 5.0, search=(0.0, 2.0))
+        float,
+        Real(
+            "1", "expected further change of the demand, over the recent one", 0.0, 5.0, search=(0.0, 2.0), tunable=True
+        ),
     ] = GAINS["haste"]
     omega_slow: Annotated[
-        float, Real("rad/s", "corner frequency that tells what is recent", 0.0, 400.0, search=(3.0, 60.0))
+        float, Real("rad/s", "corner frequency that tells what is recent", 0.0, 400.0, search=(3.0, 60.0), tunable=True)
     ] = GAINS["omega_slow"]
     t_return: Annotated[
         float,
-        Real("s", "time within which the torque that a landing withheld comes back", 0.0, 1.0, search=(0.0, 0.03)),
+        Real(
+            "s",
+            "time within which the torque that a landing withheld comes back",
+            0.0,
+            1.0,
+            search=(0.0, 0.03),
+            tunable=True,
+        ),
     ] = GAINS["t_return"]
     t_land: Annotated[float, Real("s", "longest duration of a landing", 0.0, 1.0)] = GAINS["t_land"]
 

@@ -19,11 +19,11 @@ class Parameters(NamedTuple):
     tau: MotorLag = CAR.tau
     J_1: MotorInertia = CAR.J_1
     T_take_max: Annotated[
-        float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0)
+        float, Real("N.m", "largest torque taken from the demand, by damping and landing", 0.0, 2000.0, tunable=True)
     ] = GAINS["T_take_max"]
-    T_add_max: Annotated[float, Real("N.m", "largest torque added to the demand, or taken by damping", 0.0, 2000.0)] = (
-        GAINS["T_add_max"]
-    )
+    T_add_max: Annotated[
+        float, Real("N.m", "largest torque added to the demand, or taken by damping", 0.0, 2000.0, tunable=True)
+    ] = GAINS["T_add_max"]
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
     t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1

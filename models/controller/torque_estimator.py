@@ -43,35 +43,59 @@ class Parameters(NamedTuple):
     lambda_v: Annotated[float, Real("1", "share of the gear torque that the vehicle takes", 0.0, 0.99)] = GAINS[
         "lambda_v"
     ]
-    L_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, without wheel speed", -2.0, 2.0)] = GAINS["L_omega_1"]
-    L_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, without wheel speed", -2.0, 2.0)] = GAINS["L_omega_2"]
-    L_phi: Annotated[float, Real("s", "gain on phi_hat, without wheel speed", -0.1, 0.1)] = GAINS["L_phi"]
-    L_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, without wheel speed", -10.0, 10.0)] = GAINS["L_T_l"]
-    Lw_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, with wheel speed", -2.0, 2.0)] = GAINS["Lw_omega_1"]
-    Lw_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, with wheel speed", -2.0, 2.0)] = GAINS["Lw_omega_2"]
-    Lw_phi: Annotated[float, Real("s", "gain on phi_hat, with wheel speed", -0.1, 0.1)] = GAINS["Lw_phi"]
-    Lw_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, with wheel speed", -10.0, 10.0)] = GAINS["Lw_T_l"]
-    L_can_omega_1: Annotated[float, Real("1", "gain of a message on omega_1_hat", -2.0, 2.0)] = GAINS["L_can_omega_1"]
-    L_can_omega_2: Annotated[float, Real("1", "gain of a message on omega_2_hat", -2.0, 2.0)] = GAINS["L_can_omega_2"]
-    L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1)] = GAINS["L_can_phi"]
-    L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0)] = GAINS["L_can_T_l"]
-    T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.1)] = GAINS["T_age"]
-    Ls_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, while the wheels slip", -2.0, 2.0)] = GAINS[
-        "Ls_omega_1"
+    L_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, without wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
+        "L_omega_1"
     ]
-    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, while the wheels slip", -2.0, 2.0)] = GAINS[
-        "Ls_omega_2"
+    L_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, without wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
+        "L_omega_2"
     ]
-    Ls_phi: Annotated[float, Real("s", "gain on phi_hat, while the wheels slip", -0.1, 0.1)] = GAINS["Ls_phi"]
-    Ls_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, while the wheels slip", -10.0, 10.0)] = GAINS[
-        "Ls_T_l"
+    L_phi: Annotated[float, Real("s", "gain on phi_hat, without wheel speed", -0.1, 0.1, tunable=True)] = GAINS["L_phi"]
+    L_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, without wheel speed", -10.0, 10.0, tunable=True)] = (
+        GAINS["L_T_l"]
+    )
+    Lw_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, with wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
+        "Lw_omega_1"
     ]
+    Lw_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, with wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
+        "Lw_omega_2"
+    ]
+    Lw_phi: Annotated[float, Real("s", "gain on phi_hat, with wheel speed", -0.1, 0.1, tunable=True)] = GAINS["Lw_phi"]
+    Lw_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, with wheel speed", -10.0, 10.0, tunable=True)] = (
+        GAINS["Lw_T_l"]
+    )
+    L_can_omega_1: Annotated[float, Real("1", "gain of a message on omega_1_hat", -2.0, 2.0, tunable=True)] = GAINS[
+        "L_can_omega_1"
+    ]
+    L_can_omega_2: Annotated[float, Real("1", "gain of a message on omega_2_hat", -2.0, 2.0, tunable=True)] = GAINS[
+        "L_can_omega_2"
+    ]
+    L_can_phi: Annotated[float, Real("s", "gain of a message on phi_hat", -0.1, 0.1, tunable=True)] = GAINS["L_can_phi"]
+    L_can_T_l: Annotated[float, Real("N.m.s/rad", "gain of a message on the load", -10.0, 10.0, tunable=True)] = GAINS[
+        "L_can_T_l"
+    ]
+    T_age: Annotated[float, Real("s", "age of a message on arrival", 0.002, 0.1, tunable=True)] = GAINS["T_age"]
+    Ls_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, while the wheels slip", -2.0, 2.0, tunable=True)] = (
+        GAINS["Ls_omega_1"]
+    )
+    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, while the wheels slip", -2.0, 2.0, tunable=True)] = (
+        GAINS["Ls_omega_2"]
+    )
+    Ls_phi: Annotated[float, Real("s", "gain on phi_hat, while the wheels slip", -0.1, 0.1, tunable=True)] = GAINS[
+        "Ls_phi"
+    ]
+    Ls_T_l: Annotated[
+        float, Real("N.m.s/rad", "gain on the load, while the wheels slip", -10.0, 10.0, tunable=True)
+    ] = GAINS["Ls_T_l"]
     slip_drift: Annotated[
-        float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 0.0, 100.0)
+        float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 0.0, 100.0, tunable=True)
     ] = 0.45
-    slip_load: Annotated[float, Real("1", "slow load from which on the wheels slip, over T_max", 0.0, 4.0)] = 0.11
-    t_drift: Annotated[float, Real("s", "time over which the mean innovation is taken", 0.002, 1.0)] = 0.01
-    t_grip: Annotated[float, Real("s", "time after which slip is forgotten", 0.002, 10.0)] = 1.0
+    slip_load: Annotated[
+        float, Real("1", "slow load from which on the wheels slip, over T_max", 0.0, 4.0, tunable=True)
+    ] = 0.11
+    t_drift: Annotated[float, Real("s", "time over which the mean innovation is taken", 0.002, 1.0, tunable=True)] = (
+        0.01
+    )
+    t_grip: Annotated[float, Real("s", "time after which slip is forgotten", 0.002, 10.0, tunable=True)] = 1.0
 
 
 class AllParameters(Parameters):

@@ -172,7 +172,8 @@ static int is_allowed(const Instance *instance, const Variable *variable, double
 {
     const int64_t mode = instance->memory.mode;
     const int started = (mode & (INSTANTIATED | INITIALIZATION)) == 0;
-    const int late = mode == TERMINATED || (started && variable->causality == PARAMETER);
+    const int tuning = variable->tunable && (mode & (STEPPING | EVENT)) != 0;
+    const int late = mode == TERMINATED || (started && variable->causality == PARAMETER && !tuning);
     const int good = value >= variable->minimum && value <= variable->maximum;
     const char *name = variable->name;
     char text[NUMBER_LENGTH];

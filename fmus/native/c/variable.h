@@ -22,6 +22,7 @@ typedef struct {
     const char *allowed; /* what values it may have, in words */
     Type type;
     Causality causality;
+    int tunable;   /* a parameter that can be set during a run */
     size_t offset; /* in Values, of a state or its derivative in State; there all values are real numbers */
     double minimum;
     double maximum;
