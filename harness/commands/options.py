@@ -102,8 +102,9 @@ def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None 
         default=[],
         type=assignment,
         dest="assignments",
-        metavar="INSTANCE.PARAMETER=VALUE",
-        help="sets a parameter, in SI units, whatever the files say (repeatable)",
+        metavar="INSTANCE.PARAMETER[@TIME]=VALUE",
+        help="sets a parameter, in SI units, whatever the files say; with @TIME a tunable one, from that time in s on "
+        "(repeatable)",
     )
     add_parameter_files(parser)
     for place, meaning in OTHERS.items():

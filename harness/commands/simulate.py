@@ -15,6 +15,7 @@ examples:
   driveline simulate --plant theirs.fmu --map plant.T_gear=Shaft.tau --map plant.omega_1=Motor.n
   driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
   driveline simulate --set plant.J_1=0.06 --set motor.g_T=1.05 --seed 7
+  driveline simulate --manoeuvre drive --set controller.k_d@2.0=1.5 --set controller.k_d@5=2.55
   driveline simulate --manoeuvre drive --plot --window 4,6 --figures svg
   driveline simulate --manoeuvre drive --format mf4 --frames blf
   driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --plot

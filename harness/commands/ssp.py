@@ -70,8 +70,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _variant(fitted: "Fit", manoeuvre: Manoeuvre, given: Settings) -> "Variant":
+    from ..cosimulation.parameter_changes import require_constant
     from ..exchange.ssp.loop_with_source import points
     from ..exchange.ssp.package import Variant
     from ..simulation.simulate import start
 
+    require_constant(given.parameters, "an SSP")
     return Variant(fitted, {**start(manoeuvre, given.seed), **points(manoeuvre, fitted), **given.parameters})

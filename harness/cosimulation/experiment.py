@@ -25,7 +25,7 @@ class Experiment:
         duration: in s; the run ends with the last whole step.
         step_size: communication step in s.
         inputs: `instance.variable` -> signal, held over each communication step.
-        parameters: `instance.variable` -> value.
+        parameters: `instance.variable` -> value; `instance.variable@t` -> value from the time t in s on.
         scheme: when outputs reach inputs.
         label: of the progress display.
     """

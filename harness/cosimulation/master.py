@@ -4,7 +4,7 @@ What is done in which order, and when an output reaches an input, is the scheme:
 docs/coupling.md.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from ctypes import c_double
 from pathlib import Path
@@ -19,6 +19,7 @@ from .bound_calls import Wires, wired
 from .calls import Call
 from .experiment import Experiment
 from .instance import Instance, instantiated
+from .parameter_changes import Change, changes, initial
 from .results import Results
 from .steps import NOT_FINITE, MakeSteps, made
 from .system import Scheme
@@ -79,15 +80,17 @@ class Loop:
         time = experiment.time()
         require(unknown(self._fitted, experiment.inputs, experiment.parameters))
         samples = self._present(experiment.samples(time))
+        parameters = self._present(experiment.parameters)
+        due = changes(parameters, time)
         wires = self._wired(Scheme(experiment.scheme), tuple(samples))
         table = wires.layout.table(time, samples)
         del samples  # the table has them
         self.reset()
         self._is_new = False
         self._step_size.value = experiment.step_size
-        self._initialize(wires, table, self._present(experiment.parameters))
+        self._initialize(wires, table, initial(parameters))
         with progress(len(table) - 1, experiment.label) as done:
-            for chunk in chunks(len(table) - 1):
+            for chunk in self._tuned(chunks(len(table) - 1), due):
                 refusal = wires.steps(table, chunk)
                 if refusal:
                     begun = refusal.status == NOT_FINITE
@@ -97,6 +100,24 @@ class Loop:
         for instance in self._instances:
             instance.call("terminate")
         return wires.layout.results(table)
+
+    def _tuned(self, steps: Iterable[range], due: Sequence[Change]) -> Iterator[range]:
+        """The steps; before some of them parameters are set.
+
+        Raises:
+            SimulationError: an FMU refused a value.
+        """
+        left = list(due)
+        for part in steps:
+            first = part.start
+            while left and left[0].step < part.stop:
+                change = left.pop(0)
+                if first < change.step:
+                    yield range(first, change.step)
+                first = change.step
+                instance = next(each for each in self._instances if each.name == change.instance)
+                instance.set_parameters({change.parameter: change.value})
+            yield range(first, part.stop)
 
     def _present(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """What is given without what the FMUs do not have.

@@ -12,6 +12,7 @@ from ..base.known_names import nearest
 from ..base.plain_text import plain
 from . import mapping
 from .interface import Interface, type_of, unit_of
+from .parameter_changes import parted
 from .system import Connection, Port, System
 
 
@@ -72,8 +73,11 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
     """What is wrong with the names that a run gives; those that are absent are not looked at."""
     targets = {connection.target for connection in fitted.system.connections}
     for causality, names in {"input": inputs, "parameter": parameters}.items():
-        for name in names:
-            if name not in fitted.absent:
+        for given in names:
+            name, time = parted(given)
+            if time is not None:
+                yield from _fixed(given, fitted.interfaces)
+            if name not in fitted.absent or time is not None:
                 variable, missing = find(name, causality, fitted.interfaces)
                 yield from missing
                 if variable and type_of(variable) == "String":
@@ -82,10 +86,21 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
                 yield f"{name} is fed more than once"
 
 
+def _fixed(given: str, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    """What to say of a parameter that a run is to change and cannot."""
+    name, _ = parted(given)
+    variable, _ = find(name, "parameter", interfaces)
+    if variable is not None and variable.variability != "tunable":
+        interface = interfaces[name.partition(".")[0]]
+        tunable = [v.name for v in interface.of_causality("parameter") if v.variability == "tunable"]
+        known = f"tunable are {', '.join(tunable)}" if tunable else "none of its parameters is tunable"
+        yield f"{given}: in {interface.path.name} {variable.name} is fixed and cannot change in a run; {known}"
+
+
 def out_of_bounds(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
     """Which of the values that a run gives to parameters are beyond the bounds that an FMU declares."""
     for name, value in parameters.items():
-        if problem := beyond_bounds(fitted, "parameter", name, value):
+        if problem := beyond_bounds(fitted, "parameter", parted(name)[0], value):
             yield f"{name} = {value:g}: {problem}"
 
 

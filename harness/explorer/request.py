@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from ...fmus.building.one_car import differences, updated
+from ..cosimulation.parameter_changes import parted
 
 SPORT: Mapping[str, float] = {"k_d": 0.88, "omega_w": 1.4, "T_gap": 1.7, "t_return": 0.5}
 COMFORT: Mapping[str, float] = {"k_d": 1.2, "omega_w": 0.75, "T_gap": 0.6, "t_return": 2.0}
@@ -22,7 +23,7 @@ class Request:
     gains: entries of a file of parameters that were changed.
     character: from 0, sport, to 1, comfort; the gains as they are at 0.5.
     informed: whether the controllers know the car as it is, and not as it was at the start.
-    typed: `instance.name` -> value, which stands above all.
+    typed: `instance.name`, or `instance.name@t` from t s on, -> value, which stands above all.
     """
 
     plant: str
@@ -75,5 +76,5 @@ def parameters(
 
 def _has(names: Mapping[str, Collection[str]], key: str) -> bool:
     """Whether a loop has a parameter; one that only another plant or controller has is of no account for it."""
-    instance, _, name = key.partition(".")
+    instance, _, name = parted(key)[0].partition(".")
     return name in names.get(instance, ())

@@ -11,6 +11,7 @@ from ...fmus.building.one_car import FOLLOW
 from ...fmus.errors import ParameterFileError
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
+from ..cosimulation.parameter_changes import parted
 from ..cosimulation.wiring import Fit, fit, out_of_bounds, require
 from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
@@ -140,7 +141,7 @@ class RequestRunner:
             for place, has in self._names(request.plant, each).items()
             for name in has
         }
-        if lacking := request.typed.keys() - self._known():
+        if lacking := {parted(name)[0] for name in request.typed} - self._known():
             name = min(lacking)
             raise DrivelineError(f"there is no parameter {name}; {nearest(name, sorted(known))}")
         for controller in shown:

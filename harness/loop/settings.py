@@ -58,7 +58,8 @@ class Settings:
         plant, controller, motor, can: what stands in these places, a block of the project by name or the path of
             an FMU.
         control: whether the damping control is enabled.
-        parameters: `instance.variable` -> value, beside the start and the seeds that a run sets.
+        parameters: `instance.variable` -> value, beside the start and the seeds that a run sets; `instance.variable@t`
+            -> value of a tunable one from the time t in s on.
         step_size: communication step in s.
         scheme: when outputs reach inputs.
         seed: of all noise and jitter.

@@ -12,6 +12,7 @@ from ...base.atomic_files import write_text
 from ...base.csv_file import write_csv
 from ...base.errors import DrivelineError
 from ...base.progress import progress
+from ...cosimulation.parameter_changes import require_constant
 from ...cosimulation.wiring import fit
 from ...loop.places import T_S
 from ...loop.settings import Settings, loop
@@ -45,6 +46,7 @@ def record(settings: Settings) -> Record:
         DrivelineError: a compiler or the emulator is missing.
         SimulationError: the target was lost, hung or crashed.
     """
+    require_constant(settings.parameters, "the C on the target")
     controller, system = str(settings.controller), loop(settings)
     interfaces = fit(system).interfaces
     own = interfaces["controller"]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....models.controller.supervision import Parameters
+from ...cosimulation.parameter_changes import require_constant
 from ...cosimulation.wiring import fit
 from ...loop.places import PLANTS
 from ...loop.settings import Settings, loop
@@ -82,6 +83,7 @@ def bounded(name: str, settings: Settings) -> Bounded:
         SimulationError: the run of the controller lacks a metric.
     """
     manoeuvre = MANOEUVRES[name]
+    require_constant(settings.parameters, "a bound")
     quiet = settings.with_parameters({f"motor.{n}": v for n, v in NOISELESS.items()})
     blocks = fit(loop(quiet)).parameters({**start(manoeuvre), **quiet.parameters})
     limits = {name: value for name, value in blocks["controller"].items() if name in Parameters._fields}

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from ....fmus.catalogue import EVERY
 from ...base.errors import DrivelineError
+from ...cosimulation.parameter_changes import require_constant
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.estimate import EstimateMetrics, estimate_metrics
@@ -169,6 +170,8 @@ def analyse(settings: Mapping[str, Settings]) -> Analysis:
     """
     plants, controller = list(settings), str(next(iter(settings.values())).controller)
     parameters = {plant: settings[plant].parameters for plant in plants}
+    for given in parameters.values():
+        require_constant(given, "a linear loop")
     pieces = [*(f"{speed:g}" for speed in SPEEDS), *BY_NAME, "backlash"]
     parts = [Part(plant, piece) for plant in plants for piece in pieces]
     linear = partial(linear_part, controller=controller, parameters=parameters)

@@ -1,0 +1,65 @@
+"""Tunable parameters that a run changes: `instance.parameter@t` is one from the time t in s on."""
+
+from collections.abc import Mapping
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import WiringError
+from ..base.written_numbers import real
+
+LATE = 1e-6
+"""Share of a step by which an instant may be late and still be that of a change."""
+
+
+class Change(NamedTuple):
+    """Before the step of that number a parameter is set."""
+
+    step: int
+    instance: str
+    parameter: str
+    value: float
+
+
+def parted(name: str) -> tuple[str, float | None]:
+    """`instance.parameter` and the time in s from which on it has a value; None: it has it from the start on."""
+    parameter, at, time = name.rpartition("@")
+    instant = real(time) if at else None
+    return (name, None) if instant is None else (parameter, instant)
+
+
+def initial(parameters: Mapping[str, float]) -> dict[str, float]:
+    """Those that are set before the start."""
+    return {name: value for name, value in parameters.items() if parted(name)[1] is None}
+
+
+def changes(parameters: Mapping[str, float], time: NDArray[np.float64]) -> list[Change]:
+    """What is changed at the instants of a run, in their order: each before the first step that begins at its time.
+
+    Raises:
+        WiringError: no step begins then or later.
+    """
+    found = []
+    size, last = float(time[1]), float(time[-2])
+    for name, value in parameters.items():
+        parameter, instant = parted(name)
+        if instant is None:
+            continue
+        if not 0.0 <= instant <= last + LATE * size:
+            raise WiringError(f"{name}: the steps of the run begin at 0 to {last:g} s")
+        instance, _, own = parameter.partition(".")
+        found.append(Change(ceil(instant / size - LATE), instance, own, value))
+    return sorted(found, key=lambda change: change.step)
+
+
+def require_constant(parameters: Mapping[str, float], what: str) -> None:
+    """Refuses changes where there is no run that could make them.
+
+    Raises:
+        WiringError: names the first.
+    """
+    for name in parameters:
+        if parted(name)[1] is not None:
+            raise WiringError(f"{name}: the parameters of {what} have one value from the start on")
