@@ -33,8 +33,9 @@ th, td {{ text-align: left; padding: .25em 1em .25em 0; border-bottom: 1px solid
 {tables}
 <h2>How it runs</h2>
 <p>{timing} {inputs} A parameter may be changed until initialization
-mode is left, and outputs are right from then on; a tunable one also between steps, for those that follow. A value that is not allowed is refused with a
-message to the logger, and everything stays as it was before the call{tolerance}.</p>
+mode is left, and outputs are right from then on; a tunable one also between steps, for those that follow. A value
+that is not allowed is refused with a message to the logger, and everything stays as it was before the
+call{tolerance}.</p>
 <p>FMI {version} {kinds}, all quantities in SI units. {needs}</p>
 </body>
 </html>

@@ -15,6 +15,12 @@ from ..fmu import Fmu
 RECORDS = {"parameter": "calibration", "input": "u", "output": "y"}
 """By causality the record of link.c that holds such variables."""
 
+CALIBRATION = {
+    "tunable": ("Calibration", "what can be turned while the controller runs"),
+    "fixed": ("Fixed", "what is set before the start: the car, what counters stop at"),
+}
+"""Groups of parameters by their variability."""
+
 LARGEST = (2.0 - 2.0**-23) * 2.0**127
 """Of single precision."""
 
@@ -87,7 +93,9 @@ def description(fmu: Fmu, image: Path) -> str:
         text = CHARACTERISTIC if causality == "parameter" else MEASUREMENT
         first = addresses[RECORDS[causality]]
         blocks += [_described(variable, first + 4 * k, text) for k, variable in enumerate(members)]
-    blocks.append(_group("Calibration", "what is set in the controller", "REF_CHARACTERISTIC", of["parameter"]))
+    for variability, (name, meaning) in CALIBRATION.items():
+        members = [v for v in of["parameter"] if v.variability == variability]
+        blocks += [_group(name, meaning, "REF_CHARACTERISTIC", members)] if members else []
     for causality in ("input", "output"):
         name = f"{causality.capitalize()}s"
         blocks.append(_group(name, f"{causality}s of the controller", "REF_MEASUREMENT", of[causality]))

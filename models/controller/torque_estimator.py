@@ -87,10 +87,10 @@ class Parameters(NamedTuple):
         float, Real("N.m.s/rad", "gain on the load, while the wheels slip", -10.0, 10.0, tunable=True)
     ] = GAINS["Ls_T_l"]
     slip_drift: Annotated[
-        float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 0.0, 100.0, tunable=True)
+        float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 1e-3, 100.0, tunable=True)
     ] = 0.45
     slip_load: Annotated[
-        float, Real("1", "slow load from which on the wheels slip, over T_max", 0.0, 4.0, tunable=True)
+        float, Real("1", "slow load from which on the wheels slip, over T_max", 1e-3, 4.0, tunable=True)
     ] = 0.11
     t_drift: Annotated[float, Real("s", "time over which the mean innovation is taken", 0.002, 1.0, tunable=True)] = (
         0.01

@@ -80,7 +80,7 @@ def test_a_parameter_is_fixed_after_initialization_and_free_after_reset(built, t
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize(tau=0.01)
         message = host.refuses(host.set, tau=0.02)
-        assert "tau = 0.02 is refused; a parameter can be set until initialization mode is left" in message
+        assert "tau = 0.02 is refused; a fixed parameter can be set until initialization mode is left" in message
         assert host.get("tau") == 0.01
         host.fmu.reset()
         assert host.get("tau") == FMUS["MotorTorqueLoop"].block.Parameters().tau

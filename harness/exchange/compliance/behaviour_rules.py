@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from math import isfinite
 
+from ...base.errors import SimulationError
 from ...cosimulation import instance
 from ...cosimulation.unpacked_fmu import Unpacked
 from .host import Outputs, hosted
@@ -140,6 +141,27 @@ def memory_is_given_back(fmu: Unpacked) -> Iterator[str]:
         host.run(STEPS)
     if kept := instance.blocks - before:
         yield f"{len(kept)} blocks of memory are not given back by fmi2FreeInstance"
+
+
+@BEHAVIOUR_RULES.rule(
+    "tunable", Severity.ERROR, "tunable parameters can be set between steps", Clause("2.2.7, 4.2.4", "2.4.7.4")
+)
+def tunable_parameters(fmu: Unpacked) -> Iterator[str]:
+    """Each parameter that the FMU calls tunable is set to the value that it has; the run goes on."""
+    parameters = fmu.interface.of_causality("parameter")
+    tunable = [v for v in parameters if v.variability == "tunable" and fmu.interface.access(v)]
+    if not tunable:
+        return
+    with hosted(fmu) as host:
+        host.start()
+        host.run(STEPS // 2)
+        for variable in tunable if not host.ended else ():
+            try:
+                host.instance.set([variable], host.instance.get([variable]))
+            except SimulationError as refusal:
+                yield f"{variable.name} is called tunable, and is not: {refusal}"
+                return
+        yield from _not_finite(host.advance(host.step_size), "after tunable parameters were set")
 
 
 QUICK_RULES = Rules()

@@ -462,7 +462,7 @@ def test_a_parameter_is_refused_while_the_host_integrates_and_an_input_is_not(na
     with exchanged(native, tmp_path, "TwoMassDriveline") as host:
         for change in (lambda: None, host.fmu.enterContinuousTimeMode):
             change()
-            assert "C = 100.0 is refused; a parameter can be set until" in host.refuses(host.set, C=100.0)
+            assert "C = 100.0 is refused; a fixed parameter can be set until" in host.refuses(host.set, C=100.0)
             host.set(T_mot=11.0)
             assert rates(host)[0] == pytest.approx(11.0 / 0.055)
 

@@ -1,8 +1,13 @@
 """Bounds in an A2L file are numbers of single precision, as those of the target are."""
 
-import numpy as np
+from pathlib import Path
 
+import numpy as np
+import pytest
+
+from driveline.fmus.catalogue import EVERY
 from driveline.fmus.description.variables import interface
+from driveline.fmus.target import a2l
 from driveline.fmus.target.a2l import LARGEST, _described
 from driveline.models.damping_controller import BLOCK
 
@@ -20,3 +25,11 @@ def test_what_has_no_bounds_is_bounded_by_the_largest_numbers_and_the_others_kee
         found[variable.name] = low, high
     assert found["T_driver"] == (-LARGEST, LARGEST)
     assert found["T_max"] == (1.0, 2000.0)
+
+
+def test_a_group_has_what_can_be_turned_and_another_one_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(a2l, "symbols", lambda _: dict.fromkeys(a2l.RECORDS.values(), 0x20000000))
+    text = a2l.description(EVERY["DampingController"], Path())
+    for group, variability in (("Calibration", "tunable"), ("Fixed", "fixed")):
+        listed = text.partition(f"/begin GROUP {group} ")[2].partition("REF_CHARACTERISTIC\n")[2].splitlines()[0]
+        assert set(listed.split()) == {v.name for v in interface(BLOCK) if v.variability == variability}

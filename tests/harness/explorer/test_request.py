@@ -59,6 +59,14 @@ def test_what_is_typed_stands_above_the_slider_and_that_above_the_files() -> Non
     assert parameters(request, NAMES, given, {}) == {"plant.m": 2000.0, "plant.phi_B": 0.3, "motor.tau": 0.01}
 
 
+def test_what_is_typed_may_change_in_the_run(runner: RequestRunner) -> None:
+    request = replace(REQUEST, typed={"controller.k_d@1.05": 1.5})
+    runner.require(request)
+    assert parameters(request, NAMES, {}, {}) == {"controller.k_d@1.05": 1.5}
+    with pytest.raises(DrivelineError, match=r"there is no parameter controller\.kd; did you mean controller\.k_d"):
+        runner.require(replace(REQUEST, typed={"controller.kd@1.05": 1.5}))
+
+
 def test_what_is_typed_for_another_plant_is_of_no_account() -> None:
     assert parameters(replace(REQUEST, typed={"plant.k_s": 1.0}), NAMES, {}, {}) == {}
 

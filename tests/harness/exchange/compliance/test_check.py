@@ -164,6 +164,17 @@ def test_a_fault_in_the_behaviour_is_found_and_leaves_nothing_behind(tmp_path, f
     assert list(temporary.iterdir()) == []
 
 
+@pytest.mark.parametrize("build", ["native", "fmi3"])
+def test_a_parameter_that_is_called_tunable_and_is_fixed_is_found(request, tmp_path, build):
+    faulty = tampered(
+        request.getfixturevalue(build) / "MotorTorqueLoop.fmu",
+        tmp_path / "faulty.fmu",
+        lambda xml: re.sub(r'(name="tau".*?variability=)"fixed"', r'\1"tunable"', xml),
+    )
+    (found,) = findings(faulty)
+    assert re.search(r"tau is called tunable, and is not: .*tau = 0.003 is refused; a fixed parameter can be", found)
+
+
 def test_a_binary_that_is_not_there_is_found(tmp_path):
     faulty = tampered(
         build_relay(tmp_path),
