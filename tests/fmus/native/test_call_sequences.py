@@ -211,9 +211,10 @@ class Calls(RuleBasedStateMachine):
         value = data.draw(any_number | st.floats(low, high))
         allowed = {
             "input": (BEFORE, DURING, AFTER, EVENT, CONTINUOUS_TIME),
-            "parameter": (BEFORE, DURING),
+            "fixed": (BEFORE, DURING),
+            "tunable": (BEFORE, DURING, AFTER, EVENT),
             "output": (),
-        }[causality]
+        }[variable.variability or causality]
         any_value = causality == "input" and self.tolerates_bad_input
         expected = self.now.mode in allowed and (low <= value <= high or any_value)
         assert self.call("set", variable.reference, value)[0] == (OK if expected else ERROR), variable.name
