@@ -22,6 +22,7 @@ from .shared_header import shared_header
 from .source import block_sources, variables_header
 from .tableau import rosenbrock_header, step_header
 from .trace import trace_frame
+from .xcp import xcp_entries
 
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
@@ -38,6 +39,7 @@ DESCRIPTIONS = {2: model_description, 3: model_description_3}
 FOR_ALL = (
     "calls.c",
     "content.c",
+    "first_instance.c",
     "messages.c",
     "run.c",
     "state.c",
@@ -113,7 +115,13 @@ def build_native(
         guid = guid_of(describe(fmu, kind, ""), sources)
         sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
     packed = {f"sources/{name}": content for name, content in sources.items()}
-    packed |= binaries(fmu.name, sources, fmi) | documentation(fmu, kind) | origin_entry(fmu, "native")
+    compiled = binaries(fmu.name, sources, fmi)
+    packed |= (
+        compiled
+        | documentation(fmu, kind)
+        | xcp_entries(fmu, sources["block.h"].decode(), compiled)
+        | origin_entry(fmu, "native")
+    )
     packed["modelDescription.xml"] = describe(fmu, kind, guid)
     if fmi == 3:
         packed["sources/buildDescription.xml"] = build_description(fmu, kind)

@@ -219,6 +219,7 @@ static const char *const model_guid = "{guid}";
 static const int copes_with_bad_input = {copes}; /* inputs are not refused */
 static const int gives_bad_output = {bad_output}; /* NaN may be what it is for */
 enum {{ allows_model_exchange = {exchanges} }};
+#define FIRST_INSTANCE {name}_instance /* the name of its place in the binary */
 static const unsigned variable_count = {count};
 static const unsigned reference_count = {references}; /* behind the variables come states and their derivatives */
 static const unsigned last_reference = {last}; /* of all, also of those that the adapter has */

@@ -105,7 +105,10 @@ fmi2Component fmi2Instantiate(
     if (!functions)
         return NULL;
     const char *why = objection(instanceName, fmuType, fmuGUID, functions);
-    Component *component = why ? NULL : functions->allocateMemory(1, offsetof(Component, name) + strlen(instanceName) + 1);
+    const size_t size = offsetof(Component, name) + (why ? 0 : strlen(instanceName) + 1);
+    Component *component = why ? NULL : first_place(size);
+    if (!why && !component)
+        component = functions->allocateMemory(1, size);
     if (!component) {
         say(functions, instanceName ? instanceName : "", ERROR, why ? why : "fmi2Instantiate: no memory");
         return NULL;
@@ -123,7 +126,7 @@ fmi2Component fmi2Instantiate(
 void fmi2FreeInstance(fmi2Component c)
 {
     Component *component = c;
-    if (component)
+    if (component && !left_first_place(component))
         component->callbacks.freeMemory(component);
 }
 

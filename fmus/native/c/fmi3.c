@@ -74,7 +74,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
         why = "fmi3InstantiateCoSimulation: the FMU has no event mode";
     else if (nRequiredIntermediateVariables)
         why = "fmi3InstantiateCoSimulation: the FMU has no intermediate update";
-    else if (!(component = calloc(1, sizeof *component)))
+    else if (!(component = first_place(sizeof *component)) && !(component = calloc(1, sizeof *component)))
         why = "fmi3InstantiateCoSimulation: no memory";
     if (why && logMessage)
         logMessage(instanceEnvironment, fmi3Error, category_of(ERROR), why);
@@ -92,7 +92,8 @@ fmi3Instance fmi3InstantiateCoSimulation(
 
 void fmi3FreeInstance(fmi3Instance c)
 {
-    free(c);
+    if (!left_first_place(c))
+        free(c);
 }
 
 fmi3Status fmi3EnterInitializationMode(

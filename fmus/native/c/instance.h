@@ -1,7 +1,7 @@
 /* One instance of a block at work, whatever standard its host speaks: an adapter translates.
 
-There is nothing outside instances, so several run side by side; and no function but those of the adapter has a name
-outside the one file that is compiled, all.c, so FMUs can be linked with each other. */
+There is nothing outside instances but the place of the first one, so several run side by side; and no function but
+those of the adapter has a name outside the one file that is compiled, all.c, so FMUs can be linked with each other. */
 #ifndef INSTANCE_H
 #define INSTANCE_H
 
@@ -52,10 +52,10 @@ typedef struct {
 } Memory;
 
 typedef struct {
+    Memory memory; /* first: its address is that of the instance */
     Host host;
     int exchanges;  /* the host integrates (model exchange); else it asks for steps (co-simulation) */
     int has_events; /* in co-simulation: the host handles events, in event mode */
-    Memory memory;
 } Instance;
 
 /* Where a step leads: the states and inputs at its end, in the memory where it does not change them, else here. */
@@ -139,6 +139,14 @@ static Status check_terminal(const Instance *instance, const Terminal *terminal)
 /* frames.c */
 static Status step_and_send(Instance *instance, double time, double step_size); /* make_step, and its frames sent */
 #endif
+
+static int is_allowed(const Instance *instance, const Variable *variable, double value); /* now; else refused */
+
+/* first_instance.c */
+static void *first_place(size_t size);                  /* zeros for an adapter; NULL if it is taken, or too small */
+static int left_first_place(const void *component);     /* whether it was there; then the place is free */
+static void know_parameters(const Instance *instance);  /* after they were set by a call */
+static void take_over_written(Instance *instance);      /* parameters that were written; those that cannot be go back */
 
 /* state.c */
 static Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */

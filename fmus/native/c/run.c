@@ -9,6 +9,7 @@ void renew(Instance *instance)
 {
     memset(&instance->memory, 0, sizeof instance->memory);
     set_start_values(&instance->memory);
+    know_parameters(instance);
     instance->memory.mode = INSTANTIATED;
     instance->memory.stop_time = (double)INFINITY;
 }
@@ -48,6 +49,7 @@ Status set_experiment(Instance *instance, double start_time, double stop_time)
 void leave_initialization(Instance *instance)
 {
     Memory *memory = &instance->memory;
+    take_over_written(instance);
     start(&memory->values.u, &memory->values.p, &memory->x);
     memory->coming = memory->x;
     memory->mode = instance->exchanges || instance->has_events ? EVENT : STEPPING;
@@ -99,6 +101,7 @@ static void arrive(Memory *memory, const Next *next, double time)
 Status make_step(Instance *instance, double time, double step_size)
 {
     Memory *memory = &instance->memory;
+    take_over_written(instance);
     Status status = check_step(instance, time, step_size);
     if (status == OK) {
         Next next;

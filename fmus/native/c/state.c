@@ -29,8 +29,10 @@ Status get_state(const Instance *instance, void **state)
 Status set_state(Instance *instance, const void *state)
 {
     const Status status = check_kind(instance, state);
-    if (status == OK)
+    if (status == OK) {
         memcpy(&instance->memory, state, sizeof instance->memory);
+        know_parameters(instance);
+    }
     return status;
 }
 

@@ -168,7 +168,7 @@ static const char *write_value(char text[NUMBER_LENGTH], Type type, double value
 }
 
 /* Whether a variable can be set to a value now; else it is refused. */
-static int is_allowed(const Instance *instance, const Variable *variable, double value)
+int is_allowed(const Instance *instance, const Variable *variable, double value)
 {
     const int64_t mode = instance->memory.mode;
     const int started = (mode & (INSTANTIATED | INITIALIZATION)) == 0;
@@ -197,6 +197,7 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
     Memory *memory = &instance->memory;
     if (!are_of_type(instance, type, references, count, values))
         return ERROR;
+    take_over_written(instance);
     for (size_t k = 0; k < count; k++)
         if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
             return ERROR;
@@ -207,8 +208,10 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
         *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : value;
         parameters_set |= variable->causality != INPUT;
     }
-    if (parameters_set)
+    if (parameters_set) {
         compute_terms(&memory->values.p);
+        know_parameters(instance);
+    }
     memory->outputs_known = 0;
     return OK;
 }
