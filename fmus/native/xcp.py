@@ -27,8 +27,8 @@ NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
 ABOUT = {
     "name": "org.fmi-standard.fmi-ls-xcp",
     "version": "1.0.0",
-    "description": "Layered standard based on FMI 2.0 and FMI 3.0 for describing and implementing XCP support for FMUs, "
-    "which can either provide an XCP service or allow direct memory access via A2L files.",
+    "description": "Layered standard based on FMI 2.0 and FMI 3.0 for describing and implementing XCP support for "
+    "FMUs, which can either provide an XCP service or allow direct memory access via A2L files.",
 }
 """Attributes of the manifest, as the standard has them."""
 

@@ -1,4 +1,4 @@
-"""FMI-LS-XCP: by the A2L file of a native FMU a tool reads and writes the memory of the first instance while it runs."""
+"""FMI-LS-XCP: by the A2L file of a native FMU a tool reads and writes the memory of the first instance as it runs."""
 
 import ctypes
 import math
