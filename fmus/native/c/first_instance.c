@@ -62,23 +62,22 @@ void know_parameters(const Instance *instance)
         known = instance->memory.values.p;
 }
 
+/* The bytes of the parameters, the last variables, without the terms behind them. */
+static size_t size_of_parameters(void)
+{
+    return variables[variable_count - 1].offset + sizeof(double) - offsetof(Values, p);
+}
+
 void take_over_written(Instance *instance)
 {
-    Memory *memory = &instance->memory;
-    if (!is_first(instance) || memcmp(&memory->values.p, &known, sizeof known) == 0)
+    Values *values = &instance->memory.values;
+    if (!is_first(instance) || memcmp(&values->p, &known, size_of_parameters()) == 0)
         return;
-    Values before = memory->values;
-    before.p = known;
-    for (unsigned k = 0; k < variable_count; k++) {
-        const Variable *variable = &variables[k];
-        double *written = place_of(&memory->values, variable);
-        const double last = *place_of(&before, variable);
-        if (variable->causality != PARAMETER || memcmp(written, &last, sizeof last) == 0)
-            continue;
-        if (variable->type != REAL || !is_allowed(instance, variable, *written))
-            *written = last;
+    Values written = *values;
+    values->p = known;
+    for (Reference k = 0; k < variable_count; k++) {
+        const double *value = place_of(&written, &variables[k]), *last = place_of(values, &variables[k]);
+        if (variables[k].type == REAL && variables[k].causality == PARAMETER && memcmp(value, last, sizeof *value))
+            set_values(instance, REAL, &k, 1, value);
     }
-    compute_terms(&memory->values.p);
-    memory->outputs_known = 0;
-    know_parameters(instance);
 }

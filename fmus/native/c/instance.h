@@ -140,8 +140,6 @@ static Status check_terminal(const Instance *instance, const Terminal *terminal)
 static Status step_and_send(Instance *instance, double time, double step_size); /* make_step, and its frames sent */
 #endif
 
-static int is_allowed(const Instance *instance, const Variable *variable, double value); /* now; else refused */
-
 /* first_instance.c */
 static void *first_place(size_t size);                  /* zeros for an adapter; NULL if it is taken, or too small */
 static int left_first_place(const void *component);     /* whether it was there; then the place is free */

@@ -168,12 +168,13 @@ static const char *write_value(char text[NUMBER_LENGTH], Type type, double value
 }
 
 /* Whether a variable can be set to a value now; else it is refused. */
-int is_allowed(const Instance *instance, const Variable *variable, double value)
+static int is_allowed(const Instance *instance, const Variable *variable, double value)
 {
     const int64_t mode = instance->memory.mode;
     const int started = (mode & (INSTANTIATED | INITIALIZATION)) == 0;
-    const int tuning = variable->tunable && (mode & (STEPPING | EVENT)) != 0;
-    const int late = mode == TERMINATED || (started && variable->causality == PARAMETER && !tuning);
+    const int late = mode == TERMINATED
+                     || (started && variable->causality == PARAMETER
+                         && !(variable->tunable && (mode & (STEPPING | EVENT)) != 0));
     const int good = value >= variable->minimum && value <= variable->maximum;
     const char *name = variable->name;
     char text[NUMBER_LENGTH];
@@ -197,16 +198,18 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
     Memory *memory = &instance->memory;
     if (!are_of_type(instance, type, references, count, values))
         return ERROR;
-    take_over_written(instance);
-    for (size_t k = 0; k < count; k++)
+    int parameters_set = 0;
+    for (size_t k = 0; k < count; k++) {
         if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
             return ERROR;
-    int parameters_set = 0;
+        parameters_set |= variables[references[k]].causality != INPUT;
+    }
+    if (parameters_set)
+        take_over_written(instance);
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
         const double value = value_at(type, values, k);
         *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : value;
-        parameters_set |= variable->causality != INPUT;
     }
     if (parameters_set) {
         compute_terms(&memory->values.p);
