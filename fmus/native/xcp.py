@@ -17,6 +17,7 @@ from ..description.elements import written
 from ..description.numbers import numbers
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
+from .compiler import WHERE_HEADER
 from .records import records_of
 from .terms import TERMS
 
@@ -58,7 +59,7 @@ PROTOCOL = """\
     /end IF_DATA"""
 """Of the service that the importer starts, which puts its own address and port there."""
 
-ELF, DYNAMIC_SYMBOLS = b"\x7fELF\x02\x01", 11
+ELF, PE, DYNAMIC_SYMBOLS = b"\x7fELF\x02\x01", b"MZ", 11
 
 
 def xcp_entries(fmu: Fmu, header: str, binaries: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -74,9 +75,9 @@ def xcp_entries(fmu: Fmu, header: str, binaries: Mapping[str, bytes]) -> dict[st
     found = {f"{FOLDER}/fmi-ls-manifest.xml": _manifest(fmu, file)}
     found[f"{FOLDER}/{file}"] = _a2l(fmu, terms, symbol, 0)
     for path, binary in binaries.items():
-        if binary.startswith(ELF):
-            platform = PurePosixPath(path).parent.name
-            found[f"{FOLDER}/{platform}/{file}"] = _a2l(fmu, terms, symbol, elf_address(binary, symbol))
+        platform, address = PurePosixPath(path).parent.name, address_in(binary, symbol)
+        if address is not None:
+            found[f"{FOLDER}/{platform}/{file}"] = _a2l(fmu, terms, symbol, address)
     found["documentation/fmi-ls-xcp.txt"] = PAGE.format(name=fmu.name, folder=FOLDER).encode()
     return found
 
@@ -88,7 +89,7 @@ def _manifest(fmu: Fmu, file: str) -> bytes:
     )
     what = f"memory of the first instance of {fmu.name}"
     access = {"types": "CoSimulation", "supportsDirectMemoryAccess": "true"}
-    SubElement(root, "Interface", definition=file, description=what, **access)
+    SubElement(root, "Interface", {"definition": file, "description": what} | access)
     return written(root)
 
 
@@ -126,21 +127,33 @@ def _states(name: str, value: Any, declaration: Declaration | None = None) -> It
     """The numbers of a state, as `numbers` names them, with what they are declared to be."""
     if not is_tuple(value):
         yield name, declaration or Real("1", "part of the state")
-    elif hasattr(value, "_fields"):
+    elif fields := getattr(value, "_fields", ()):
         declared = {v.name: v.declaration for v in variables(type(value))}
-        for field, item in value._asdict().items():
+        for field, item in zip(fields, value, strict=True):
             yield from _states(f"{name}.{field}", item, declared.get(field))
     else:
         for k, item in enumerate(value):
             yield from _states(f"{name}[{k}]", item, declaration)
 
 
-def elf_address(binary: bytes, symbol: str) -> int:
-    """Where a symbol that a shared library of 64 bits exports lies, relative to its base.
+def address_in(binary: bytes, symbol: str) -> int | None:
+    """Where a symbol that a shared library of 64 bits exports lies, relative to its base; None: it is not known of
+    libraries other than those for Linux and Windows.
 
     Raises:
         KeyError: there is none of that name.
     """
+    if binary.startswith(ELF):
+        return dict(_exported_by_elf(binary))[symbol]
+    return dict(_exported_by_pe(binary))[symbol] if binary.startswith(PE) else None
+
+
+def _name(binary: bytes, at: int) -> str:
+    return binary[at : binary.index(b"\0", at)].decode()
+
+
+def _exported_by_elf(binary: bytes) -> Iterator[tuple[str, int]]:
+    """Names and addresses by the dynamic symbol table of a library for Linux."""
     (sections,) = struct.unpack_from("<Q", binary, 0x28)
     size, count = struct.unpack_from("<2H", binary, 0x3A)
     headers = [struct.unpack_from("<2I4Q2I2Q", binary, sections + size * k) for k in range(count)]
@@ -148,6 +161,22 @@ def elf_address(binary: bytes, symbol: str) -> int:
     names = headers[table[6]][4]
     for at in range(table[4], table[4] + table[5], table[9]):
         name, _, _, _, value, _ = struct.unpack_from("<IBBHQQ", binary, at)
-        if binary[names + name :].split(b"\0", 1)[0] == symbol.encode():
-            return value
-    raise KeyError(symbol)
+        yield _name(binary, names + name), value
+
+
+def _exported_by_pe(binary: bytes) -> Iterator[tuple[str, int]]:
+    """Names and addresses by the export directory of a library for Windows."""
+    (header,) = struct.unpack_from("<I", binary, WHERE_HEADER)
+    count, size = struct.unpack_from("<H12xH", binary, header + 6)
+    sections = [struct.unpack_from("<8x4I", binary, header + 24 + size + 40 * k) for k in range(count)]
+
+    def place(address: int) -> int:
+        """In the file."""
+        return next(raw + address - first for _, first, length, raw in sections if first <= address < first + length)
+
+    (directory,) = struct.unpack_from("<I", binary, header + 24 + 112)
+    number, functions, names, ordinals = struct.unpack_from("<4I", binary, place(directory) + 24)
+    for k in range(number):
+        (name,) = struct.unpack_from("<I", binary, place(names) + 4 * k)
+        (ordinal,) = struct.unpack_from("<H", binary, place(ordinals) + 2 * k)
+        yield _name(binary, place(name)), struct.unpack_from("<I", binary, place(functions) + 4 * ordinal)[0]

@@ -65,7 +65,7 @@ def test_turned_in_a_run_they_act_as_in_the_functions(request: Any, tmp_path: An
     columns = random_inputs(block, steps).inputs
     inputs = [block.Input(*row) for row in zip(*(columns[n].tolist() for n in block.Input._fields), strict=True)]
     start = {"v_0": 15.0 / 3.6} if "v_0" in block.Parameters._fields else {}
-    running = runner(block, inputs[0], block.Parameters(**start))
+    running: Any = runner(block, inputs[0], block.Parameters(**start))
     with opened(request.getfixturevalue(build) / f"{name}.fmu", tmp_path) as host:
         host.initialize(**start, **inputs[0]._asdict())
         for k, u in enumerate(inputs[:-1]):

@@ -1,5 +1,6 @@
 """Binaries for all platforms, where the extra `cross` is installed; and the universal file for macOS."""
 
+import re
 import struct
 import zipfile
 from functools import cache
@@ -12,6 +13,7 @@ from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
 from tests.skipping import skipped_if_impossible
+from driveline.fmus.native.xcp import FOLDER
 from tests.slow import slow
 
 LARGEST = 255 * 1024
@@ -72,3 +74,17 @@ def test_a_universal_file_tells_where_the_part_of_each_processor_is():
         _, _, offset, size, alignment = struct.unpack_from(">IIIII", file, place)
         assert file[offset : offset + size] == content
         assert offset % (1 << alignment) == 0
+
+
+def test_the_addresses_of_a_library_for_windows_are_in_its_data(made):
+    name = "WheelSpeedCan"
+    with zipfile.ZipFile(made(name)) as archive:
+        library = archive.read(f"binaries/win64/{name}.dll")
+        texts = [archive.read(f"{FOLDER}/{platform}/{name}.a2l").decode() for platform in ("win64", "linux64")]
+    (header,) = struct.unpack_from("<I", library, 0x3C)
+    count, size = struct.unpack_from("<H12xH", library, header + 6)
+    sections = [struct.unpack_from("<8s2I", library, header + 24 + size + 40 * k) for k in range(count)]
+    (data,) = [(first, first + length) for name, length, first in sections if name.rstrip(b"\0") == b".data"]
+    on_windows, on_linux = ([int(a, 16) for a in re.findall(r"(?:VALUE|ECU_ADDRESS) 0x(\w+)", t)] for t in texts)
+    assert data[0] <= min(on_windows) < max(on_windows) < data[1]
+    assert {a - b for a, b in zip(on_windows, on_linux, strict=True)} == {on_windows[0] - on_linux[0]}
