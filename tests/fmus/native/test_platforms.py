@@ -12,8 +12,8 @@ pytest.importorskip("casadi", reason="the extra `native` is not installed")
 from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
-from tests.skipping import skipped_if_impossible
 from driveline.fmus.native.xcp import FOLDER
+from tests.skipping import skipped_if_impossible
 from tests.slow import slow
 
 LARGEST = 270 * 1024
