@@ -308,8 +308,8 @@ def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
     verdicts = list(check(path, ignored=["reset"]))
     assert {verdict.rule for verdict in verdicts if not verdict.tried} == names
     (suite,) = ElementTree.fromstring(junit({"stranger.fmu": verdicts}, ["error"]))
-    assert (suite.get("skipped"), suite.get("failures")) == ("4", "1")
-    assert len(suite.findall("testcase/skipped")) == 4
+    assert (suite.get("skipped"), suite.get("failures")) == (str(len(names)), "1")
+    assert len(suite.findall("testcase/skipped")) == len(names)
 
 
 def test_an_ignored_rule_is_not_tried(tmp_path):
