@@ -111,10 +111,11 @@ def page() -> str:
     for room, names in (rooms | {"all": drawn}).items():
         its = [sum(name in some for name in names) for some in (found | alive, found, alive & explained.keys())]
         lines.append(f"| {room} | {len(names)} | {' | '.join(map(str, its))} | {its[0] - its[1] - its[2]} |")
-    lines += [WHOLE, "| file | faults | tried | not found | found |", "| --- | ---: | ---: | ---: | ---: |"]
     score = {file: each for file, each in scores().items() if file not in old}
     rows = {f"`{file}`": [int(each[key]) for key in ("faults", "tried", "not_found")] for file, each in score.items()}
-    rows["all"] = [sum(column) for column in zip(*rows.values(), strict=True)]
+    if rows:
+        rows["all"] = [sum(column) for column in zip(*rows.values(), strict=True)]
+        lines += [WHOLE, "| file | faults | tried | not found | found |", "| --- | ---: | ---: | ---: | ---: |"]
     lines += [f"| {file} | {n} | {count} | {k} | {1.0 - k / count:.1%} |" for file, (n, count, k) in rows.items()]
     if old:
         names = ", ".join(f"`{file}`" for file in old)

@@ -68,16 +68,12 @@ static size_t size_of_parameters(void)
     return variables[variable_count - 1].offset + sizeof(double) - offsetof(Values, p);
 }
 
-void take_over_written(Instance *instance)
+int has_written(const Instance *instance)
 {
-    Values *values = &instance->memory.values;
-    if (!is_first(instance) || memcmp(&values->p, &known, size_of_parameters()) == 0)
-        return;
-    Values written = *values;
-    values->p = known;
-    for (Reference k = 0; k < variable_count; k++) {
-        const double *value = place_of(&written, &variables[k]), *last = place_of(values, &variables[k]);
-        if (variables[k].type == REAL && variables[k].causality == PARAMETER && memcmp(value, last, sizeof *value))
-            set_values(instance, REAL, &k, 1, value);
-    }
+    return is_first(instance) && memcmp(&instance->memory.values.p, &known, size_of_parameters()) != 0;
+}
+
+void take_back(Instance *instance)
+{
+    instance->memory.values.p = known;
 }

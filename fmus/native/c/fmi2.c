@@ -14,13 +14,6 @@ typedef struct {
 
 static const char *const type_names[] = {"Real", "Integer", "Boolean", "String", "Integer"};
 
-int name_of_adapter(char name[NAME_LENGTH], Reference reference)
-{
-    (void)name;
-    (void)reference;
-    return 0;
-}
-
 const char *fmi2GetTypesPlatform(void)
 {
     return fmi2TypesPlatform;
@@ -113,7 +106,7 @@ fmi2Component fmi2Instantiate(
         say(functions, instanceName ? instanceName : "", ERROR, why ? why : "fmi2Instantiate: no memory");
         return NULL;
     }
-    const Host host = {functions->allocateMemory, log_for, component, {0}};
+    const Host host = {functions->allocateMemory, log_for, component, NULL, {0}};
     component->instance.host = host;
     component->instance.exchanges = fmuType == fmi2ModelExchange;
     component->callbacks = *functions;

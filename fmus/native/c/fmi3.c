@@ -45,6 +45,27 @@ fmi3Status fmi3SetDebugLogging(
     return instance ? in_fmi3(set_logging(instance, loggingOn, nCategories, categories)) : fmi3Error;
 }
 
+/* The input whose rate of change a value reference stands for; NULL if there is none. */
+static const Variable *moving_input(Reference reference)
+{
+    if (reference <= variable_count || reference > last_reference)
+        return NULL;
+    const Variable *input = &variables[reference - variable_count - 1];
+    return input->type == REAL ? input : NULL;
+}
+
+static int own_name(char name[NAME_LENGTH], Reference reference)
+{
+    const Variable *input = moving_input(reference);
+    if (!input && reference != variable_count)
+        return 0;
+    if (input)
+        snprintf(name, NAME_LENGTH, "der(%s)", input->name);
+    else
+        strcpy(name, "time");
+    return 1;
+}
+
 fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String instanceName,
     fmi3String instantiationToken,
@@ -80,7 +101,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
         logMessage(instanceEnvironment, fmi3Error, category_of(ERROR), why);
     if (why)
         return NULL;
-    const Host host = {calloc, log_for, component, {0}};
+    const Host host = {calloc, log_for, component, own_name, {0}};
     component->instance.host = host;
     component->instance.has_events = eventModeUsed;
     component->log_message = logMessage;
@@ -130,27 +151,6 @@ CHANGE(fmi3ExitInitializationMode, INITIALIZATION, leave_initialization(instance
 CHANGE(fmi3Terminate, RUNNING, instance->memory.mode = TERMINATED)
 CHANGE(fmi3Reset, ANY_MODE, renew(instance))
 
-/* The input whose rate of change a value reference stands for; NULL if there is none. */
-static const Variable *moving_input(Reference reference)
-{
-    if (reference <= variable_count || reference > last_reference)
-        return NULL;
-    const Variable *input = &variables[reference - variable_count - 1];
-    return input->type == REAL ? input : NULL;
-}
-
-int name_of_adapter(char name[NAME_LENGTH], Reference reference)
-{
-    const Variable *input = moving_input(reference);
-    if (!input && reference != variable_count)
-        return 0;
-    if (input)
-        snprintf(name, NAME_LENGTH, "der(%s)", input->name);
-    else
-        strcpy(name, "time");
-    return 1;
-}
-
 static Status get_Float64(Instance *instance, Reference reference, double *value)
 {
     const Variable *input = moving_input(reference);
@@ -169,7 +169,7 @@ static Status set_Float64(Instance *instance, Reference reference, double value)
         return set_values(instance, REAL, &reference, 1, &value);
     if (instance->memory.mode == TERMINATED) {
         char name[NAME_LENGTH], text[NUMBER_LENGTH];
-        name_of_adapter(name, reference);
+        own_name(name, reference);
         return refuse(instance, SET_TOO_LATE(name, write_number(text, value)));
     }
     reference = (Reference)(input - variables);

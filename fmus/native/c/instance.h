@@ -24,11 +24,15 @@ typedef enum { OK, DISCARD, ERROR } Status; /* DISCARD: a step or question that 
 /* A variable's place in `variables`. */
 typedef unsigned Reference;
 
+enum { NAME_LENGTH = 100 };
+
 /* What an instance needs of its host. */
 typedef struct {
     void *(*allocate)(size_t count, size_t size); /* NULL if there is no memory */
     void (*log)(void *listener, Status status, const char *message);
     void *listener;
+    /* Names a variable that the adapter has beside `variables`; 0 if there is none. NULL: it has none at all. */
+    int (*name_of)(char name[NAME_LENGTH], Reference reference);
     int logged[ERROR + 1]; /* by status: whether it wants to be told */
 } Host;
 
@@ -91,8 +95,6 @@ typedef struct {
 
 /* the adapter */
 static const char *const type_names[ENUMERATION + 1]; /* what its standard calls them */
-enum { NAME_LENGTH = 100 };
-static int name_of_adapter(char name[NAME_LENGTH], Reference reference); /* 0 if it has no variable there */
 
 /* calls.c */
 enum {
@@ -123,6 +125,7 @@ static State present_state(const Memory *memory);
 static Status compute_next_outputs(Instance *instance, const Next *next, double step_size); /* refused if not finite */
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
+static void take_over_written(Instance *instance); /* parameters that a tool wrote; those that cannot be go back */
 static Status refuse_reference(const Instance *instance, Reference reference, const char *asked); /* ERROR */
 static const Variable *variable_of(const Instance *instance, Reference reference, Type type); /* NULL if refused */
 static const char *write_value(char text[NUMBER_LENGTH], Type type, double value);
@@ -144,7 +147,8 @@ static Status step_and_send(Instance *instance, double time, double step_size); 
 static void *first_place(size_t size);                  /* zeros for an adapter; NULL if it is taken, or too small */
 static int left_first_place(const void *component);     /* whether it was there; then the place is free */
 static void know_parameters(const Instance *instance);  /* after they were set by a call */
-static void take_over_written(Instance *instance);      /* parameters that were written; those that cannot be go back */
+static int has_written(const Instance *instance);       /* whether a tool wrote parameters since */
+static void take_back(Instance *instance);              /* what it wrote */
 
 /* state.c */
 static Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */

@@ -28,7 +28,7 @@ Status refuse_reference(const Instance *instance, Reference reference, const cha
     if (reference < reference_count)
         return refuse(
             instance, WRONG_TYPE(variables[reference].name, type_names[variables[reference].type], asked));
-    if (!name_of_adapter(name, reference))
+    if (!instance->host.name_of || !instance->host.name_of(name, reference))
         return refuse(instance, UNKNOWN_REFERENCE(reference, model_name, last_reference));
     if (strcmp(asked, type_names[REAL]) == 0)
         return refuse(instance, "%s has no derivative here, and is none", name);
@@ -217,4 +217,17 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
     }
     memory->outputs_known = 0;
     return OK;
+}
+
+void take_over_written(Instance *instance)
+{
+    if (!has_written(instance))
+        return;
+    Values *values = &instance->memory.values, written = *values;
+    take_back(instance);
+    for (Reference k = 0; k < variable_count; k++) {
+        const double *value = place_of(&written, &variables[k]), *last = place_of(values, &variables[k]);
+        if (variables[k].type == REAL && variables[k].causality == PARAMETER && memcmp(value, last, sizeof *value))
+            set_values(instance, REAL, &k, 1, value);
+    }
 }

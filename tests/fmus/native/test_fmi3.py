@@ -124,7 +124,7 @@ def test_a_rate_holds_until_it_is_set(fmi3, tmp_path):
         assert host.get("T_ref") == pytest.approx(15.0)
         host.fmu.terminate()
         message = host.refuses(ramp, host, T_ref=1.0)
-        assert message.startswith("der(T_ref) = 1.0 is refused; a parameter can be set until")
+        assert message.startswith("der(T_ref) = 1.0 is refused; a fixed parameter can be set until")
 
 
 def test_rates_are_part_of_a_saved_state_and_forgotten_by_a_reset(fmi3, tmp_path):

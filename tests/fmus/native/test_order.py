@@ -12,6 +12,7 @@ TARGET_FILES = C_FILES.parents[1] / "target" / "c"
 ORDERS = {
     C_FILES: (
         "messages.c",
+        "first_instance.c",
         "values.c",
         "explicit.c",
         "implicit.c",
