@@ -168,6 +168,7 @@ _ROWS = (
         LOOP,
     ),
     Page("mutation", made_by="make mutation", scores="tests/mutation/score.json"),
+    Page("speed", made_by="make bench", own_modules=("benchmarks.speed_page",), fmus=LOOP),
     _fuzz("calls", "fmus.native.packaging"),
     *map(_fuzz, ("archives", "plants", "recordings", "parameter_files")),
     _fuzz("swollen"),
