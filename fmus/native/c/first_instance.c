@@ -1,4 +1,4 @@
-/* The first instance has a place of its own, whose address in the binary is known (FMI-LS-XCP): tools for measurement and
+/* The first instance has a place of its own, whose address in the binary is known: tools for measurement and
 calibration read its memory there, and write parameters. The others are where the host allocates them. */
 #include "instance.h"
 
