@@ -9,7 +9,7 @@ import argparse
 from pickle import dumps
 from resource import RUSAGE_SELF, getrusage
 from time import process_time, thread_time
-from typing import Any
+from typing import Any, cast
 
 from distributed import Client, LocalCluster
 from rich.console import Console
@@ -47,7 +47,7 @@ def on_workers(count: int, runs: int, batch: int) -> tuple[float, float, float]:
     """Seconds of processor time a run: of the run itself, of its worker, and of what sends and receives it."""
     given: Any = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
     with (
-        LocalCluster(**given) as cluster,
+        cast(Any, LocalCluster(**given)) as cluster,
         Client(cluster, set_as_default=False) as client,
         many(tip_in, scheduler=str(cluster.scheduler_address), batch=batch) as answers,
     ):

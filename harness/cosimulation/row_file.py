@@ -38,15 +38,13 @@ class RowFile:
     def __init__(self, size: int) -> None:
         _give_back()
         folder = os.environ.get("TMPDIR", ON_DISK if os.access(ON_DISK, os.W_OK) else None)
-        with TemporaryFile(dir=folder) as file:
-            try:
+        try:
+            with TemporaryFile(dir=folder) as file:
                 _allocate(file.fileno(), size)
-            except OSError as refusal:
-                text = (
-                    f"a run with {size / 1e9:.3g} GB of results: {refusal.strerror} in {folder}; TMPDIR names another"
-                )
-                raise MemoryError(text) from refusal
-            self.memory = mmap.mmap(file.fileno(), size)
+                self.memory = mmap.mmap(file.fileno(), size)
+        except OSError as refusal:
+            text = f"a run with {size / 1e9:.3g} GB of results: {refusal.strerror} in {folder}; TMPDIR names another"
+            raise MemoryError(text) from refusal
         self._touched = 0
 
     def touched(self, size: int) -> None:

@@ -53,6 +53,8 @@ def low_passed(x: np.ndarray, T_s: float, corner: float) -> np.ndarray:
     It is `scipy.signal.sosfiltfilt`, to rounding; that takes longer to import than many a run takes. The filter is
     applied as its frequency response, to a record with zeros behind it for as long as an impulse is answered.
     """
+    if len(x) <= CONTINUED or corner * T_s >= 0.5:
+        raise Absent(f"{len(x)} samples every {T_s:g} s are too few for a low-pass at {corner:g} Hz")
     w = tan(pi * corner * T_s)
     length = 1 << (len(x) + 2 * CONTINUED + ceil(FADED / (corner * T_s))).bit_length()
     z = np.exp(-2j * pi * np.fft.rfftfreq(length))  # z^-1

@@ -11,7 +11,7 @@ from .annotations import GAP, gap, in_words, metrics_of
 from .colours import BLUE, ORANGE, VERMILION
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import plot
-from .panels import DASHED, Axis, Curve, Panel, Spans
+from .panels import DASHED, Axis, Panel, Part, Spans
 from .signal_lines import DEMAND, T_GEAR, T_RIM, WHEEL, Line, Row, column, envelope_of, interval
 from .step_figure import TITLES
 
@@ -51,7 +51,7 @@ def _panels(run: np.ndarray, heading: str, closer: tuple[float, float] | None) -
 
 def _envelopes(runs: Sequence[np.ndarray], manoeuvre: Manoeuvre) -> Panel:
     """The gear torque of all runs from 5 to 50 Hz, where the curves themselves would only cover each other."""
-    curves: list[Curve] = []
+    curves: list[Part] = []
     for run, heading, color, width in zip(runs, TITLES, (ORANGE, BLUE), (1.8, 1.0), strict=True):
         label = ", ".join(filter(None, (heading, in_words(metrics_of(run, manoeuvre), "gear_torque_rms"))))
         curves += Line(envelope_of("plant.T_gear"), label, color, width=width).of(run)

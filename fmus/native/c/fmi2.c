@@ -183,7 +183,7 @@ VALUES(String, STRING)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
-    const Instance *instance = ready(c, ANY_MODE, FMUstate != NULL, __func__);
+    Instance *instance = ready(c, ANY_MODE, FMUstate != NULL, __func__);
     return instance ? in_fmi(get_state(instance, FMUstate)) : fmi2Error;
 }
 

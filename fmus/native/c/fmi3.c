@@ -257,7 +257,7 @@ VALUES(Boolean, BOOLEAN, 0)
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *FMUState)
 {
-    const Instance *instance = ready(c, ANY_MODE, FMUState != NULL, __func__);
+    Instance *instance = ready(c, ANY_MODE, FMUState != NULL, __func__);
     return instance ? in_fmi3(get_state(instance, FMUState)) : fmi3Error;
 }
 

@@ -52,10 +52,10 @@ fmi3Status fmi3SetBinary(
                 OPERATIONS_SIZE));
     }
     for (size_t k = 0; k < nvr; k++) {
-        memset(terminal->rx, 0, sizeof terminal->rx);
         terminal->rx_size = valueSizes[k];
         if (valueSizes[k])
-            memcpy(terminal->rx, values[k], valueSizes[k]);
+            memmove(terminal->rx, values[k], valueSizes[k]); /* they may be those of fmi3GetBinary */
+        memset(terminal->rx + valueSizes[k], 0, sizeof terminal->rx - valueSizes[k]);
     }
     return fmi3OK;
 }

@@ -7,6 +7,7 @@ Status step_and_send(Instance *instance, double time, double step_size)
     if (!instance->has_events)
         return make_step(instance, time, step_size);
     Memory *memory = &instance->memory;
+    take_over_written(instance);
     const Memory before = *memory;
     const double end = time + step_size;
     char text[NUMBER_LENGTH];

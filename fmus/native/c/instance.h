@@ -151,7 +151,7 @@ static int has_written(const Instance *instance);       /* whether a tool wrote 
 static void take_back(Instance *instance);              /* what it wrote */
 
 /* state.c */
-static Status get_state(const Instance *instance, void **state); /* into a new one, if it is NULL */
+static Status get_state(Instance *instance, void **state); /* into a new one, if it is NULL */
 static Status set_state(Instance *instance, const void *state); /* refused if it is of the other kind */
 static size_t serialized_size(void);
 static Status serialize_state(const Instance *instance, const void *state, void *bytes, size_t size);

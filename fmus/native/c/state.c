@@ -21,8 +21,9 @@ static Status keep(const Instance *instance, const Memory *memory, void **state)
     return OK;
 }
 
-Status get_state(const Instance *instance, void **state)
+Status get_state(Instance *instance, void **state)
 {
+    take_over_written(instance);
     return keep(instance, &instance->memory, state);
 }
 

@@ -232,6 +232,21 @@ def test_the_place_is_that_of_the_first_instance_and_free_after_it(request: Any,
         first.fmu.freeInstance = lambda: None
 
 
+@BUILDS
+def test_a_saved_state_has_no_parameter_that_cannot_be_written(request: Any, tmp_path: Path, build: str) -> None:
+    """J_1 of a run is fixed; a state that is saved before the next step does not keep it."""
+    path = request.getfixturevalue(build) / "TwoMassDriveline.fmu"
+    with opened(path, tmp_path, "first") as host:
+        tool = Tool(path, PLATFORMS[build], host)
+        host.initialize()
+        J_1 = host.get("J_1")
+        tool.write(J_1=2.0 * J_1)
+        state = host.fmu.getFMUState() if build == "fmi3" else host.fmu.getFMUstate()
+        host.step(0.0, 0.01)
+        (host.fmu.setFMUState if build == "fmi3" else host.fmu.setFMUstate)(state)
+        assert tool.read("J_1") == J_1
+
+
 def test_an_instance_with_a_long_name_is_where_the_host_allocates_it(native: Path, tmp_path: Path) -> None:
     path = native / "MotorTorqueLoop.fmu"
     with opened(path, tmp_path, "n" * 2000) as host:
