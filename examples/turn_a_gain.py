@@ -1,5 +1,6 @@
 """Turns the damping of a running controller, as a calibration engineer does at the bench, and compares three runs:
 
+    driveline build
     python examples/turn_a_gain.py
 
 The same on the command line: driveline simulate --manoeuvre drive --set controller.k_d@2.0=1.5 --set controller.k_d@5=4

@@ -24,10 +24,18 @@ class Change(NamedTuple):
 
 
 def parted(name: str) -> tuple[str, float | None]:
-    """`instance.parameter` and the time in s from which on it has a value; None: it has it from the start on."""
-    parameter, at, time = name.rpartition("@")
-    instant = real(time) if at else None
-    return (name, None) if instant is None else (parameter, instant)
+    """`instance.parameter` and the time in s from which on it has a value; None: it has it from the start on.
+
+    Raises:
+        WiringError: what stands behind the @ is no time. In a quoted name of FMI the @ is part of it.
+    """
+    parameter, at, time = name.partition("@")
+    if not at or "'" in name:
+        return name, None
+    instant = real(time)
+    if instant is None:
+        raise WiringError(f"{name}: {time} is no time in s, as 2.0 in controller.k_d@2.0")
+    return parameter, instant
 
 
 def initial(parameters: Mapping[str, float]) -> dict[str, float]:
@@ -39,9 +47,9 @@ def changes(parameters: Mapping[str, float], time: NDArray[np.float64]) -> list[
     """What is changed at the instants of a run, in their order: each before the first step that begins at its time.
 
     Raises:
-        WiringError: no step begins then or later.
+        WiringError: no step begins then or later, or one parameter is set twice there.
     """
-    found = []
+    found: list[Change] = []
     size, last = float(time[1]), float(time[-2])
     for name, value in parameters.items():
         parameter, instant = parted(name)
@@ -50,7 +58,10 @@ def changes(parameters: Mapping[str, float], time: NDArray[np.float64]) -> list[
         if not 0.0 <= instant <= last + LATE * size:
             raise WiringError(f"{name}: the steps of the run begin at 0 to {last:g} s")
         instance, _, own = parameter.partition(".")
-        found.append(Change(ceil(instant / size - LATE), instance, own, value))
+        change = Change(ceil(instant / size - LATE), instance, own, value)
+        if any(other[:3] == change[:3] for other in found):
+            raise WiringError(f"{name}: {parameter} is set twice at that step")
+        found.append(change)
     return sorted(found, key=lambda change: change.step)
 
 
