@@ -1,26 +1,21 @@
 """Whether a recording can be true. Each rule looks for one thing that files have in spite of being well-formed, and
 gives at most one finding a channel: column, time, and what is odd. Nothing is repaired, and nothing refused.
-
-The balance of forces along the road is that of `harness.manoeuvres.speed_following`: what the motion takes,
-1.09 m dv/dt + m g c_rr + c_wa v^2, follows what the motor gives, i T_mot/r. Brakes and grade blur it. So it is compared
-without the parts that are faster than SMOOTHING, over all that moves for the sign, and for the size where the motor
-pushes harder than FORCE, when no driver brakes. Means over EVERY are enough for that.
 """
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import pi
 from shlex import quote
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base.longest_interval import longest_run
 from .channels import Channel
 from .drive import Drive
+from .force_balance import FORCE, LARGEST, LEAST, SIGNED, SMALLEST, TOGETHER, Car, balance, forces, interval_of
 from .headings import split
 from .missing_values import is_code
-from .relations import compared
 
 
 class Rule(NamedTuple):
@@ -66,18 +61,6 @@ class Finding:
         return {"rule": self.rule.name, "column": self.column, "time_s": self.time, "text": str(self)}
 
 
-class Car(Protocol):
-    """What of the vehicle the balance of forces needs, see `harness.manoeuvres.road_load.RoadLoad`."""
-
-    def motor_force(self, T_mot: np.ndarray) -> np.ndarray:
-        """Force in N with which the motor pushes."""
-        ...
-
-    def motion(self, v: np.ndarray, interval: float) -> np.ndarray:
-        """Force in N that a motion takes on a level road."""
-        ...
-
-
 ALONE = 0.5
 """Distance of a code from the other values, over the range of these, from which on it is none of them."""
 
@@ -97,30 +80,14 @@ OSCILLATION, SLOWEST = 8.0, 0.2
 BEYOND = 0.01
 """Share of the samples that may lie beyond T_max."""
 
-SMOOTHING, FORCE, ROLLING = 0.5, 300.0, 1.0
-"""Standard deviation in s of the Gaussian; force in N up to which the balance cannot tell a force from an error; speed
-in m/s above which a car rolls."""
-
-EVERY = 0.02
-"""Interval in s that is enough for the balance, a twenty-fifth of the Gaussian."""
-
 MOST_MARKED = 200
 """Samples of a finding that a figure marks."""
-
-SIGNED, TOGETHER = 0.5, 0.7
-"""Correlations of the forces from which on the sign, and the size, mean something."""
-
-SMALLEST, LARGEST = 0.5, 2.5
-"""What a motion takes over what the motor gives."""
 
 SHORTEST = 2e-4
 """Interval in s of the fastest recordings. What would be faster in ms is not tried in them."""
 
 KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
 """Factors on speed, time and torque that are tried. Those on a torque that never reaches FORCE leave no ratio out."""
-
-LEAST = 10
-"""Samples that a balance needs."""
 
 FOLLOWED = 0.3
 """Speed error in m/s, rms, from which on a recorded speed is not followed."""
@@ -251,7 +218,7 @@ def spikes(channel: Channel) -> Iterator[Finding]:
         return
     from scipy.ndimage import median_filter
 
-    v, interval = channel.values, _interval(channel.time)
+    v, interval = channel.values, interval_of(channel.time)
     odd = np.zeros(len(v), dtype=bool)
     for width in range(1, WIDEST + 1):
         off = np.abs(v - median_filter(v, 2 * width + 1, mode="nearest"))
@@ -277,7 +244,7 @@ def jumps(channel: Channel) -> Iterator[Finding]:
 
 def slow_sampling(drive: Drive) -> Iterator[Finding]:
     """A demand between whose samples the oscillation has no room."""
-    interval = _interval(drive.time)
+    interval = interval_of(drive.time)
     # the last digits of written times must not decide
     if interval > SLOWEST * (1.0 + 1e-6):
         swing = 1.0 / (pi * OSCILLATION * interval)
@@ -306,70 +273,6 @@ def beyond_T_max(drive: Drive, T_max: float) -> Iterator[Finding]:
         )
 
 
-class Forces(NamedTuple):
-    """Along the road, smoothed, in N.
-
-    Attributes:
-        time: in s.
-        takes: what the motion takes.
-        gives: what the motor gives.
-        rolls: whether the car rolls.
-    """
-
-    time: np.ndarray
-    takes: np.ndarray
-    gives: np.ndarray
-    rolls: np.ndarray
-
-
-def forces(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Forces:
-    """Those of a motion (m/s over s) and the torque of the motor (N.m)."""
-    from scipy.ndimage import gaussian_filter1d
-
-    count = max(1, min(int(EVERY / _interval(time)), len(time) // LEAST))
-    time, v, T_mot = (x[: len(x) // count * count].reshape(-1, count).mean(axis=1) for x in (time, v, T_mot))
-    interval = _interval(time)
-    signals = (car.motion(v, interval), car.motor_force(T_mot), np.abs(v))
-    takes, gives, speed = (gaussian_filter1d(x, SMOOTHING / interval, mode="nearest") for x in signals)
-    return Forces(time, takes, gives, speed > ROLLING)
-
-
-class Balance(NamedTuple):
-    """Of the forces along the road.
-
-    Attributes:
-        worst: time in s at which they are furthest apart.
-        correlation: of what the motion takes with what the motor gives, while the car rolls; 0 if too little happens.
-        judged: whether enough happens while the motor pushes.
-        together, ratio: correlation and ratio of standard deviations then.
-        moved: standard deviation in N of what the motion takes then.
-    """
-
-    worst: float
-    correlation: float = 0.0
-    judged: bool = False
-    together: float = 0.0
-    ratio: float = 1.0
-    moved: float = 0.0
-
-    @property
-    def fits(self) -> bool:
-        return self.judged and self.together >= TOGETHER and SMALLEST <= self.ratio <= LARGEST
-
-
-def balance(along: Forces, torque: float = 1.0) -> Balance:
-    """How what the motion takes and what the motor gives fit together, with a factor on the torque."""
-    takes, gives, rolls = along.takes, torque * along.gives, along.rolls
-    pushes = rolls & (gives > FORCE)
-    found = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
-    if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:
-        found = found._replace(correlation=compared(takes[rolls], gives[rolls])[0])
-    if pushes.sum() >= LEAST and max(np.std(gives[pushes]), np.std(takes[pushes])) > FORCE:
-        together, ratio = compared(takes[pushes], gives[pushes])
-        found = found._replace(judged=True, together=together, ratio=ratio, moved=float(np.std(takes[pushes])))
-    return found
-
-
 def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
     """A motion that is not that of this torque and this car: one finding, of what explains it best."""
 
@@ -389,10 +292,10 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
             f"wrong; {_given('T_mot', f'-{torque}')} turns it"
         )
         yield Finding(SIGN, torque, at, odd)
-    elif found.judged and found.together < TOGETHER and MS * _interval(drive.time) >= SHORTEST and fits(time=MS):
+    elif found.judged and found.together < TOGETHER and MS * interval_of(drive.time) >= SHORTEST and fits(time=MS):
         clock = drive.clock
         odd = (
-            f"goes on by {_interval(drive.time):.4g} s a sample, and motion and torque fit if that is ms: its unit "
+            f"goes on by {interval_of(drive.time):.4g} s a sample, and motion and torque fit if that is ms: its unit "
             f"looks wrong; {_given('time', f'{split(clock)[0]} [ms]')} gives it"
         )
         yield Finding(SLOW_TIME, clock, float(drive.time[0]), odd)
@@ -453,7 +356,3 @@ def _given(quantity: str, heading: str) -> str:
 
 def _more(count: int, what: str = "sample") -> str:
     return "" if count == 1 else f" ({count} {what}s)"
-
-
-def _interval(time: np.ndarray) -> float:
-    return float(np.median(np.diff(time)))

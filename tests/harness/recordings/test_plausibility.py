@@ -17,29 +17,23 @@ from driveline.harness.recordings import plausibility
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.drive import Drive, read_drive
 from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.recordings.force_balance import EVERY, LARGEST, SMALLEST, Balance, Forces, balance, forces
 from driveline.harness.recordings.missing_values import ENDS, NINES, is_code
 from driveline.harness.recordings.plausibility import (
     ACCELERATION,
     BEYOND,
     CLIMB,
-    EVERY,
     FOLLOWED,
-    LARGEST,
     MOST_MARKED,
     MS,
     OSCILLATION,
     RULES,
     SHORTEST,
     SLOWEST,
-    SMALLEST,
     SPIKE,
     STEP,
-    Balance,
     Finding,
-    Forces,
-    balance,
     codes,
-    forces,
     jumps,
     not_followed,
     of_channels,

@@ -1,0 +1,109 @@
+"""Balance of the forces along the road: that of `harness.manoeuvres.speed_following`. What the motion takes,
+1.09 m dv/dt + m g c_rr + c_wa v^2, follows what the motor gives, i T_mot/r. Brakes and grade blur it. So it is compared
+without the parts that are faster than SMOOTHING, over all that moves for the sign, and for the size where the motor
+pushes harder than FORCE, when no driver brakes. Means over EVERY are enough for that.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from .relations import compared
+
+
+class Car(Protocol):
+    """What of the vehicle the balance of forces needs, see `harness.manoeuvres.road_load.RoadLoad`."""
+
+    def motor_force(self, T_mot: np.ndarray) -> np.ndarray:
+        """Force in N with which the motor pushes."""
+        ...
+
+    def motion(self, v: np.ndarray, interval: float) -> np.ndarray:
+        """Force in N that a motion takes on a level road."""
+        ...
+
+
+SMOOTHING, FORCE, ROLLING = 0.5, 300.0, 1.0
+"""Standard deviation in s of the Gaussian; force in N up to which the balance cannot tell a force from an error; speed
+in m/s above which a car rolls."""
+
+EVERY = 0.02
+"""Interval in s that is enough for the balance, a twenty-fifth of the Gaussian."""
+
+SIGNED, TOGETHER = 0.5, 0.7
+"""Correlations of the forces from which on the sign, and the size, mean something."""
+
+SMALLEST, LARGEST = 0.5, 2.5
+"""What a motion takes over what the motor gives."""
+
+LEAST = 10
+"""Samples that a balance needs."""
+
+
+class Forces(NamedTuple):
+    """Along the road, smoothed, in N.
+
+    Attributes:
+        time: in s.
+        takes: what the motion takes.
+        gives: what the motor gives.
+        rolls: whether the car rolls.
+    """
+
+    time: np.ndarray
+    takes: np.ndarray
+    gives: np.ndarray
+    rolls: np.ndarray
+
+
+def forces(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Forces:
+    """Those of a motion (m/s over s) and the torque of the motor (N.m)."""
+    from scipy.ndimage import gaussian_filter1d
+
+    count = max(1, min(int(EVERY / interval_of(time)), len(time) // LEAST))
+    time, v, T_mot = (x[: len(x) // count * count].reshape(-1, count).mean(axis=1) for x in (time, v, T_mot))
+    interval = interval_of(time)
+    signals = (car.motion(v, interval), car.motor_force(T_mot), np.abs(v))
+    takes, gives, speed = (gaussian_filter1d(x, SMOOTHING / interval, mode="nearest") for x in signals)
+    return Forces(time, takes, gives, speed > ROLLING)
+
+
+class Balance(NamedTuple):
+    """Of the forces along the road.
+
+    Attributes:
+        worst: time in s at which they are furthest apart.
+        correlation: of what the motion takes with what the motor gives, while the car rolls; 0 if too little happens.
+        judged: whether enough happens while the motor pushes.
+        together, ratio: correlation and ratio of standard deviations then.
+        moved: standard deviation in N of what the motion takes then.
+    """
+
+    worst: float
+    correlation: float = 0.0
+    judged: bool = False
+    together: float = 0.0
+    ratio: float = 1.0
+    moved: float = 0.0
+
+    @property
+    def fits(self) -> bool:
+        return self.judged and self.together >= TOGETHER and SMALLEST <= self.ratio <= LARGEST
+
+
+def balance(along: Forces, torque: float = 1.0) -> Balance:
+    """How what the motion takes and what the motor gives fit together, with a factor on the torque."""
+    takes, gives, rolls = along.takes, torque * along.gives, along.rolls
+    pushes = rolls & (gives > FORCE)
+    found = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
+    if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:
+        found = found._replace(correlation=compared(takes[rolls], gives[rolls])[0])
+    if pushes.sum() >= LEAST and max(np.std(gives[pushes]), np.std(takes[pushes])) > FORCE:
+        together, ratio = compared(takes[pushes], gives[pushes])
+        found = found._replace(judged=True, together=together, ratio=ratio, moved=float(np.std(takes[pushes])))
+    return found
+
+
+def interval_of(time: np.ndarray) -> float:
+    """Median step of times."""
+    return float(np.median(np.diff(time)))
