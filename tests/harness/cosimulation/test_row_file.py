@@ -15,9 +15,11 @@ from driveline.harness.cosimulation.row_file import RowFile, zeros
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
+from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.run_figure import plot_run
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=2.5)
+PNG = FigureOptions(kinds=("png",))
 
 
 @pytest.fixture
@@ -50,7 +52,7 @@ def test_a_run_in_a_file_is_the_same(native: Path, in_files: None, tmp_path: Pat
         for name in found.dtype.names or ():
             np.testing.assert_array_equal(found[piece][name], expected[piece][name])
     assert evaluate(found, TIPIN) == evaluate(expected, TIPIN)
-    drawn = [plot_run(run, TIPIN, "a run", tmp_path / f"{k}") for k, run in enumerate((found, expected))]
+    drawn = [plot_run(run, TIPIN, "a run", tmp_path / f"{k}", PNG) for k, run in enumerate((found, expected))]
     assert len({figure.read_bytes() for figures in drawn for figure in figures}) == len(drawn[0])
 
 

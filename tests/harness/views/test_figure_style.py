@@ -91,7 +91,8 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     figures: list[Figure] = []
 
     def keep(figure: Figure, path: Path, **_: Any) -> None:
-        FigureCanvasAgg(figure).draw()
+        FigureCanvasAgg(figure)
+        figure.draw_without_rendering()
         figures.append(figure)
         path.touch()
 
