@@ -3,15 +3,19 @@
 
 #include <string.h>
 
+RARE static void refuse_call(const Instance *instance, unsigned modes, const char *function)
+{
+    if (instance && in_mode(instance, modes, function))
+        refuse(instance, "%s: an argument is NULL", function);
+}
+
 /* The instance with which what an adapter gives out begins, if it is in one of the modes and the call is complete. */
-Instance *ready(void *component, unsigned modes, int complete, const char *function)
+inline Instance *ready(void *component, unsigned modes, int complete, const char *function)
 {
     Instance *instance = component;
-    if (!instance || !in_mode(instance, modes, function))
-        return NULL;
-    if (complete)
+    if (instance && complete && ((unsigned)instance->memory.mode & modes))
         return instance;
-    refuse(instance, "%s: an argument is NULL", function);
+    refuse_call(instance, modes, function);
     return NULL;
 }
 

@@ -7,12 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const Input still; /* rates of change of inputs that are held */
-
-/* The rates of change of the inputs; NULL if they are held. */
-static const Input *moving(const Memory *memory)
+const Input *moving(const Memory *memory)
 {
-    return memcmp(&memory->du, &still, sizeof still) ? &memory->du : NULL;
+    uint64_t rates[INPUTS], any = 0;
+    memcpy(rates, &memory->du, sizeof rates);
+    for (int n = 0; n < INPUTS; n++)
+        any |= rates[n];
+    return any ? &memory->du : NULL;
 }
 
 Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next)

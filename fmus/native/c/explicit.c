@@ -19,16 +19,20 @@ const Input *inputs_at(const Problem *problem, double t, Input *room)
     return room;
 }
 
-static void rate_at(const Problem *problem, double t, const Point *x, Point *dx)
+static void moving_rate_at(const Problem *problem, double t, const Point *x, Point *dx)
 {
     Input room;
-#ifdef HELD_TERMS
-    if (!problem->du) {
-        derivative_held(&x->state, problem->u, problem->p, problem->held, &dx->state);
-        return;
-    }
-#endif
     derivative(&x->state, inputs_at(problem, t, &room), problem->p, &dx->state);
+}
+
+static inline void rate_at(const Problem *problem, double t, const Point *x, Point *dx)
+{
+#ifdef HELD_TERMS
+    if (!problem->du)
+        derivative_held(&x->state, problem->u, problem->p, problem->held, &dx->state);
+    else
+#endif
+        moving_rate_at(problem, t, x, dx);
 }
 
 void rate(const Problem *problem, double t, const Vector x, Vector dx)

@@ -157,6 +157,8 @@ CHANGE(fmi2Reset, ANY_MODE, renew(instance))
 /* FMI 2.0 lets an input move for one step, and holds it from when it is set. */
 static Status set_held(Instance *instance, Type type, const Reference references[], size_t count, const void *values)
 {
+    if (!moving(&instance->memory))
+        return set_values(instance, type, references, count, values);
     const Status status = set_values(instance, type, references, count, values);
     for (size_t k = 0; status == OK && k < count; k++)
         if (variables[references[k]].causality == INPUT)

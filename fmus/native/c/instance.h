@@ -89,8 +89,10 @@ typedef struct {
 
 #if defined __GNUC__
 #define LIKE_PRINTF __attribute__((format(printf, 2, 3)))
+#define RARE __attribute__((cold, noinline)) /* a function that steps do not call is kept out of those that they do */
 #else
 #define LIKE_PRINTF
+#define RARE
 #endif
 
 /* the adapter */
@@ -109,8 +111,8 @@ static Status set_logging(Instance *instance, int on, size_t count, const char *
 /* messages.c */
 enum { NUMBER_LENGTH = 40, MESSAGE_LENGTH = 1000 };
 static char *write_number(char text[NUMBER_LENGTH], double value); /* as Python's repr */
-LIKE_PRINTF static Status refuse(const Instance *instance, const char *format, ...);  /* tells the host; ERROR */
-LIKE_PRINTF static Status discard(const Instance *instance, const char *format, ...); /* tells the host; DISCARD */
+LIKE_PRINTF RARE static Status refuse(const Instance *instance, const char *format, ...);  /* tells the host; ERROR */
+LIKE_PRINTF RARE static Status discard(const Instance *instance, const char *format, ...); /* tells the host; DISCARD */
 
 /* run.c */
 static void renew(Instance *instance); /* as new, with the same host */
@@ -164,6 +166,7 @@ static Status check_content(const Instance *instance, Memory *memory); /* of a s
 /* continuous.c or sampled.c */
 static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
 static Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next); /* `elapsed` since start */
+static const Input *moving(const Memory *memory); /* the rates of change of the inputs; NULL if they are held */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);
 static Status get_output_rates(const Instance *instance, const Reference references[], size_t count, double rates[]);

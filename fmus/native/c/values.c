@@ -43,6 +43,12 @@ const Variable *variable_of(const Instance *instance, Reference reference, Type 
     return NULL;
 }
 
+/* Whether a reference is to a variable of that type among those of the block. */
+static int is_own(Reference reference, Type type)
+{
+    return reference < variable_count && variables[reference].type == type;
+}
+
 /* Whether there are arrays, and references to variables of one type in them; else they are refused. */
 static int are_of_type(
     const Instance *instance, Type type, const Reference references[], size_t count, const void *values)
@@ -51,11 +57,9 @@ static int are_of_type(
         refuse(instance, "%u values of type %s, but an array is NULL", (unsigned)count, type_names[type]);
         return 0;
     }
-    for (size_t k = 0; k < count; k++) {
-        const Reference reference = references[k];
-        if ((reference >= variable_count || variables[reference].type != type) && !variable_of(instance, reference, type))
+    for (size_t k = 0; k < count; k++)
+        if (!variable_of(instance, references[k], type))
             return 0;
-    }
     return 1;
 }
 
@@ -130,7 +134,17 @@ static int can_be_given(Memory *memory, const Instance *instance, const Referenc
     return 1;
 }
 
-Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values)
+static void give(Type type, void *values, size_t k, double value)
+{
+    if (type == REAL)
+        ((double *)values)[k] = value;
+    else
+        ((int *)values)[k] = (int)value;
+}
+
+/* Gets what has to be computed first, or is refused. */
+RARE static Status get_others(
+    Instance *instance, Type type, const Reference references[], size_t count, void *values)
 {
     Memory *memory = &instance->memory;
     if (!are_of_type(instance, type, references, count, values))
@@ -143,13 +157,19 @@ Status get_values(Instance *instance, Type type, const Reference references[], s
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
         const int of_state = variable->causality == STATE || variable->causality == RATE;
-        const double value = of_state ? state_value(memory, variable) : *place_of(&memory->values, variable);
-        if (type == REAL)
-            ((double *)values)[k] = value;
-        else
-            ((int *)values)[k] = (int)value;
+        give(type, values, k, of_state ? state_value(memory, variable) : *place_of(&memory->values, variable));
     }
     return OK;
+}
+
+Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values)
+{
+    Memory *memory = &instance->memory;
+    size_t k = 0;
+    if (references && values && memory->outputs_known && !instance->exchanges)
+        for (; k < count && is_own(references[k], type); k++)
+            give(type, values, k, *place_of(&memory->values, &variables[references[k]]));
+    return k == count ? OK : get_others(instance, type, references, count, values);
 }
 
 static double value_at(Type type, const void *values, size_t k)
@@ -193,29 +213,49 @@ static int is_allowed(const Instance *instance, const Variable *variable, double
     return 0;
 }
 
+static void put(Memory *memory, Type type, const Reference references[], size_t count, const void *values)
+{
+    for (size_t k = 0; k < count; k++) {
+        const double value = value_at(type, values, k);
+        *place_of(&memory->values, &variables[references[k]]) = type == BOOLEAN ? value != 0.0 : value;
+    }
+    memory->outputs_known = 0;
+}
+
+/* Sets parameters, or refuses what cannot be set. */
+RARE static Status set_others(
+    Instance *instance, Type type, const Reference references[], size_t count, const void *values)
+{
+    if (!are_of_type(instance, type, references, count, values))
+        return ERROR;
+    for (size_t k = 0; k < count; k++)
+        if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
+            return ERROR;
+    take_over_written(instance);
+    put(&instance->memory, type, references, count, values);
+    compute_terms(&instance->memory.values.p);
+    know_parameters(instance);
+    return OK;
+}
+
+/* Whether a variable is an input that takes a value in every mode but the last. */
+static int is_input_for(const Variable *variable, double value)
+{
+    return variable->causality == INPUT
+           && (copes_with_bad_input || (value >= variable->minimum && value <= variable->maximum));
+}
+
 Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values)
 {
     Memory *memory = &instance->memory;
-    if (!are_of_type(instance, type, references, count, values))
-        return ERROR;
-    int parameters_set = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
-            return ERROR;
-        parameters_set |= variables[references[k]].causality != INPUT;
-    }
-    if (parameters_set)
-        take_over_written(instance);
-    for (size_t k = 0; k < count; k++) {
-        const Variable *variable = &variables[references[k]];
-        const double value = value_at(type, values, k);
-        *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : value;
-    }
-    if (parameters_set) {
-        compute_terms(&memory->values.p);
-        know_parameters(instance);
-    }
-    memory->outputs_known = 0;
+    size_t k = 0;
+    if (references && values && memory->mode != TERMINATED)
+        while (k < count && is_own(references[k], type)
+               && is_input_for(&variables[references[k]], value_at(type, values, k)))
+            k++;
+    if (k < count)
+        return set_others(instance, type, references, count, values);
+    put(memory, type, references, count, values);
     return OK;
 }
 

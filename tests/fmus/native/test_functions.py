@@ -13,6 +13,7 @@ from driveline.fmus.description.variables import interface
 from driveline.fmus.native.compiler import host_compiler
 from driveline.fmus.native.packaging import C_FILES
 from driveline.fmus.native.trace import leaves
+from driveline.models.block.noise import M
 from driveline.models.block.types import ContinuousBlock, SampledBlock
 from tests.fmus.native.functions import Functions
 
@@ -112,6 +113,18 @@ def computed_by_operators(tmp_path, expression):
 )
 def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
     assert computed_by_operators(tmp_path, f"modulo({x!r}, {y!r})") == x % y
+
+
+@pytest.mark.parametrize("y", [2.0, 48.0, M, 2.0**26, 2.0**26 + 1.0, 5.5])
+def test_remainders_are_exact_beside_multiples_and_halves(native_builder, tmp_path, y):
+    multiples = [k * y for k in (0.0, 0.5, 1.0, 1.5, 2.0, y - 1.0, y - 0.5, y, 2.0**26, 2.0**26 + 1.0)]
+    numbers = [math.nextafter(x, x + side) for x in multiples for side in (-1.0, 0.0, 1.0)]
+    signs = " || ".join(f"modulo({x!r}, {y!r}) != {x % y!r}" for x in numbers)
+    assert computed_by_operators(tmp_path, f"({signs}) ? 1.0 : 0.0") == 0.0
+
+
+def test_a_remainder_of_zero_has_the_sign_of_the_divisor(native_builder, tmp_path):
+    assert math.copysign(1.0, computed_by_operators(tmp_path, "modulo(-96.0, 48.0)")) == 1.0
 
 
 @pytest.mark.parametrize("x", [0.0, 3.0, 3.5])
