@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...models.block.declaration import Boolean, is_tuple, variables
 from ...models.block.types import Block, ContinuousBlock
 from ..symbol import Symbol
-from .states import rate_name, state_name
+from .states import event_indicators, rate_name, state_name
 
 
 class Dependent(Symbol):
@@ -70,11 +70,26 @@ def output_dependencies(block: Block) -> Dependencies:
     return _after_start(block, block.output, _without_sources(start), block.Output._fields)
 
 
-def exchanged_dependencies(block: ContinuousBlock) -> tuple[Dependencies, Dependencies]:
-    """For every output, and for every derivative of a state, the inputs and states that it depends on directly."""
+class Exchanged(NamedTuple):
+    """For every output, derivative of a state and event indicator the inputs and states that it depends on directly."""
+
+    outputs: Dependencies
+    rates: Dependencies
+    indicators: Dependencies
+
+
+def exchanged_dependencies(block: ContinuousBlock) -> Exchanged:
+    """What a host that integrates is told."""
     x = _symbols(block.State, True, state_name)
-    outputs = _after_start(block, block.output, x, block.Output._fields)
-    return outputs, _after_start(block, block.derivative, x, map(rate_name, block.State._fields))
+    return Exchanged(
+        _after_start(block, block.output, x, block.Output._fields),
+        _after_start(block, block.derivative, x, _rate_names(block)),
+        _after_start(block, block.event_indicators, x, [v.name for v in event_indicators(block)]),
+    )
+
+
+def _rate_names(block: ContinuousBlock) -> list[str]:
+    return [rate_name(state_name(field)) for field in block.State._fields]
 
 
 def _after_start(block: Block, function: Callable[..., Any], x: Any, names: Iterable[str]) -> Dependencies:
@@ -90,7 +105,7 @@ def initial_dependencies(block: Block) -> Dependencies:
 def initial_state_dependencies(block: ContinuousBlock) -> Dependencies:
     """For every state, and every derivative of one, the inputs and parameters that its initial value depends on."""
     started = _at_start(block, _state, map(state_name, block.State._fields))
-    return started | _at_start(block, block.derivative, map(rate_name, block.State._fields))
+    return started | _at_start(block, block.derivative, _rate_names(block))
 
 
 def _state(x: Any, u: Any, p: Any) -> Any:

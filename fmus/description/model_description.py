@@ -58,8 +58,8 @@ def model_description(fmu: Fmu, kind: BuildKind, guid: str) -> bytes:
     all_variables = (*interface(fmu.block), *exchanged)
     check_names(all_variables)
     root = new_root(fmu, kind, {"guid": guid})
-    if isinstance(fmu.block, ContinuousBlock) and exchanged:
-        root.set("numberOfEventIndicators", str(event_indicators(fmu.block)))
+    if exchanged:
+        root.set("numberOfEventIndicators", str(len(event_indicators(fmu.block))))
         _add_kind(root, "ModelExchange", fmu, kind, EXCHANGE_CAPABILITIES | kind.model_exchange)
     _add_kind(root, "CoSimulation", fmu, kind, CAPABILITIES | kind.capabilities)
     add_definitions(root, fmu, kind, all_variables, _add_enumeration)
@@ -84,7 +84,7 @@ def _add_enumeration(definitions: Element, name: str) -> Element:
 
 def _add_variable(listed: Element, variable: Variable, block: Block) -> None:
     scalar = SubElement(listed, "ScalarVariable", variable_attributes(variable, block))
-    derivative = {} if variable.state is None else {"derivative": str(variable.state + 1)}
+    derivative = {} if variable.of is None else {"derivative": str(variable.of + 1)}
     attributes = type_attributes(variable.declaration) | nominal(variable) | derivative | start(variable)
     SubElement(scalar, TYPES[type(variable.declaration)], attributes)
 
@@ -96,9 +96,9 @@ def _add_structure(
     structure = SubElement(root, "ModelStructure")
     sections = {"Outputs": output_dependencies(block), "InitialUnknowns": initial_dependencies(block)}
     if isinstance(block, ContinuousBlock) and exchanged:
-        outputs, rates = exchanged_dependencies(block)
+        on = exchanged_dependencies(block)
         initial = sections["InitialUnknowns"] | initial_state_dependencies(block)
-        sections = {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": initial}
+        sections = {"Outputs": on.outputs, "Derivatives": on.rates, "InitialUnknowns": initial}
     for section, unknowns in sections.items():
         listed = SubElement(structure, section)
         for unknown, on in unknowns.items():

@@ -4,7 +4,7 @@ from xml.etree.ElementTree import Element, SubElement, register_namespace
 
 from ...models.block.types import Block
 from .elements import written
-from .variables import time_and_rates
+from .states import shown_by_fmi3
 
 TERMINAL = "Powertrain"
 """Its name, and that of the database of the bus."""
@@ -33,7 +33,7 @@ MANIFEST = {
 
 def members(block: Block) -> dict[str, int]:
     """The names and value references of its members, which come behind those of all other variables."""
-    first = time_and_rates(block)[-1].reference + 1
+    first = shown_by_fmi3(block)[-1].reference + 1
     return {f"{TERMINAL}.{member}": reference for reference, member in enumerate(MEMBERS, first)}
 
 

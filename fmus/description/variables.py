@@ -4,8 +4,7 @@ from typing import Any, NamedTuple
 
 from ...models.block.declaration import Boolean, Declaration, Enumeration, Integer, Real, variables
 from ...models.block.operators import LARGEST
-from ...models.block.types import Block, ContinuousBlock
-from .units import NOMINAL, rate_unit
+from .units import NOMINAL
 
 
 class Variable(NamedTuple):
@@ -16,7 +15,7 @@ class Variable(NamedTuple):
         causality: "input", "output" or "parameter"; of a state or its derivative "local"; of the time in FMI 3.0
             "independent".
         start: start value; None for what is computed.
-        state: of a derivative, the reference of its state.
+        of: of a derivative, the reference of what it is the derivative of.
     """
 
     reference: int
@@ -24,7 +23,7 @@ class Variable(NamedTuple):
     causality: str
     declaration: Declaration
     start: Any
-    state: int | None = None
+    of: int | None = None
 
     @property
     def fmi_type(self) -> str:
@@ -92,28 +91,3 @@ def interface(block: Any) -> tuple[Variable, ...]:
         Variable(reference, v.name, causality, v.declaration, v.start)
         for reference, (causality, v) in enumerate(declared)
     )
-
-
-def time_and_rates(block: Block) -> tuple[Variable, ...]:
-    """What FMI 3.0 has beside: the time, and for each Real input of a continuous block its rate of change.
-
-    FMI 2.0 has a function that lets inputs move during a step, FMI 3.0 has none.
-    """
-    listed = interface(block)
-    first = len(listed)
-    moving = [v for v in listed if v.causality == "input" and isinstance(block, ContinuousBlock)]
-    rates = (
-        Variable(first + 1 + v.reference, f"der({v.name})", "input", Real(rate_unit(v.declaration.unit), MOVES), 0.0)
-        for v in moving
-        if isinstance(v.declaration, Real)
-    )
-    return Variable(first, "time", "independent", Real("s", "time"), None), *rates
-
-
-MOVES = "rate at which the input moves during communication steps"
-
-
-def rate_of(variable: Variable, block: Block) -> int | None:
-    """The value reference of the input whose rate of change a variable of FMI 3.0 is; None: it is none."""
-    first = len(interface(block)) + 1
-    return variable.reference - first if variable.reference >= first else None

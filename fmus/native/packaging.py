@@ -27,11 +27,8 @@ from .xcp import xcp_entries
 C_FILES = Path(__file__).parent / "c"
 FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
 
-ADAPTERS = {2: ("fmi2.c", "fmi2_adapter.h"), 3: ("fmi3.c", "fmi3_refused.c")}
+ADAPTERS = {2: ("fmi2.c", "fmi2_adapter.h"), 3: ("fmi3.c", "fmi3_instance.c", "fmi3_refused.c")}
 """Of the core to each FMI."""
-
-FOR_EXCHANGE = {2: ("fmi2_model_exchange.c", "model_exchange.c", "model_exchange.h"), 3: ()}
-"""Of continuous blocks, of which FMI 3.0 has co-simulation alone here."""
 
 DESCRIPTIONS = {2: model_description, 3: model_description_3}
 """What writes the model description of each FMI."""
@@ -56,6 +53,8 @@ FOR_CONTINUOUS = (
     "explicit.h",
     "implicit.h",
     "integrator.h",
+    "model_exchange.c",
+    "model_exchange.h",
 )
 FOR_SAMPLED = ("sampled.c",)
 FOR_TERMINAL = ("fmi3_terminal.c", "frames.c", "terminal.c", "terminal.h")
@@ -83,8 +82,11 @@ FRAMES = """Inputs are held over a communication step. In event mode the termina
 arrived in the step as frames (FMI-LS-BUS); their database is in the folder <code>extra</code>."""
 """How inputs are taken, and frames sent, by an FMU with a terminal."""
 
-EXCHANGE = {"canNotUseMemoryManagementFunctions": "false", "providesDirectionalDerivative": "true"}
-"""What model exchange can do in a native build."""
+EXCHANGE = {
+    2: {"canNotUseMemoryManagementFunctions": "false", "providesDirectionalDerivative": "true"},
+    3: {"providesDirectionalDerivatives": "true"},
+}
+"""What model exchange can do in a native build of each FMI."""
 
 TRACING = Lock()
 """Held while a block is traced: how CasADi simplifies is set for all threads."""
@@ -139,11 +141,11 @@ def c_sources(fmu: Fmu, fmi: int = 2, sends: bool = False) -> dict[str, bytes]:
         ADAPTERS[fmi]
         + FOR_ALL
         + (FOR_TERMINAL if sends else ())
-        + (FOR_CONTINUOUS + FOR_EXCHANGE[fmi] if continuous else FOR_SAMPLED)
+        + ((*FOR_CONTINUOUS, f"fmi{fmi}_model_exchange.c") if continuous else FOR_SAMPLED)
     )
     sources = {name: (C_FILES / name).read_bytes() for name in names}
     sources |= {header.name: header.read_bytes() for header in FMI_HEADERS.glob(f"fmi{fmi}*.h")}
-    generated = block_sources(fmu, exchanges=fmi == 2, others=(trace_frame(fmu.block),) if sends else ()) | {
+    generated = block_sources(fmu, others=(trace_frame(fmu.block),) if sends else ()) | {
         "variables.h": variables_header(fmu, "", fmi),
         "shared.h": shared_header(),
     }
@@ -174,7 +176,7 @@ def native_kind(fmu: Fmu, fmi: int = 2, sends: bool = False) -> BuildKind:
         capabilities={"maxOutputDerivativeOrder": "1" if continuous else "0"}
         | of_version[fmi]
         | ({"hasEventMode": "true"} if sends else {}),
-        model_exchange=EXCHANGE if continuous and fmi == 2 else {},
+        model_exchange=EXCHANGE[fmi] if continuous else {},
         log_categories=LOG_CATEGORIES,
         needs=NEEDS,
         source_files=(WHOLE,),

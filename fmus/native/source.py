@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from ...models.block.declaration import Enumeration
 from ...models.block.explicit import small_sizes
 from ...models.block.types import SampledBlock
-from ..description.states import states
-from ..description.variables import Variable, interface, time_and_rates
+from ..description.states import event_indicators, shown_by_fmi3, states
+from ..description.variables import Variable, interface
 from ..fmu import Fmu
 from .arithmetic import TracedGraph
 from .records import IN_FMU, RECORDS, Names, paths, records_of, structs
@@ -63,18 +63,14 @@ SOURCE = """/* {name}: arithmetic, written by build_fmus.py from {module}. */
 """
 
 
-def block_sources(
-    fmu: Fmu, precision: Precision = DOUBLE, exchanges: bool = True, others: tuple[Traced, ...] = ()
-) -> dict[str, str]:
+def block_sources(fmu: Fmu, precision: Precision = DOUBLE, others: tuple[Traced, ...] = ()) -> dict[str, str]:
     """block.h and block.c: the functions of the block in plain C99, with no need of anything of FMI.
 
     Args:
-        exchanges: whether that is among them which model exchange alone asks.
         others: functions beside those of the block.
     """
     block = fmu.block
-    records, traced = records_of(block), trace(block)
-    traced = (*(each for each in traced if exchanges or each.name != "next_event"), *others)
+    records, traced = records_of(block), (*trace(block), *others)
     made = functions(traced, records, precision)
     about = {"name": fmu.name, "description": block.description, "module": fmu.module}
     header = HEADER.format(
@@ -101,7 +97,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...], held: int) -> list[str]:
         *([f"#define HELD_TERMS {held} /* numbers that held_terms computes */"] if held else []),
         *(["#define HAS_SOLUTION"] if "solution" in sizes else []),
         f"#define SMALL_SIZES {{{', '.join(map(repr, small_sizes(fmu.block)))}}} /* of the states: see explicit.py */",
-        f"#define NOMINALS {{{', '.join(repr(v.nominal or 1.0) for v in states(fmu.block) if v.state is None)}}}",
+        f"#define NOMINALS {{{', '.join(repr(v.nominal or 1.0) for v in states(fmu.block) if v.of is None)}}}",
     ]
 
 
@@ -221,7 +217,7 @@ static const int gives_bad_output = {bad_output}; /* NaN may be what it is for *
 enum {{ allows_model_exchange = {exchanges} }};
 #define FIRST_INSTANCE {name}_instance /* the name of its place in the binary */
 static const unsigned variable_count = {count};
-static const unsigned reference_count = {references}; /* behind the variables come states and their derivatives */
+static const unsigned reference_count = {references}; /* behind the variables comes what follows from the state */
 static const unsigned last_reference = {last}; /* of all, also of those that the adapter has */
 
 static const Variable variables[{references}] = {{
@@ -245,9 +241,10 @@ FIELD = {"input": "u", "output": "y", "parameter": "p"}
 def variables_header(fmu: Fmu, guid: str, fmi: int = 2) -> str:
     """variables.h: name, unit, place, bounds and start value of every variable, by value reference; for that FMI."""
     block, listed, records = fmu.block, interface(fmu.block), records_of(fmu.block)
-    exchanged = states(block) if fmi == 2 else ()
+    exchanged, indicators = states(block), event_indicators(block) if fmi == 3 else ()
     fields = block.State._fields * 2 if exchanged else ()
-    all_listed = listed + (time_and_rates(block) if fmi == 3 else exchanged)
+    following = [*map(_state_row, exchanged, fields), *(_indicator_row(v, n) for n, v in enumerate(indicators))]
+    known = listed + exchanged + indicators
     return VARIABLES.format(
         name=fmu.name,
         module=fmu.module,
@@ -256,9 +253,9 @@ def variables_header(fmu: Fmu, guid: str, fmi: int = 2) -> str:
         bad_output=int(block.gives_bad_output),
         exchanges=int(bool(exchanged)),
         count=len(listed),
-        references=len(listed) + len(exchanged),
-        last=all_listed[-1].reference,
-        rows="\n".join([*(_row(variable, fmi) for variable in listed), *map(_state_row, exchanged, fields)]),
+        references=len(known),
+        last=(shown_by_fmi3(block) if fmi == 3 else known)[-1].reference,
+        rows="\n".join([*(_row(variable, fmi) for variable in listed), *following]),
         inputs=_names(records["u"]),
         states=_names(records["x"]),
     )
@@ -278,8 +275,12 @@ def _row(variable: Variable, fmi: int) -> str:
 
 
 def _state_row(variable: Variable, field: str) -> str:
-    kind = "STATE" if variable.state is None else "RATE"
+    kind = "STATE" if variable.of is None else "RATE"
     return _written(variable, "REAL", kind, f"offsetof(State, {field})")
+
+
+def _indicator_row(variable: Variable, place: int) -> str:
+    return _written(variable, "REAL", "INDICATOR", f"{place} * sizeof(double)")
 
 
 def _written(variable: Variable, fmi_type: str, kind: str, place: str) -> str:

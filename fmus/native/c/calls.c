@@ -19,6 +19,15 @@ inline Instance *ready(void *component, unsigned modes, int complete, const char
     return NULL;
 }
 
+Instance *ready_for(Kind kind, void *component, unsigned modes, int complete, const char *function)
+{
+    const Instance *instance = component;
+    if (!instance || instance->kind == kind)
+        return ready(component, modes, complete, function);
+    refuse(instance, "%s is refused; the instance was made for %s", function, kind_name(instance->kind));
+    return NULL;
+}
+
 const char *category_of(Status status)
 {
     static const char *const categories[] = {[OK] = "", [DISCARD] = LOG_DISCARD, [ERROR] = LOG_ERROR};

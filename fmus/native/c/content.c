@@ -79,6 +79,11 @@ static Status check_states(const Instance *instance, const Memory *memory)
     return status == OK ? check_ticks(instance, memory) : status;
 }
 
+const char *kind_name(Kind kind)
+{
+    return kind == MODEL_EXCHANGE ? "model exchange" : "co-simulation";
+}
+
 static int is_exchanged(const Instance *instance, int64_t mode)
 {
     return mode == CONTINUOUS_TIME || (mode == EVENT && !instance->has_events);
@@ -87,10 +92,10 @@ static int is_exchanged(const Instance *instance, int64_t mode)
 Status check_kind(const Instance *instance, const Memory *memory)
 {
     const int exchanged = is_exchanged(instance, memory->mode);
-    if (instance->exchanges ? memory->mode != STEPPING : !exchanged)
+    if (instance->kind == MODEL_EXCHANGE ? memory->mode != STEPPING : !exchanged)
         return OK;
     return refuse(instance, "the FMU state is refused: its instance was made for %s",
-                  exchanged ? "model exchange" : "co-simulation");
+                  kind_name(exchanged ? MODEL_EXCHANGE : CO_SIMULATION));
 }
 
 Status check_content(const Instance *instance, Memory *memory)

@@ -29,21 +29,6 @@ fmi2Status in_fmi(Status status)
     return status == OK ? fmi2OK : status == DISCARD ? fmi2Discard : fmi2Error;
 }
 
-Instance *ready_for(fmi2Type type, fmi2Component c, unsigned modes, int complete, const char *function)
-{
-    const Component *component = c;
-    const char *kind = type == fmi2ModelExchange ? "co-simulation" : "model exchange"; /* the other one */
-    if (!component || component->instance.exchanges == (type == fmi2ModelExchange))
-        return ready(c, modes, complete, function);
-    refuse(&component->instance, "%s is refused; the instance was made for %s", function, kind);
-    return NULL;
-}
-
-static Instance *stepping(fmi2Component c, unsigned modes, int complete, const char *function)
-{
-    return ready_for(fmi2CoSimulation, c, modes, complete, function);
-}
-
 /* Calls the logger, which takes the message for a format. */
 static void say(const fmi2CallbackFunctions *callbacks, fmi2String name, Status status, const char *message)
 {
@@ -108,7 +93,7 @@ fmi2Component fmi2Instantiate(
     }
     const Host host = {functions->allocateMemory, log_for, component, NULL, {0}};
     component->instance.host = host;
-    component->instance.exchanges = fmuType == fmi2ModelExchange;
+    component->instance.kind = fmuType == fmi2ModelExchange ? MODEL_EXCHANGE : CO_SIMULATION;
     component->callbacks = *functions;
     set_logging(&component->instance, loggingOn, 0, NULL);
     strcpy(component->name, instanceName);
@@ -253,7 +238,7 @@ fmi2Status fmi2SetRealInputDerivatives(
     const fmi2Real value[])
 {
     const int complete = nvr == 0 || (vr && order && value);
-    Instance *instance = stepping(c, INSTANTIATED | INITIALIZATION | STEPPING, complete, __func__);
+    Instance *instance = ready_for(CO_SIMULATION, c, INSTANTIATED | INITIALIZATION | STEPPING, complete, __func__);
     const int allowed = instance && orders_are_one(instance, order, nvr);
     return allowed ? in_fmi(set_input_rates(instance, vr, nvr, value)) : fmi2Error;
 }
@@ -266,7 +251,7 @@ fmi2Status fmi2GetRealOutputDerivatives(
     fmi2Real value[])
 {
     const int complete = nvr == 0 || (vr && order && value);
-    const Instance *instance = stepping(c, STEPPING | TERMINATED, complete, __func__);
+    const Instance *instance = ready_for(CO_SIMULATION, c, STEPPING | TERMINATED, complete, __func__);
     const int allowed = instance && orders_are_one(instance, order, nvr);
     return allowed ? in_fmi(get_output_rates(instance, vr, nvr, value)) : fmi2Error;
 }
@@ -279,7 +264,7 @@ fmi2Status fmi2DoStep(
 {
     (void)noSetFMUStatePriorToCurrentPoint;
     static const Input held;
-    Instance *instance = stepping(c, STEPPING, 1, __func__);
+    Instance *instance = ready_for(CO_SIMULATION, c, STEPPING, 1, __func__);
     if (!instance)
         return fmi2Error;
     const Status status = make_step(instance, currentCommunicationPoint, communicationStepSize);
@@ -290,7 +275,7 @@ fmi2Status fmi2DoStep(
 
 fmi2Status fmi2CancelStep(fmi2Component c)
 {
-    const Instance *instance = stepping(c, ANY_MODE, 1, __func__);
+    const Instance *instance = ready_for(CO_SIMULATION, c, ANY_MODE, 1, __func__);
     if (instance)
         refuse(instance, "fmi2CancelStep is refused; every step ends before fmi2DoStep returns");
     return fmi2Error;
@@ -300,7 +285,7 @@ fmi2Status fmi2CancelStep(fmi2Component c)
 #define ANSWER(function, Type, known, answer)                                                                          \
     fmi2Status function(fmi2Component c, const fmi2StatusKind s, Type *value)                                          \
     {                                                                                                                  \
-        const Instance *instance = stepping(c, STEPPING | TERMINATED, value != NULL, __func__);                        \
+        const Instance *instance = ready_for(CO_SIMULATION, c, STEPPING | TERMINATED, value != NULL, __func__);        \
         if (!instance)                                                                                                 \
             return fmi2Error;                                                                                          \
         if (!(known))                                                                                                  \

@@ -14,7 +14,4 @@
 
 static fmi2Status in_fmi(Status status);
 
-/* `ready` for functions of model exchange, or of co-simulation, alone. */
-static Instance *ready_for(fmi2Type type, fmi2Component c, unsigned modes, int complete, const char *function);
-
 #endif

@@ -4,22 +4,15 @@
 
 #include <float.h>
 
-enum { INTEGRATING = EVENT | CONTINUOUS_TIME, READABLE = INITIALIZATION | INTEGRATING | TERMINATED };
-
-static Instance *exchanging(fmi2Component c, unsigned modes, int complete, const char *function)
-{
-    return ready_for(fmi2ModelExchange, c, modes, complete, function);
-}
-
 /* A change of the mode. */
-#define ENTER(function, modes, entered)                  \
-    fmi2Status function(fmi2Component c)                 \
-    {                                                    \
-        Instance *instance = exchanging(c, modes, 1, __func__); \
-        if (!instance)                                   \
-            return fmi2Error;                            \
-        instance->memory.mode = entered;                 \
-        return fmi2OK;                                   \
+#define ENTER(function, modes, entered)                                        \
+    fmi2Status function(fmi2Component c)                                       \
+    {                                                                          \
+        Instance *instance = ready_for(MODEL_EXCHANGE, c, modes, 1, __func__); \
+        if (!instance)                                                         \
+            return fmi2Error;                                                  \
+        instance->memory.mode = entered;                                       \
+        return fmi2OK;                                                         \
     }
 
 ENTER(fmi2EnterEventMode, INTEGRATING, EVENT)
@@ -27,7 +20,7 @@ ENTER(fmi2EnterContinuousTimeMode, EVENT, CONTINUOUS_TIME)
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *fmi2eventInfo)
 {
-    Instance *instance = exchanging(c, EVENT, fmi2eventInfo != NULL, __func__);
+    Instance *instance = ready_for(MODEL_EXCHANGE, c, EVENT, fmi2eventInfo != NULL, __func__);
     if (!instance)
         return fmi2Error;
     update_sides(instance);
@@ -44,7 +37,7 @@ fmi2Status fmi2CompletedIntegratorStep(
     fmi2Boolean *terminateSimulation)
 {
     (void)noSetFMUStatePriorToCurrentPoint;
-    if (!exchanging(c, CONTINUOUS_TIME, enterEventMode && terminateSimulation, __func__))
+    if (!ready_for(MODEL_EXCHANGE, c, CONTINUOUS_TIME, enterEventMode && terminateSimulation, __func__))
         return fmi2Error;
     *enterEventMode = *terminateSimulation = fmi2False;
     return fmi2OK;
@@ -52,22 +45,22 @@ fmi2Status fmi2CompletedIntegratorStep(
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
 {
-    Instance *instance = exchanging(c, INTEGRATING, 1, __func__);
+    Instance *instance = ready_for(MODEL_EXCHANGE, c, INTEGRATING, 1, __func__);
     return instance ? in_fmi(set_time(instance, time)) : fmi2Error;
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx)
 {
-    Instance *instance = exchanging(c, CONTINUOUS_TIME, nx == 0 || x, __func__);
+    Instance *instance = ready_for(MODEL_EXCHANGE, c, CONTINUOUS_TIME, nx == 0 || x, __func__);
     return instance ? in_fmi(set_states(instance, x, nx)) : fmi2Error;
 }
 
 /* A function that gives out an array. */
-#define ARRAY(function, modes, get)                                                       \
-    fmi2Status function(fmi2Component c, fmi2Real values[], size_t count)                 \
-    {                                                                                     \
-        const Instance *instance = exchanging(c, modes, count == 0 || values, __func__);  \
-        return instance ? in_fmi(get(instance, values, count)) : fmi2Error;               \
+#define ARRAY(function, modes, get)                                                                     \
+    fmi2Status function(fmi2Component c, fmi2Real values[], size_t count)                               \
+    {                                                                                                   \
+        const Instance *instance = ready_for(MODEL_EXCHANGE, c, modes, count == 0 || values, __func__); \
+        return instance ? in_fmi(get(instance, values, count)) : fmi2Error;                             \
     }
 
 ARRAY(fmi2GetContinuousStates, READABLE, get_states)

@@ -1,23 +1,21 @@
-/* The adapter to FMI 3.0 for co-simulation; fmi3_refused.c has the functions that it does not offer.
+/* The adapter to FMI 3.0: what co-simulation and model exchange share, and co-simulation. fmi3_refused.c has the
+functions that it does not offer.
 
 FMI 3.0 has no function that lets an input move during a step. Here the rate of change of an input is a variable, an
-input itself. Value references are those of FMI 2.0; behind them is that of the time, then those of the rates of change
-of the inputs, in the order of these. */
+input itself. Value references are those of FMI 2.0; behind them are those of the event indicators, then that of the
+time, then those of the rates of change of the inputs, in the order of these. */
 #include "fmi3Functions.h"
 #include "instance.h"
+#ifndef SAMPLE_TIME
+#include "explicit.h"
+#include "model_exchange.h"
+#endif
 
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* An instance as the host has it. */
-typedef struct {
-    Instance instance;
-    fmi3LogMessageCallback log_message;
-    fmi3InstanceEnvironment environment;
-} Component;
 
 static const char *const type_names[] = {"Float64", "Int32", "Boolean", "String", "Enumeration"};
 
@@ -31,90 +29,25 @@ static fmi3Status in_fmi3(Status status)
     return status == OK ? fmi3OK : status == DISCARD ? fmi3Discard : fmi3Error;
 }
 
-static void log_for(void *listener, Status status, const char *message)
-{
-    const Component *component = listener;
-    if (component->log_message)
-        component->log_message(component->environment, in_fmi3(status), category_of(status), message);
-}
-
-fmi3Status fmi3SetDebugLogging(
-    fmi3Instance c, fmi3Boolean loggingOn, size_t nCategories, const fmi3String categories[])
-{
-    Instance *instance = ready(c, ANY_MODE, nCategories == 0 || categories, __func__);
-    return instance ? in_fmi3(set_logging(instance, loggingOn, nCategories, categories)) : fmi3Error;
-}
-
 /* The input whose rate of change a value reference stands for; NULL if there is none. */
 static const Variable *moving_input(Reference reference)
 {
-    if (reference <= variable_count || reference > last_reference)
+    if (reference <= reference_count || reference > last_reference)
         return NULL;
-    const Variable *input = &variables[reference - variable_count - 1];
+    const Variable *input = &variables[reference - reference_count - 1];
     return input->type == REAL ? input : NULL;
 }
 
 static int own_name(char name[NAME_LENGTH], Reference reference)
 {
     const Variable *input = moving_input(reference);
-    if (!input && reference != variable_count)
+    if (!input && reference != reference_count)
         return 0;
     if (input)
         snprintf(name, NAME_LENGTH, "der(%s)", input->name);
     else
         strcpy(name, "time");
     return 1;
-}
-
-fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String instanceName,
-    fmi3String instantiationToken,
-    fmi3String resourcePath,
-    fmi3Boolean visible,
-    fmi3Boolean loggingOn,
-    fmi3Boolean eventModeUsed,
-    fmi3Boolean earlyReturnAllowed,
-    const fmi3ValueReference requiredIntermediateVariables[],
-    size_t nRequiredIntermediateVariables,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage,
-    fmi3IntermediateUpdateCallback intermediateUpdate)
-{
-    (void)resourcePath;
-    (void)visible;
-    (void)earlyReturnAllowed; /* no step ends early */
-    (void)requiredIntermediateVariables;
-    (void)intermediateUpdate;
-    Component *component = NULL;
-    const char *why = NULL;
-    if (!instanceName || !*instanceName)
-        why = "fmi3InstantiateCoSimulation: an instance needs a name";
-    else if (!instantiationToken || strcmp(instantiationToken, model_guid) != 0)
-        why = "fmi3InstantiateCoSimulation: the instantiation token is that of another FMU";
-    else if (eventModeUsed && !allows_event_mode)
-        why = "fmi3InstantiateCoSimulation: the FMU has no event mode";
-    else if (nRequiredIntermediateVariables)
-        why = "fmi3InstantiateCoSimulation: the FMU has no intermediate update";
-    else if (!(component = first_place(sizeof *component)) && !(component = calloc(1, sizeof *component)))
-        why = "fmi3InstantiateCoSimulation: no memory";
-    if (why && logMessage)
-        logMessage(instanceEnvironment, fmi3Error, category_of(ERROR), why);
-    if (why)
-        return NULL;
-    const Host host = {calloc, log_for, component, own_name, {0}};
-    component->instance.host = host;
-    component->instance.has_events = eventModeUsed;
-    component->log_message = logMessage;
-    component->environment = instanceEnvironment;
-    set_logging(&component->instance, loggingOn, 0, NULL);
-    renew(&component->instance);
-    return component;
-}
-
-void fmi3FreeInstance(fmi3Instance c)
-{
-    if (!left_first_place(c))
-        free(c);
 }
 
 fmi3Status fmi3EnterInitializationMode(
@@ -154,17 +87,38 @@ CHANGE(fmi3Reset, ANY_MODE, renew(instance))
 static Status get_Float64(Instance *instance, Reference reference, double *value)
 {
     const Variable *input = moving_input(reference);
-    if (!input && reference != variable_count)
+    if (!input && reference != reference_count)
         return get_values(instance, REAL, &reference, 1, value);
     *value = input ? *rate_of(&instance->memory.du, input) : instance->memory.time;
     return OK;
 }
 
+#ifndef SAMPLE_TIME
+/* While the host integrates a state can be set as a variable too. */
+static int is_settable_state(const Instance *instance, Reference reference)
+{
+    return reference < reference_count && variables[reference].causality == STATE
+           && instance->kind == MODEL_EXCHANGE && (instance->memory.mode & INTEGRATING) != 0;
+}
+
+static Status set_state_variable(Instance *instance, Reference reference, double value)
+{
+    Vector x;
+    get_states(instance, x, STATES);
+    x[reference - variable_count] = value;
+    return set_states(instance, x, STATES);
+}
+#endif
+
 static Status set_Float64(Instance *instance, Reference reference, double value)
 {
     const Variable *input = moving_input(reference);
-    if (reference == variable_count)
+    if (reference == reference_count)
         return refuse(instance, "time is the independent variable and cannot be set");
+#ifndef SAMPLE_TIME
+    if (is_settable_state(instance, reference))
+        return set_state_variable(instance, reference, value);
+#endif
     if (!input)
         return set_values(instance, REAL, &reference, 1, &value);
     if (instance->memory.mode == TERMINATED) {
@@ -173,8 +127,7 @@ static Status set_Float64(Instance *instance, Reference reference, double value)
         return refuse(instance, SET_TOO_LATE(name, write_number(text, value)));
     }
     reference = (Reference)(input - variables);
-    const unsigned modes = INSTANTIATED | INITIALIZATION | STEPPING;
-    return in_mode(instance, modes, "fmi3SetFloat64") ? set_input_rates(instance, &reference, 1, &value) : ERROR;
+    return set_input_rates(instance, &reference, 1, &value);
 }
 
 /* Get and set a variable whose values are whole numbers, as the core has them. */
@@ -228,9 +181,11 @@ static int are_of_block(const Reference references[], size_t count)
             return fmi3Error;                                                                                        \
         if (as_in_core)                                                                                              \
             return in_fmi3(get_values(instance, TYPE, vr, nvr, values));                                             \
-        for (size_t k = 0; k < nvr; k++)                                                                             \
-            if (get_##Type(instance, vr[k], &values[k]) != OK)                                                       \
-                return fmi3Error;                                                                                    \
+        for (size_t k = 0; k < nvr; k++) {                                                                           \
+            const Status status = get_##Type(instance, vr[k], &values[k]);                                           \
+            if (status != OK)                                                                                        \
+                return in_fmi3(status);                                                                              \
+        }                                                                                                            \
         return fmi3OK;                                                                                               \
     }                                                                                                                \
     fmi3Status fmi3Set##Type(                                                                                        \
@@ -241,12 +196,16 @@ static int are_of_block(const Reference references[], size_t count)
             return fmi3Error;                                                                                        \
         if (as_in_core)                                                                                              \
             return in_fmi3(set_values(instance, TYPE, vr, nvr, values));                                             \
+        take_over_written(instance);                                                                                 \
         const Memory before = instance->memory;                                                                      \
-        for (size_t k = 0; k < nvr; k++)                                                                             \
-            if (set_##Type(instance, vr[k], values[k]) != OK) {                                                      \
+        for (size_t k = 0; k < nvr; k++) {                                                                           \
+            const Status status = set_##Type(instance, vr[k], values[k]);                                            \
+            if (status != OK) {                                                                                      \
                 instance->memory = before;                                                                           \
-                return fmi3Error;                                                                                    \
+                know_parameters(instance);                                                                           \
+                return in_fmi3(status);                                                                              \
             }                                                                                                        \
+        }                                                                                                            \
         return fmi3OK;                                                                                               \
     }
 
@@ -311,7 +270,7 @@ fmi3Status fmi3GetDirectionalDerivative(
     size_t nSensitivity)
 {
     const int complete = (nUnknowns == 0 || (unknowns && sensitivity)) && (nKnowns == 0 || (knowns && seed));
-    const Instance *instance = ready(c, INITIALIZATION | STEPPING | TERMINATED, complete, __func__);
+    const Instance *instance = ready(c, INITIALIZATION | RUNNING | TERMINATED, complete, __func__);
     if (!instance || !is_count(instance, nSeed, nKnowns, __func__) ||
         !is_count(instance, nSensitivity, nUnknowns, __func__))
         return fmi3Error;
@@ -327,7 +286,8 @@ fmi3Status fmi3GetOutputDerivatives(
     fmi3Float64 values[],
     size_t nValues)
 {
-    const Instance *instance = ready(c, STEPPING | TERMINATED, nvr == 0 || (vr && orders && values), __func__);
+    const int complete = nvr == 0 || (vr && orders && values);
+    const Instance *instance = ready_for(CO_SIMULATION, c, STEPPING | TERMINATED, complete, __func__);
     if (!instance || !is_count(instance, nValues, nvr, __func__) || !orders_are_one(instance, orders, nvr))
         return fmi3Error;
     return in_fmi3(get_output_rates(instance, vr, nvr, values));
@@ -345,7 +305,7 @@ fmi3Status fmi3DoStep(
 {
     (void)noSetFMUStatePriorToCurrentPoint;
     const int complete = eventHandlingNeeded && terminateSimulation && earlyReturn && lastSuccessfulTime;
-    Instance *instance = ready(c, STEPPING, complete, __func__);
+    Instance *instance = ready_for(CO_SIMULATION, c, STEPPING, complete, __func__);
     if (!instance)
         return fmi3Error;
 #ifdef TERMINAL

@@ -79,8 +79,10 @@ fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t nv
     return no_variable(c, vr, nvr, __func__, "Clock");
 }
 
+NOT_OFFERED("event mode in co-simulation", fmi3EnterStepMode, (fmi3Instance c))
+#endif
+#if !defined TERMINAL && defined SAMPLE_TIME
 NOT_OFFERED("event mode", fmi3EnterEventMode, (fmi3Instance c))
-NOT_OFFERED("event mode", fmi3EnterStepMode, (fmi3Instance c))
 NOT_OFFERED(
     "event mode",
     fmi3UpdateDiscreteStates,
@@ -151,6 +153,7 @@ NOT_OFFERED(
      fmi3ValueReference independents[], size_t elementIndicesOfIndependents[],
      fmi3DependencyKind dependencyKinds[], size_t nDependencies))
 
+#ifdef SAMPLE_TIME
 NOT_OFFERED("model exchange", fmi3EnterContinuousTimeMode, (fmi3Instance c))
 NOT_OFFERED(
     "model exchange",
@@ -180,42 +183,7 @@ NOT_OFFERED(
     (fmi3Instance c, fmi3Float64 nominals[], size_t nContinuousStates))
 NOT_OFFERED("model exchange", fmi3GetNumberOfEventIndicators, (fmi3Instance c, size_t *nEventIndicators))
 NOT_OFFERED("model exchange", fmi3GetNumberOfContinuousStates, (fmi3Instance c, size_t *nContinuousStates))
-
-static fmi3Instance no_instance(fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, const char *message)
-{
-    if (log)
-        log(environment, fmi3Error, category_of(ERROR), message);
-    return NULL;
-}
-
-fmi3Instance fmi3InstantiateModelExchange(
-    fmi3String instanceName,
-    fmi3String instantiationToken,
-    fmi3String resourcePath,
-    fmi3Boolean visible,
-    fmi3Boolean loggingOn,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage)
-{
-    return no_instance(
-        instanceEnvironment, logMessage, "fmi3InstantiateModelExchange is refused; the FMU has no model exchange");
-}
-
-fmi3Instance fmi3InstantiateScheduledExecution(
-    fmi3String instanceName,
-    fmi3String instantiationToken,
-    fmi3String resourcePath,
-    fmi3Boolean visible,
-    fmi3Boolean loggingOn,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage,
-    fmi3ClockUpdateCallback clockUpdate,
-    fmi3LockPreemptionCallback lockPreemption,
-    fmi3UnlockPreemptionCallback unlockPreemption)
-{
-    return no_instance(
-        instanceEnvironment, logMessage, "fmi3InstantiateScheduledExecution is refused; the FMU has no scheduled execution");
-}
+#endif
 
 #ifdef __GNUC__
 #pragma GCC diagnostic pop

@@ -24,6 +24,9 @@ typedef enum { OK, DISCARD, ERROR } Status; /* DISCARD: a step or question that 
 /* A variable's place in `variables`. */
 typedef unsigned Reference;
 
+/* Whether the host asks for steps, or integrates. */
+typedef enum { CO_SIMULATION, MODEL_EXCHANGE } Kind;
+
 enum { NAME_LENGTH = 100 };
 
 /* What an instance needs of its host. */
@@ -58,7 +61,7 @@ typedef struct {
 typedef struct {
     Memory memory; /* first: its address is that of the instance */
     Host host;
-    int exchanges;  /* the host integrates (model exchange); else it asks for steps (co-simulation) */
+    Kind kind;
     int has_events; /* in co-simulation: the host handles events, in event mode */
 } Instance;
 
@@ -104,6 +107,7 @@ enum {
     ANY_MODE = INSTANTIATED | INITIALIZATION | RUNNING | TERMINATED
 };
 static Instance *ready(void *component, unsigned modes, int complete, const char *function); /* NULL if refused */
+static Instance *ready_for(Kind kind, void *component, unsigned modes, int complete, const char *function);
 static const char *category_of(Status status); /* of messages */
 static int orders_are_one(const Instance *instance, const int orders[], size_t count); /* of derivatives; else refused */
 static Status set_logging(Instance *instance, int on, size_t count, const char *const categories[]);
@@ -124,6 +128,9 @@ static Status make_step(Instance *instance, double time, double step_size);
 /* values.c; the values are double for REAL, else int */
 static void set_start_values(Memory *memory);
 static State present_state(const Memory *memory);
+#if INDICATORS
+static void present_indicators(const Memory *memory, real z[INDICATORS]); /* with their hysteresis */
+#endif
 static Status compute_next_outputs(Instance *instance, const Next *next, double step_size); /* refused if not finite */
 static Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values);
 static Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values);
@@ -160,6 +167,7 @@ static Status serialize_state(const Instance *instance, const void *state, void 
 static Status deserialize_state(const Instance *instance, const void *bytes, size_t size, void **state);
 
 /* content.c */
+static const char *kind_name(Kind kind);
 static Status check_kind(const Instance *instance, const Memory *memory); /* whose instance does the same */
 static Status check_content(const Instance *instance, Memory *memory); /* of a saved state */
 

@@ -9,11 +9,7 @@ only tells the host where to start its method anew. */
 #include <math.h>
 #include <string.h>
 
-/* In the unit of an event indicator: it is beyond its zero by this much when it changes its sign, and never zero. So a
-block that rests on a zero, or that a host follows to its tolerance only, does not cross it without end. */
-static const double HYSTERESIS = 1e-6;
-
-static int is_count(const Instance *instance, size_t count, size_t right, const char *what)
+static int is_count_of(const Instance *instance, size_t count, size_t right, const char *what)
 {
     if (count == right)
         return 1;
@@ -42,7 +38,7 @@ static int are_numbers(const Instance *instance, const double values[], unsigned
 
 Status get_states(const Instance *instance, double x[], size_t count)
 {
-    if (!is_count(instance, count, STATES, "states"))
+    if (!is_count_of(instance, count, STATES, "states"))
         return ERROR;
     const State state = present_state(&instance->memory);
     memcpy(x, &state, sizeof state);
@@ -51,7 +47,7 @@ Status get_states(const Instance *instance, double x[], size_t count)
 
 Status set_states(Instance *instance, const double x[], size_t count)
 {
-    if (!is_count(instance, count, STATES, "states"))
+    if (!is_count_of(instance, count, STATES, "states"))
         return ERROR;
     if (!are_numbers(instance, x, variable_count))
         return DISCARD;
@@ -64,7 +60,7 @@ Status get_rates(const Instance *instance, double dx[], size_t count)
 {
     const Memory *memory = &instance->memory;
     Vector rates;
-    if (!is_count(instance, count, STATES, "derivatives"))
+    if (!is_count_of(instance, count, STATES, "derivatives"))
         return ERROR;
     const State x = present_state(memory);
     State dxdt;
@@ -79,7 +75,7 @@ Status get_rates(const Instance *instance, double dx[], size_t count)
 Status get_nominals(const Instance *instance, double x_nominal[], size_t count)
 {
     static const double nominals[STATES] = NOMINALS;
-    if (!is_count(instance, count, STATES, "nominal values"))
+    if (!is_count_of(instance, count, STATES, "nominal values"))
         return ERROR;
     memcpy(x_nominal, nominals, sizeof nominals);
     return OK;
@@ -91,32 +87,23 @@ Status get_nominals(const Instance *instance, double x_nominal[], size_t count)
 
 #if INDICATORS
 
-static void present_indicators(const Memory *memory, real z[INDICATORS])
-{
-    const State x = present_state(memory);
-    event_indicators(&x, &memory->values.u, &memory->values.p, z);
-}
-
 Status get_indicators(const Instance *instance, double z[], size_t count)
 {
-    real values[INDICATORS];
-    if (!is_count(instance, count, INDICATORS, "event indicators"))
+    if (!is_count_of(instance, count, INDICATORS, "event indicators"))
         return ERROR;
-    present_indicators(&instance->memory, values);
-    for (int n = 0; n < INDICATORS; n++) {
-        const int above = instance->memory.sides >> n & 1;
-        z[n] = values[n] + (above ? HYSTERESIS : -HYSTERESIS);
-    }
+    present_indicators(&instance->memory, z);
     return OK;
 }
 
 void update_sides(Instance *instance)
 {
+    Memory *memory = &instance->memory;
+    const State x = present_state(memory);
     real z[INDICATORS];
-    present_indicators(&instance->memory, z);
-    instance->memory.sides = 0;
+    event_indicators(&x, &memory->values.u, &memory->values.p, z);
+    memory->sides = 0;
     for (int n = 0; n < INDICATORS; n++)
-        instance->memory.sides |= (int64_t)(z[n] > 0.0) << n;
+        memory->sides |= (int64_t)(z[n] > 0.0) << n;
 }
 
 #else
@@ -124,7 +111,7 @@ void update_sides(Instance *instance)
 Status get_indicators(const Instance *instance, double z[], size_t count)
 {
     (void)z;
-    return is_count(instance, count, 0, "event indicators") ? OK : ERROR;
+    return is_count_of(instance, count, 0, "event indicators") ? OK : ERROR;
 }
 
 void update_sides(Instance *instance)

@@ -4,6 +4,8 @@
 
 #include "instance.h"
 
+enum { INTEGRATING = EVENT | CONTINUOUS_TIME, READABLE = INITIALIZATION | INTEGRATING | TERMINATED };
+
 /* All take or give as many numbers as there are states, or event indicators; else they refuse the count. */
 static Status get_states(const Instance *instance, double x[], size_t count);
 static Status set_states(Instance *instance, const double x[], size_t count); /* discards what is not finite */

@@ -52,7 +52,7 @@ void leave_initialization(Instance *instance)
     take_over_written(instance);
     start(&memory->values.u, &memory->values.p, &memory->x);
     memory->coming = memory->x;
-    memory->mode = instance->exchanges || instance->has_events ? EVENT : STEPPING;
+    memory->mode = instance->kind == MODEL_EXCHANGE || instance->has_events ? EVENT : STEPPING;
 #ifdef TERMINAL
     open_terminal(memory);
 #endif

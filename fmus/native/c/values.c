@@ -72,16 +72,38 @@ State present_state(const Memory *memory)
     return x;
 }
 
-/* Of a state or of its derivative. */
+#if INDICATORS
+/* In the unit of an event indicator: it is beyond its zero by this much when it changes its sign, and never zero. So a
+block that rests on a zero, or that a host follows to its tolerance only, does not cross it without end. */
+static const double HYSTERESIS = 1e-6;
+
+void present_indicators(const Memory *memory, real z[INDICATORS])
+{
+    const State x = present_state(memory);
+    event_indicators(&x, &memory->values.u, &memory->values.p, z);
+    for (int n = 0; n < INDICATORS; n++)
+        z[n] += memory->sides >> n & 1 ? HYSTERESIS : -HYSTERESIS;
+}
+#endif
+
+/* Of a state, of its derivative or of an event indicator. */
 static double state_value(const Memory *memory, const Variable *variable)
 {
     State record = present_state(memory);
+    const char *values = (const char *)&record;
 #ifndef SAMPLE_TIME /* the state of a sampled block has no derivative, and is not shown */
     const State x = record;
     if (variable->causality == RATE)
         derivative(&x, &memory->values.u, &memory->values.p, &record);
 #endif
-    return *(const double *)(const void *)((const char *)&record + variable->offset);
+#if INDICATORS
+    real z[INDICATORS];
+    if (variable->causality == INDICATOR) {
+        present_indicators(memory, z);
+        values = (const char *)z;
+    }
+#endif
+    return *(const double *)(const void *)(values + variable->offset);
 }
 
 static void compute_outputs(Memory *memory)
@@ -122,7 +144,7 @@ Status compute_next_outputs(Instance *instance, const Next *next, double step_si
 /* Whether outputs are numbers, which no step has made sure of where the host integrates; else they are discarded. */
 static int can_be_given(Memory *memory, const Instance *instance, const Reference references[], size_t count)
 {
-    for (size_t k = 0; k < count && instance->exchanges && !gives_bad_output; k++) {
+    for (size_t k = 0; k < count && instance->kind == MODEL_EXCHANGE && !gives_bad_output; k++) {
         const Variable *variable = &variables[references[k]];
         const double value = variable->causality == OUTPUT ? *place_of(&memory->values, variable) : 0.0;
         char text[NUMBER_LENGTH];
@@ -156,8 +178,7 @@ RARE static Status get_others(
         return DISCARD;
     for (size_t k = 0; k < count; k++) {
         const Variable *variable = &variables[references[k]];
-        const int of_state = variable->causality == STATE || variable->causality == RATE;
-        give(type, values, k, of_state ? state_value(memory, variable) : *place_of(&memory->values, variable));
+        give(type, values, k, variable->causality >= STATE ? state_value(memory, variable) : *place_of(&memory->values, variable));
     }
     return OK;
 }
@@ -200,7 +221,7 @@ static int is_allowed(const Instance *instance, const Variable *variable, double
     char text[NUMBER_LENGTH];
     if (variable->causality == OUTPUT)
         refuse(instance, OUTPUT_SET(name));
-    else if (variable->causality == STATE || variable->causality == RATE)
+    else if (variable->causality >= STATE)
         refuse(instance, "%s belongs to the state and cannot be set as a variable", name);
     else if (late)
         refuse(instance, SET_TOO_LATE(name, write_value(text, variable->type, value)));

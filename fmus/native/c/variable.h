@@ -14,7 +14,8 @@ typedef struct {
 
 typedef enum { REAL, INTEGER, BOOLEAN, STRING, ENUMERATION } Type;
 
-typedef enum { INPUT, OUTPUT, PARAMETER, STATE, RATE } Causality; /* RATE: the derivative of a state */
+/* Behind the parameters is what follows from the state; RATE: the derivative of a state. */
+typedef enum { INPUT, OUTPUT, PARAMETER, STATE, RATE, INDICATOR } Causality;
 
 typedef struct {
     const char *name;
@@ -23,7 +24,8 @@ typedef struct {
     Type type;
     Causality causality;
     int tunable;   /* a parameter that can be set during a run */
-    size_t offset; /* in Values, of a state or its derivative in State; there all values are real numbers */
+    size_t offset; /* in Values, of a state or its derivative in State, of an event indicator among these; there all
+                      values are real numbers */
     double minimum;
     double maximum;
     double start;
