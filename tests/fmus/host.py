@@ -14,21 +14,36 @@ import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
+    FMU2Model,
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi3 import _FMU3 as FMU3  # pyright: ignore[reportPrivateUsage]
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 
-WORDS = {"fmi3": "fmi2", "Float64": "Real", "Int32": "Integer", "Enumeration": "Integer"}
+WORDS = {"fmi3": "fmi2", "Float64": "Real", "Int32": "Integer", "Enumeration": "Integer"} | {
+    "fmi3GetContinuousStateDerivatives": "fmi2GetDerivatives",
+    "fmi3UpdateDiscreteStates": "fmi2NewDiscreteStates",
+    "fmi3GetOutputDerivatives": "fmi2GetRealOutputDerivatives",
+}
 """Of FMI 3.0, and those of FMI 2.0 that stand for them."""
+
+FUNCTIONS = "|".join(word for word in WORDS if word.startswith(("fmi3G", "fmi3U")))
 
 
 def in_words_of_fmi2(text):
     """A message, or the name of a type."""
-    return re.sub(r"\b(fmi3(?=[A-Z])|(Float64|Int32|Enumeration)\b)", lambda found: WORDS[found[0]], text)
+    known = rf"\b({FUNCTIONS}|fmi3(?=[A-Z])|(Float64|Int32|Enumeration)\b)"
+    return re.sub(known, lambda found: WORDS[found[0]], text)
+
+
+def of_fmi3(function):
+    """What FMI 3.0 calls a function of FMI 2.0."""
+    names = {two: three for three, two in WORDS.items()}
+    return names.get(function, function.replace("fmi2", "fmi3"))
 
 
 @cache
@@ -40,15 +55,15 @@ def description(path, _changed) -> Any:
     return found
 
 
-class FMU3AsFMU2(FMU3Slave):
+class AsFMU2(FMU3):
     """What fmpy makes of an FMU of FMI 3.0, with the methods that it gives one of FMI 2.0."""
 
-    getReal, setReal = FMU3Slave.getFloat64, FMU3Slave.setFloat64
-    getInteger, setInteger = FMU3Slave.getInt32, FMU3Slave.setInt32
-    getEnumeration, setEnumeration = FMU3Slave.getInt64, FMU3Slave.setInt64
-    getFMUstate, setFMUstate, freeFMUstate = FMU3Slave.getFMUState, FMU3Slave.setFMUState, FMU3Slave.freeFMUState
-    serializeFMUstate, deSerializeFMUstate = FMU3Slave.serializeFMUState, FMU3Slave.deserializeFMUState
-    getRealOutputDerivatives = FMU3Slave.getOutputDerivatives
+    getReal, setReal = FMU3.getFloat64, FMU3.setFloat64
+    getInteger, setInteger = FMU3.getInt32, FMU3.setInt32
+    getEnumeration, setEnumeration = FMU3.getInt64, FMU3.setInt64
+    getFMUstate, setFMUstate, freeFMUstate = FMU3.getFMUState, FMU3.setFMUState, FMU3.freeFMUState
+    serializeFMUstate, deSerializeFMUstate = FMU3.serializeFMUState, FMU3.deserializeFMUState
+    newDiscreteStates = FMU3.updateDiscreteStates
 
     def __init__(self, rates, **arguments):
         super().__init__(**arguments)
@@ -72,6 +87,18 @@ class FMU3AsFMU2(FMU3Slave):
         self.setReal([self.rates[each] for each in vr], value)
 
 
+class FMU3AsFMU2(AsFMU2, FMU3Slave):
+    """For co-simulation."""
+
+    getRealOutputDerivatives = FMU3Slave.getOutputDerivatives
+
+
+class FMU3ModelAsFMU2(AsFMU2, FMU3Model):
+    """For model exchange."""
+
+    getDerivatives = FMU3Model.getContinuousStateDerivatives
+
+
 class Host:
     """One instance of an FMU, the last message it logged, under which name, and the status of the last refusal."""
 
@@ -89,7 +116,8 @@ class Host:
             "instanceName": name,
         }
         if self.description.fmiVersion == "3.0":
-            self.fmu = FMU3AsFMU2({v.derivative.valueReference: v.valueReference for v in moving}, **arguments)
+            as_fmu2 = FMU3ModelAsFMU2 if kind is FMU2Model else FMU3AsFMU2
+            self.fmu: Any = as_fmu2({v.derivative.valueReference: v.valueReference for v in moving}, **arguments)
             self.fmu.instantiate(logMessage=lambda *logged: self._keep(None, b"", *logged[1:]), loggingOn=True)
             return
         self._callbacks = fmi2CallbackFunctions()
@@ -111,7 +139,7 @@ class Host:
 
     def _function(self, verb, name):
         kind = self.variables[name].type
-        is_integer = kind == "Enumeration" and isinstance(self.fmu, FMU2Slave)
+        is_integer = kind == "Enumeration" and self.description.fmiVersion == "2.0"
         return getattr(self.fmu, verb + ("Integer" if is_integer else kind))
 
     def set(self, **values):

@@ -18,7 +18,7 @@ from driveline.fmus.comparators import COMPARATORS
 from driveline.fmus.description.units import base_exponents, rate_unit
 from driveline.fmus.description.variables import interface
 from driveline.fmus.native.packaging import FMI_HEADERS
-from tests.fmus.host import opened
+from tests.fmus.host import in_words_of_fmi2, opened
 from tests.fmus.native.any_build import *  # noqa: F403
 from tests.fmus.native.test_rates import (  # noqa: F401
     ramp,
@@ -73,13 +73,15 @@ def test_all_functions_of_the_standard_are_there_and_nothing_else_is(fmi3, tmp_p
 
 
 @every_fmu
-def test_value_references_are_those_of_fmi_2_and_behind_them_come_time_and_rates(fmi3, name):
+def test_value_references_are_those_of_fmi_2_and_behind_what_follows_from_the_state_come_time_and_rates(fmi3, name):
     block = FMUS[name].block
     variables: Any = fmpy.read_model_description(str(fmi3 / f"{name}.fmu")).modelVariables
     ours = interface(block)
     assert [(v.name, v.valueReference) for v in variables[: len(ours)]] == [(v.name, v.reference) for v in ours]
-    time, *rates = variables[len(ours) :]
-    assert (time.name, time.causality, time.valueReference) == ("time", "independent", len(ours))
+    time, *rates = (v for v in variables[len(ours) :] if v.causality != "local")
+    assert (time.name, time.causality) == ("time", "independent")
+    assert [v.valueReference for v in variables] == list(range(len(variables)))
+    assert variables[-1 - len(rates) :] == [time, *rates]
     moving = [v.name for v in ours if v.causality == "input" and hasattr(block, "derivative")]
     assert [rate.derivative.name for rate in rates] == moving
     for rate in rates:
@@ -230,7 +232,8 @@ MODES = {
     "fmi3Reset": {BEFORE, DURING, AFTER, ENDED},
 }
 NOT_OFFERED = {
-    "event mode": ("EnterEventMode", "EnterStepMode", "UpdateDiscreteStates"),
+    "event mode": ("EnterEventMode", "UpdateDiscreteStates"),
+    "event mode in co-simulation": ("EnterStepMode",),
     "evaluation of discrete states": ("EvaluateDiscreteStates",),
     "time-based clocks": ("GetIntervalDecimal", "SetShiftFraction", "ActivateModelPartition"),
     "structural parameters": ("EnterConfigurationMode", "ExitConfigurationMode"),
@@ -262,23 +265,23 @@ def test_a_function_is_refused_outside_its_place_and_says_where_that_is(fmi3, tm
         status = ctypes.CDLL(host.fmu.dll._name)[function](component, *arguments_of(function))
         assert status == (OK if mode in MODES[function] else ERROR)
         if status == ERROR:
-            assert host.message.startswith(f"{function.replace('fmi3', 'fmi2')} is refused")
+            assert host.message.startswith(f"{in_words_of_fmi2(function)} is refused")
 
 
 @pytest.mark.parametrize(("what", "function"), [(what, name) for what, names in NOT_OFFERED.items() for name in names])
 def test_what_is_not_offered_says_so(fmi3, tmp_path, what, function):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+    with opened(fmi3 / "DampingController.fmu", tmp_path) as host:
         called = ctypes.CDLL(host.fmu.dll._name)[f"fmi3{function}"]
         zeros = [ctypes.c_size_t(0)] * 8
         assert called(ctypes.c_void_p(host.fmu.component), *zeros) == ERROR
-        assert host.message == f"fmi2{function} is refused; the FMU has no {what}"
+        assert host.message == in_words_of_fmi2(f"fmi3{function} is refused; the FMU has no {what}")
         assert called(ctypes.c_void_p(), *zeros) == ERROR
 
 
 def test_what_cannot_be_instantiated_is_said(fmi3, tmp_path):
     told = []
     log = fmi3LogMessageCallback(lambda *message: told.append(message[3].decode()))
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
+    with opened(fmi3 / "DampingController.fmu", tmp_path) as host:
         token = host.description.instantiationToken.encode()
         binary = ctypes.CDLL(host.fmu.dll._name)
 
@@ -306,7 +309,7 @@ def test_what_cannot_be_instantiated_is_said(fmi3, tmp_path):
             function.restype = ctypes.c_void_p
             nothing = [ctypes.c_bool(), ctypes.c_bool(), None, log, None, None, None]
             assert function(b"one", token, None, *nothing) is None
-            assert told[-1].startswith(f"fmi3Instantiate{kind} is refused; the FMU has no ")
+            assert told[-1].startswith(f"fmi3Instantiate{kind}: the FMU has no ")
 
 
 def test_messages_are_given_out_by_category(fmi3, tmp_path):

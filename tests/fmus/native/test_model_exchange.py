@@ -16,19 +16,28 @@ from fmpy.validation import validate_fmu
 from benchmarks.model_exchange import integrated, recorded, sensitivity, stepped
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.units import base_exponents, rate_unit
+from driveline.fmus.description.variables import interface
+from driveline.harness.cosimulation.description import attributes
+from driveline.harness.cosimulation.limits import USUAL_LIMITS
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.models.block.types import ContinuousBlock
-from tests.fmus.host import opened
+from tests.fmus.host import of_fmi3, opened
 
 OK, DISCARD, ERROR = 0, 2, 3
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]
 every_continuous = pytest.mark.parametrize("name", CONTINUOUS)
 
 
+@pytest.fixture(params=["native", "fmi3"])
+def folder(request):
+    """Of the FMUs of FMI 2.0, and of those of FMI 3.0."""
+    return request.getfixturevalue(request.param)
+
+
 @contextmanager
-def exchanged(native, tmp_path, name, **start):
+def exchanged(folder, tmp_path, name, **start):
     """An instance for model exchange in event mode, at the start of a run."""
-    with opened(native / f"{name}.fmu", tmp_path, kind=FMU2Model) as host:
+    with opened(folder / f"{name}.fmu", tmp_path, kind=FMU2Model) as host:
         host.initialize(**start)
         yield host
 
@@ -66,31 +75,66 @@ def at_random(block, draw):
 
 
 @every_continuous
-def test_one_fmu_is_for_both_and_the_validator_finds_nothing(native, name):
-    path = native / f"{name}.fmu"
+def test_one_fmu_is_for_both_and_the_validator_finds_nothing(folder, name):
+    path = folder / f"{name}.fmu"
     description = fmpy.read_model_description(str(path))
     assert validate_fmu(str(path)) == []
     assert description.coSimulation
     assert description.modelExchange
-    assert description.modelExchange.providesDirectionalDerivative
+    (claims,) = attributes(path, USUAL_LIMITS, "ModelExchange")
+    assert {value for name, value in claims.items() if name.startswith("providesDirectional")} == {"true"}
     assert not description.modelExchange.needsCompletedIntegratorStep
 
 
 @pytest.mark.parametrize("name", [name for name in FMUS if name not in CONTINUOUS])
-def test_a_sampled_block_has_no_model_exchange(native, name):
-    description = fmpy.read_model_description(str(native / f"{name}.fmu"))
+def test_a_sampled_block_has_no_model_exchange(folder, name):
+    description = fmpy.read_model_description(str(folder / f"{name}.fmu"))
     assert description.modelExchange is None
     assert [v for v in description.modelVariables if v.causality == "local"] == []
 
 
 @every_continuous
-def test_states_and_derivatives_have_the_references_behind_all_others(native, name):
+def test_event_indicators_are_variables_of_fmi_3(fmi3, tmp_path, name):
+    with exchanged(fmi3, tmp_path, name, **({"v_0": 8.0} if name in PLANTS else {})) as host:
+        shown = [host.variables[f"event_indicator[{k + 1}]"] for k in range(host.description.numberOfEventIndicators)]
+        assert [unknown.variable for unknown in host.description.eventIndicators] == shown
+        references = [v.valueReference for v in shown]
+        assert references[0] == host.variables[names_of(FMUS[name].block)[-1][1]].valueReference + 1
+        for change in (lambda: None, host.fmu.newDiscreteStates):
+            change()
+            assert host.fmu.getFloat64(references) == indicators(host)
+        told = host.refuses(host.fmu.getDirectionalDerivative, references[:1], [0], [1.0])
+        assert told.startswith("event_indicator[1] cannot be the unknown of a directional derivative")
+        told = host.refuses(host.fmu.setFloat64, references[:1], [1.0])
+        assert told == "event_indicator[1] belongs to the state and cannot be set as a variable"
+
+
+def test_fmi_3_sets_states_as_variables_while_the_host_integrates(fmi3, tmp_path):
+    with exchanged(fmi3, tmp_path, "TwoMassDriveline") as host:
+        host.set(**{"x.omega_1": 1.0})
+        host.fmu.enterContinuousTimeMode()
+        references = [host.variables[n].valueReference for n in ("x.phi", "x.v", "T_mot")]
+        host.fmu.setFloat64(references, [0.125, 3.0, 11.0])
+        assert states(host)[:3] == [1.0, 0.0, 0.125]
+        assert host.fmu.getFloat64(references) == [0.125, 3.0, 11.0]
+        message = host.refuses(host.fmu.setFloat64, references, [0.25, math.nan, 12.0])
+        assert message == "x.v = nan m/s is refused; allowed is any finite number"
+        assert host.status == DISCARD
+        assert host.fmu.getFloat64(references) == [0.125, 3.0, 11.0]
+        host.fmu.terminate()
+        message = host.refuses(host.set, **{"x.phi": 0.0})
+        assert message == "x.phi belongs to the state and cannot be set as a variable"
+
+
+@every_continuous
+def test_states_and_derivatives_have_the_references_behind_the_interface(folder, name):
     block: Any = FMUS[name].block
-    variables = fmpy.read_model_description(str(native / f"{name}.fmu")).modelVariables
+    variables = fmpy.read_model_description(str(folder / f"{name}.fmu")).modelVariables
     assert [v.valueReference for v in variables] == list(range(len(variables)))
-    shown = [v for v in variables if v.causality == "local"]
-    assert shown == variables[-2 * len(block.State._fields) :]
     names = [f"x.{field}" for field in block.State._fields]
+    first = len(interface(block))
+    shown = variables[first : first + 2 * len(names)]
+    assert {v.causality for v in shown} == {"local"}
     assert [v.name for v in shown] == names + [f"der({state})" for state in names]
     for v in shown[len(names) :]:
         assert v.derivative is not None
@@ -115,23 +159,22 @@ def test_a_rate_has_the_unit_of_its_quantity_over_seconds(unit, rate):
 
 
 @every_continuous
-def test_nominal_values_are_those_of_the_description(native, tmp_path, name):
-    with opened(native / f"{name}.fmu", tmp_path, kind=FMU2Model) as host:
+def test_nominal_values_are_those_of_the_description(folder, tmp_path, name):
+    with opened(folder / f"{name}.fmu", tmp_path, kind=FMU2Model) as host:
         declared = [unknown.variable.derivative for unknown in host.description.derivatives]
         nominals = given_out(host, host.fmu.getNominalsOfContinuousStates, len(declared))
         assert nominals == [float(v.nominal or 1.0) for v in declared]
 
 
 @every_continuous
-def test_no_dependency_of_an_output_or_derivative_is_missing(native, tmp_path, name):
+def test_no_dependency_of_an_output_or_derivative_is_missing(folder, tmp_path, name):
     """Directional derivatives are zero along whatever is not among the dependencies."""
     block: Any = FMUS[name].block
     draw = random.Random(name)
-    with exchanged(native, tmp_path, name) as host:
+    with exchanged(folder, tmp_path, name) as host:
         host.fmu.enterContinuousTimeMode()
-        variables = host.description.modelVariables
-        knowns = [v for v in variables if v.causality == "input"]
-        knowns += [v for v in variables if v.name.startswith("x.")]
+        variables = host.variables.values()
+        knowns = [v for v in variables if v.causality == "input" or v.name.startswith("x.")]
         for _ in range(20):
             set_states(host, at_random(block, draw))
             for unknown in [*host.description.outputs, *host.description.derivatives]:
@@ -146,11 +189,11 @@ def test_no_dependency_of_an_output_or_derivative_is_missing(native, tmp_path, n
 
 
 @every_continuous
-def test_derivatives_and_indicators_are_those_of_the_block(native, tmp_path, name):
+def test_derivatives_and_indicators_are_those_of_the_block(folder, tmp_path, name):
     block: Any = FMUS[name].block
     draw = random.Random(name)
     u, p = block.Input(), block.Parameters()
-    with exchanged(native, tmp_path, name) as host:
+    with exchanged(folder, tmp_path, name) as host:
         assert states(host) == list(block.start(u, p))
         host.fmu.enterContinuousTimeMode()
         for _ in range(20):
@@ -163,9 +206,9 @@ def test_derivatives_and_indicators_are_those_of_the_block(native, tmp_path, nam
 
 
 @every_continuous
-def test_states_are_variables_too_in_co_simulation_as_well(native, tmp_path, name):
+def test_states_are_variables_too_in_co_simulation_as_well(folder, tmp_path, name):
     block: Any = FMUS[name].block
-    with opened(native / f"{name}.fmu", tmp_path) as host:
+    with opened(folder / f"{name}.fmu", tmp_path) as host:
         host.initialize()
         host.step(0.0, 0.01)
         x = block.State(*(host.get(f"x.{field}") for field in block.State._fields))
@@ -176,10 +219,10 @@ def test_states_are_variables_too_in_co_simulation_as_well(native, tmp_path, nam
 
 
 @every_continuous
-def test_directional_derivatives_along_states_are_differences(native, tmp_path, name):
+def test_directional_derivatives_along_states_are_differences(folder, tmp_path, name):
     block: Any = FMUS[name].block
     start = {"v_0": 8.0, "T_0": 20.0} if name in PLANTS else {"T_ref": 50.0, "q_omega": 0.0}
-    with exchanged(native, tmp_path, name, **start) as host:
+    with exchanged(folder, tmp_path, name, **start) as host:
         host.fmu.enterContinuousTimeMode()
         x, outputs = states(host), host.names("output")
         unknowns = [host.variables[n].valueReference for n in (*outputs, *(f"der(x.{f})" for f in block.State._fields))]
@@ -201,9 +244,9 @@ def test_directional_derivatives_along_states_are_differences(native, tmp_path, 
 
 
 @every_continuous
-def test_co_simulation_gives_the_same_linear_model(native, tmp_path, name):
+def test_co_simulation_gives_the_same_linear_model(folder, tmp_path, name):
     block: Any = FMUS[name].block
-    with exchanged(native, tmp_path, name) as host, opened(native / f"{name}.fmu", tmp_path) as stepped:
+    with exchanged(folder, tmp_path, name) as host, opened(folder / f"{name}.fmu", tmp_path) as stepped:
         references = [host.variables[name].valueReference for name in (*host.names("input"), *host.names("output"))]
         inputs = len(host.names("input"))
         x, dx = ([host.variables[f"{n}"].valueReference for n in each] for each in zip(*names_of(block), strict=True))
@@ -225,15 +268,15 @@ def names_of(block):
 
 
 @every_continuous
-def test_the_start_can_be_linearised_too(native, tmp_path, name):
+def test_the_start_can_be_linearised_too(folder, tmp_path, name):
     """States and their derivatives along parameters and inputs, in initialization mode."""
     start = {"v_0": 8.0, "T_0": 20.0} if name in PLANTS else {"T_ref": 50.0}
     along = "T_0" if name in PLANTS else "T_ref"
-    with opened(native / f"{name}.fmu", tmp_path, kind=FMU2Model) as host:
+    with opened(folder / f"{name}.fmu", tmp_path, kind=FMU2Model) as host:
         host.set(**start)
         host.fmu.setupExperiment()
         host.fmu.enterInitializationMode()
-        unknowns = [v.valueReference for v in host.variables.values() if v.causality == "local"]
+        unknowns = [host.variables[name].valueReference for pair in names_of(FMUS[name].block) for name in pair]
 
         def values(way):
             host.set(**{along: start[along] + way})
@@ -250,8 +293,8 @@ def test_the_start_can_be_linearised_too(native, tmp_path, name):
 # events
 
 
-def test_an_indicator_on_its_zero_is_not_zero_and_changes_sign_a_little_beyond(native, tmp_path):
-    with exchanged(native, tmp_path, "TwoMassDriveline", phi_B=0.25) as host:
+def test_an_indicator_on_its_zero_is_not_zero_and_changes_sign_a_little_beyond(folder, tmp_path):
+    with exchanged(folder, tmp_path, "TwoMassDriveline", phi_B=0.25) as host:
         flank = states(host)
         assert flank[2] == 0.0
         host.fmu.newDiscreteStates()
@@ -273,8 +316,8 @@ def test_an_indicator_on_its_zero_is_not_zero_and_changes_sign_a_little_beyond(n
 
 
 @pytest.mark.parametrize("name", PLANTS)
-def test_a_plant_has_no_time_events_and_states_do_not_jump(native, tmp_path, name):
-    with exchanged(native, tmp_path, name, v_0=8.0, T_0=20.0) as host:
+def test_a_plant_has_no_time_events_and_states_do_not_jump(folder, tmp_path, name):
+    with exchanged(folder, tmp_path, name, v_0=8.0, T_0=20.0) as host:
         before = states(host)
         assert host.fmu.newDiscreteStates() == (False, False, False, False, False, 0.0)
         assert states(host) == before
@@ -282,8 +325,8 @@ def test_a_plant_has_no_time_events_and_states_do_not_jump(native, tmp_path, nam
         assert host.fmu.completedIntegratorStep() == (False, False)
 
 
-def test_the_noise_of_the_motor_changes_at_events_that_are_announced(native, tmp_path):
-    with exchanged(native, tmp_path, "MotorTorqueLoop", start_time=3.0, T_s=0.004) as host:
+def test_the_noise_of_the_motor_changes_at_events_that_are_announced(folder, tmp_path):
+    with exchanged(folder, tmp_path, "MotorTorqueLoop", start_time=3.0, T_s=0.004) as host:
         (sample,) = [k for k, v in enumerate(host.description.derivatives) if "sample" in v.variable.name]
         x, time, seen = states(host), 3.0, [host.get("T_mot_est")]
         for k in range(1, 5):
@@ -337,6 +380,23 @@ EXCHANGING_ALONE = [name for name in ALLOWED if "Event" in name or "Continuous" 
 ROOM = (ctypes.c_double * 100)(*[0.5] * 100)
 
 
+TOLD = (ctypes.byref(ctypes.c_double()),) * 6
+
+ARGUMENTS_OF_FMI3 = {
+    "fmi2EnterInitializationMode": (0, ctypes.c_double(), ctypes.c_double(), 0, ctypes.c_double()),
+    "fmi2NewDiscreteStates": TOLD,
+    "fmi2DoStep": (ctypes.c_double(), ctypes.c_double(1e-3), 0, *TOLD[:4]),
+    "fmi2GetRealOutputDerivatives": (None, ctypes.c_size_t(), None, None, ctypes.c_size_t()),
+    "fmi2GetDirectionalDerivative": (None, ctypes.c_size_t()) * 4,
+}
+"""Of functions that FMI 2.0 gives others, or none."""
+
+
+def is_there(function, host):
+    """Whether the FMU has the function."""
+    return host.description.fmiVersion == "2.0" or hasattr(ctypes.CDLL(host.fmu.dll._name), of_fmi3(function))
+
+
 def arguments_of(function, host):
     """Arguments that make sense."""
     nothing, none = ctypes.c_size_t(0), ctypes.c_void_p()
@@ -344,6 +404,8 @@ def arguments_of(function, host):
     count = indicators if "Indicators" in function else host.description.numberOfContinuousStates
     if function == "fmi2CompletedIntegratorStep":
         return 1, ctypes.byref(ctypes.c_int()), ctypes.byref(ctypes.c_int())
+    if host.description.fmiVersion == "3.0" and function in ARGUMENTS_OF_FMI3:
+        return ARGUMENTS_OF_FMI3[function]
     if "ContinuousStates" in function or "Indicators" in function or function == "fmi2GetDerivatives":
         return ROOM, ctypes.c_size_t(count)
     return {
@@ -359,7 +421,8 @@ def arguments_of(function, host):
 
 def call(host, function, *arguments):
     binary = ctypes.CDLL(host.fmu.dll._name)
-    return getattr(binary, function)(ctypes.c_void_p(host.fmu.component), *arguments)
+    known = function if host.description.fmiVersion == "2.0" else of_fmi3(function)
+    return binary[known](ctypes.c_void_p(host.fmu.component), *arguments)
 
 
 def bring(host, mode):
@@ -382,9 +445,11 @@ def bring(host, mode):
 
 @pytest.mark.parametrize("mode", ALL)
 @pytest.mark.parametrize("function", ALLOWED)
-def test_a_function_is_refused_outside_its_place_and_says_where_that_is(native, tmp_path, function, mode):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
+def test_a_function_is_refused_outside_its_place_and_says_where_that_is(folder, tmp_path, function, mode):
+    with opened(folder / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
         bring(host, mode)
+        if not is_there(function, host):
+            return
         status = call(host, function, *arguments_of(function, host))
         assert status == (OK if mode in ALLOWED[function] else ERROR)
         if status == ERROR:
@@ -396,24 +461,26 @@ def test_a_function_is_refused_outside_its_place_and_says_where_that_is(native, 
 
 @pytest.mark.parametrize("mode", ALL)
 @pytest.mark.parametrize("function", STEPPING_ALONE)
-def test_a_function_of_co_simulation_is_refused_in_model_exchange(native, tmp_path, function, mode):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
+def test_a_function_of_co_simulation_is_refused_in_model_exchange(folder, tmp_path, function, mode):
+    with opened(folder / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
         bring(host, mode)
+        if not is_there(function, host):
+            return
         assert call(host, function, *arguments_of(function, host)) == ERROR
         assert host.message == f"{function} is refused; the instance was made for model exchange"
 
 
 @pytest.mark.parametrize("function", EXCHANGING_ALONE)
-def test_a_function_of_model_exchange_is_refused_in_co_simulation(native, tmp_path, function):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
+def test_a_function_of_model_exchange_is_refused_in_co_simulation(folder, tmp_path, function):
+    with opened(folder / "MotorTorqueLoop.fmu", tmp_path) as host:
         for change in (lambda: None, host.initialize, host.fmu.terminate):
             change()
             assert call(host, function, *arguments_of(function, host)) == ERROR
             assert host.message == f"{function} is refused; the instance was made for co-simulation"
 
 
-def test_a_wrong_number_of_states_is_refused(native, tmp_path):
-    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+def test_a_wrong_number_of_states_is_refused(folder, tmp_path):
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         host.fmu.enterContinuousTimeMode()
         before = states(host)
         for function, right, what in (
@@ -432,8 +499,8 @@ def test_a_wrong_number_of_states_is_refused(native, tmp_path):
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_a_state_that_is_no_number_is_discarded_so_that_the_solver_may_try_another(native, tmp_path, value):
-    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+def test_a_state_that_is_no_number_is_discarded_so_that_the_solver_may_try_another(folder, tmp_path, value):
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         host.fmu.enterContinuousTimeMode()
         before = states(host)
         message = host.refuses(set_states, host, [*before[:2], value, *before[3:]])
@@ -442,8 +509,8 @@ def test_a_state_that_is_no_number_is_discarded_so_that_the_solver_may_try_anoth
         assert states(host) == before
 
 
-def test_derivatives_that_are_no_numbers_are_discarded(native, tmp_path):
-    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+def test_derivatives_that_are_no_numbers_are_discarded(folder, tmp_path):
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         host.fmu.enterContinuousTimeMode()
         set_states(host, [1e308, -1e308, 1e308, 0.0, 0.0, 0.0])
         message = host.refuses(rates, host)
@@ -452,14 +519,14 @@ def test_derivatives_that_are_no_numbers_are_discarded(native, tmp_path):
 
 
 @pytest.mark.parametrize("time", [math.nan, math.inf])
-def test_a_time_that_is_no_number_is_refused(native, tmp_path, time):
-    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+def test_a_time_that_is_no_number_is_refused(folder, tmp_path, time):
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         message = host.refuses(host.fmu.setTime, time)
         assert message == f"time = {time!r} s is refused; allowed is any finite number"
 
 
-def test_a_parameter_is_refused_while_the_host_integrates_and_an_input_is_not(native, tmp_path):
-    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+def test_a_parameter_is_refused_while_the_host_integrates_and_an_input_is_not(folder, tmp_path):
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         for change in (lambda: None, host.fmu.enterContinuousTimeMode):
             change()
             assert "C = 100.0 is refused; a fixed parameter can be set until" in host.refuses(host.set, C=100.0)
@@ -467,8 +534,8 @@ def test_a_parameter_is_refused_while_the_host_integrates_and_an_input_is_not(na
             assert rates(host)[0] == pytest.approx(11.0 / 0.055)
 
 
-def test_a_saved_state_holds_mode_time_states_and_sides(native, tmp_path):
-    with exchanged(native, tmp_path, "TwoMassDriveline", v_0=8.0, T_0=20.0) as host:
+def test_a_saved_state_holds_mode_time_states_and_sides(folder, tmp_path):
+    with exchanged(folder, tmp_path, "TwoMassDriveline", v_0=8.0, T_0=20.0) as host:
         host.fmu.newDiscreteStates()
         host.fmu.enterContinuousTimeMode()
         x, z = states(host), indicators(host)
@@ -483,14 +550,14 @@ def test_a_saved_state_holds_mode_time_states_and_sides(native, tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["model exchange", "co-simulation"])
-def test_a_saved_state_of_the_other_kind_is_refused(native, tmp_path, kind):
+def test_a_saved_state_of_the_other_kind_is_refused(folder, tmp_path, kind):
     kinds = {"model exchange": {"kind": FMU2Model}, "co-simulation": {}}
     (other,) = [each for each in kinds if each != kind]
-    with opened(native / "TwoMassDriveline.fmu", tmp_path, **kinds[kind]) as host:
+    with opened(folder / "TwoMassDriveline.fmu", tmp_path, **kinds[kind]) as host:
         host.initialize()
         state = host.fmu.getFMUstate()
         saved = bytes(host.fmu.serializeFMUstate(state))
-        with opened(native / "TwoMassDriveline.fmu", tmp_path, **kinds[other]) as taker:
+        with opened(folder / "TwoMassDriveline.fmu", tmp_path, **kinds[other]) as taker:
             for function, given in ((taker.fmu.deSerializeFMUstate, saved), (taker.fmu.setFMUstate, state)):
                 message = taker.refuses(function, given)
                 assert message == f"the FMU state is refused: its instance was made for {kind}"
@@ -498,9 +565,9 @@ def test_a_saved_state_of_the_other_kind_is_refused(native, tmp_path, kind):
         host.fmu.freeFMUstate(state)
 
 
-def test_an_output_that_is_no_number_is_discarded(native, tmp_path):
+def test_an_output_that_is_no_number_is_discarded(folder, tmp_path):
     """No step has looked at it, and a solver may try any state."""
-    with exchanged(native, tmp_path, "TwoMassDriveline") as host:
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         host.fmu.newDiscreteStates()
         host.fmu.enterContinuousTimeMode()
         x = states(host)
@@ -517,10 +584,10 @@ def test_an_output_that_is_no_number_is_discarded(native, tmp_path):
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
 @pytest.mark.parametrize("name", PLANTS)
-def test_a_car_at_rest_stays_at_rest_and_meets_few_events(native, name, tolerance):
+def test_a_car_at_rest_stays_at_rest_and_meets_few_events(folder, name, tolerance):
     """All wheels are on the zeros of their indicators."""
     results = fmpy.simulate_fmu(
-        str(native / f"{name}.fmu"),
+        str(folder / f"{name}.fmu"),
         fmi_type="ModelExchange",
         start_values={"T_brake": 500.0},
         relative_tolerance=tolerance,
@@ -533,7 +600,7 @@ def test_a_car_at_rest_stays_at_rest_and_meets_few_events(native, name, toleranc
 
 
 @pytest.mark.parametrize("name", PLANTS)
-def test_a_jump_of_the_torque_is_an_event_of_the_host(native, name):
+def test_a_jump_of_the_torque_is_an_event_of_the_host(folder, name):
     """FMPy as it is: the inputs are constant before and after the jump."""
     jump = np.array([(0.0, -12.0), (0.1, -12.0), (0.1, 100.0), (0.4, 100.0)], dtype=[("time", float), ("T_mot", float)])
     common = {
@@ -542,7 +609,7 @@ def test_a_jump_of_the_torque_is_an_event_of_the_host(native, name):
         "output_interval": 1e-3,
         "output": ["T_gear"],
     }
-    path = str(native / f"{name}.fmu")
+    path = str(folder / f"{name}.fmu")
     me = fmpy.simulate_fmu(
         path, fmi_type="ModelExchange", input=jump, relative_tolerance=1e-10, record_events=False, **common
     )
