@@ -150,6 +150,19 @@ def test_one_bad_rate_among_good_values_keeps_them_all_out(fmi3, tmp_path):
         assert host.fmu.getFloat64(references) == [0.0, 0.0]
 
 
+def test_a_truth_value_that_was_refused_with_another_one_does_not_come_back_in_a_step(fmi3, tmp_path):
+    """The first instance knows its parameters twice, to see what a tool has written."""
+    with opened(fmi3 / "TwoMassDriveline.fmu", tmp_path) as host:
+        assert "T_mot is of type Real" in host.refuses(
+            host.fmu.setBoolean,
+            [host.variables[name].valueReference for name in ("recorded_load", "T_mot")],
+            [True] * 2,
+        )
+        host.initialize()
+        host.step(0.0, 0.01)
+        assert host.get("recorded_load") is False
+
+
 def test_a_sampled_block_has_no_rates(fmi3, tmp_path):
     with opened(fmi3 / "WheelSpeedCan.fmu", tmp_path) as host:
         last = host.variables["time"].valueReference

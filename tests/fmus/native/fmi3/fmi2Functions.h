@@ -70,7 +70,9 @@ static inline fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 SAME(fmi2ExitInitializationMode, fmi3ExitInitializationMode)
 SAME(fmi2Terminate, fmi3Terminate)
 SAME(fmi2Reset, fmi3Reset)
-SAME(fmi2CancelStep, fmi3EnterEventMode)
+SAME(fmi2CancelStep, fmi3EnterConfigurationMode)
+SAME(fmi2EnterEventMode, fmi3EnterEventMode)
+SAME(fmi2EnterContinuousTimeMode, fmi3EnterContinuousTimeMode)
 
 #define ACCESS(function, of_fmi3, Type)                                                                             \
     static inline fmi2Status function(fmi2Component c, const fmi2ValueReference vr[], size_t count, Type values[])  \
@@ -178,6 +180,43 @@ static inline fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind,
     return in_fmi2(fmi3GetFloat64(c, &time, 1, value, 1));
 }
 
+static inline fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
+{
+    bool update, end, nominals, values, next;
+    double time;
+    return in_fmi2(fmi3UpdateDiscreteStates(c, info ? &update : NULL, &end, &nominals, &values, &next, &time));
+}
+
+static inline fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean keep, int *enter, int *end)
+{
+    bool entering, ending;
+    return in_fmi2(fmi3CompletedIntegratorStep(c, keep != 0, enter ? &entering : NULL, end ? &ending : NULL));
+}
+
+static inline fmi2Status fmi2SetTime(fmi2Component c, double time)
+{
+    return in_fmi2(fmi3SetTime(c, time));
+}
+
+static inline fmi2Status fmi2SetContinuousStates(fmi2Component c, const double x[], size_t count)
+{
+    return in_fmi2(fmi3SetContinuousStates(c, x, count));
+}
+
+#define ARRAY(function, of_fmi3)                                                              \
+    static inline fmi2Status function(fmi2Component c, double values[], size_t count)         \
+    {                                                                                         \
+        size_t states, indicators;                                                            \
+        fmi3GetNumberOfContinuousStates(c, &states);                                          \
+        fmi3GetNumberOfEventIndicators(c, &indicators);                                       \
+        return in_fmi2(of_fmi3(c, values, count));                                            \
+    }
+
+ARRAY(fmi2GetContinuousStates, fmi3GetContinuousStates)
+ARRAY(fmi2GetDerivatives, fmi3GetContinuousStateDerivatives)
+ARRAY(fmi2GetEventIndicators, fmi3GetEventIndicators)
+ARRAY(fmi2GetNominalsOfContinuousStates, fmi3GetNominalsOfContinuousStates)
+
 /* What is there for no other call. */
 #define OTHER(function, Type, call)                                                        \
     static inline fmi2Status function(fmi2Component c, fmi2StatusKind kind, Type *value)   \
@@ -188,7 +227,7 @@ static inline fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind,
     }
 
 OTHER(fmi2GetStatus, fmi2Status, fmi3EnterConfigurationMode(c))
-OTHER(fmi2GetIntegerStatus, int, fmi3SetTime(c, 1.0))
+OTHER(fmi2GetIntegerStatus, int, fmi3EnterStepMode(c))
 OTHER(fmi2GetBooleanStatus, int, fmi3UpdateDiscreteStates(c, NULL, NULL, NULL, NULL, NULL, NULL))
 OTHER(fmi2GetStringStatus, fmi2String, fmi3GetBinary(c, NULL, 0, NULL, NULL, 0))
 
