@@ -31,10 +31,13 @@ LINES: dict[str, str] = dict(
 
 PACKAGES = {"FMPy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy", "OMSimulator": "OMSimulator"}
 
-KINDS = {
-    "co-simulation 2.0": ("", ""),
-    "model exchange 2.0": ('"CoSimulation"', '"ModelExchange"'),
-    "co-simulation 3.0": ("build/native", "build/fmi3"),
+INTEGRATED, OF_FMI3 = ('"CoSimulation"', '"ModelExchange"'), ("build/native", "build/fmi3")
+
+KINDS: dict[str, tuple[tuple[str, str], ...]] = {
+    "co-simulation 2.0": (),
+    "model exchange 2.0": (INTEGRATED,),
+    "co-simulation 3.0": (OF_FMI3,),
+    "model exchange 3.0": (INTEGRATED, OF_FMI3),
 }
 """Of FMUs, with what is put in the place of what in the lines."""
 
@@ -52,14 +55,15 @@ def ours() -> float:
 
 def cell(host: str, kind: str, right: float) -> str:
     """What comes of the lines of a host with FMUs of a kind."""
-    old, new = KINDS[kind]
     lines = LINES[host]
-    if old not in lines:
-        return ""
+    for old, new in KINDS[kind]:
+        if old not in lines:
+            return ""
+        lines = lines.replace(old, new)
     environment = os.environ | {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
     with TemporaryDirectory() as folder:
         Path(folder, "build").symlink_to(BUILD)
-        command = [sys.executable, "-c", lines.replace(old, new) if old else lines]
+        command = [sys.executable, "-c", lines]
         done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     if done.returncode < 0:
         return "ends the process"

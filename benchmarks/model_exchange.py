@@ -1,11 +1,11 @@
 """How far model exchange is from co-simulation: T_gear of the plants in the manoeuvres, T_mot of the motor.
 
 The loop makes a manoeuvre. What then enters plant or motor is given to it alone, with straight lines between the
-samples: in co-simulation with steps of 0.1 ms and input derivatives, in model exchange with CVode as FMPy has it. The
-difference over the largest torque is shown, the number of derivatives that CVode took, and of its restarts at events;
-and how far co-simulation moves if the inertia of the motor is larger by 1e-8 of it: without feedback the motor swings
-undamped in the backlash, and some manoeuvres amplify what is small. The motor, which restarts with every sample of its
-noise, is run in the first manoeuvre alone.
+samples: in co-simulation with steps of 0.1 ms and input derivatives, in model exchange with CVode as FMPy has it, by
+FMI 2.0 and by FMI 3.0. The difference over the largest torque is shown, that between the two FMIs, the number of
+derivatives that CVode took, and of its restarts at events; and how far co-simulation moves if the inertia of the motor
+is larger by 1e-8 of it: without feedback the motor swings undamped in the backlash, and some manoeuvres amplify what is
+small. The motor, which restarts with every sample of its noise, is run in the first manoeuvre alone.
 """
 
 import argparse
@@ -21,6 +21,7 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave
 from fmpy.sundials import CVodeSolver
 
+from driveline.fmus.building.builds import FMI3_FOLDER
 from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import BUILD, NATIVE, PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -131,7 +132,9 @@ def stepped(run: OpenLoop, path: Path, step_size: float = STEP_SIZE) -> np.ndarr
 
 def integrated(run: OpenLoop, path: Path, tolerance: float) -> Taken:
     """The output in model exchange, at the times of the samples."""
-    signals = np.zeros(len(run.times), dtype=[(name, float) for name in ("time", *run.inputs)])
+    described = fmpy.read_model_description(str(path)).modelVariables
+    names = [variable.name for variable in described if variable.causality == "input"]  # FMI 3.0 has their rates too
+    signals = np.zeros(len(run.times), dtype=[(name, float) for name in ("time", *names)])
     for name, values in {"time": run.times, **run.inputs}.items():
         signals[name] = values
     Solver.derivatives = Solver.restarts = 0
@@ -156,8 +159,11 @@ def sensitivity(run: OpenLoop, path: Path, expected: np.ndarray) -> float:
     return np.max(np.abs(stepped(moved, path) - expected))
 
 
-COLUMNS = ("manoeuvre", "FMU", "largest, N.m", "difference, N.m", "over it", "derivatives", "events", "of J_1 + 1e-8")
-ROW = "{:15}{:18}{:>12}{:>17}{:>10}{:>13}{:>8}{:>15}"
+COLUMNS = (
+    *("manoeuvre", "FMU", "largest, N.m", "difference, N.m", "over it", "FMI 3.0"),
+    *("derivatives", "events", "of J_1 + 1e-8", "over it"),
+)
+ROW = "{:15}{:18}{:>12}{:>17}{:>10}{:>10}{:>13}{:>8}{:>15}{:>10}"
 
 
 def show(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
@@ -171,9 +177,11 @@ def show(manoeuvres: Sequence[str], tolerance: float, folder: Path) -> None:
                 expected, taken = stepped(run, path), integrated(run, path, tolerance)
                 difference, largest = np.max(np.abs(taken.output - expected)), np.max(np.abs(expected))
                 shown = f"{largest:.1f}", f"{difference:.1e}", f"{difference / largest:.1e}"
-                counts = taken.derivatives, taken.restarts
-                moved = f"{sensitivity(run, path, expected):.1e}" if run is of_plant else ""
-                print(ROW.format(manoeuvre, run.name, *shown, *counts, moved), flush=True)
+                of_fmi3 = integrated(run, folder / FMI3_FOLDER / path.name, tolerance).output
+                versions = f"{np.max(np.abs(of_fmi3 - taken.output)):.1e}"
+                moved = sensitivity(run, path, expected) if run is of_plant else np.nan
+                counts = taken.derivatives, taken.restarts, f"{moved:.1e}", f"{moved / largest:.1e}"
+                print(ROW.format(manoeuvre, run.name, *shown, versions, *counts), flush=True)
 
 
 def main() -> None:
