@@ -52,6 +52,7 @@ FUNCTIONS = (
     *("fmi3GetNumberOfContinuousStates", "fmi3GetNumberOfEventIndicators"),
     *(f"fmi3Get{what}" for what in ("ContinuousStateDerivatives", "EventIndicators", "ContinuousStates")),
     "fmi3GetNominalsOfContinuousStates",
+    *("fmi3EnterStepMode", "fmi3GetIntervalDecimal"),
 )
 """What is called, numbered from 1."""
 

@@ -310,12 +310,15 @@ TRACED: dict[tuple[int, bool], type[Slave]] = {
 
 
 @contextmanager
-def instantiated(name: str, fmu: Unpacked, number: int = 0, exchanging: bool = False) -> Iterator[Instance]:
+def instantiated(
+    name: str, fmu: Unpacked, number: int = 0, exchanging: bool = False, events: bool = False
+) -> Iterator[Instance]:
     """The FMU as an instance of that name, freed at the end.
 
     Args:
         number: in its loop.
         exchanging: for model exchange; else for co-simulation.
+        events: whether the host enters event mode in co-simulation, which FMI 3.0 has.
 
     Raises:
         SimulationError: it cannot be loaded or instantiated.
@@ -323,7 +326,7 @@ def instantiated(name: str, fmu: Unpacked, number: int = 0, exchanging: bool = F
     key = next(_keys)
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
     try:
-        instance = _instantiate(name, fmu, key, number, exchanging)
+        instance = _instantiate(name, fmu, key, number, exchanging, events)
         try:
             yield instance
         finally:
@@ -334,7 +337,7 @@ def instantiated(name: str, fmu: Unpacked, number: int = 0, exchanging: bool = F
         del _logs[key]
 
 
-def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bool) -> Instance:
+def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bool, events: bool) -> Instance:
     interface = fmu.interface
     exchange = interface.description.modelExchange
     try:
@@ -347,7 +350,8 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
             instanceName=name,
         )
         if isinstance(slave, _OfFMI3):
-            slave.instantiate(loggingOn=True, logMessage=partial(_log_of_fmi3, key))
+            with_events = {"eventModeUsed": True} if events else {}
+            slave.instantiate(loggingOn=True, logMessage=partial(_log_of_fmi3, key), **with_events)
         else:
             slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
     except Exception as error:  # fmpy raises bare exceptions

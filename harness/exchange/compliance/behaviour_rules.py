@@ -6,7 +6,8 @@ from math import isfinite
 from ...base.errors import SimulationError
 from ...cosimulation import instance
 from ...cosimulation.unpacked_fmu import Unpacked
-from .host import Outputs, hosted
+from .event_host import hosted
+from .host import Outputs
 from .rule import Clause, Rules, Severity
 
 STEPS = 100
@@ -116,17 +117,17 @@ def states_are_restored(fmu: Unpacked) -> Iterator[str]:
     with hosted(fmu) as host:
         host.start()
         host.run(STEPS)
-        position = host.step, host.time
+        position = host.position()
         state = host.instance.call("getFMUstate")
         first = host.run(STEPS)
         host.instance.call("setFMUstate", state)
-        host.step, host.time = position
+        host.go_to(position)
         yield from _differences(first, host.run(STEPS), "after the state was restored")
         if _claims(fmu, "canSerializeFMUstate"):
             saved = host.instance.call("serializeFMUstate", state)
             revived = host.instance.call("deSerializeFMUstate", saved)
             host.instance.call("setFMUstate", revived)
-            host.step, host.time = position
+            host.go_to(position)
             yield from _differences(first, host.run(STEPS), "after the state was written and read")
             host.instance.call("freeFMUstate", revived)
         host.instance.call("freeFMUstate", state)

@@ -10,7 +10,8 @@ import fmpy
 from ....fmus.child_process import run
 from ...cosimulation.interface import Interface
 from ...cosimulation.unpacked_fmu import Unpacked
-from .rule import Clause, Rule, Rules, Severity
+from .event_host import has_clocks
+from .rule import OURS, Clause, Rule, Rules, Severity
 
 MOST_NAMED = 3
 """Symbols that are named of those that are missing."""
@@ -31,6 +32,18 @@ def _no_binary_here(interface: Interface) -> Iterator[str]:
 
 
 PLATFORM = Rule("platform", Severity.NOTE, "there is a binary for this machine", BINARIES, _no_binary_here)
+
+
+def _not_stepped(interface: Interface) -> Iterator[str]:
+    """What it is for that is not run."""
+    described = interface.description
+    if described.coSimulation and has_clocks(described) and not described.coSimulation.hasEventMode:
+        yield "it has clocks, but no event mode, so it was not run in co-simulation"
+    elif not described.coSimulation and not described.modelExchange:
+        yield "it is for scheduled execution alone, so it was not run"
+
+
+KIND = Rule("kind", Severity.NOTE, "it is of a kind that is run here", OURS, _not_stepped)
 
 BINARY_RULES = Rules()
 

@@ -14,7 +14,7 @@ from ...cosimulation.limits import USUAL_LIMITS, Limits
 from ...cosimulation.unpacked_fmu import Unpacked, unpacked
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
-from .binary_rules import BINARY_RULES, PLATFORM
+from .binary_rules import BINARY_RULES, KIND, PLATFORM
 from .description_rules import DESCRIPTION_RULES
 from .exchange_rules import EXCHANGE_RULES, QUICK_EXCHANGE_RULES
 from .rule import Clause, Rule, Severity, Verdict
@@ -23,7 +23,7 @@ READABLE = Rule("readable", Severity.ERROR, "it is an FMU of FMI 2.0 or 3.0", Cl
 
 RULES = (
     *(READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES),
-    *(PLATFORM, *BINARY_RULES, *BEHAVIOUR_RULES, *EXCHANGE_RULES),
+    *(KIND, PLATFORM, *BINARY_RULES, *BEHAVIOUR_RULES, *EXCHANGE_RULES),
 )
 
 FIRST = {BEHAVIOUR_RULES[0].name, EXCHANGE_RULES[0].name}
@@ -74,11 +74,11 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
     stepping = QUICK_RULES if quick else BEHAVIOUR_RULES
     exchanging = QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
     description = interface.description
-    clocked = any(variable.type == "Clock" for variable in description.modelVariables)
-    tried = [*BINARY_RULES, *(stepping if description.coSimulation and not clocked else ())]
-    tried += exchanging if description.modelExchange else ()
+    kind = KIND.judge(interface)
+    steps = description.coSimulation and not kind.problems
+    tried = [*BINARY_RULES, *(stepping if steps else ()), *(exchanging if description.modelExchange else ())]
     platform = PLATFORM.judge(interface)
-    yield from (platform,) if PLATFORM.name not in ignored else ()
+    yield from (verdict for verdict in (kind, platform) if verdict.rule not in ignored)
     if platform.problems:
         yield from (rule.verdict([], tried=False) for rule in kept(tried))
     else:
