@@ -11,6 +11,8 @@ import pytest
 
 from docs.studies.check_rules import PAGE, rules
 from docs.studies.generated_sections import filled
+from driveline.fmus.building.builds import sender_builder
+from driveline.fmus.catalogue import FMUS
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.limits import Limits
 from driveline.harness.exchange.compliance.behaviour_rules import BEHAVIOUR_RULES
@@ -21,6 +23,7 @@ from driveline.harness.loop.places import PLANTS
 from tests.foreign import RELAY, build_relay, tampered
 from tests.foreign.archives import HOSTILE
 from tests.foreign.stranger import build_stranger, in_words_of
+from tests.skipping import skipped_if_impossible
 from tests.slow import slow
 
 PLANT = f"{PLANTS[0]}.fmu"
@@ -43,6 +46,27 @@ OURS = [PLANT, "ValidationVehicle.fmu", "MotorTorqueLoop.fmu", "WheelSpeedCan.fm
 @pytest.mark.parametrize("name", OURS)
 def test_our_native_fmus_have_no_findings(request, name, build):
     assert findings(request.getfixturevalue(build) / name) == []
+
+
+@pytest.fixture(scope="module")
+def sender(tmp_path_factory):
+    """The FMU that sends frames, with clocks."""
+    with skipped_if_impossible():
+        build = sender_builder(b'VERSION ""\n')
+    return build(FMUS["WheelSpeedCan"], tmp_path_factory.mktemp("sender"))
+
+
+def test_an_fmu_with_clocks_is_run_in_event_mode(sender):
+    verdicts = list(check(sender))
+    assert [v for v in verdicts if v.problems] == []
+    assert {v.rule for v in verdicts if v.tried} >= {rule.name for rule in BEHAVIOUR_RULES}
+
+
+def test_without_event_mode_it_is_said_that_it_was_not_run(sender, tmp_path):
+    path = tampered(sender, tmp_path / "no.fmu", lambda xml: xml.replace('hasEventMode="true"', 'hasEventMode="false"'))
+    verdicts = {v.rule: v for v in check(path)}
+    assert verdicts["kind"].problems == ["it has clocks, but no event mode, so it was not run in co-simulation"]
+    assert "runs" not in verdicts
 
 
 @pytest.mark.parametrize("name", slow(OURS, but=["WheelSpeedCan.fmu", "DampingController.fmu"]))
