@@ -40,7 +40,7 @@ def in_words_of_fmi2(text):
     return re.sub(known, lambda found: WORDS[found[0]], text)
 
 
-def of_fmi3(function):
+def of_fmi3(function: str) -> str:
     """What FMI 3.0 calls a function of FMI 2.0."""
     names = {two: three for three, two in WORDS.items()}
     return names.get(function, function.replace("fmi2", "fmi3"))
