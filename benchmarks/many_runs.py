@@ -1,17 +1,18 @@
 """What a run costs beside its steps when the loop is loaded already, alone and on all cores.
 
-Both are ratios of times taken side by side, so that other load on the machine counts on both sides: processor time
-of further runs of a loaded loop over that of the steps in them; and what many runs of a tip-in with their metrics
-take, from the start of the processes to their end, over the steps in them divided by the number of cores.
+These are ratios of processor times, which other load on the machine changes little: of further runs of a loaded loop
+over the steps in them; and of many runs of a tip-in with their metrics on all cores, in lanes and one by one, with the
+start of the processes, over the steps of as many single runs.
 """
 
 import argparse
+import resource
+from contextlib import nullcontext
 from functools import partial
 from statistics import median
 from time import perf_counter, process_time
 from unittest.mock import patch
 
-import numpy as np
 from loky import cpu_count
 from rich.console import Console
 from rich.table import Table
@@ -21,12 +22,12 @@ from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.steps import Refusal, interpreted
+from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation import many_runs
 from driveline.harness.simulation.simulate import signals, simulate, start
 
 TIPIN = MANOEUVRES["tipin15"]
@@ -51,27 +52,23 @@ def further_runs(plant: str, count: int) -> tuple[float, float]:
     return median(whole[1:]), median(alone[1:])
 
 
-def tip_in(plant: str, seed: int) -> float:
-    """Seconds that the steps take in a run that is evaluated."""
-    seconds, make = 0.0, CompiledSteps.__call__
-
-    def timed(steps: CompiledSteps, table: np.ndarray, numbers: range) -> Refusal | None:
-        nonlocal seconds
-        began = perf_counter()
-        refusal = make(steps, table, numbers)
-        seconds += perf_counter() - began
-        return refusal
-
-    with patch.object(CompiledSteps, "__call__", timed):
-        evaluate(simulate(TIPIN, plant, seed=seed), TIPIN)
-    return seconds
+def tip_in(plant: str, seed: int) -> None:
+    """A run that is evaluated."""
+    evaluate(simulate(TIPIN, plant, seed=seed), TIPIN)
 
 
-def many(plant: str, runs: int) -> tuple[float, float]:
-    """Seconds of many runs on all cores, and of the steps in them over the number of cores."""
-    began = perf_counter()
-    steps = run_many(partial(tip_in, plant), range(1, runs + 1))
-    return perf_counter() - began, sum(steps) / cpu_count()
+def many(plant: str, runs: int, in_lanes: bool = True) -> tuple[float, float]:
+    """Seconds of the clock and of the processor for many runs on all cores, with the start of the processes."""
+    began, before = perf_counter(), _processor_time()
+    with nullcontext() if in_lanes else patch.object(many_runs, "lanes_here", lambda: 0):
+        many_runs.run_many(partial(tip_in, plant), range(1, runs + 1))
+    return perf_counter() - began, _processor_time() - before
+
+
+def _processor_time() -> float:
+    """Of this process and those that it has ended, in s."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
 
 
 def main() -> None:
@@ -84,9 +81,11 @@ def main() -> None:
     for plant in PLANTS:
         whole, alone = further_runs(plant, 50)
         table.add_row("a further run", plant, f"{whole:.4f}", f"{alone:.4f}", f"{whole / alone:.2f}")
-    for plant in PLANTS if LIBRARY else ():
-        whole, alone = many(plant, args.runs)
-        table.add_row(f"{args.runs} runs with metrics", plant, f"{whole:.1f}", f"{alone:.1f}", f"{whole / alone:.2f}")
+        steps = args.runs * alone
+        for how in ("in lanes", "one by one"):
+            _, whole = many(plant, args.runs, how == "in lanes")
+            what = f"{args.runs} runs with metrics, {how}"
+            table.add_row(what, plant, f"{whole:.1f}", f"{steps:.1f}", f"{whole / steps:.2f}")
     Console().print(table)
 
 

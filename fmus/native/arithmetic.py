@@ -6,6 +6,7 @@ it can be put into a branch. A choice between equal values is that value, and on
 array, by the whole part of a number, is a look-up.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
@@ -107,11 +108,11 @@ class Graph:
                 users.setdefault(operand, []).append((k, side))
         return users
 
-    def guards(self) -> dict[int, frozenset[Guard]]:
-        """For every needed node under which conditions alone it is; only those that save an operation."""
+    def guards(self, least: int = 1) -> dict[int, frozenset[Guard]]:
+        """For every needed node under which conditions alone it is; only those that save so many operations."""
         guards = self._guards(None)
-        worth = {condition for k, of in guards.items() if self.nodes[k].operands for condition, _ in of}
-        return self._guards(worth)
+        saved = Counter(condition for k, of in guards.items() if self.nodes[k].operands for condition, _ in of)
+        return self._guards({condition for condition, count in saved.items() if count >= least})
 
     def _guards(self, conditions: Iterable[int] | None) -> dict[int, frozenset[Guard]]:
         users = self.users()

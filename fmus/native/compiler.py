@@ -142,8 +142,17 @@ def zig_compiler() -> list[str]:
 
 
 def _compiled(compiler: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
+    return compile_in([*compiler, *FLAGS, *LIBRARY_FLAGS, WHOLE, "-o", binary, "-lm"], binary, sources)
+
+
+def compile_in(command: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:
+    """What a command makes of sources.
+
+    Raises:
+        CompilerError: it complains.
+    """
     with _folder_of(sources) as folder:
-        run_compiler([*compiler, *FLAGS, *LIBRARY_FLAGS, WHOLE, "-o", binary, "-lm"], folder)
+        run_compiler(command, folder)
         return (folder / binary).read_bytes()
 
 

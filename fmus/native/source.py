@@ -136,12 +136,14 @@ def functions(
     precision: Precision,
     names: Names = IN_FMU,
     computed_once: bool = True,
+    statements: type[Statements] = Statements,
 ) -> Functions:
     """The traced functions, and one that computes what depends on parameters alone.
 
     Args:
         records: one of each record of the block, by their letters.
         computed_once: else each function computes that by itself, and parameters can be changed without a call.
+        statements: writes them.
     """
     terms, held = Terms(f"p->{TERMS}"), Terms("w")
     heads, texts = list[tuple[str, str]](), list[str]()
@@ -158,19 +160,19 @@ def functions(
             held.take(graph, [each.arguments.index("u"), each.arguments.index("p"), len(graph.inputs) - 1])
         size = each.function.size1_out(0)
         outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
-        lines, arguments = Statements(graph, outputs, precision).lines, _arguments(each, names)
+        lines, arguments = statements(graph, outputs, precision).lines, _arguments(each, names)
         if each.name == "derivative" and held.outputs:
             x, u, p, dx = arguments
             add("derivative_held", [x, u, p, f"const {names.real} w[]", dx], lines, each.arguments)
-            add("held_terms", [u, p, f"{names.real} w[]"], Statements(held, held.names(), precision).lines, "up")
+            add("held_terms", [u, p, f"{names.real} w[]"], statements(held, held.names(), precision).lines, "up")
             lines = [
                 f"    {names.real} w[HELD_TERMS];",
-                "    held_terms(u, p, w);",
-                "    derivative_held(x, u, p, w, dx);",
+                f"    {names.function}held_terms(u, p, w);",
+                f"    {names.function}derivative_held(x, u, p, w, dx);",
             ]
         add(each.name, arguments, lines, each.arguments)
     if computed_once:
-        add("compute_terms", [f"{names.struct}Parameters *p"], Statements(terms, terms.names(), precision).lines, "p")
+        add("compute_terms", [f"{names.struct}Parameters *p"], statements(terms, terms.names(), precision).lines, "p")
     declared = terms.values(list(map(float, records["p"])))
     return Functions(heads, "\n\n".join(texts), declared, len(held.outputs))
 

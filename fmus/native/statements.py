@@ -67,10 +67,13 @@ class Statements:
         outputs: for each element of the output what is assigned to.
     """
 
+    LEAST = 1
+    """Operations that a branch saves."""
+
     def __init__(self, graph: Graph, outputs: Sequence[str], precision: Precision = DOUBLE) -> None:
         self._graph = graph
         self._precision = precision
-        self._guards = graph.guards()
+        self._guards = graph.guards(self.LEAST)
         self._uses = Counter(graph.outputs.values())
         self._uses.update({k: len(users) for k, users in graph.users().items()})
         self._conditions = {condition for guards in self._guards.values() for condition, _ in guards}
@@ -141,11 +144,14 @@ class Statements:
         self._named += len(chosen)
         for name in names:
             self._line(f"{self._precision.real} {name};")
+        self._sides(condition, chosen, names, context)
+        self._texts |= {choice: Text(name) for choice, name in zip(chosen, names, strict=True)}
+
+    def _sides(self, condition: int, chosen: list[int], names: list[str], context: frozenset[Guard]) -> None:
         for opening, place in ((f"if ({self._truth(condition).text}) {{", 1), ("} else {", 2)):
             self._line(opening)
             self._side(condition, place, chosen, names, context)
         self._line("}")
-        self._texts |= {choice: Text(name) for choice, name in zip(chosen, names, strict=True)}
 
     def _side(self, condition: int, place: int, chosen: list[int], names: list[str], context: frozenset[Guard]) -> None:
         """The statements of one side; what is named there is unknown elsewhere."""
@@ -154,8 +160,12 @@ class Statements:
         for choice, name in zip(chosen, names, strict=True):
             value = self._graph.nodes[choice].operands[place]
             self._need(value, context | {(condition, place == 1)})
-            self._line(f"{name} = {self._number(value).text};")
+            self._line(f"{name} = {self._side_value(condition, place, name, value)};")
         self._texts, self._indent = texts, indent
+
+    def _side_value(self, condition: int, place: int, name: str, value: int) -> str:
+        """What the name of a choice gets on one side."""
+        return self._number(value).text
 
     def _alike(self, k: int, context: frozenset[Guard]) -> Iterable[int]:
         """Other choices with the condition of choice k that are needed where it is."""

@@ -32,6 +32,29 @@ static void step(const Problem *problem, double t, const Vector x, const Vector 
 }}
 """
 
+LANES = """/* The same method for several cars at a time, written from dop853.py. */
+
+static void step_in_lanes(
+    const LanesProblem *problem, double t, const LanesVector x, const LanesVector k0, double h, LanesVector end,
+    lanes *error)
+{{
+    struct {{ LanesVector at; }} at, {stages};
+    LanesVector sum;
+    lanes e5 = {{0}}, e3 = {{0}};
+{lines}
+    for (int n = 0; n < STATES; n++) {{
+        const lanes before = fabs_in_lanes(x[n]), after = fabs_in_lanes(end[n]);
+        const lanes w = {tolerance!r} * (chosen(before > after, before, after) + small[n]);
+        lanes e = ({error_5}) / w;
+        e5 += e * e;
+        e = (sum[n] - ({end_3})) / w;
+        e3 += e * e;
+    }}
+    const lanes d = e5 + 0.01 * e3;
+    *error = chosen((d > 0.0) & (d <= {greatest!r}), h * e5 / sqrt_in_lanes((double)STATES * d), {greatest!r} * d);
+}}
+"""
+
 RODAS = """/* The coefficients of RODAS, written by build_fmus.py from rodas.py, which says what they are. */
 
 #define GAMMA {gamma!r}
@@ -44,13 +67,22 @@ enum {{ STAGES = {stages} }};
 
 def step_header() -> str:
     """dop853.h: the step, operation by operation as explicit.py writes it."""
+    return _step(DOP853, "rate_at(problem, t + {time!r} * h, &at, &k{stage})")
+
+
+def lane_step_header() -> str:
+    """lane_dop853.h: the same for several cars at a time."""
+    return _step(LANES, "rate_in_lanes(problem, t + {time!r} * h, at.at, k{stage}.at)")
+
+
+def _step(template: str, rate: str) -> str:
     lines: list[str] = []
     for stage, weights in enumerate(A[1:], start=1):
         lines += _for_each_state(f"at.at[n] = x[n] + h * ({_sum(weights)})")
-        lines.append(f"    rate_at(problem, t + {math.fsum(weights.values())!r} * h, &at, &k{stage});")
+        lines.append(f"    {rate.format(time=math.fsum(weights.values()), stage=stage)};")
     lines += ["    for (int n = 0; n < STATES; n++) {", f"        sum[n] = {_sum(B)};"]
     lines += ["        end[n] = x[n] + h * sum[n];", "    }"]
-    return DOP853.format(
+    return template.format(
         stages=", ".join(f"k{stage}" for stage in range(1, len(A))),
         lines="\n".join(lines),
         error_5=_sum(ERROR_5),

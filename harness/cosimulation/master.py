@@ -43,11 +43,16 @@ def opened(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator[
 
 
 class Loop:
-    """Loaded FMUs that run together, from the beginning each time."""
+    """Loaded FMUs that run together, from the beginning each time.
+
+    Attributes:
+        fitted: what they are.
+        instances: they, in the order in which they step.
+    """
 
     def __init__(self, fitted: Fit, instances: Sequence[Instance], make_steps: MakeSteps) -> None:
-        self._fitted = fitted
-        self._instances = instances
+        self.fitted = fitted
+        self.instances = instances
         self._make_steps = make_steps
         self._step_size = c_double()
         self._wires: dict[tuple[Scheme, tuple[str, ...]], Wires] = {}
@@ -60,7 +65,7 @@ class Loop:
             SimulationError: one cannot; the loop is of no more use then.
         """
         if not self._is_new:
-            for instance in self._instances:
+            for instance in self.instances:
                 instance.reset()
         self._is_new = True
 
@@ -77,8 +82,29 @@ class Loop:
             WiringError: inputs or parameters do not fit the FMUs, or the scheme does not suit them.
             SimulationError: an FMU refused a call.
         """
+        wires, table, due = self.begin(experiment)
         time = experiment.time()
-        require(unknown(self._fitted, experiment.inputs, experiment.parameters))
+        with progress(len(table) - 1, experiment.label) as done:
+            for chunk in self._tuned(chunks(len(table) - 1), due):
+                refusal = wires.steps(table, chunk)
+                if refusal:
+                    begun = refusal.status == NOT_FINITE
+                    _check(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
+                table.passed(len(chunk))
+                done(chunk.stop)
+        for instance in self.instances:
+            instance.call("terminate")
+        return wires.layout.results(table)
+
+    def begin(self, experiment: Experiment) -> tuple[Wires, Results, list[Change]]:
+        """Brings the FMUs from reset to the first step; gives what they are bound to, a table with the first row, and
+        the parameters that are to be changed.
+
+        Raises:
+            WiringError, SimulationError: as of `run`.
+        """
+        time = experiment.time()
+        require(unknown(self.fitted, experiment.inputs, experiment.parameters))
         samples = self._present(experiment.samples(time))
         parameters = self._present(experiment.parameters)
         due = changes(parameters, time)
@@ -89,17 +115,7 @@ class Loop:
         self._is_new = False
         self._step_size.value = experiment.step_size
         self._initialize(wires, table, initial(parameters))
-        with progress(len(table) - 1, experiment.label) as done:
-            for chunk in self._tuned(chunks(len(table) - 1), due):
-                refusal = wires.steps(table, chunk)
-                if refusal:
-                    begun = refusal.status == NOT_FINITE
-                    _check(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
-                table.passed(len(chunk))
-                done(chunk.stop)
-        for instance in self._instances:
-            instance.call("terminate")
-        return wires.layout.results(table)
+        return wires, table, due
 
     def _tuned(self, steps: Iterable[range], due: Sequence[Change]) -> Iterator[range]:
         """The steps; before some of them parameters are set.
@@ -115,7 +131,7 @@ class Loop:
                 if first < change.step:
                     yield range(first, change.step)
                 first = change.step
-                instance = next(each for each in self._instances if each.name == change.instance)
+                instance = next(each for each in self.instances if each.name == change.instance)
                 instance.set_parameters({change.parameter: change.value})
             yield range(first, part.stop)
 
@@ -126,10 +142,10 @@ class Loop:
             WiringError: that is more than they do without it.
         """
         present = dict(given)
-        for name in self._fitted.absent.keys() & given.keys():
-            only, value = self._fitted.absent[name], present.pop(name)
+        for name in self.fitted.absent.keys() & given.keys():
+            only, value = self.fitted.absent[name], present.pop(name)
             if only is not None and np.any(value != only):
-                file = self._fitted.file(name)
+                file = self.fitted.file(name)
                 raise WiringError(f"{name}: {file} does not have it and runs as if it were always {only:g}")
         return present
 
@@ -141,7 +157,7 @@ class Loop:
         """
         if (scheme, inputs) not in self._wires:
             fixed = self._step_size, self._make_steps
-            self._wires[scheme, inputs] = wired(self._fitted, self._instances, inputs, scheme, *fixed)
+            self._wires[scheme, inputs] = wired(self.fitted, self.instances, inputs, scheme, *fixed)
         return self._wires[scheme, inputs]
 
     def _initialize(self, wires: Wires, table: np.ndarray, parameters: Mapping[str, float]) -> None:
@@ -151,14 +167,14 @@ class Loop:
             SimulationError: an FMU refuses, or the outputs do not settle: an algebraic loop.
         """
         stop = float(table[-1]["time"])
-        for instance in self._instances:
+        for instance in self.instances:
             prefix = f"{instance.name}."
             own = {name.removeprefix(prefix): parameters[name] for name in parameters if name.startswith(prefix)}
             instance.set_parameters(own)
-        for instance in self._instances:
+        for instance in self.instances:
             instance.call("start", 0.0, stop)
         self._propagate(wires, table)
-        for instance in self._instances:
+        for instance in self.instances:
             instance.call("exitInitializationMode")
 
     def _propagate(self, wires: Wires, table: np.ndarray) -> None:
@@ -167,7 +183,7 @@ class Loop:
         row[:] = bytes(len(row))
         row[:known] = data[:known]
         before = None
-        for _ in range(len(self._fitted.system.connections) + 2):
+        for _ in range(len(self.fitted.system.connections) + 2):
             for call in wires.hand_over:
                 if call.changed:
                     call.changed()

@@ -59,6 +59,11 @@ def kept_by(loops: "KeptLoops") -> Iterator[None]:
         _here.kept = outer
 
 
+def kept_here() -> "KeptLoops | None":
+    """Where the systems that are run in this thread are kept loaded; None: nowhere."""
+    return _here.kept
+
+
 class KeptLoops:
     """The loops that ran last."""
 

@@ -12,19 +12,21 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 
 from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
+from ...fmus.lanes_here import lanes_here
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
 from ..base.optional_packages import required
 from ..base.plain_text import words
 from ..base.progress import progress
 from ..cosimulation.runs import kept_loaded
+from .together import MANY, Together, outcomes
 
 if TYPE_CHECKING:
     from .workers import Submitted
@@ -48,7 +50,8 @@ def run_many(
     """What a function gives for each of the cases, in their order.
 
     A system of FMUs that the function runs stays loaded for the next case. A case whose process was lost is run once
-    more.
+    more. Of 32 cases and more (MANY), runs of the same native FMUs of the project are made side by side in the lanes of
+    the processor. They differ from single runs by the rounding of single operations.
 
     Args:
         workers: processes that share the cases; with 1 it is this process. None: one a core.
@@ -66,7 +69,11 @@ def run_many(
     every, answers = list(cases), []
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
     count = min(workers or _cores(), max(len(todo), 1))
-    with many(function, count, scheduler if todo else None, batch) as answered, progress(len(every), label) as done:
+    _require_batch(batch)
+    where = scheduler if todo else None
+    if in_lanes := _goes_in_lanes(len(every)):
+        batch = max(batch, min(MANY, -(-len(todo) // count)))
+    with _many(function, count, where, batch, in_lanes) as answered, progress(len(every), label) as done:
         done(len(every) - len(todo))
         for case, answer in zip(todo, answered(todo), strict=True):
             if known is not None:
@@ -87,18 +94,30 @@ def many(
 
     Cases are asked for a few ahead of the answers, and neither are kept: ten million take the memory of a hundred.
 
-    Args and errors as of `run_many`.
+    They are answered in lanes where batches are of MANY. Args and errors as of `run_many`.
     """
     require_workers(workers)
+    _require_batch(batch)
+    with _many(function, workers or _cores(), scheduler, batch, _goes_in_lanes(batch)) as answered:
+        yield answered
+
+
+def _goes_in_lanes(cases: int) -> bool:
+    return cases >= MANY and lanes_here() > 0
+
+
+def _many(
+    function: Callable[[Case], Answer], count: int, scheduler: str | None, batch: int, in_lanes: bool
+) -> AbstractContextManager[Callable[[Iterable[Case]], Iterator[Answer]]]:
+    work = Together(function) if in_lanes else function
+    if scheduler is not None:
+        return _on_cluster(work, scheduler, batch)
+    return _here(work, batch if in_lanes else 1) if count == 1 else _in_workers(work, count, batch)
+
+
+def _require_batch(batch: int) -> None:
     if not (isinstance(batch, int) and batch >= 1):
         raise DrivelineError(f"batch = {batch!r}: it must be a whole number from 1 on")
-    count = workers or _cores()
-    if scheduler is not None:
-        where = _on_cluster(function, scheduler, batch)
-    else:
-        where = _here(function) if count == 1 else _in_workers(function, count, batch)
-    with where as answered:
-        yield answered
 
 
 def require_workers(workers: int | None) -> None:
@@ -114,14 +133,17 @@ def _cores() -> int:
 
 
 @contextmanager
-def _here(function: Callable[[Case], Answer]) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
+def _here(
+    function: Callable[[Case], Answer] | Together, batch: int
+) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-        for case in cases:
-            try:
-                answer = function(case)
-            except (Exception, SystemExit) as error:
-                _raise(error, case)
-            yield answer
+        for part in batched(cases, batch):
+            for case, (answer, error) in zip(part, outcomes(function, part), strict=True):
+                if isinstance(error, (Exception, SystemExit)):
+                    _raise(error, case)
+                if error is not None:
+                    raise error
+                yield answer
 
     with kept_loaded():
         yield answered
@@ -129,7 +151,7 @@ def _here(function: Callable[[Case], Answer]) -> Iterator[Callable[[Iterable[Cas
 
 @contextmanager
 def _in_workers(
-    function: Callable[[Case], Answer], count: int, batch: int
+    function: Callable[[Case], Answer] | Together, count: int, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     from .workers import Lost, Workers, in_order
 
@@ -150,7 +172,7 @@ def _in_workers(
 
 @contextmanager
 def _on_cluster(
-    function: Callable[[Case], Answer], scheduler: str, batch: int
+    function: Callable[[Case], Answer] | Together, scheduler: str, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     required("distributed", "a Dask cluster", "cluster")
     from .cluster import Lost, on_cluster

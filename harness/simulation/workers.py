@@ -28,6 +28,7 @@ from ..base.interruption import end_with, uninterrupted_children
 from ..base.plain_text import words
 from ..base.progress import hidden
 from ..cosimulation.runs import kept_loaded
+from .together import Together, outcomes
 
 Lost = BrokenProcessPool
 """Is raised where the process of a case was lost."""
@@ -42,7 +43,7 @@ class Workers:
         folder: for what they unpack and note.
     """
 
-    def __init__(self, function: Callable[[Any], Any], count: int, folder: Path) -> None:
+    def __init__(self, function: Callable[[Any], Any] | Together, count: int, folder: Path) -> None:
         self._count = count
         self._folder = folder
         self._given = folder, function, os.getpid()
@@ -140,11 +141,11 @@ def _is_lost(future: "Future[Any]") -> bool:
     return isinstance(future.exception(), Lost)
 
 
-_function: Callable[[Any], Any]
+_function: Callable[[Any], Any] | Together
 _collected = CollectedWarnings()
 
 
-def _begin(folder: Path, function: Callable[[Any], Any], waiting: int) -> None:
+def _begin(folder: Path, function: Callable[[Any], Any] | Together, waiting: int) -> None:
     """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
     global _function
     _function = function
@@ -168,23 +169,30 @@ def _answer(batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
     return answered_by(_function, batch)
 
 
-def answered_by(function: Callable[[Any], Any], batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
+def answered_by(function: Callable[[Any], Any] | Together, batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
     """In a worker: the answers and what was warned of, up to a case that raises an error, which is raised if it is the
-    first; what cannot be sent to the process that waits is told in words."""
+    first; what cannot be sent to the process that waits is told in words. Where cases are answered side by side, the
+    first answer has the warnings of all."""
     answers: list[tuple[Any, list[str]]] = []
-    for case in batch:
-        _collected.texts.clear()
-        try:
-            with hidden():
-                answers.append((function(case), list(_collected.texts)))
-        except BaseException as error:
-            if answers:
+    _collected.texts.clear()
+    with hidden():
+        for answer, error in outcomes(function, batch):
+            if error is None:
+                answers.append((answer, list(_collected.texts)))
+                _collected.texts.clear()
+            elif answers:
                 break
-            if isinstance(error, SystemExit):
-                raise
-            try:
-                loads(dumps(error))
-            except Exception:
-                raise SimulationError(words(error)) from None
-            raise
+            else:
+                raise _sendable(error)
     return answers
+
+
+def _sendable(error: BaseException) -> BaseException:
+    """An error, in words if it cannot be sent to another process."""
+    if isinstance(error, SystemExit):
+        return error
+    try:
+        loads(dumps(error))
+    except Exception:
+        return SimulationError(words(error))
+    return error

@@ -1,0 +1,74 @@
+"""Libraries of the project's blocks for several cars at a time, made when needed and kept in the user's cache."""
+
+import logging
+import zipfile
+from ctypes import CDLL
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...fmus.lanes_here import lanes_here
+from ...fmus.origin import is_stale, sources_digest
+from ..base.atomic_files import complete
+from ..base.user_cache import forget, user_cache
+from ..cosimulation.system import System
+
+if TYPE_CHECKING:
+    from ...fmus.fmu import Fmu
+
+LOG = logging.getLogger(__name__)
+
+IN_NATIVE = "sources/all.c"
+"""Is in native FMUs alone."""
+
+
+def lane_libraries(system: System) -> dict[str, CDLL] | None:
+    """The library of each instance; None where one is no native FMU of the project, made from the sources that are
+    here, or libraries cannot be made, and the log says why."""
+    if other := [name for name, path in system.instances.items() if name not in system.own or not _is_ours(path)]:
+        LOG.info("%s: its runs are made one after the other; lanes are for the project's native FMUs", other[0])
+        return None
+    found = {name: _library(path.stem, sources_digest()) for name, path in system.instances.items()}
+    return {name: library for name, library in found.items() if library} if all(found.values()) else None
+
+
+@cache
+def _blocks() -> "dict[str, Fmu]":
+    """All that can stand in a loop, by name."""
+    from ...fmus import signal_faults
+    from ...fmus.catalogue import EVERY
+
+    return {**EVERY, signal_faults.FMU.name: signal_faults.FMU}
+
+
+def _is_ours(path: Path) -> bool:
+    if path.stem not in _blocks() or is_stale(path):
+        return False
+    with zipfile.ZipFile(path) as archive:
+        return IN_NATIVE in archive.namelist()
+
+
+@cache
+def _library(name: str, sources: str) -> CDLL | None:
+    """That of a block; None if it cannot be made here."""
+    lanes = lanes_here()
+    folder = user_cache() / "lanes" / sources[:32]
+    path = folder / f"{name}-{lanes}.so"
+    try:
+        if not path.is_file():
+            with complete(path) as unfinished:
+                _make(name, lanes, unfinished)
+            forget(folder.parent.iterdir())
+        return CDLL(str(path))
+    except Exception as reason:  # it is faster, but needed for nothing
+        LOG.info("%s: its runs are made one after the other, as there is no library for lanes: %s", name, reason)
+        return None
+
+
+def _make(name: str, lanes: int, path: Path) -> None:
+    if find_spec("casadi") is None:
+        raise RuntimeError("the package casadi is not installed")
+    from ...fmus.native.lanes import build_lanes
+
+    build_lanes(_blocks()[name], lanes, path)

@@ -1,0 +1,194 @@
+"""Cases side by side: their functions take turns, each up to its next run, and runs that are alike are made in lanes.
+
+One function is at work at a time, so that it need not be prepared for others.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from contextvars import copy_context
+from dataclasses import dataclass
+from functools import partial
+from threading import Semaphore, Thread
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+from ...fmus.lanes_here import lanes_here
+from ..base.interruption import uninterrupted_children
+from ..cosimulation.experiment import Experiment
+from ..cosimulation.lanes import LaneLoop
+from ..cosimulation.master import Loop
+from ..cosimulation.results import Results
+from ..cosimulation.runs import KeptLoops, kept_by, kept_here
+from ..cosimulation.system import Scheme, System
+from ..loop.lane_libraries import lane_libraries
+
+MANY = 32
+"""Cases from which on their runs are made in lanes, on however many cores: the last bits are those of lanes then. So
+many take turns: where their runs differ, enough are alike to fill the lanes."""
+
+
+class Outcome(NamedTuple):
+    """Of a case."""
+
+    answer: Any
+    error: BaseException | None
+
+
+@dataclass(frozen=True)
+class Together:
+    """A function whose cases are answered side by side."""
+
+    function: Callable[[Any], Any]
+
+
+def outcomes(function: Callable[[Any], Any] | Together, cases: Sequence[Any]) -> Iterator[Outcome]:
+    """Those of cases, in their order; systems are kept loaded where this thread keeps them."""
+    if not isinstance(function, Together):
+        yield from (_outcome(function, case) for case in cases)
+        return
+    loops = kept_here()
+    assert loops is not None
+    for first in range(0, len(cases), MANY):
+        yield from _answered(function.function, cases[first : first + MANY], loops)
+
+
+def _outcome(function: Callable[[Any], Any], case: Any) -> Outcome:
+    try:
+        return Outcome(function(case), None)
+    except BaseException as error:
+        return Outcome(None, error)
+
+
+class _Stopped(BaseException):
+    """Nobody waits for the answer any more."""
+
+
+class _Asked(NamedTuple):
+    """A run."""
+
+    system: System
+    experiment: Experiment
+
+    def key(self) -> Hashable:
+        """The same for runs that can be made in lanes together."""
+        experiment = self.experiment
+        return repr(self.system), experiment.step_size, Scheme(experiment.scheme), tuple(experiment.inputs)
+
+
+class _Turn(KeptLoops):
+    """A case whose function is at work in a thread of its own, while another one waits for it to ask for a run.
+
+    Attributes:
+        asked: the run that it waits for; None: it has ended.
+        outcome: once it has ended.
+    """
+
+    def __init__(self, function: Callable[[Any], Any], case: Any) -> None:
+        super().__init__(None)
+        self.asked: _Asked | None = None
+        self.outcome = Outcome(None, _Stopped())
+        self._reply: Any = None
+        self._mine, self._yours = Semaphore(0), Semaphore(0)
+        arguments = self._work, function, case
+        with uninterrupted_children():
+            Thread(target=copy_context().run, args=arguments, daemon=True).start()
+
+    def go_on(self, reply: Results | BaseException | None = None) -> None:
+        """Gives it the results that it has asked for, or an error, and waits until it asks again or has ended."""
+        self.stop(reply)
+        self._yours.acquire()
+
+    def stop(self, reply: Any) -> None:
+        """Gives it a reply and does not wait."""
+        self._reply = reply
+        self._mine.release()
+
+    def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Any:
+        """What asks for runs of a system."""
+        return _Asking(self, system)
+
+    def ask(self, asked: _Asked) -> Results:
+        """In its thread: gets the results of a run."""
+        self.asked = asked
+        self._yours.release()
+        self._mine.acquire()
+        if isinstance(self._reply, BaseException):
+            raise self._reply
+        return self._reply
+
+    def _work(self, function: Callable[[Any], Any], case: Any) -> None:
+        self._mine.acquire()
+        try:
+            if not isinstance(self._reply, _Stopped):
+                with kept_by(self):
+                    self.outcome = _outcome(function, case)
+        finally:
+            self.asked = None
+            self._yours.release()
+
+
+class _Asking(NamedTuple):
+    """A loop for the function of a case."""
+
+    turn: _Turn
+    system: System
+
+    def run(self, experiment: Experiment) -> Results:
+        """As `Loop.run`."""
+        return self.turn.ask(_Asked(self.system, experiment))
+
+
+def _answered(function: Callable[[Any], Any], cases: Sequence[Any], loops: KeptLoops) -> list[Outcome]:
+    turns = [_Turn(function, case) for case in cases]
+    try:
+        for turn in turns:
+            turn.go_on()
+        while asked := [(turn, turn.asked, turn.asked.key()) for turn in turns if turn.asked]:
+            ((most, _),) = Counter(key for _, _, key in asked).most_common(1)
+            alike = [(turn, run) for turn, run, key in asked if key == most][: lanes_here() or None]
+            for (turn, _), reply in zip(alike, _made([run for _, run in alike], loops), strict=True):
+                turn.go_on(reply)
+    finally:
+        for turn in turns:
+            turn.stop(_Stopped())
+    return [turn.outcome for turn in turns]
+
+
+def _made(asked: Sequence[_Asked], loops: KeptLoops) -> list[Results | BaseException]:
+    """The results of runs of one system, or the errors."""
+    found: list[Results | BaseException | None] = [None] * len(asked)
+    lanes = _in_lanes(asked[0], loops)
+    if lanes is not None:
+        found = list[Results | BaseException | None](lanes([run.experiment for run in asked]))
+    return [_alone(run, loops) if each is None else each for run, each in zip(asked, found, strict=True)]
+
+
+def _alone(asked: _Asked, loops: KeptLoops) -> Results | BaseException:
+    system, experiment = asked
+    try:
+        return loops.loop(system, experiment.inputs, experiment.parameters).run(experiment)
+    except Exception as error:
+        return error
+
+
+_lane_loops: WeakKeyDictionary[Loop, LaneLoop | None] = WeakKeyDictionary()
+"""Those of loops that are loaded; None: they have none."""
+
+
+def _in_lanes(asked: _Asked, loops: KeptLoops) -> Callable[[list[Experiment]], list[Any]] | None:
+    """What makes runs of a system in lanes; None if that is not possible."""
+    system, experiment = asked
+    try:
+        loop = loops.loop(system, experiment.inputs, experiment.parameters)
+    except Exception:
+        return None
+    if not isinstance(loop, Loop):
+        return None
+    if loop not in _lane_loops:
+        plain = all(each.fmi == 2 and not each.factors for each in loop.fitted.interfaces.values())
+        libraries = lane_libraries(system) if plain else None
+        _lane_loops[loop] = LaneLoop(loop.fitted, libraries) if libraries else None
+    in_lanes = _lane_loops[loop]
+    if in_lanes is None:
+        return None
+    return partial(in_lanes.run, loop)

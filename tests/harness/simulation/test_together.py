@@ -1,0 +1,133 @@
+"""Cases side by side: one function at work at a time, and the answers of single runs."""
+
+import os
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from driveline.fmus.lanes_here import lanes_here
+from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.simulation import many_runs, together
+from driveline.harness.simulation.many_runs import many, run_many
+from driveline.harness.simulation.simulate import simulate
+
+TIPIN = replace(MANOEUVRES["tipin15"], duration=0.2)
+
+
+@pytest.fixture
+def lanes(monkeypatch, tmp_path):
+    """Lanes for four cases and more, and a cache of their own."""
+    if not lanes_here():
+        pytest.skip("this processor has no lanes")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(many_runs, "MANY", 4)
+
+
+@pytest.fixture
+def in_lanes(monkeypatch):
+    """How many runs were made at a time."""
+    counts: list[int] = []
+    run = together.LaneLoop.run
+
+    def counted(self, loop, experiments):
+        counts.append(len(experiments))
+        return run(self, loop, experiments)
+
+    monkeypatch.setattr(together.LaneLoop, "run", counted)
+    return counts
+
+
+def swing(folder: Path):
+    def of(case: tuple[str, int]) -> float:
+        plant, seed = case
+        first = simulate(TIPIN, plant, seed=seed, folder=folder)["plant.T_gear"].max()
+        return first + simulate(TIPIN, plant, seed=seed + 100, folder=folder)["plant.T_gear"].max()
+
+    return of
+
+
+def test_the_answers_are_those_of_single_runs(both_built, lanes, in_lanes, monkeypatch):
+    plants = ("TwoMassDriveline", "TwoMassDriveline", "ValidationVehicle")
+    cases = [(plants[k % 3], k) for k in range(16)]
+    found = run_many(swing(both_built), cases, workers=1)
+    assert sum(in_lanes) == 32
+    monkeypatch.setattr(many_runs, "lanes_here", lambda: 0)
+    assert found == pytest.approx(run_many(swing(both_built), cases, workers=1), abs=1e-6)
+    assert sum(in_lanes) == 32
+
+
+def test_few_cases_and_other_blocks_go_alone(both_built, built, lanes, in_lanes):
+    run_many(swing(both_built), [("TwoMassDriveline", k) for k in range(3)], workers=1)
+    assert in_lanes == []
+    run_many(swing(built), [("TwoMassDriveline", k) for k in range(4)], workers=1)
+    assert in_lanes == []
+
+
+def test_a_run_that_changes_a_parameter_is_that_of_a_single_run(both_built, lanes):
+    def end(time: float) -> float:
+        parameters = {"controller.k_d": 2.0, f"controller.k_d@{time:g}": 0.0}
+        return float(simulate(TIPIN, parameters=parameters, folder=both_built)["plant.T_gear"][-1])
+
+    times = [0.02, 0.06, 0.1, 0.14]
+    found = run_many(end, times, workers=1)
+    assert found == [end(time) for time in times]
+    assert len(set(found)) == len(times)
+
+
+def test_a_stream_goes_in_lanes_if_its_batches_are_large(both_built, lanes, in_lanes):
+    cases = [("TwoMassDriveline", k) for k in range(5)]
+    with many(swing(both_built), workers=1, batch=3) as answers:
+        few = list(answers(iter(cases)))
+    assert in_lanes == []
+    with many(swing(both_built), workers=1, batch=4) as answers:
+        assert list(answers(iter(cases))) == pytest.approx(few, abs=1e-6)
+    assert sum(in_lanes) == 10
+
+
+def test_the_bits_do_not_depend_on_workers_nor_on_what_is_known(both_built, lanes):
+    cases = [(("TwoMassDriveline", "ValidationVehicle")[k % 3 == 0], k) for k in range(7)]
+    found = run_many(swing(both_built), cases, workers=1)
+    assert found == run_many(swing(both_built), cases, workers=2)
+    assert found == run_many(swing(both_built), cases, workers=1, known=dict(zip(cases[:5], found[:5], strict=True)))
+
+
+def test_one_function_is_at_work_at_a_time(both_built, lanes):
+    at_work: list[int] = []
+
+    def alone(case: int) -> int:
+        for _ in range(case % 3):
+            at_work.append(case)
+            time.sleep(0.001)
+            assert at_work.pop() == case
+            assert not at_work
+            simulate(TIPIN, seed=case, folder=both_built)
+        return case
+
+    assert run_many(alone, range(9), workers=1) == list(range(9))
+
+
+def test_the_first_case_with_an_error_is_named(both_built, lanes):
+    def bad(case: int) -> float:
+        k_d = {5: -1.0, 6: -2.0}.get(case, 1.0)
+        parameters = {"controller.k_d": k_d} | ({"plant.nonsense": 1.0} if case == 7 else {})
+        return float(simulate(TIPIN, folder=both_built, parameters=parameters)["plant.v"][-1])
+
+    known: dict[int, float] = {}
+    with pytest.raises(SimulationError, match=r"^case 5: .*k_d = -1\.0"):
+        run_many(bad, range(8), workers=1, known=known)
+    assert list(known) == [0, 1, 2, 3, 4]
+    with pytest.raises(WiringError, match=r"^case 7: .*nonsense"):
+        run_many(bad, [0, 1, 2, 7], workers=1)
+
+
+def test_a_case_that_ends_its_process_is_named(lanes):
+    def crash(case: int) -> int:
+        return os._exit(3) if case == 6 else case
+
+    known: dict[int, int] = {}
+    with pytest.raises(SimulationError, match=r"a process crashed in case 6, and again"):
+        run_many(crash, range(16), workers=2, known=known)
+    assert list(known) == list(range(6))
