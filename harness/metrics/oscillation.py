@@ -23,12 +23,22 @@ def amplitude(x: np.ndarray, T_s: float) -> np.ndarray:
     Raises:
         Absent: there is none.
     """
-    if len(x) < round(SPAN / T_s):
+    length = round(SPAN / T_s)
+    if len(x) < length:
         raise Absent(f"the run is shorter than {SPAN:g} s")
-    pieces = np.lib.stride_tricks.sliding_window_view(x, round(SPAN / T_s))
-    swing = np.ptp(pieces, axis=1)
+    swing = _running(np.maximum, x, length)
+    swing -= _running(np.minimum, x, length)
     swing /= 2.0
     return swing
+
+
+def _running(extreme: np.ufunc, x: np.ndarray, length: int) -> np.ndarray:
+    """The largest or smallest of so many neighbours: of twice as many again and again, then of two that overlap."""
+    width = 1
+    while 2 * width <= length:
+        x, width = extreme(x[:-width], x[width:]), 2 * width
+    rest = length - width
+    return extreme(x[: len(x) - rest], x[rest:])
 
 
 def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> float:
