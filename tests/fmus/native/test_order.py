@@ -33,6 +33,8 @@ ORDERS = {
         "fmi3_refused.c",
         "fmi3_model_exchange.c",
         "fmi3_terminal.c",
+        "lanes.c",
+        "lane_loop.c",
     ),
     TARGET_FILES: ("board_host.c", "board_mps2.c", "link.c", "scheduler.c"),
 }

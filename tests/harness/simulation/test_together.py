@@ -9,6 +9,7 @@ import pytest
 
 from driveline.fmus.lanes_here import lanes_here
 from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.loop.lane_libraries import _library
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation import many_runs, together
 from driveline.harness.simulation.many_runs import many, run_many
@@ -64,6 +65,18 @@ def test_few_cases_and_other_blocks_go_alone(both_built, built, lanes, in_lanes)
     assert in_lanes == []
     run_many(swing(built), [("TwoMassDriveline", k) for k in range(4)], workers=1)
     assert in_lanes == []
+
+
+def test_without_a_compiler_they_go_alone_and_the_log_says_why(both_built, lanes, in_lanes, monkeypatch, caplog):
+    monkeypatch.setenv("CC", "no-such-compiler")
+    _library.cache_clear()
+    with caplog.at_level("INFO"):
+        found = run_many(swing(both_built), [("TwoMassDriveline", k) for k in range(4)], workers=1)
+    _library.cache_clear()
+    assert in_lanes == []
+    assert found == [swing(both_built)(("TwoMassDriveline", k)) for k in range(4)]
+    assert "its runs are made one after the other, as there is no library for lanes: " in caplog.text
+    assert "no-such-compiler" in caplog.text
 
 
 def test_a_run_that_changes_a_parameter_is_that_of_a_single_run(both_built, lanes):
