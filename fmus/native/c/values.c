@@ -187,7 +187,7 @@ Status get_values(Instance *instance, Type type, const Reference references[], s
 {
     Memory *memory = &instance->memory;
     size_t k = 0;
-    if (references && values && memory->outputs_known && !instance->exchanges)
+    if (references && values && memory->outputs_known && instance->kind != MODEL_EXCHANGE)
         for (; k < count && is_own(references[k], type); k++)
             give(type, values, k, *place_of(&memory->values, &variables[references[k]]));
     return k == count ? OK : get_others(instance, type, references, count, values);
