@@ -81,14 +81,14 @@ def _reference(name: str, made: Path) -> dict[str, str]:
     outputs = [variable.name for variable in interface.of_causality("output")]
     both = [
         fmpy.simulate_fmu(
-            str(made / build / f"{name}.fmu"),
+            str(path),
             fmi_type="CoSimulation",
             stop_time=STOP_TIME,
             output_interval=STEP_SIZE,
-            input=inputs,
+            input=_completed(inputs, Interface(path)),
             output=outputs,
         )
-        for build in FOLDERS.values()
+        for path in (made / build / f"{name}.fmu" for build in FOLDERS.values())
     ]
     if any(not np.array_equal(both[0][column], both[1][column]) for column in ("time", *outputs)):
         raise DrivelineError(f"{name}: its FMUs of FMI 2.0 and FMI 3.0 give different results")
@@ -108,6 +108,16 @@ def _inputs(name: str, made: Path) -> np.ndarray:
         if (full := f"{place}.{variable.name}") in sources or full in (run.dtype.names or ())
     }
     return _table(run, columns)
+
+
+def _completed(inputs: np.ndarray, interface: Interface) -> np.ndarray:
+    """With the other inputs, which keep their start values; FMPy warns of an input that it is not given."""
+    given = inputs.dtype.names or ()
+    others = {v.name: float(v.start) for v in interface.of_causality("input") if v.name not in given}
+    completed = np.empty(len(inputs), [*inputs.dtype.descr, *((name, np.float64) for name in others)])
+    for name in completed.dtype.names or ():
+        completed[name] = others[name] if name in others else inputs[name]
+    return completed
 
 
 def _table(run: Results, columns: dict[str, np.ndarray]) -> np.ndarray:

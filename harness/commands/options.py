@@ -282,7 +282,8 @@ def assignment(text: str) -> tuple[str, float]:
     instance, dot, parameter = name.partition(".")
     number = {"true": 1.0, "false": 0.0}.get(value.lower(), real(value))
     if not (instance and dot and parameter and equals) or number is None:
-        raise argparse.ArgumentTypeError(f"{quoted(text)} is not of the form plant.J_1=0.06")
+        form = "INSTANCE.PARAMETER@TIME=VALUE, as controller.k_d@2.0=1.5" if "@" in name else "plant.J_1=0.06"
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not of the form {form}")
     if not isfinite(number):
         raise argparse.ArgumentTypeError(f"{quoted(text)}: a parameter is a finite number")
     return name, number

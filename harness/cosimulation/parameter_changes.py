@@ -1,13 +1,14 @@
 """Tunable parameters that a run changes: `instance.parameter@t` is one from the time t in s on."""
 
 from collections.abc import Mapping
-from math import ceil
+from math import ceil, isnan
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import WiringError
+from ..base.plain_text import quoted
 from ..base.written_numbers import real
 
 LATE = 1e-6
@@ -29,12 +30,12 @@ def parted(name: str) -> tuple[str, float | None]:
     Raises:
         WiringError: what stands behind the @ is no time. In a quoted name of FMI the @ is part of it.
     """
-    parameter, at, time = name.partition("@")
+    parameter, at, time = (part.strip() for part in name.partition("@"))
     if not at or "'" in name:
         return name, None
     instant = real(time)
-    if instant is None:
-        raise WiringError(f"{name}: {time} is no time in s, as 2.0 in controller.k_d@2.0")
+    if instant is None or isnan(instant):
+        raise WiringError(f"{name}: {quoted(time)} is no time in s, as 2.0 in controller.k_d@2.0")
     return parameter, instant
 
 

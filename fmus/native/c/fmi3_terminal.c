@@ -1,6 +1,7 @@
 /* Event mode, binary variables and clocks of an FMU of FMI 3.0 with a terminal; the rest of fmi3.c.
 
-Tx_Clock is active in event mode while there is something to be sent. */
+Tx_Clock is active in event mode while there is something to be sent, however often it is asked for, until
+fmi3UpdateDiscreteStates (FMI 3.0.2, section 2.3.5; in scheduled execution alone does asking deactivate a clock). */
 #include "fmi3Functions.h"
 #include "instance.h"
 

@@ -12,9 +12,10 @@ from driveline.fmus.catalogue import FMUS
 
 
 @pytest.mark.slow
-def test_an_fmu_of_the_archive_gives_the_results_beside_it(tmp_path) -> None:
+def test_an_fmu_of_the_archive_gives_the_results_beside_it(tmp_path, capsys) -> None:
     with zipfile.ZipFile(archive(tmp_path, "host")) as opened:
         content = {name.removeprefix(f"{NAME}/"): opened.read(name) for name in opened.namelist()}
+    assert "missing input" not in capsys.readouterr().out
     assert {"README.md", "LICENSE.txt", "ssp/driveline.ssp"} <= content.keys()
     for name in FMUS:
         tables = [content[f"reference/{name}/{name}_{kind}.csv"] for kind in ("in", "ref")]

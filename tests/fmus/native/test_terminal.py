@@ -242,6 +242,14 @@ def test_of_any_bytes_what_is_no_operation_comes_back(node):
     answered()
 
 
+def test_the_clock_of_what_is_sent_stays_active_until_the_update(node):
+    node.start()
+    clock = [node.members["Tx_Clock"]]
+    assert [node.fmu.getClock(clock) for _ in range(3)] == [[True]] * 3
+    assert not node.update()
+    assert node.fmu.getClock(clock) == [False]
+
+
 def test_what_comes_without_its_clock_is_not_looked_at(node):
     node.start()
     node.flush()

@@ -44,6 +44,12 @@ def test_what_is_no_assignment_is_answered_with_one(text):
         assignment(text)
 
 
+@pytest.mark.parametrize("text", ["controller.k_d@2.0", "controller.k_d@2.0=", "controller.k_d@2.0=more"])
+def test_a_change_without_a_value_is_answered_with_one(text):
+    with pytest.raises(ArgumentTypeError, match=r"INSTANCE\.PARAMETER@TIME=VALUE, as controller\.k_d@2\.0=1\.5"):
+        assignment(text)
+
+
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
 def test_a_parameter_is_finite(value):
     with pytest.raises(ArgumentTypeError, match="finite"):

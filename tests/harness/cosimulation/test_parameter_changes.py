@@ -48,6 +48,7 @@ def test_the_time_stands_behind_the_name(name: str, found: object) -> None:
         ("1.1e-7", 1),
         ("0.3", 3),
         ("0.30000000000000004", 3),
+        (" 0.3 ", 3),
         ("0.29", 3),
         ("0.301", 4),
         ("0.9", 9),
@@ -57,7 +58,7 @@ def test_a_change_is_made_before_the_first_step_that_begins_at_its_time(instant:
     assert changes({f"a.gain@{instant}": 2.0}, TIME) == [Change(step, "a", "gain", 2.0)]
 
 
-@pytest.mark.parametrize("instant", ["0.90001", "1", "-1e-9", "inf", "nan"])
+@pytest.mark.parametrize("instant", ["0.90001", "1", "-1e-9", "inf"])
 def test_a_change_at_which_no_step_begins_any_more_is_refused(instant: str) -> None:
     with pytest.raises(WiringError, match=rf"^a\.gain@{instant}: the steps of the run begin at 0 to 0\.9 s$"):
         changes({f"a.gain@{instant}": 2.0}, TIME)
@@ -147,8 +148,10 @@ def test_in_a_process_of_its_own_the_run_is_the_same(native: Path) -> None:
             r"controller\.C@1: in DampingController\.fmu C is fixed .* tunable are L_omega_1, ",
         ),
         ({"controller.kd@1": 1.0}, r"controller\.kd: DampingController\.fmu has no parameter kd; did you mean k_d\?"),
-        ({"controller.k_d@later": 1.0}, r"controller\.k_d@later: later is no time in s, as 2\.0 in"),
-        ({"controller.k_d@2@3": 1.0}, r"controller\.k_d@2@3: 2@3 is no time in s"),
+        ({"controller.k_d@later": 1.0}, r"controller\.k_d@later: 'later' is no time in s, as 2\.0 in"),
+        ({"controller.k_d@nan": 1.0}, r"controller\.k_d@nan: 'nan' is no time in s"),
+        ({"controller.k_d@": 1.0}, r"controller\.k_d@: '' is no time in s"),
+        ({"controller.k_d@2@3": 1.0}, r"controller\.k_d@2@3: '2@3' is no time in s"),
         ({"controller.k_d@1": 1.0, "controller.k_d@1.0": 2.0}, r"k_d@1\.0: controller\.k_d is set twice at that step"),
         ({"controller.k_d@1.3": 1.0}, r"controller\.k_d@1\.3: the steps of the run begin at 0 to 1\.299 s"),
         ({"can.seed@1": 2}, r"can\.seed@1: in WheelSpeedCan\.fmu seed is fixed"),
