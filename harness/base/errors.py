@@ -22,5 +22,9 @@ class UnpackingError(SimulationError):
     """An FMU cannot be unpacked or loaded on this machine: nothing is said of how it would run elsewhere."""
 
 
+class InstantiationError(SimulationError):
+    """An FMU cannot be loaded or instantiated."""
+
+
 class MissingExtra(DrivelineError):
     """A package of an optional extra is not installed; the message names the extra."""

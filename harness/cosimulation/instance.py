@@ -30,7 +30,7 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from fmpy.logging import addLoggerProxy
 from fmpy.model_description import ModelVariable
 
-from ..base.errors import SimulationError, WiringError
+from ..base.errors import InstantiationError, SimulationError, WiringError
 from ..base.plain_text import plain
 from .call_trace import AT_START, note
 from .interface import Interface, type_of
@@ -321,7 +321,7 @@ def instantiated(
         events: whether the host enters event mode in co-simulation, which FMI 3.0 has.
 
     Raises:
-        SimulationError: it cannot be loaded or instantiated.
+        InstantiationError: it cannot be loaded or instantiated.
     """
     key = next(_keys)
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
@@ -356,5 +356,6 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
             slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
     except Exception as error:  # fmpy raises bare exceptions
         logged = "; ".join(message for _, message in _logs[key])
-        raise SimulationError(f"{label(name, interface)} cannot be instantiated: {plain(logged or error)}") from error
+        reason = plain(logged or error)
+        raise InstantiationError(f"{label(name, interface)} cannot be instantiated: {reason}") from error
     return Instance(name, interface, slave, key)

@@ -9,11 +9,12 @@ from collections.abc import Callable, Sequence
 from struct import Struct
 from typing import Any, BinaryIO, NamedTuple
 
-from ..base.errors import DrivelineError, SimulationError, UnpackingError, WiringError
+from ..base.errors import DrivelineError, InstantiationError, SimulationError, UnpackingError, WiringError
 from ..base.plain_text import plain
 
 ERRORS: dict[str, type[Exception]] = {
-    error.__name__: error for error in (DrivelineError, WiringError, SimulationError, UnpackingError, MemoryError)
+    error.__name__: error
+    for error in (DrivelineError, WiringError, SimulationError, UnpackingError, InstantiationError, MemoryError)
 }
 """What may be raised here as it was raised there; everything else becomes a SimulationError."""
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from ...base.errors import DrivelineError, SimulationError
+from ...base.errors import DrivelineError, InstantiationError, SimulationError
 from ...base.plain_text import plain
 from ...cosimulation import fmu_archive
 from ...cosimulation.description import KINDS
@@ -27,7 +27,7 @@ RULES = (
 )
 
 FIRST = {BEHAVIOUR_RULES[0].name, EXCHANGE_RULES[0].name}
-"""An FMU that ends its process there is not tried any further."""
+"""An FMU that ends its process there, or cannot be instantiated, is not tried any further."""
 
 
 def check(
@@ -35,8 +35,8 @@ def check(
 ) -> Iterator[Verdict]:
     """Checks an FMU, one verdict after the other; one that cannot be unpacked or read is not looked at any further.
 
-    The behaviours are tried in a process of their own; an FMU that ends it in the default experiment is not tried
-    any further.
+    The behaviours are tried in a process of their own; an FMU that ends it in the default experiment, or cannot be
+    instantiated there, is not tried any further.
 
     Args:
         quick: whether only the beginning of the default experiment is tried.
@@ -123,5 +123,7 @@ def _receive(interface: Interface) -> None:
 def _judge(rule: Rule) -> list[str]:
     try:
         return rule.judge(_fmu).problems
+    except InstantiationError:
+        raise
     except Exception as error:  # nobody foresees what an FMU makes of a rule
         return [f"cannot be tried: {type(error).__name__}: {plain(error)}"]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
 
-from ...base.errors import DrivelineError
+from ...base.errors import DrivelineError, InstantiationError
 from ...base.plain_text import plain
 
 
@@ -72,10 +72,16 @@ class Rule:
     problems: Problems = lambda *_: ()
 
     def judge(self, *subject: Any) -> Verdict:
-        """What breaks it; one thing may be that the FMU cannot be read or refuses a call."""
+        """What breaks it; one thing may be that the FMU cannot be read or refuses a call.
+
+        Raises:
+            InstantiationError: so that nothing can be said of a rule.
+        """
         found: list[str] = []
         try:
             found.extend(map(plain, self.problems(*subject)))
+        except InstantiationError:
+            raise
         except DrivelineError as error:
             found.append(plain(error))
         return self.verdict(found)

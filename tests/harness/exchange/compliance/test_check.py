@@ -205,7 +205,12 @@ def test_a_binary_that_is_not_there_is_found(tmp_path):
         tmp_path / "faulty.fmu",
         lambda xml: xml.replace('modelIdentifier="Relay"', 'modelIdentifier="Other"'),
     )
-    assert "cannot be instantiated" in "\n".join(findings(faulty))
+    verdicts = list(check(faulty))
+    (found,) = [verdict for verdict in verdicts if "cannot be instantiated" in "".join(verdict.problems)]
+    assert (found.rule, found.tried) == ("runs", True)
+    assert {verdict.rule for verdict in verdicts if not verdict.tried} == {
+        rule.name for rule in BEHAVIOUR_RULES if rule.name != "runs"
+    }
 
 
 @pytest.mark.parametrize("stop", ["1e300", "-1"])
