@@ -2,7 +2,7 @@
 kinds, and the table there is made of what they print.
 
 A tool takes part where its package can be imported; for OMSimulator PYTHONPATH may name the folder of a build of one's
-own. The FMUs are those of `build`, made by `driveline build` and `driveline build --fmi 3`.
+own. fmusim takes part where it is on the path. The FMUs are those of `build`, made by `driveline build` and `driveline build --fmi 3`.
 """
 
 import os
@@ -12,6 +12,7 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import which
 from tempfile import TemporaryDirectory
 
 from docs.studies.generated_sections import filled
@@ -25,21 +26,27 @@ from driveline.harness.loop.places import BUILD, NATIVE
 PAGE = ROOT / "docs" / "hosts.md"
 
 LINES: dict[str, str] = dict(
-    re.findall(r"^## (\w+)\n.*?```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S | re.M)
+    re.findall(r"^## (\w+)\n[^#]*?```(?:python|sh)\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S | re.M)
 )
 """Of each tool."""
 
 PACKAGES = {"FMPy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy", "OMSimulator": "OMSimulator"}
 
-INTEGRATED, OF_FMI3 = ('"CoSimulation"', '"ModelExchange"'), ("build/native", "build/fmi3")
+PROGRAM = "fmusim"
+"""A program, whose lines are those of a shell."""
 
-KINDS: dict[str, tuple[tuple[str, str], ...]] = {
+BUILT = "built from source"
+
+INTEGRATED = {'"CoSimulation"': '"ModelExchange"', "--interface-type cs": "--interface-type me"}
+OF_FMI3 = {"build/native": "build/fmi3"}
+
+KINDS: dict[str, tuple[dict[str, str], ...]] = {
     "co-simulation 2.0": (),
     "model exchange 2.0": (INTEGRATED,),
     "co-simulation 3.0": (OF_FMI3,),
     "model exchange 3.0": (INTEGRATED, OF_FMI3),
 }
-"""Of FMUs, with what is put in the place of what in the lines."""
+"""Of FMUs, with what is put in the place of what in the lines of a tool that knows that kind."""
 
 
 def ours() -> float:
@@ -56,14 +63,15 @@ def ours() -> float:
 def cell(host: str, kind: str, right: float) -> str:
     """What comes of the lines of a host with FMUs of a kind."""
     lines = LINES[host]
-    for old, new in KINDS[kind]:
-        if old not in lines:
+    for changes in KINDS[kind]:
+        old = next((old for old in changes if old in lines), None)
+        if old is None:
             return ""
-        lines = lines.replace(old, new)
+        lines = lines.replace(old, changes[old])
     environment = os.environ | {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
     with TemporaryDirectory() as folder:
         Path(folder, "build").symlink_to(BUILD)
-        command = [sys.executable, "-c", lines]
+        command = ["sh" if host == PROGRAM else sys.executable, "-c", lines]
         done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     if done.returncode < 0:
         return "ends the process"
@@ -75,16 +83,18 @@ def version_of(package: str) -> str:
     try:
         return version(package)
     except PackageNotFoundError:
-        return "built from source"
+        return BUILT
 
 
 def table() -> str:
     right = ours()
     rows = ["| tool | " + " | ".join(KINDS) + " |", "|---|" + "---:|" * len(KINDS)]
-    for host, package in PACKAGES.items():
-        if find_spec(package):
-            cells = [cell(host, kind, right) for kind in KINDS]
-            rows.append(f"| {host}, {version_of(package)} | {' | '.join(cells)} |")
+    present = {host: version_of(package) for host, package in PACKAGES.items() if find_spec(package)}
+    if which(PROGRAM):
+        present[PROGRAM] = BUILT
+    for host, made in present.items():
+        cells = [cell(host, kind, right) for kind in KINDS]
+        rows.append(f"| {host}, {made} | {' | '.join(cells)} |")
     return "\n".join(rows)
 
 
