@@ -2,7 +2,8 @@
 kinds, and the table there is made of what they print.
 
 A tool takes part where its package can be imported; for OMSimulator PYTHONPATH may name the folder of a build of one's
-own. fmusim takes part where it is on the path. The FMUs are those of `build`, made by `driveline build` and `driveline build --fmi 3`.
+own. fmusim takes part where it is on the path. The FMUs are those of `build`, made by `driveline build` and
+`driveline build --fmi 3`.
 """
 
 import os
