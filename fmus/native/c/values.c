@@ -183,7 +183,7 @@ RARE static Status get_others(
     return OK;
 }
 
-/* Where one is refused the values of the others are undefined, as FMI has it (3.0.2, section 2.2.4). */
+/* Where one is refused the values of the others are undefined, as the standard has it. */
 Status get_values(Instance *instance, Type type, const Reference references[], size_t count, void *values)
 {
     Memory *memory = &instance->memory;
