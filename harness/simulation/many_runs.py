@@ -15,6 +15,7 @@ from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
 from pathlib import Path
+from pickle import loads
 from tempfile import TemporaryDirectory
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
@@ -160,7 +161,7 @@ def _in_workers(
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
             for each in in_order(workers.submit, batched(cases, batch), AHEAD * count, workers.mend):
-                yield from _gathered(each, workers.submit, Lost)
+                yield from _gathered(each, workers.submit_alone, Lost)
 
         unfinished = True
         try:
@@ -202,7 +203,7 @@ def _gathered(
     Args:
         submitted: cases, and the future of what `answered_by` gives for them.
         submit: what is left of them, where one raised an error or ended its process.
-        loss: is raised where the cases ended their process each time.
+        loss: is raised where the cases ended their process each time, whatever others did.
     """
     batch, future = submitted.batch, submitted.future
     while batch:
@@ -217,12 +218,19 @@ def _gathered(
             return
         except (Exception, SystemExit) as error:
             _raise(error, batch[0])
-        for answer, warnings in answers:
+        for case, (answer, warnings) in zip(batch, answers, strict=False):
             for text in warnings:
                 warn_once(text)
-            yield answer
+            yield _received(answer, case)
         if batch := batch[len(answers) :]:
             future = submit(batch)
+
+
+def _received(answer: bytes, case: object) -> Any:
+    try:
+        return loads(answer)
+    except Exception as error:
+        raise SimulationError(f"{_text(case)}: its answer cannot be read from its worker: {words(error)}") from error
 
 
 def _raise(error: BaseException, case: object) -> NoReturn:

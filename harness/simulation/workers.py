@@ -62,6 +62,14 @@ class Workers:
             future.set_exception(loss)
             return future
 
+    def submit_alone(self, batch: Sequence[Any]) -> "Future[Any]":
+        """As `submit`; if another case has ended its process meanwhile, once more with no other beside it."""
+        future = self.submit(batch)
+        if not _is_lost(future):
+            return future
+        self._begin_again()
+        return self.submit(batch)
+
     def mend(self, waiting: "deque[Submitted]") -> None:
         """Runs once more what was lost with a process, if the first batch was.
 
@@ -165,26 +173,35 @@ def collect_warnings() -> logging.Logger:
     return LOG
 
 
-def _answer(batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
+def _answer(batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
     return answered_by(_function, batch)
 
 
-def answered_by(function: Callable[[Any], Any] | Together, batch: Sequence[Any]) -> list[tuple[Any, list[str]]]:
-    """In a worker: the answers and what was warned of, up to a case that raises an error, which is raised if it is the
-    first; what cannot be sent to the process that waits is told in words. Where cases are answered side by side, the
-    first answer has the warnings of all."""
-    answers: list[tuple[Any, list[str]]] = []
-    _collected.texts.clear()
-    with hidden():
+def answered_by(function: Callable[[Any], Any] | Together, batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
+    """In a worker: the answers as pickle has them and what was warned of, up to a case that raises an error, or whose
+    answer cannot be pickled, which is raised if it is the first; what cannot be sent to the process that waits is told
+    in words. Where cases are answered side by side, the first answer has the warnings of all."""
+    answers: list[tuple[bytes, list[str]]] = []
+    with hidden(), _collected.new() as texts:
         for answer, error in outcomes(function, batch):
-            if error is None:
-                answers.append((answer, list(_collected.texts)))
-                _collected.texts.clear()
-            elif answers:
-                break
-            else:
-                raise _sendable(error)
+            try:
+                if error is not None:
+                    raise _sendable(error)
+                answers.append((_pickled(answer), list(texts)))
+            except BaseException:
+                if answers:
+                    break
+                raise
+            texts.clear()
     return answers
+
+
+def _pickled(answer: Any) -> bytes:
+    try:
+        return dumps(answer)
+    except Exception as error:
+        kind = type(answer).__name__
+        raise SimulationError(f"its answer, a {kind}, cannot be sent to another process: {words(error)}") from None
 
 
 def _sendable(error: BaseException) -> BaseException:

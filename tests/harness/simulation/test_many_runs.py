@@ -9,6 +9,7 @@ import weakref
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from threading import Lock
 
 import pytest
 
@@ -151,6 +152,36 @@ def test_an_error_that_cannot_travel_is_named_with_its_case(case, expected, work
         run_many(foreign, [case, "other"], workers)
 
 
+def unreadable():
+    raise ValueError("made of nothing")
+
+
+class Unreadable:
+    """Is sent, and cannot be made again."""
+
+    def __reduce__(self):
+        return unreadable, ()
+
+
+def untransportable(case):
+    return {2: Lock(), 3: Unreadable()}.get(case, case)
+
+
+@pytest.mark.parametrize("batch", [1, 3])
+@pytest.mark.parametrize(
+    ("cases", "expected"),
+    [
+        ([0, 1, 2, 3], r"case 2: its answer, a lock, cannot be sent to another process: TypeError: cannot pickle .*"),
+        ([0, 1, 3, 2], "case 3: its answer cannot be read from its worker: ValueError: made of nothing"),
+    ],
+)
+def test_an_answer_that_cannot_travel_is_named_with_its_case(cases, expected, batch):
+    known = {}
+    with pytest.raises(SimulationError, match=f"^{expected}$"):
+        run_many(untransportable, cases, workers=2, known=known, batch=batch)
+    assert known == {0: 0, 1: 1}
+
+
 def test_a_long_case_is_shortened():
     with pytest.raises(ValueError, match="could not convert") as error:
         run_many(float, ["word " * 1000], workers=1)
@@ -260,6 +291,25 @@ def test_a_case_that_ends_its_process_is_found_in_its_batch(tmp_path):
     assert known == {case: case for case in range(5)}
 
 
+def test_a_process_that_ends_beside_an_error_is_not_that_of_the_case_with_the_error(tmp_path):
+    """The first batch raises when the second has ended its process, so what is left of it finds that no process is
+    left."""
+
+    def run(case):
+        if case == 1:
+            while not (tmp_path / "ended").exists():
+                time.sleep(0.01)
+            return 1 / 0
+        if case == 3:
+            (tmp_path / "ended").touch()
+            os._exit(3)
+        return case
+
+    with pytest.raises(ZeroDivisionError) as error:
+        run_many(run, range(4), workers=2, batch=2)
+    assert error.value.__notes__ == ["in case 1"]
+
+
 @pytest.mark.parametrize("batch", [0, 1.5])
 def test_a_size_of_batches_that_is_none_is_refused(batch):
     with pytest.raises(DrivelineError, match="batch = "):
@@ -269,6 +319,7 @@ def test_a_size_of_batches_that_is_none_is_refused(batch):
 SCRIPT = """
 import sys, tempfile
 from pathlib import Path
+from threading import Lock
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
