@@ -1,5 +1,10 @@
 """What the user of the harness can mend; the message says what is wrong and what is allowed."""
 
+from .plain_text import plain
+
+LONGEST_LINE = 900
+"""Characters of a line that may repeat what a foreign FMU says."""
+
 
 class DrivelineError(Exception):
     """Base of all errors that the user can mend, but for those of the build; the command line prints them without a
@@ -9,7 +14,13 @@ class DrivelineError(Exception):
 
 
 class WiringError(DrivelineError):
-    """FMUs, connections, inputs or parameters that do not fit together, found before the run."""
+    """FMUs, connections, inputs or parameters that do not fit together, found before the run.
+
+    Each line of the message is printable and not too long, whatever the FMUs say.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__("\n".join(plain(line, LONGEST_LINE) for line in message.split("\n")))
 
 
 class SimulationError(DrivelineError):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from driveline.harness.base.errors import WiringError
+from driveline.harness.base.errors import LONGEST_LINE, WiringError
 from driveline.harness.cosimulation import unpacked_fmu
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.interface import Interface, unit_of
@@ -151,6 +151,20 @@ def test_another_unit_is_named(built, tmp_path, name, old, new, complaint):
     plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", in_unit(name, old, new))
     with pytest.raises(WiringError, match=complaint):
         simulate(MANOEUVRES["tipin15"], plant, folder=built)
+
+
+def test_what_an_fmu_says_at_length_is_repeated_in_short_and_printable(built, tmp_path):
+    """And the end of the sentence goes with it: what follows is not the FMU's to say."""
+
+    def change(xml):
+        return xml.replace('name="T_mot"', f'name="{"T_mot&#x202e;&#10;" * 2000}"', 1)
+
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", change)
+    with pytest.raises(WiringError) as error:
+        simulate(MANOEUVRES["tipin15"], plant, folder=built)
+    lines = str(error.value).split("\n")
+    assert all(line.isprintable() for line in lines)
+    assert max(map(len, lines)) < LONGEST_LINE + 50
 
 
 def test_everything_that_is_wrong_is_named_at_once(built, tmp_path):
