@@ -121,6 +121,14 @@ def test_the_noise_is_held_for_a_sample() -> None:
     assert len(set(seen[:, 0])) == 10
 
 
+@pytest.mark.parametrize("T_s", [0.002, 0.005])
+def test_the_time_in_samples_has_the_rate_of_the_samples(T_s: float) -> None:
+    """For a host that integrates the states; co-simulation has the solution."""
+    p = P._replace(T_s=T_s)
+    rate = motor.BLOCK.derivative(motor.start(motor.Input(), p), motor.Input(), p).sample
+    assert rate * T_s == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize(
     ("t_dead", "stated"), [(0.0, 0.0), (9.9e-5, 0.0), (1e-3, 4e-4), (2e-3, 2e-3), (5e-3, 0.01), (0.01, 0.035)]
 )

@@ -46,3 +46,12 @@ def test_neither_pitch_nor_mounts_are_taken_for_the_drive_train(factor: float) -
         for f in (factor, 1.1 * factor)
     ]
     assert 2.5 < found[0] < found[1] < 12.5
+
+
+@pytest.mark.parametrize("plant", [DESIGN, DETAILED], ids=lambda plant: plant.name)
+def test_behind_a_heavy_motor_what_rolls_out_is_not_taken_for_the_oscillation(plant: ContinuousBlock) -> None:
+    """The speed of a motor of 1.65 kg.m2 shows the rolling vehicle more than the swing."""
+    p = plant.Parameters()
+    found = oscillation(plant, p._replace(J_1=30.0 * p.J_1))
+    assert 1.0 < found.frequency < 3.0
+    assert found.damping_ratio < 0.3

@@ -155,6 +155,27 @@ def test_free_runs_are_fitted_from_the_predicted_parameters_where_those_do_bette
     assert estimate.p == given[-1][0]
 
 
+@pytest.mark.parametrize(("g_T", "kept"), [(0.83, True), (0.85, False), (1.15, False), (1.17, True)])
+def test_a_motor_torque_has_a_gain_where_it_is_off_by_more_than_four_deviations(
+    g_T: float, kept: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To either side; the deviation is 0.04 here."""
+
+    class Pieces:
+        def __init__(self, free: tuple[str, ...]) -> None:
+            self.free = free
+
+        def fit(self, p: Parameters, starts: object, most: int = 0) -> Fitted:
+            scaled = p._replace(g_T=g_T) if "g_T" in self.free else p
+            return Fitted(scaled, self.free, 0.0, np.zeros((1, 4)), 0.04**2 * np.eye(len(self.free)), 1.0)
+
+    monkeypatch.setattr(identify, "segments", lambda _, free, __: Pieces(free))
+    monkeypatch.setattr(identify, "near_starts", lambda *_: None)
+    monkeypatch.setattr(identify, "filtered", lambda *_: None)
+    found = identify.output_error_fit(simulated(seed=1, n=3000), P, NOISE, near=True)
+    assert (found.p.g_T == g_T) == kept
+
+
 @pytest.mark.parametrize("late", [0.0, 0.0005, -0.0003])
 def test_a_motor_torque_that_is_recorded_late_is_found_and_nothing_else_where_all_is_aligned(late: float) -> None:
     """It is recorded late where it acts as much earlier. A load torque as slow as here does not tell it from a motor

@@ -30,6 +30,12 @@ def test_a_step_comes_at_the_same_sample_whatever_the_rounding_of_time(step_size
         np.testing.assert_array_equal(MANOEUVRES["tipin15"].T_driver(t), expected)
 
 
+def test_regenerative_braking_reverses_the_torque_at_once_or_within_a_fifth_of_a_second():
+    for name, halfway in {"regen": -60.0, "regenr": 0.0}.items():
+        T = MANOEUVRES[name].T_driver(np.array([0.999, 1.1, 1.2]))
+        assert pytest.approx([60.0, halfway, -60.0], abs=1e-9) == T, name
+
+
 def test_ramps_rise_within_their_time():
     assert MANOEUVRES["tipin50r"].T_driver([1.0, 1.075, 1.15, 2.0]) == pytest.approx([-12, 44, 100, 100])
     assert MANOEUVRES["launch"].T_driver([0.0, 1.0, 1.05, 1.1, 6.0]) == pytest.approx([0, 0, 60, 120, 120])

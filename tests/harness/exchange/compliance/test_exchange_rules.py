@@ -44,6 +44,7 @@ def test_ours_is_in_order_without_co_simulation_too(native, tmp_path):
     [
         ({"IN_DERIVATIVES": "dx[1]=NAN"}, {"exchange-runs"}, r"der\(v\) is nan|CVode cannot integrate"),
         ({"IN_DERIVATIVES": "return 3"}, {"exchange-runs", "exchange-reset"}, "answered fmi2GetDerivatives with error"),
+        ({"IN_DERIVATIVES": "if(now>0.5)return 3"}, {"exchange-runs"}, "answered fmi2GetDerivatives with error"),
         ({"IN_NEW_STATES": "info->needed=1"}, NAMES - {"exchange-states"}, "wants another iteration after 100 at 0 s"),
         ({"NOMINAL": "0.0"}, {"exchange-nominals"}, r"the nominal value of the state of der\(s\) is 0.0"),
         ({"NOMINAL": "-1.0"}, {"exchange-nominals"}, r"the nominal value of the state of der\(s\) is -1.0"),

@@ -1,0 +1,46 @@
+"""What counts as the same torque in single and in double precision. The programs are stand-ins."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from driveline.fmus.target.link import Answer
+from driveline.harness.exchange.target.comparison import compare
+from driveline.harness.exchange.target.offline_cases import Case
+from driveline.harness.exchange.target.programs import Programs
+
+CASE = Case("two samples", ("T_driver",), np.zeros((2, 1)), None, False)
+
+
+class StandIn:
+    """A program that demands the same torque in each sample."""
+
+    def __init__(self, T_ref: float) -> None:
+        self.answer = Answer((T_ref, 0.0), (0.0,), b"", 1, 2)
+
+    def __enter__(self) -> "StandIn":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def start(self, u: Any) -> Answer:
+        return self.answer
+
+    update = start
+
+
+@pytest.mark.parametrize(
+    ("T_ref", "distance", "margin"), [(100.0, 0.011, 1.0), (-100.0, 0.0055, 0.5), (0.0, 1e-3, 1.0)]
+)
+def test_torques_may_differ_by_a_millinewton_metre_and_a_ten_thousandth(
+    T_ref: float, distance: float, margin: float
+) -> None:
+    target, double = StandIn(T_ref + distance), StandIn(T_ref)
+    starts: list[Any] = [lambda: target, lambda: target, lambda: double]
+    found = compare(Programs(*starts, Path(), ""), CASE, ("T_ref", "T_gear_hat"))
+    assert found.margin == pytest.approx(margin)
+    assert found.T_ref == pytest.approx(distance)
+    assert (found.differing, found.instructions, found.stack) == (0, (1.0, 1), 2)
