@@ -10,7 +10,7 @@ from html import escape
 from math import inf
 from threading import Event, Thread
 from time import monotonic
-from typing import Any
+from typing import Any, TextIO
 
 from .interruption import end_if_abandoned, uninterrupted_children
 from .plain_text import plain
@@ -101,7 +101,7 @@ def _in_notebook() -> bool:
 @contextmanager
 def _of_stderr(total: int, label: str) -> Iterator[Callable[[float], None]]:
     counts, ended = [0.0], Event()
-    thread = Thread(target=_attend, args=(total, label, counts, ended), daemon=True)
+    thread = Thread(target=_attend, args=(total, label, counts, ended, sys.stderr), daemon=True)
     with uninterrupted_children():
         thread.start()
     try:
@@ -111,16 +111,16 @@ def _of_stderr(total: int, label: str) -> Iterator[Callable[[float], None]]:
         thread.join()
 
 
-def _attend(total: int, label: str, counts: Sequence[float], ended: Event) -> None:
-    """Shows the count until it is ended, whether it changes or not."""
+def _attend(total: int, label: str, counts: Sequence[float], ended: Event, shown: TextIO) -> None:
+    """Shows the count until it is ended, whether it changes or not, where stderr was when it began."""
     if ended.wait(QUIET):
         return
     from rich import markup  # only a long run needs it
     from rich.console import Console
     from rich.progress import Progress
 
-    animated = is_terminal(sys.stderr)
-    console = Console(file=sys.stderr)
+    animated = is_terminal(shown)
+    console = Console(file=shown)
     with Progress(console=console, transient=True, speed_estimate_period=inf, disable=not animated) as bar:
         bar.add_task(markup.escape(label), total=total)
         (task,) = bar.tasks
@@ -129,7 +129,7 @@ def _attend(total: int, label: str, counts: Sequence[float], ended: Event) -> No
             bar.update(task.id, completed=counts[0])
             if not animated and monotonic() >= due:
                 left = "" if task.time_remaining is None else f", {timedelta(seconds=task.time_remaining)} left"
-                print(f"{label}: {task.percentage:.0f} %{left}", file=sys.stderr, flush=True)
+                print(f"{label}: {task.percentage:.0f} %{left}", file=shown, flush=True)
                 pause = min(2.0 * pause, MOST_PAUSE)
                 due = monotonic() + pause
             if ended.wait(REFRESH):

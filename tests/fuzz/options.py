@@ -8,7 +8,6 @@ from pathlib import Path
 from random import Random
 
 from driveline.fmus.building.builds import build_fmus
-from driveline.harness.base.progress import hidden
 from driveline.harness.commands.cli import COMMANDS, main, parser
 from tests.fuzz.damage import ODD
 from tests.fuzz.target import Attempt, Target, Unclean
@@ -63,8 +62,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         arguments = [command, *(fixed if command == RUN else []), *(w for a in drawn for w in words(a, random))]
         message, out = io.StringIO(), io.StringIO()
         try:
-            # odd words name files in the folder; the progress of a slow run is no message
-            with chdir(folder), hidden(), redirect_stderr(message), redirect_stdout(out):
+            with chdir(folder), redirect_stderr(message), redirect_stdout(out):  # which odd words name files in
                 answer = code(arguments)
         except Exception as error:
             raise Unclean(f"driveline {arguments}: {error!r}") from error

@@ -55,6 +55,12 @@ def test_a_long_run_shows_its_share_and_the_time_left_on_a_terminal_before_its_f
         eventually(shown, "0:00:0")
 
 
+def test_what_is_said_within_it_elsewhere_is_not_mixed_with_its_lines():
+    with redirect_stderr(io.StringIO()) as shown, progress(4, "tip-in"), redirect_stderr(io.StringIO()) as other:
+        eventually(shown, "tip-in")
+    assert other.getvalue() == ""
+
+
 @pytest.mark.parametrize("terminal", ["xterm", "dumb"])
 def test_the_name_of_a_file_is_shown_as_it_is_but_for_what_a_terminal_obeys(terminal, monkeypatch):
     monkeypatch.setenv("TERM", terminal)
