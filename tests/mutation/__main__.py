@@ -20,7 +20,7 @@ from pathlib import Path
 from mutants import Mutant, mutants_of
 from page import gone, reasons, record, write_page
 from sample import Sample
-from touched import KEPT, Test, Touched, own_tests
+from touched import KEPT, Test, Touched, is_in_function, own_tests
 from workers import finders
 
 LEAST_SCORE = 0.95
@@ -129,13 +129,17 @@ def sampled(size: int, seed: int, workers: int) -> bool:
 
 
 def tests_of(mutant: Mutant, touched: Touched) -> tuple[Sequence[Sequence[str]], Sequence[str]]:
-    """What may find a fault, in rounds in the order in which they are run; and the tests whose slow ones may too."""
+    """What may find a fault, in rounds in the order in which they are run; and the tests whose slow ones may too.
+
+    The last round is for what no test is seen to touch: what runs in another process, or while a module is imported.
+    """
     name = Path(mutant.file).name
     if name in IN_C:
         return [IN_C[name]], IN_C[name]
     own, naming, touching = own_tests(mutant.file), touched.naming(mutant.file), chosen(touched.by(mutant))
     unseen, others = ([test for test in naming if (test in own) is is_own] for is_own in (True, False))
-    return [[*unseen, *by_file(touching[:FEW])], [*by_file(touching[FEW:]), *others]], own
+    first, then = [*unseen, *by_file(touching[:FEW])], [*by_file(touching[FEW:]), *others]
+    return [first, then, own if touching and is_in_function(mutant) else touched.naming_files(mutant.file)], own
 
 
 def chosen(tests: Sequence[Test]) -> list[str]:

@@ -222,12 +222,16 @@ class Touched:
 
     def naming(self, file: str) -> list[str]:
         """Those of them that name a module, its own first, then tests of files that do which did not pass here."""
+        files = self.naming_files(file)
+        left_out = [test for test in self.left_out if test.partition("::")[0] in {*files} - {*self.unseen}]
+        return [each for each in files if each in self.unseen] + left_out
+
+    def naming_files(self, file: str) -> list[str]:
+        """All files of tests that name a module, its own first."""
         stem = Path(file).stem
         name = re.compile(rf"[./]{stem}\b|import .*\b{stem}\b")
         own = own_tests(file)
-        others = [e for e in test_files() if e not in own and name.search((ROOT / e).read_text(encoding="utf-8"))]
-        left_out = [test for test in self.left_out if test.partition("::")[0] in {*own, *others} - {*self.unseen}]
-        return [each for each in (*own, *others) if each in self.unseen] + left_out
+        return own + [e for e in test_files() if e not in own and name.search((ROOT / e).read_text(encoding="utf-8"))]
 
     def by(self, mutant: Mutant) -> list[Test]:
         """The tests that touch the place of a fault, the cheapest and its own first and those of one function apart.
@@ -249,6 +253,11 @@ class Touched:
             for line, contexts in data.contexts_by_lineno(file).items():
                 if lines is None or line in lines:
                     yield from contexts
+
+
+def is_in_function(mutant: Mutant) -> bool:
+    """Whether a fault is in what runs when a function is called, and not while the module is imported."""
+    return bool(_place(ast.parse((ROOT / mutant.file).read_bytes()), mutant.line)[0])
 
 
 def own_tests(file: str) -> list[str]:
