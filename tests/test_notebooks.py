@@ -112,6 +112,7 @@ def executed(path: Path, last_cell: str, folder: Path) -> tuple[list[Any], list[
 
 
 @pytest.mark.parametrize("path", slow(NOTEBOOKS, but=QUICK), ids=lambda path: path.stem)
+@pytest.mark.slow
 def test_a_notebook_runs_and_shows_what_it_says(path: Path, folder_of_user: Path) -> None:
     outputs, displayed = executed(path, dedent(IMPORTS) + dedent(SHOWN[path.stem]), folder_of_user)
     assert [output for output in outputs if output.get("name") == "stderr"] == [], "nothing is warned of"

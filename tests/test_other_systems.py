@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 from docs.studies.rooms import modules
 from tests import ROOT
 
@@ -37,6 +39,7 @@ assert sys.modules["driveline.harness.base.atomic_files"].fcntl is None
 """
 
 
+@pytest.mark.slow
 def test_every_module_is_imported_without_what_windows_lacks() -> None:
     names = [
         f"driveline.{name}" for name in modules() if not name.startswith("docs.") and not name.endswith("__main__")

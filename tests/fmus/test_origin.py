@@ -43,6 +43,7 @@ def test_what_is_missing_or_stale_is_built_and_nothing_else(tmp_path: Path, late
     assert not is_stale(path)
 
 
+@pytest.mark.slow
 def test_a_build_leaves_what_is_there_as_it_would_make_it(tmp_path: Path, later, monkeypatch) -> None:
     monkeypatch.delenv("CC", raising=False)
 
@@ -66,6 +67,7 @@ def test_a_build_leaves_what_is_there_as_it_would_make_it(tmp_path: Path, later,
     assert made_again()
 
 
+@pytest.mark.slow
 def test_builds_side_by_side_are_those_one_after_the_other(tmp_path: Path, native: Path) -> None:
     together = list(build_fmus([], tmp_path, "native"))
     assert [path.stem for path in together] == list(FMUS)

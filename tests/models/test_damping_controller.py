@@ -36,6 +36,7 @@ HELD = (0.0, (0.0, 0.0, 0.0, 0.0))
 
 @given(inputs=st.lists(any_input, min_size=1, max_size=20))
 @settings(max_examples=25)
+@pytest.mark.slow
 def test_it_recovers_from_whatever_came_in(inputs: list[Input]) -> None:
     """The torque is that of a controller that never saw it; a motor that turned backwards heals in t_turn."""
     x = run(BLOCK, [*inputs, *DRIVEN])[-1]

@@ -156,6 +156,7 @@ def test_gain_and_offset(signal):
     assert (getattr(passed(**fault(OFFSET, signal, -30.0))[0], FIELD[signal])[NOW] == right - 30.0).all()
 
 
+@pytest.mark.slow
 def test_noise_has_its_standard_deviation_and_follows_from_the_seed():
     given = fault(NOISE, MOTOR_SPEED, size=1.5) | {"end_1": 8.0}
     one, same, other = (passed(samples=4000, seed=seed, **given) for seed in (1, 1, 2))

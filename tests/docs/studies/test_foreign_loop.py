@@ -39,6 +39,7 @@ def require_right(found: Identified, car: Car, loop: Loop) -> None:
         pytest.param(Loop("plant first"), ["motor torque looks early: it is recorded 0.5"], marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.slow
 def test_a_skew_is_found_and_named_and_nothing_else(loop: Loop, channels: list[str], tmp_path: Path) -> None:
     found = identified(CARS[0], loop, tmp_path)
     require_right(found, CARS[0], loop)
@@ -65,6 +66,7 @@ def test_cars_in_other_loops_are_right_to_within_what_is_asked(number: int, loop
 
 
 @pytest.mark.parametrize("late_omega", slow([0.0, 0.001], but=[0.001]))
+@pytest.mark.slow
 def test_of_a_weak_excitation_what_it_does_not_tell_is_named_and_no_cause(late_omega: float, tmp_path: Path) -> None:
     loop = Loop("averaged", mean=25.0, amplitude=2.0, late_omega=late_omega)
     found = identified(CARS[2], loop, tmp_path)

@@ -280,5 +280,6 @@ def run_calls(calls: type[Calls], fmu: Path, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
+@pytest.mark.slow
 def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_nothing(both_built, tmp_path, name):
     run_calls(Calls, both_built / NATIVE / f"{name}.fmu", tmp_path)

@@ -26,5 +26,6 @@ class CallsOfFmi3(Calls):
 
 
 @pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
+@pytest.mark.slow
 def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_nothing(fmi3, tmp_path, name):
     run_calls(CallsOfFmi3, fmi3 / f"{name}.fmu", tmp_path)

@@ -255,6 +255,7 @@ def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, w
 
 @settings(max_examples=40)
 @given(kinks=st.integers(1, 80), jump=st.floats(0.1, 100.0))
+@pytest.mark.slow
 def test_kinks_without_indicators_cost_as_many_steps_as_in_python(
     integrator: MakeIntegrator, kinks: int, jump: float
 ) -> None:

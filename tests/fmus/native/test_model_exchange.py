@@ -626,6 +626,7 @@ STEP_ERROR = 1e-3
 
 
 @pytest.mark.parametrize(("manoeuvre", "plant"), [("tipin15", PLANTS[0]), ("launch", PLANTS[1])])
+@pytest.mark.slow
 def test_plant_and_motor_give_the_torque_of_co_simulation(both_built, manoeuvre, plant):
     of_plant, of_motor = recorded(manoeuvre, plant, both_built)
     for run in (of_plant, of_motor) if manoeuvre == "tipin15" else (of_plant,):

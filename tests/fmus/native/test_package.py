@@ -67,6 +67,7 @@ def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
 @pytest.mark.usefixtures("uncached_compiler")
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="there is no cmake")
 @pytest.mark.parametrize("name", slow(["MotorTorqueLoop", "DampingController"], but=["MotorTorqueLoop"]))
+@pytest.mark.slow
 def test_its_sources_compile_with_fmpy(native, tmp_path, name):
     folder = unpacked(native, tmp_path, name)
     shutil.rmtree(folder / "binaries")

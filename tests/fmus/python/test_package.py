@@ -34,6 +34,7 @@ def copied_project(tmp_path):
     return copied_sources(tmp_path / "elsewhere", "models", "fmus")
 
 
+@pytest.mark.slow
 def test_a_rebuild_elsewhere_gives_the_same_bytes(built, copied_project):
     code, message = run(["build_fmus.py", "--build", "python", "--output", "out"], copied_project, PYTHONHASHSEED="7")
     assert code == 0, message

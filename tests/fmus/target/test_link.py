@@ -98,6 +98,7 @@ def test_nothing_is_left_when_the_link_is_closed() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="of prctl")
+@pytest.mark.slow
 def test_nothing_is_left_when_the_one_that_started_it_is_killed() -> None:
     """Even if the target hangs and does not see that its link was closed."""
     text = f"""

@@ -227,6 +227,7 @@ def simulate(capsys, both_built, tmp_path):
     return run
 
 
+@pytest.mark.slow
 def test_simulate_writes_what_was_asked_for(simulate, built):
     plant = str(built / f"{PLANTS[0]}.fmu")
     arguments = ("--plant", plant, "--manoeuvre", "launch", "--control", "off", "--step", "0.002", "--build", "python")
@@ -263,6 +264,7 @@ def test_with_steps_that_miss_the_samples_of_the_controller_it_is_said_why_there
     assert (folder / "TwoMassDriveline_tipin15_on.csv").is_file()
 
 
+@pytest.mark.slow
 def test_simulate_draws_the_run_and_says_nothing_if_quiet(simulate):
     message, folder = simulate("--step", "0.002", "--plot", "--quiet")
     assert message == (0, "", "")
@@ -350,6 +352,7 @@ def test_missing_fmus_are_answered_with_the_command_that_makes_them(capsys, tmp_
     assert f"`{made_by} --output {tmp_path}` makes it" in err
 
 
+@pytest.mark.slow
 def test_compare_as_a_document_has_every_metric_of_every_run(capsys, both_built, tmp_path):
     given = ("--fmus", str(both_built), "--output", str(tmp_path), "--manoeuvre", "prbs15", "--plant", PLANTS[0])
     code, out, err = answer(capsys, "compare", *given, "--set", "controller.k_d=0", "--json")

@@ -65,6 +65,7 @@ def read_drive_speed(ride):
 
 
 @pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
+@pytest.mark.slow
 def test_a_comparison_writes_its_runs_in_the_format(native, tmp_path, name):
     options = ["--plant", "TwoMassDriveline", "--manoeuvre", "prbs15", "--fmus", str(native.parent), "--quiet"]
     assert main(["compare", *options, "--output", str(tmp_path), "--format", name]) == 0

@@ -50,6 +50,7 @@ def require_close(document: dict, name: str, true: float, relative: float) -> No
     assert deviation < relative * true, name
 
 
+@pytest.mark.slow
 def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_same(
     identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -85,6 +86,7 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
     assert {name: (folder / name).read_bytes() for name in before} == before
 
 
+@pytest.mark.slow
 def test_more_parameters_can_be_freed(identify: Identify, tmp_path: Path, without_figures: None) -> None:
     """Each once, however often it is asked for; J_1 then stands in the vehicle file."""
     assert identify("--free", "J_1", "--free", "d", "--free", "J_1", "--quiet") == 0
@@ -117,6 +119,7 @@ def test_without_load_torque_and_demand_the_result_has_another_name(
     assert read_vehicle(tmp_path / "car.toml").keys() == {"C", "phi_B"}
 
 
+@pytest.mark.slow
 def test_the_vehicle_file_that_is_given_is_what_is_known(
     identify: Identify, tmp_path: Path, capsys: pytest.CaptureFixture[str], without_figures: None
 ) -> None:
@@ -149,6 +152,7 @@ def test_a_file_whose_folder_cannot_be_made_is_refused_before_the_search(
     assert "predicted" not in message.out
 
 
+@pytest.mark.slow
 def test_stopped_while_figures_are_drawn_it_leaves_no_vehicle_file(
     identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -160,6 +164,7 @@ def test_stopped_while_figures_are_drawn_it_leaves_no_vehicle_file(
     assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()] == []
 
 
+@pytest.mark.slow
 def test_design_writes_gains_and_both_builds_and_compares(
     identify: Identify,
     tmp_path: Path,
@@ -237,6 +242,7 @@ def test_a_recording_that_is_too_short_is_refused_and_nothing_written(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_car_that_is_hardly_known_is_told_but_not_written(
     identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

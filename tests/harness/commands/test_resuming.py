@@ -73,6 +73,7 @@ def command(fmus: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Kind, Path
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
+@pytest.mark.slow
 def test_a_campaign_that_was_stopped_ends_with_the_bytes_of_one_that_was_not(
     command: Callable[[Kind, Path], int],
     kind: Kind,

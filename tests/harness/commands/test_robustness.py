@@ -65,6 +65,7 @@ def test_the_folder_gets_the_runs_the_page_and_the_figures(
     assert record["files"][:4] == ["runs.csv", "draws.csv", "summary.csv", "robustness.md"]
 
 
+@pytest.mark.slow
 def test_more_cases_go_on_where_fewer_ended_with_the_same_bytes(
     robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

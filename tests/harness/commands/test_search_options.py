@@ -25,6 +25,7 @@ def search(native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cal
     return lambda *more: main([*given, "--fmus", str(native.parent), "--build", "native", *more])
 
 
+@pytest.mark.slow
 def test_the_folder_gets_the_gains_the_candidates_and_the_front(
     search: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -59,6 +59,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder / "fmus"
 
 
+@pytest.mark.slow
 def test_those_of_the_project_are_built_again_in_the_cache_and_it_is_said_once(
     stale: Path, cache: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -76,6 +77,7 @@ def test_those_of_the_project_are_built_again_in_the_cache_and_it_is_said_once(
     assert {path: path.read_bytes() for path in stale.rglob("*") if path.is_file()} == before
 
 
+@pytest.mark.slow
 def test_a_run_with_an_fmu_of_the_cache_is_the_same_run(
     stale: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -127,6 +129,7 @@ def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeyp
     assert built_fmus.built(str(plant), folder=both_built, build="python").build == "python"
 
 
+@pytest.mark.slow
 def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
     stale: Path, cache: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

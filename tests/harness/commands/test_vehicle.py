@@ -9,6 +9,7 @@ from driveline.harness.commands.cli import main
 from tests.foreign import build_car
 
 
+@pytest.mark.slow
 def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
     both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -38,6 +39,7 @@ def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_m
         assert "plant.m is in m, which does not convert into kg, the unit of the file" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_what_a_vehicle_file_does_not_reach_is_said(
     both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -81,6 +81,7 @@ def torques_apart(one, other):
 @pytest.mark.parametrize("lanes", slow(WIDTHS, but=WIDTHS[:1]))
 @pytest.mark.parametrize("plant", slow(["TwoMassDriveline", "ValidationVehicle"], but=["ValidationVehicle"]))
 @pytest.mark.parametrize("manoeuvre", slow(["tipin15", "launch_brake"], but=["tipin15"]))
+@pytest.mark.slow
 def test_they_are_those_of_single_runs(both_built, libraries, lanes, plant, manoeuvre):
     system = loop(plant, folder=both_built, build="native")
     cars = [car(number, manoeuvre, 1.2) for number in range(lanes)]

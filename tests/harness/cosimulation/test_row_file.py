@@ -39,6 +39,7 @@ def test_rows_up_to_a_size_are_in_memory_and_more_in_a_file(monkeypatch: pytest.
     assert not rows.any()
 
 
+@pytest.mark.slow
 def test_a_run_in_a_file_is_the_same(native: Path, in_files: None, tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as short:
         short.setattr(row_file, "MOST_IN_MEMORY", 2**26)

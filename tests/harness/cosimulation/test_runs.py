@@ -71,6 +71,7 @@ def test_a_file_that_has_changed_is_loaded_anew(native, tmp_path):
             run(System({"block": block}), Experiment(0.01))
 
 
+@pytest.mark.slow
 def test_only_the_last_ones_are_kept(relay, unpacked):
     systems = [System({f"a{k}": relay}) for k in range(MOST_KEPT + 1)]
     with kept_loaded():

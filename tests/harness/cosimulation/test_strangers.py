@@ -274,6 +274,7 @@ def test_what_a_stranger_prints_goes_nowhere(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+@pytest.mark.slow
 def test_a_slow_stranger_may_take_longer_than_one_call(tmp_path):
     system = System({"car": build_stranger(tmp_path, IN_DO_STEP="usleep(100000)")}, limits=Limits(call=0.4))
     begun = time.monotonic()

@@ -131,6 +131,7 @@ def test_a_token_that_is_none_is_no_session(token: str) -> None:
 
 
 @pytest.mark.parametrize("number", slow([signal.SIGINT, signal.SIGTERM], but=[signal.SIGTERM]))
+@pytest.mark.slow
 def test_a_stop_leaves_no_process_and_no_traceback(with_washout: Path, tmp_path: Path, number: int) -> None:
     served = Served(with_washout, tmp_path)
     group = os.getpgid(served.process.pid)

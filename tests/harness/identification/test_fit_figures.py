@@ -182,6 +182,7 @@ PLOTS: dict[str, Plot] = {
 
 @pytest.mark.parametrize("load", slow([True, False], but=(True,)), ids=["with load", "without load"])
 @pytest.mark.parametrize("plot", slow(PLOTS, but=("response",)))
+@pytest.mark.slow
 def test_the_same_answer_gives_the_same_bytes(plot: str, load: bool, tmp_path: Path) -> None:
     one = answer() if load else without_load()
     of = recording() if load else replace(recording(), T_load=None, valid=None)

@@ -148,6 +148,7 @@ def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert refusal(path) == "takes more than 0.01 s to read"
 
 
+@pytest.mark.slow
 def test_without_limits_of_the_system_a_file_is_read_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "drive.parquet"
     write_arrow(recording(), path)

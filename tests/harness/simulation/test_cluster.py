@@ -46,6 +46,7 @@ def answers(function, cases, cluster):
         return list(answered(cases))
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
     from driveline.harness.simulation.cluster import MOST_UNDER_WAY
 

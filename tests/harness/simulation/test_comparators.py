@@ -84,6 +84,7 @@ def test_what_is_told_is_the_plant_s_motion(folder: Path) -> None:
     assert results["controller.T_gear_hat"][50:] == pytest.approx(results["plant.T_gear"][50:], abs=1.0)
 
 
+@pytest.mark.slow
 def test_all_fmus_are_those_of_the_product_and_a_comparator_is_built_by_its_name(tmp_path: Path) -> None:
     assert [path.stem for path in build_fmus((), tmp_path, "python")] == list(FMUS)
     assert [path.name for path in build_fmus(["SpeedWashout"], tmp_path, "python")] == ["SpeedWashout.fmu"]

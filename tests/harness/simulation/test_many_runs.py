@@ -68,6 +68,7 @@ def in_folder(fmus):
     return tip_in
 
 
+@pytest.mark.slow
 def test_answers_do_not_depend_on_the_workers_nor_on_the_order(both_built, unpacked):
     tip_in = in_folder(both_built)
     here = run_many(tip_in, CASES, workers=1)
@@ -190,6 +191,7 @@ def test_a_long_case_is_shortened():
     assert len(note) < 220
 
 
+@pytest.mark.slow
 def test_a_crash_is_told(native, unpacked):
     def crash(case):
         in_folder(native.parent)(CASES[0])
@@ -392,6 +394,7 @@ run_many(case, range(4), workers=2)
 """
 
 
+@pytest.mark.slow
 def test_workers_end_when_the_process_that_waits_is_killed(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
     command = [sys.executable, "-c", ORPHANED]

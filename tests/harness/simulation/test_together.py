@@ -50,6 +50,7 @@ def swing(folder: Path):
     return of
 
 
+@pytest.mark.slow
 def test_the_answers_are_those_of_single_runs(both_built, lanes, in_lanes, monkeypatch):
     plants = ("TwoMassDriveline", "TwoMassDriveline", "ValidationVehicle")
     cases = [(plants[k % 3], k) for k in range(16)]
@@ -79,6 +80,7 @@ def test_without_a_compiler_they_go_alone_and_the_log_says_why(both_built, lanes
     assert "no-such-compiler" in caplog.text
 
 
+@pytest.mark.slow
 def test_a_run_that_changes_a_parameter_is_that_of_a_single_run(both_built, lanes):
     def end(time: float) -> float:
         parameters = {"controller.k_d": 2.0, f"controller.k_d@{time:g}": 0.0}
@@ -100,6 +102,7 @@ def test_a_stream_goes_in_lanes_if_its_batches_are_large(both_built, lanes, in_l
     assert sum(in_lanes) == 10
 
 
+@pytest.mark.slow
 def test_the_bits_do_not_depend_on_workers_nor_on_what_is_known(both_built, lanes):
     cases = [(("TwoMassDriveline", "ValidationVehicle")[k % 3 == 0], k) for k in range(7)]
     found = run_many(swing(both_built), cases, workers=1)

@@ -175,6 +175,7 @@ def test_the_gap_is_shaded_in_every_row_and_told_once(drawn: Drawn) -> None:
         assert labels.count(GAP) == 1
 
 
+@pytest.mark.slow
 def test_a_run_with_long_steps_is_drawn_without_what_needs_the_samples_of_the_controller(tmp_path: Path) -> None:
     for stride in (7, 100):
         plot_run(STEPS[0][::stride], TIPIN, "Plant", tmp_path / "run", FigureOptions(kinds=("png",)))
@@ -281,6 +282,7 @@ def test_legends_and_notes_cover_no_curve(drawn: Drawn, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", slow(["step", "replay"], but=("replay",)))
+@pytest.mark.slow
 def test_the_same_runs_give_the_same_files_of_every_kind(name: str, tmp_path: Path) -> None:
     first, second = ([*PLOTS[name](tmp_path / part / "run", FigureOptions(kinds=tuple(KINDS)))] for part in "ab")
     assert [file.suffix for file in first] == [".png", ".pdf", ".svg"]
@@ -296,6 +298,7 @@ def test_the_same_runs_give_the_same_files_of_every_kind(name: str, tmp_path: Pa
     assert "<text" not in svg, "which would look for a font that may not be there"
 
 
+@pytest.mark.slow
 def test_nothing_but_png_and_pdf_is_written_unless_asked(tmp_path: Path) -> None:
     files = PLOTS["step"](tmp_path / "run", FigureOptions())
     assert [file.name for file in files] == ["run.png", "run.pdf"] == sorted(p.name for p in tmp_path.iterdir())[::-1]

@@ -26,6 +26,7 @@ def test_the_designed_gains_cost_one_and_others_cost_otherwise(evaluation: CostE
     assert soft.total() > 1.1
 
 
+@pytest.mark.slow
 def test_what_a_candidate_costs_depends_on_nothing_else(evaluation: CostEvaluation) -> None:
     with evaluation.opened(workers=1) as costs_of:
         alone = [next(costs_of([candidate])) for candidate in (SOFT, HARD)]

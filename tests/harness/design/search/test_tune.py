@@ -32,6 +32,7 @@ def searched(
     return tune(evaluation, OURS, count, seed, folder, **{"workers": 1, **settings})  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_a_search_is_the_same_on_any_number_of_cores(evaluation: CostEvaluation, tmp_path: Path) -> None:
     assert searched(evaluation, tmp_path / "1") == searched(evaluation, tmp_path / "2", workers=2)
     written = [(tmp_path / n / EVALUATIONS).read_bytes() for n in ("1", "2")]
@@ -39,6 +40,7 @@ def test_a_search_is_the_same_on_any_number_of_cores(evaluation: CostEvaluation,
     assert sorted(path.name for path in (tmp_path / "1").iterdir()) == [EVALUATIONS, RECORD]
 
 
+@pytest.mark.slow
 def test_one_that_was_stopped_goes_on_and_ends_with_the_same_bytes(
     evaluation: CostEvaluation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -75,6 +77,7 @@ def test_what_is_known_is_not_run_again(
     assert searched(evaluation, tmp_path) == before
 
 
+@pytest.mark.slow
 def test_another_search_is_replaced_only_if_asked(evaluation: CostEvaluation, tmp_path: Path) -> None:
     searched(evaluation, tmp_path, count=3)
     before = (tmp_path / EVALUATIONS).read_bytes()

@@ -74,6 +74,7 @@ def test_the_database_in_it_is_the_one_beside_it(sender: Path) -> None:
 
 
 @pytest.mark.usefixtures("uncached_compiler")
+@pytest.mark.slow
 def test_the_same_car_gives_the_same_bytes(sender: Path, tmp_path: Path) -> None:
     assert main(["bus", "--fmu", "--output", str(tmp_path), "--quiet"]) == 0
     assert (tmp_path / sender.name).read_bytes() == sender.read_bytes()

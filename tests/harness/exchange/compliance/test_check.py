@@ -189,6 +189,7 @@ def test_a_fault_in_the_behaviour_is_found_and_leaves_nothing_behind(tmp_path, f
 
 
 @pytest.mark.parametrize("build", ["native", "fmi3"])
+@pytest.mark.slow
 def test_a_parameter_that_is_called_tunable_and_is_fixed_is_found(request, tmp_path, build):
     faulty = tampered(
         request.getfixturevalue(build) / "MotorTorqueLoop.fmu",
@@ -341,6 +342,7 @@ def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
     assert len(suite.findall("testcase/skipped")) == len(names)
 
 
+@pytest.mark.slow
 def test_an_ignored_rule_is_not_tried(tmp_path):
     path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
     severities = {rule: severity for rule, (severity, _) in broken(path).items()}

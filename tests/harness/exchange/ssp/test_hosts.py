@@ -62,6 +62,7 @@ def test_a_sine_and_a_binary_torque_are_driven_there_too(packaged, fmus, host, n
 
 
 @pytest.mark.parametrize("host", [host("libcosim"), host("ecos")])
+@pytest.mark.slow
 def test_signals_in_other_units_are_converted(packaged, fmus, host, tmp_path) -> None:
     car = build_car(tmp_path / "car", omega_1=("n", "rev/min", 2.0 * np.pi / 60.0), T_mot=("T", "kN.m", 1e3))
     mapping = {"plant.omega_1": "n", "plant.T_mot": "T"}
@@ -83,6 +84,7 @@ def test_the_command_line_of_omsimulator_runs_it(packaged, fmus) -> None:
 
 
 @pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.slow
 def test_fmpy_gets_what_our_master_would_get_if_all_inputs_began_with_zero(packaged, fmus, plant, monkeypatch) -> None:
     def zeros(self, wires, table) -> None:
         data, row, known = table.view(np.uint8).data, wires.row, wires.layout.known

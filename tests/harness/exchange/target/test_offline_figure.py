@@ -12,6 +12,7 @@ from tests.slow import slow
 
 
 @pytest.mark.parametrize("count", slow([1, len(SHOWN)], but=[len(SHOWN)]))
+@pytest.mark.slow
 def test_every_manoeuvre_that_is_shown_has_its_column(count: int, tmp_path: Path) -> None:
     traces = np.zeros(50), np.ones(50)
     given: Any = [SimpleNamespace(case=SimpleNamespace(name=name), traces=traces) for name in (*SHOWN[:count], "other")]

@@ -52,6 +52,7 @@ EFFECTS = {
 
 
 @pytest.mark.parametrize("name", slow(EFFECTS, but=("MotorTorqueLoop",)))
+@pytest.mark.slow
 def test_effects_that_are_off_by_default_are_the_same_in_functions_and_both_builds(both_built, name):
     random = random_inputs(FMUS[name].block, STEPS)
     given = random._replace(parameters={**random.parameters, **EFFECTS[name]})

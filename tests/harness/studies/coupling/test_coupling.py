@@ -106,6 +106,7 @@ def test_the_limit_of_small_steps_is_the_monolithic_solution(built, native, sche
         (Scheme.JACOBI, "native", (0.0, 0.5, 1.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.5)),
     ],
 )
+@pytest.mark.slow
 def test_each_connection_is_late_by_what_the_scheme_makes_of_the_step(built, native, scheme, build, steps):
     """A held value is late by half a step, one of the end of the step early by a half or a whole one."""
     found = dead_times(scheme, 1e-3, native.parent if build == "native" else built)

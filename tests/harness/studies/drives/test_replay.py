@@ -235,6 +235,7 @@ def test_figure_and_signals_every_10_ms_are_written(replayed):
     assert times == pytest.approx(np.arange(801) * 0.01)
 
 
+@pytest.mark.slow
 def test_as_a_document_it_has_the_rides_of_all_controllers(native, short_drive, tmp_path, capsys):
     mine = tmp_path / "Mine.fmu"
     copyfile(native / "DampingController.fmu", mine)

@@ -37,6 +37,7 @@ def given(native: Path, tmp_path: Path) -> list[str]:
     return ["--fmus", str(native.parent), "--output", str(tmp_path / "results")]
 
 
+@pytest.mark.slow
 def test_it_is_said_on_stderr_and_marked_in_table_report_and_document(
     turned: Path, given: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: Any
 ) -> None:

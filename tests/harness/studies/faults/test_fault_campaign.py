@@ -120,6 +120,7 @@ def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):
         assert run_.base is None
 
 
+@pytest.mark.slow
 def test_a_campaign_does_not_depend_on_the_number_of_processes(injector, settings):
     one, two = (campaign(FaultRunner(injector, settings), range(1, 9), 3, workers=workers) for workers in (1, 2))
     assert [outcome.record for outcome in one] == [outcome.record for outcome in two]

@@ -44,6 +44,7 @@ def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path)
     assert list(CaseArchive(tmp_path / "faults.csv", table(1, PLANTS)).values()) == outcomes
 
 
+@pytest.mark.slow
 def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_path):
     files = write(outcomes, " --cases 6", tmp_path)
     assert all(file.is_file() for file in files)

@@ -89,6 +89,7 @@ def test_without_control_nothing_lasts() -> None:
     assert limit_cycles(point, swings(point)) == []
 
 
+@pytest.mark.slow
 def test_a_controller_that_is_stable_in_contact_may_swing_for_ever_through_the_gap() -> None:
     """The paper's observer on the vehicle, with a dead time below its margin in contact."""
     gains = {"controller": {"k_T": 2.0, "omega_w": 120.0}}
