@@ -99,6 +99,7 @@ def test_a_build_that_is_stopped_leaves_no_process_and_no_file(begun, tmp_path: 
     assert list((tmp_path / "temporary").iterdir()) == []
 
 
+@pytest.mark.slow
 def test_what_takes_too_long_is_ended_with_what_it_has_begun(tmp_path: Path) -> None:
     with pytest.raises(subprocess.TimeoutExpired):
         run(["/bin/sh", "-c", "sleep 60 & echo $! > child; wait"], tmp_path, timeout=1.0)

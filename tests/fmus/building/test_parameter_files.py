@@ -54,6 +54,7 @@ def test_a_file_of_gains_names_what_is_set_in_the_controller(written: Callable[[
     assert {name: PARAMETERS["DampingController"][name].start for name in stored} == stored
 
 
+@pytest.mark.slow
 def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Callable[[str], Path]) -> None:
     for name in {name for owned in PARAMETERS.values() for name in owned}:
         start = next(owned[name].start for owned in PARAMETERS.values() if name in owned)

@@ -270,6 +270,7 @@ def test_kinks_without_indicators_cost_as_many_steps_as_in_python(
     side=st.sampled_from([-1.0, 1.0]),
     other=st.floats(-0.01, 0.3),
 )
+@pytest.mark.slow
 def test_it_looks_for_an_excursion_where_python_does(
     integrator: MakeIntegrator, turn: float, depth: float, side: float, other: float
 ) -> None:

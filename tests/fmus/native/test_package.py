@@ -60,6 +60,7 @@ def test_it_needs_nothing_besides_itself(native, name):
 
 @pytest.mark.usefixtures("uncached_compiler")
 @pytest.mark.parametrize("name", slow(FMUS, but=["MotorTorqueLoop", "WheelSpeedCan"]))
+@pytest.mark.slow
 def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
     assert native_builder(FMUS[name], tmp_path).read_bytes() == (native / f"{name}.fmu").read_bytes()
 
@@ -122,6 +123,7 @@ def test_where_there_is_no_compiler_that_of_zig_is_taken(monkeypatch):
         compiler.host_command()
 
 
+@pytest.mark.slow
 def test_both_builds_are_made_where_they_can_be(native_builder, tmp_path):
     done = subprocess.run(
         [sys.executable, "build_fmus.py", "MotorTorqueLoop", "--output", str(tmp_path)],

@@ -42,6 +42,7 @@ def test_a_rebuild_elsewhere_gives_the_same_bytes(built, copied_project):
         assert (copied_project / "out" / f"{name}.fmu").read_bytes() == (built / f"{name}.fmu").read_bytes()
 
 
+@pytest.mark.slow
 def test_only_what_is_named_is_built_and_said_in_a_line(copied_project):
     code, message = run(["build_fmus.py", "--build", "python", "WheelSpeedCan", "MotorTorqueLoop"], copied_project)
     assert code == 0

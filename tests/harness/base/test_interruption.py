@@ -34,6 +34,7 @@ TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
         (signal.SIGINT, True, 130),
     ],
 )
+@pytest.mark.slow
 def test_a_signal_ends_the_workers_and_leaves_nothing(
     native: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, code: int
 ) -> None:
@@ -217,6 +218,7 @@ def test_a_full_device_is_named_in_one_line(words: list[str], name: str) -> None
 
 @pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")
 @pytest.mark.parametrize("closed", slow([">&-", "<&- >&- 2>&-"], but=["<&- >&- 2>&-"]))
+@pytest.mark.slow
 def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
     program = """
 from driveline.harness.commands.cli import main

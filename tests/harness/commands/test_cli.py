@@ -381,6 +381,7 @@ def test_check_looks_at_no_fmu_where_one_is_missing(capsys, tmp_path):
     assert answer(capsys, "check", str(faulty), "nothing.fmu")[:2] == (2, "")
 
 
+@pytest.mark.slow
 def test_check_tells_findings_by_its_exit_code(capsys, native, tmp_path):
     assert answer(capsys, "check", str(native / "MotorTorqueLoop.fmu"))[0] == 0
     faulty = tmp_path / "faulty.fmu"

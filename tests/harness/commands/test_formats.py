@@ -47,6 +47,7 @@ def test_a_recorded_test_drive_is_the_same_measurement_in_every_format(driven, n
 
 
 @pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
+@pytest.mark.slow
 def test_a_run_in_another_format_can_be_driven_again(driven, name, native, tmp_path):
     options = ["--fmus", str(native.parent), "--output", str(tmp_path), "--quiet", "--format", name]
     assert main(["replay", str(path(driven, name)), "--plant", "TwoMassDriveline", *options]) == 0

@@ -70,6 +70,7 @@ def test_a_file_that_is_cut_off_is_built_again(given: Path) -> None:
     assert refreshed_copy([CAN], given, "python")[1] == [path]
 
 
+@pytest.mark.slow
 def test_two_processes_at_once_build_it_once_and_nothing_unfinished_is_left(given: Path, cache: Path) -> None:
     code = (
         "from pathlib import Path; from driveline.fmus.catalogue import EVERY;"

@@ -189,6 +189,7 @@ def test_large_texts_and_packed_files_are_read_by_a_process_of_their_own(
 
 
 @pytest.mark.parametrize("ending", ["mf4", "parquet", "blf"])
+@pytest.mark.slow
 def test_a_process_of_its_own_reads_what_this_one_does(tmp_path: Path, ending: str) -> None:
     path, databases = tmp_path / f"drive.{ending}", []
     if ending == "blf":

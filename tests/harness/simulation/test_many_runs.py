@@ -229,6 +229,7 @@ def ending_at_5(folder):
     return run
 
 
+@pytest.mark.slow
 def test_what_comes_before_a_case_that_ends_its_process_twice_is_answered(tmp_path):
     known = {}
     with pytest.raises(SimulationError, match="a process crashed in case 5, and again"):
@@ -286,6 +287,7 @@ def test_an_error_in_a_batch_comes_after_the_answers_before_it(workers):
     assert known == {3: 2, 2: 3, 1: 6}
 
 
+@pytest.mark.slow
 def test_a_case_that_ends_its_process_is_found_in_its_batch(tmp_path):
     known = {}
     with pytest.raises(SimulationError, match="a process crashed in case 5, and again"):

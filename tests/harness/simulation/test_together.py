@@ -139,6 +139,7 @@ def test_the_first_case_with_an_error_is_named(both_built, lanes):
         run_many(bad, [0, 1, 2, 7], workers=1)
 
 
+@pytest.mark.slow
 def test_a_case_that_ends_its_process_is_named(lanes):
     def crash(case: int) -> int:
         return os._exit(3) if case == 6 else case

@@ -312,6 +312,7 @@ def test_memory_of_the_host_that_is_kept_is_found(tmp_path):
     assert "memory" not in broken(build_stranger(tmp_path, "clean"))
 
 
+@pytest.mark.slow
 def test_many_short_calls_are_not_one_that_hangs(tmp_path):
     def change(xml):
         return xml.replace('stopTime="0.2"', 'stopTime="0.02"')

@@ -38,9 +38,10 @@ class StandIn:
 def test_torques_may_differ_by_a_millinewton_metre_and_a_ten_thousandth(
     T_ref: float, distance: float, margin: float
 ) -> None:
-    target, double = StandIn(T_ref + distance), StandIn(T_ref)
-    starts: list[Any] = [lambda: target, lambda: target, lambda: double]
-    found = compare(Programs(*starts, Path(), ""), CASE, ("T_ref", "T_gear_hat"))
+    target: Any = StandIn(T_ref + distance)
+    double: Any = StandIn(T_ref)
+    programs = Programs(lambda: target, lambda: target, lambda: double, Path(), "")
+    found = compare(programs, CASE, ("T_ref", "T_gear_hat"))
     assert found.margin == pytest.approx(margin)
     assert found.T_ref == pytest.approx(distance)
     assert (found.differing, found.instructions, found.stack) == (0, (1.0, 1), 2)

@@ -122,6 +122,7 @@ def test_the_page_tells_how_a_case_is_run_again(outcomes):
     assert vars(parser.parse_args(["--case", "3", *words[2:]])) == vars(first) | {"case": 3}
 
 
+@pytest.mark.slow
 def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path, monkeypatch):
     runs = []
     monkeypatch.setattr(fault_injection, "run", lambda *given: runs.append(1) or run(*given))
@@ -131,6 +132,7 @@ def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings
     assert [file.name for file in files] == ["case_2.csv", "case_2.png", "case_2.pdf"]
 
 
+@pytest.mark.slow
 def test_results_tell_what_made_them_and_nothing_else_is_written(native, tmp_path, capsys):
     fmus, output = native.parent, tmp_path / "results"
     before = set(fmus.rglob("*.fmu"))

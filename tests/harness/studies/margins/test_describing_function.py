@@ -71,6 +71,7 @@ def test_in_contact_it_is_the_loop_in_contact(plant: ContinuousBlock) -> None:
     assert astuple(found) == pytest.approx(astuple(expected), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_our_controller_bears_least_in_contact_and_only_floats_in_the_gap() -> None:
     """Without load the teeth float from flank to flank, in contact for less than 2 % of the swing."""
     point = Point(wheel=False, T=1.0)

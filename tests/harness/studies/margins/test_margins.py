@@ -65,6 +65,7 @@ def test_the_margins_of_a_lag_are_those_of_the_textbook() -> None:
 
 
 @every_loop
+@pytest.mark.slow
 def test_a_delay_just_below_the_margin_is_borne_and_one_just_above_is_not(name: str) -> None:
     """At least half an interval off, for at the margin itself the swing neither dies away nor grows."""
     point = POINTS[name]
