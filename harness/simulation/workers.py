@@ -105,7 +105,8 @@ class Workers:
         remove_unfinished(self._folder)
 
     def _begin(self) -> None:
-        self._pool = ProcessPoolExecutor(self._count, initializer=_begin, initargs=self._given)
+        with uninterrupted_children():  # else a lock that is being made would be left
+            self._pool = ProcessPoolExecutor(self._count, initializer=_begin, initargs=self._given)
 
     def _begin_again(self) -> None:
         """Without one process the others are of no use either."""
