@@ -18,7 +18,8 @@ includes several additional real world effects').
 
 T_a is the air-gap torque with friction and with ripple, but for what turns faster than 10 krad/s; T_h
 is the mount torque, F_h the bushing force; F_k is half an axle's Magic Formula without curvature term on
-the deflection u_k of the tyre (H. B. Pacejka, "Tire and Vehicle Dynamics", 3rd ed., 2012, section 4.3).
+the deflection u_k of the tyre (H. B. Pacejka, "Tire and Vehicle Dynamics", 3rd ed., 2012, section 4.3) with the
+damping of a standing car, together no more than mu F_z/2.
 The impact damping of the teeth grows with their penetration, so that the torque does not jump at the
 contact (K. H. Hunt, F. R. E. Crossley, "Coefficient of restitution interpreted as damping in vibroimpact",
 J. Applied Mechanics 42(2), 1975).
@@ -215,16 +216,19 @@ def air_gap_torque(x: State, u: Input, p: Parameters) -> float:
     return u.T_mot + ripple / (1.0 + ratio * ratio) - p.c_fm * tanh(1.0 / p.omega_fm * x.omega_1)
 
 
-def tyre_spring(u: float, share: float, mu: float, F_z: float, p: Parameters) -> float:
-    """Force in N of one tyre with the deflection u (m).
+def tyre_force(u: float, damping: float, share: float, mu: float, F_z: float, p: Parameters) -> float:
+    """Force in N of one tyre with the deflection u (m): no more than its road can give.
 
     Args:
+        damping: that keeps a standing car from swinging, N. Without a limit it would push with many times the grip
+            where wheels spin while the car hardly moves.
         share: of the stiffness, over that of half the axle.
         mu: friction coefficient of the road under it.
         F_z: load of the axle in N.
     """
     B = p.c_slip / (p.C_x * mu * p.F_z0) / p.sigma * share
-    return 0.5 * mu * F_z * sin(p.C_x * atan(B * u))
+    F_max = 0.5 * mu * F_z
+    return clip(F_max * sin(p.C_x * atan(B * u)) + damping, -F_max, F_max)
 
 
 def wheels(x: State, u: Input, p: Parameters) -> Wheels:
@@ -234,8 +238,8 @@ def wheels(x: State, u: Input, p: Parameters) -> Wheels:
     dz_R = brake.bristle_rate(x.omega_R, x.z_R, p)
     rolling = 0.5 * p.c_rr * p.r * F_z
     return Wheels(
-        F_L=tyre_spring(x.u_L, 1.0 - p.t_asym, p.mu * p.g_muL, F_z, p) + d * (p.r * x.omega_L - x.v_h),
-        F_R=tyre_spring(x.u_R, 1.0 + p.t_asym, p.mu * p.g_muR, F_z, p) + d * (p.r * x.omega_R - x.v_h),
+        F_L=tyre_force(x.u_L, d * (p.r * x.omega_L - x.v_h), 1.0 - p.t_asym, p.mu * p.g_muL, F_z, p),
+        F_R=tyre_force(x.u_R, d * (p.r * x.omega_R - x.v_h), 1.0 + p.t_asym, p.mu * p.g_muR, F_z, p),
         T_rL=rolling * tanh(p.r / p.v_rr * x.omega_L),
         T_rR=rolling * tanh(p.r / p.v_rr * x.omega_R),
         T_brL=0.5 * u.T_brake * brake.grip(x.z_L, dz_L, p),

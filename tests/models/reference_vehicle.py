@@ -119,6 +119,7 @@ def vehicle(state: np.ndarray, held: Held) -> tuple[list[float], list[float]]:
     def wheel(w: float, T: float, u: float, z: float, B: float) -> tuple[float, float, float, float, float]:
         vs = r * w - v_h
         F = 0.5 * mu * Fz * sin(Cx * atan(B * u / sigma)) + 0.5 * dlow * vs / (1.0 + (v_h / vlow) ** 2)
+        F = max(-0.5 * mu * Fz, min(F, 0.5 * mu * Fz))
         Tr = 0.5 * crr * Fz * r * tanh(r * w / vrr)
         Tbr = 0.5 * T_brake * q(w, z)
         dw = (T - r * F - Tr - Tbr) / (Jw / 2.0)
