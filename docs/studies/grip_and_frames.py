@@ -28,7 +28,7 @@ from driveline.harness.loop.places import BUILD, COMPARATORS, NATIVE, T_S
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
-from driveline.harness.manoeuvres.signals import lines
+from driveline.harness.manoeuvres.signals import Signal, lines
 from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.many_runs import run_many
@@ -49,6 +49,9 @@ AFTER = 0.15
 
 MOST = 1.1
 """Ratio of peak or rms that a run should not exceed."""
+
+EASED = 5.0
+"""Demand with which wheels that spin catch the road again, whatever its grip, N.m."""
 
 HOLDING = 2400.0
 """Brakes that hold the car on a grade, N.m."""
@@ -88,6 +91,12 @@ class Ratios(NamedTuple):
     fallback: float
 
 
+def pushed(begin: float, T_driver: float) -> Signal:
+    """The driver pushes for half a second, and eases off as the wheels spin: they catch the road again."""
+    eased = np.sign(T_driver) * EASED
+    return lines((begin, 0.0), (begin + 0.1, T_driver), (begin + 0.6, T_driver), (begin + 0.8, eased))
+
+
 def rolling_back(grade: float, T_driver: float, pushes: float) -> Manoeuvre:
     """The brakes are let go at 2 s; the driver pushes uphill later."""
     return Manoeuvre(
@@ -95,7 +104,7 @@ def rolling_back(grade: float, T_driver: float, pushes: float) -> Manoeuvre:
         description="",
         duration=7.0,
         v_0=0.0,
-        T_driver=lines((pushes, 0.0), (pushes + 0.1, np.sign(grade) * T_driver)),
+        T_driver=pushed(pushes, np.sign(grade) * T_driver),
         T_brake=lines((2.0, HOLDING), (2.1, 0.0)),
         slope=lines((0.5, 0.0), (1.0, grade)),
     )
@@ -122,10 +131,9 @@ def pulses(frequency: float, T_brake: float, v_0: float = 22.0) -> Manoeuvre:
     return Manoeuvre(f"{T_brake:g} N.m at {frequency:g} Hz", "", 6.0, v_0, lines((0.0, 0.0)), course)
 
 
-def hill_start(grade: float, T_driver: float = 100.0) -> Manoeuvre:
+def hill_start(name: str, grade: float, T_driver: Signal) -> Manoeuvre:
     T_brake, slope = lines((1.0, HOLDING), (1.1, 0.0)), lines((0.2, 0.0), (0.7, grade))
-    name = f"{T_driver:g} N.m on a grade of {grade:g}"
-    return Manoeuvre(name, "", 6.0, 0.0, lines((1.0, 0.0), (1.1, T_driver)), T_brake, slope)
+    return Manoeuvre(f"{name} on a grade of {grade:g}", "", 6.0, 0.0, T_driver, T_brake, slope)
 
 
 def on_slippery_roads() -> Iterator[Run]:
@@ -135,9 +143,10 @@ def on_slippery_roads() -> Iterator[Run]:
     for mu, T_driver, turns in product((0.08, 0.15, 0.2), (80.0, -80.0), (2.0, 3.0)):
         yield Run("80 N.m on ice, then back", rocking(T_driver, turns), 1.0, {"mu": mu})
     for mu, T_driver in product((*grips, 0.3, 0.5, 1.0), (60.0, 120.0, 180.0)):
-        yield Run("pulls away", Manoeuvre("launch", "", 5.0, 0.0, lines((1.0, 0.0), (1.1, T_driver))), 1.0, {"mu": mu})
+        yield Run("pulls away", Manoeuvre(f"{T_driver:g} N.m", "", 6.0, 0.0, pushed(1.0, T_driver)), 1.0, {"mu": mu})
     for side, grade, T_driver in product(("g_muL", "g_muR"), (0.0, 0.12), (60.0, 120.0, 180.0)):
-        yield Run("pulls away on split grip", hill_start(grade, T_driver), 1.0, {"mu": 0.8, side: 0.125})
+        manoeuvre = hill_start(f"{T_driver:g} N.m", grade, pushed(1.0, T_driver))
+        yield Run("pulls away on split grip", manoeuvre, 1.0, {"mu": 0.8, side: 0.125})
     for mu, v_0, T_driver in product((*grips, 0.5), (4.0, 15.0), (100.0, -60.0)):
         yield Run("tip-in and back", tip_in(v_0, T_driver), 1.0, {"mu": mu})
 
@@ -147,7 +156,12 @@ def with_abs() -> Iterator[Run]:
         yield Run(f"ABS, mu {mu:g}", pulses(frequency, T_brake), 1.0, {"mu": mu})
 
 
-DRIVES = (MANOEUVRES["launch"], hill_start(0.12), MANOEUVRES["tipin15"], MANOEUVRES["tipout"])
+DRIVES = (
+    MANOEUVRES["launch"],
+    hill_start("100 N.m", 0.12, lines((1.0, 0.0), (1.1, 100.0))),
+    MANOEUVRES["tipin15"],
+    MANOEUVRES["tipout"],
+)
 
 
 def with_wrong_frames() -> Iterator[Run]:

@@ -73,7 +73,7 @@ def _abs(mu: float, frequency: float, T_brake: float) -> Manoeuvre:
 
 
 def _rolls_back(mu: float, grade: float) -> Manoeuvre:
-    demand, slope = lines((2.0, 0.0), (2.1, 120.0)), lines((0.2, 0.0), (0.7, grade))
+    demand, slope = lines((2.0, 0.0), (2.1, 120.0), (2.6, 120.0), (2.8, 15.0)), lines((0.2, 0.0), (0.7, grade))
     return Manoeuvre("rolls back", "rolls back", 6.0, 0.0, demand, slope=slope, t_0=1.5, road={"mu": mu})
 
 
@@ -92,8 +92,16 @@ _ROADS = {
     situation.name: situation
     for situation in (
         *(_on_road(each.name, each.description, each) for each in EVERYDAY),
-        _on_road("ice_hill_20", "rolls back on a 20 % grade of ice (mu 0.1), then 120 N.m", _rolls_back(0.1, 0.2)),
-        _on_road("snow_hill", "rolls back on a 12 % grade (mu 0.2), then 120 N.m", _rolls_back(0.2, GRADE)),
+        _on_road(
+            "ice_hill_20",
+            "rolls back on a 20 % grade of ice (mu 0.1), then 120 N.m until the wheels spin",
+            _rolls_back(0.1, 0.2),
+        ),
+        _on_road(
+            "snow_hill",
+            "rolls back on a 12 % grade (mu 0.2), then 120 N.m until the wheels spin",
+            _rolls_back(0.2, GRADE),
+        ),
         _on_road("rocking", "80 N.m and back on ice (mu 0.15)", _rocks(0.15)),
         _on_road("abs_wet", "brake pulses of 1500 N.m at 8 Hz (mu 0.5)", _abs(0.5, 8.0, 1500.0)),
         _on_road("abs_ice", "brake pulses of 500 N.m at 4 Hz (mu 0.2)", _abs(0.2, 4.0, 500.0)),

@@ -75,7 +75,8 @@ def test_the_wheels_spin_on_ice_alone(runs: dict[str, Results]) -> None:
 def test_what_a_user_sets_comes_before_the_road_of_a_manoeuvre(native: Path, runs: dict[str, Results]) -> None:
     assert start(MANOEUVRES["launch_ice"])["plant.mu"] == 0.12
     dry = simulate(MANOEUVRES["launch_ice"], VEHICLE, control=False, folder=native.parent, parameters={"plant.mu": 1.0})
-    assert (dry["plant.T_gear"] == runs["launch"]["plant.T_gear"]).all()
+    pushing = dry["time"] < 1.6
+    assert (dry["plant.T_gear"][pushing] == runs["launch"]["plant.T_gear"][pushing]).all()
 
 
 @pytest.mark.parametrize("command", ["simulate", "compare"])
