@@ -145,11 +145,11 @@ def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most)
 
 @pytest.mark.parametrize("plant", PLANTS)
 def test_on_a_hill_of_ice_the_wheels_spin_without_a_fault(injector, settings, plant):
-    """Until the manoeuvre ends; the design model has slip in the place of a limit of friction."""
+    """While the driver pushes; the design model has slip in the place of a limit of friction."""
     fault = Fault(NOTHING.name, 2.0, 3.0, 1.0, 1.0)
     found = FaultRunner(injector, settings).runs(Case(1, plant, "ice_hill", (fault,), 1)).faulty
     assert found["time"][-1] == SITUATIONS["ice_hill"].duration
-    assert (found["plant.omega_2"] / 9.0 * 0.29 - found["plant.v"]).max() > 0.5
+    assert (found["plant.omega_2"] / 9.0 * 0.29 - found["plant.v"]).max() > 0.4
 
 
 class Dying(FaultRunner):
