@@ -26,7 +26,7 @@ from .diagnostics import (
 from .drive_train import DELAYS, Parameters
 from .drive_train_response import Tyre, resonance, tyre
 from .global_start import best_start
-from .late_load import covariance_with_late_load, diagnose_late_load
+from .late_load import covariance_with_late_load, diagnose_late_load, price
 from .maximum_likelihood import Found, maximise
 from .model_inputs import Drive, model_inputs
 from .noise import white_noise
@@ -50,10 +50,6 @@ WIDEST_LOAD_NOISE = 20.0
 
 FEW, FEWER = 12, 6
 """Passes from a start that is near, and from one that is next to it."""
-
-ONE_MORE = 8.5
-"""Twice the gain in likelihood from which on the load torque is late too; the logarithm of 5000 samples (G. Schwarz,
-Ann. Stat. 6, 1978)."""
 
 UNSURE = 3e-4
 """Shift in s up to which it may be what the model lacks where it does not explain all; 1.3e-4 of the validation
@@ -261,12 +257,12 @@ def prediction_error_fit(
         for found in fits_with_delays(drive, initial, noise, more, log)
     ]
     likeliest = min(ends, key=lambda end: end.innovations.cost)
-    return max(ends, key=lambda end: likeliest.gain(end) - sum(worth(name, end.free) for name in end.free))
+    return max(ends, key=lambda end: likeliest.gain(end) - sum(worth(name, end) for name in end.free))
 
 
-def worth(name: str, free: Sequence[str]) -> float:
-    """Twice the gain in likelihood with which a parameter is free: where a channel is late, another may well be."""
-    return ONE_MORE if name == "late_L" and "late_T" in free else LIKELY
+def worth(name: str, found: Found) -> float:
+    """Twice the gain in likelihood with which a parameter is free."""
+    return price(found.deviations[name], found.free) if name == "late_L" else LIKELY
 
 
 def fits_with_delays(
@@ -297,10 +293,13 @@ def backward_elimination(drive: Drive, found: Found, noise: Noise, more: Sequenc
     """
     best = found
     while optional := [name for name in NEUTRAL if name in best.free and name not in more]:
-        deviations = dict(zip(best.free, np.sqrt(np.diag(best.covariance)), strict=True))
-        significance = {name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 for name in optional}
-        least = min(optional, key=lambda name: significance[name])
-        if significance[least] > worth(least, best.free):
+        deviations = best.deviations
+        surplus = {
+            name: ((getattr(best.p, name) - NEUTRAL[name]) / deviations[name]) ** 2 - worth(name, best)
+            for name in optional
+        }
+        least = min(optional, key=lambda name: surplus[name])
+        if surplus[least] > 0.0:
             break
         free = tuple(name for name in best.free if name != least)
         best = maximise(Predictor(free), drive, best.p._replace(**{least: NEUTRAL[least]}), noise, most=FEWER)

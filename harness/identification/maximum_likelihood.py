@@ -1,7 +1,7 @@
 """The parameters under which the innovations are likeliest, by scoring steps with a trust in them that adapts
 (Levenberg, Marquardt). Positive parameters are searched by their logarithm."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,9 +50,25 @@ class Found:
         """Of the free parameters, if the innovations are white, and noise as large as they are."""
         return self.inverse_information * self.innovations.rms**2
 
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of each free parameter, in its unit."""
+        return dict(zip(self.free, map(float, np.sqrt(np.diag(self.covariance))), strict=True))
+
     def gain(self, other: "Found") -> float:
         """Twice what another one gains in likelihood, with noise as large as these innovations are."""
         return 2.0 * (self.innovations.cost - other.innovations.cost) / self.innovations.rms**2
+
+
+def deviations_if_known(covariance: np.ndarray, free: Sequence[str], known: Container[str]) -> dict[str, float]:
+    """Standard deviations of the free parameters, if those of these names were known.
+
+    Args:
+        covariance: of the free ones, in their order.
+    """
+    rest = [k for k, name in enumerate(free) if name not in known]
+    information = np.linalg.inv(covariance)[np.ix_(rest, rest)]
+    return dict(zip([free[k] for k in rest], map(float, np.sqrt(np.diag(np.linalg.inv(information)))), strict=True))
 
 
 def _information(innovations: Innovations, scale: np.ndarray) -> np.ndarray:

@@ -7,12 +7,12 @@ from driveline.harness.identification import identify
 from driveline.harness.identification.diagnostics import LIKELY
 from driveline.harness.identification.drive_train import DELAYS, Parameters
 from driveline.harness.identification.identify import (
-    ONE_MORE,
     backward_elimination,
     fit,
     prediction_error_fit,
     sandwich_covariance,
 )
+from driveline.harness.identification.late_load import price
 from driveline.harness.identification.maximum_likelihood import Found
 from driveline.harness.identification.model_inputs import Drive
 from driveline.harness.identification.output_error import Fitted
@@ -104,13 +104,20 @@ def test_what_the_data_ask_for_least_goes_first(
     assert dropped == sorted({"d", "g_T"} - free, key=lambda name: {"d": d, "g_T": g_T}[name])
 
 
+SURE = 1e-4
+"""Standard deviation in s of the delay of a load torque."""
+
+LATE_ALONE, ALSO_LATE = price(SURE, ("late_L",)), price(SURE, ("late_T", "late_L"))
+
+
 @pytest.mark.parametrize(
     ("fewer", "more", "least"),
     [
         (("J_2",), ("J_2", "late_T"), LIKELY),
-        (("J_2", "late_1"), ("J_2", "late_T", "late_L"), ONE_MORE),
-        (("J_2",), ("J_2", "late_T", "late_L"), LIKELY + ONE_MORE),
-        (("J_2", "late_1"), ("J_2", "late_L"), 0.0),
+        (("J_2", "late_1"), ("J_2", "late_T", "late_L"), ALSO_LATE),
+        (("J_2",), ("J_2", "late_T", "late_L"), LIKELY + ALSO_LATE),
+        (("J_2",), ("J_2", "late_L"), LATE_ALONE),
+        (("J_2", "late_1"), ("J_2", "late_L"), LATE_ALONE - LIKELY),
     ],
 )
 @pytest.mark.parametrize("share", [-0.01, 0.01])
@@ -121,8 +128,8 @@ def test_the_channels_that_are_late_are_those_with_which_the_recording_is_likeli
     n = 1000
 
     def with_(free: tuple[str, ...], size: float) -> Found:
-        nothing = np.zeros((n, len(free)))
-        return Found(P, free, Innovations(np.full(n, size), np.zeros(n), slice(None), False, nothing, nothing), 1)
+        by = np.outer(np.ones(n), [size / (SURE * np.sqrt(n)) if name == "late_L" else 0.0 for name in free])
+        return Found(P, free, Innovations(np.full(n, size), np.zeros(n), slice(None), False, by, by), 1)
 
     ends = (with_(fewer, np.sqrt(1.0 + (least + share) / n)), with_(more, 1.0))
     monkeypatch.setattr(identify, "fits_with_delays", lambda *_: ends)

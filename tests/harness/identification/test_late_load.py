@@ -4,9 +4,17 @@ import numpy as np
 import pytest
 
 from driveline.harness.identification import late_load
-from driveline.harness.identification.late_load import COLLINEAR, covariance_with_late_load, diagnose_late_load
+from driveline.harness.identification.late_load import (
+    COLLINEAR,
+    RANGE,
+    SELDOM,
+    covariance_with_late_load,
+    diagnose_late_load,
+    price,
+)
 from driveline.harness.identification.maximum_likelihood import Found, maximise
 from driveline.harness.identification.prediction import Innovations, Predictor
+from driveline.harness.identification.quality import Z_95
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 FREE = ("J_2", "C", "phi_B", "g_L")
@@ -48,6 +56,23 @@ def test_between_both_it_counts_by_its_probability(monkeypatch: pytest.MonkeyPat
 def test_where_its_delay_is_free_the_covariance_has_it_already() -> None:
     freed = maximise(Predictor((*FREE, "late_L")), DRIVE, BEST.p, NOISE)
     np.testing.assert_array_equal(covariance_with_late_load(DRIVE, freed, NOISE), freed.covariance)
+
+
+@pytest.mark.parametrize(("free", "before"), [(("late_L",), SELDOM), (("late_T", "late_L"), 1.0)])
+def test_a_late_load_torque_costs_what_makes_it_likelier_than_an_aligned_one(
+    free: tuple[str, ...], before: float
+) -> None:
+    """By Bayes: the likelihood of all delays in the range, integrated, against that of none."""
+    deviation, n = 1.3e-4, 20001
+    found = np.sqrt(price(deviation, free)) * deviation
+    delays = np.linspace(-0.003, -0.003 + RANGE, n)
+    late = before * np.mean(np.exp(-0.5 * ((delays - found) / deviation) ** 2))
+    assert late == pytest.approx(np.exp(-0.5 * (found / deviation) ** 2), rel=1e-3)
+
+
+def test_a_delay_that_the_data_tell_nothing_of_is_not_free() -> None:
+    """With a wide prior anything would be likely enough."""
+    assert price(1.0, ("late_T", "late_L")) == pytest.approx(Z_95**2)
 
 
 def seen(correlation: float, names: tuple[str, ...]) -> Found:
