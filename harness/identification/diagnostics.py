@@ -5,8 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.signal import welch
 
-from .drive_train import Parameters
+from .drive_train import DELAYS, Parameters, damping
 from .drive_train_response import Tyre
+from .maximum_likelihood import deviations_if_known
+from .output_error import Fitted, rivals
 from .prediction import Filtered
 from .quality import Z_95
 from .time_shifts import MOST
@@ -65,8 +67,12 @@ CLOSE = 0.05
 """Relative standard deviation from which on a parameter counts as undetermined."""
 
 
-def diagnose_delays(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
-    """What channel is recorded late or early."""
+def diagnose_delays(p: Parameters, deviations: Mapping[str, float], explained: bool) -> list[str]:
+    """What channel is recorded late or early.
+
+    Args:
+        explained: whether the model explains the recording; else what it lacks may look like a delay.
+    """
     others = {"late_1": "both torques", "late_T": "the motor speed", "late_L": "the motor speed"}
     texts = []
     for name, channel in CHANNELS.items():
@@ -76,7 +82,8 @@ def diagnose_delays(p: Parameters, deviations: Mapping[str, float]) -> list[str]
         word, side = ("late", "after") if late > 0.0 else ("early", "before")
         within = " ms or more" if abs(late) >= MOST else f" +- {1e3 * Z_95 * deviation:.2f} ms"
         texts.append(
-            f"the {channel} looks {word}: it is recorded {1e3 * abs(late):.2f}{within} {side} {others[name]}, "
+            f"the {channel} looks {word}: it is recorded {1e3 * abs(late):.2f}{within} {side} {others[name]}"
+            f"{'' if explained else ', or what the two masses lack looks so'}, "
             "which is allowed for here; other commands take the channels as recorded"
         )
     return texts
@@ -94,13 +101,7 @@ def diagnose_motor_gain(p: Parameters, deviations: Mapping[str, float]) -> list[
 
 def diagnose_load_gain(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
     """What a gain of the load torque that is not about 1 may mean."""
-    deviation = deviations.get("g_L", 0.0)
-    if deviation > UNKNOWN_GAIN * p.g_L:
-        return [
-            "the load torque tells nothing (its gain is not determined), so that J_2 is not that of the wheels: "
-            "leave its channel away"
-        ]
-    if abs(p.g_L - 1.0) <= max(LOAD_GAIN, SURELY * deviation):
+    if abs(p.g_L - 1.0) <= max(LOAD_GAIN, SURELY * deviations.get("g_L", 0.0)):
         return []
     return [
         f"the recorded load torque looks {p.g_L:.3g} times the true one: its unit, its gain or the gear ratio is wrong"
@@ -185,19 +186,56 @@ def diagnose_excitation(
         warnings.append(
             "J_1 and the gain of the motor torque are both free, and nothing sets their scale: free one of them"
         )
-    wide = [name for name in ("J_2", "C", "phi_B") if deviations.get(name, 0.0) > CLOSE * abs(getattr(p, name))]
+    if deviations.get("g_L", 0.0) > UNKNOWN_GAIN * p.g_L:
+        warnings.append(
+            "the load torque tells nothing (its gain is not determined), so that J_2 is not that of the wheels: "
+            "leave its channel away"
+        )
+    crossed = ("phi_B",) if min(driving, braking) >= FLANK else ()
+    over = {name: Z_95 * deviations.get(name, 0.0) / _size(name, p) for name in ("J_2", "C", *crossed, "d")}
+    unknown = [name for name, share in over.items() if share > 1.0]
+    wide = [name for name, share in over.items() if Z_95 * CLOSE < share <= 1.0]
+    if unknown:
+        warnings.append(f"{', '.join(unknown)}: not determined; excite more or longer")
     if wide:
         warnings.append(
             f"{', '.join(wide)}: 95 % interval wider than +- {100.0 * Z_95 * CLOSE:.2g} %; excite more or longer"
         )
-    if p.d < -SURELY * deviations.get("d", 0.0):
-        warnings.append(f"d = {p.d:.3g} N.m.s/rad is negative, which no damper is: something else is wrong")
-    if deviations.get("d", 0.0) > CLOSE * abs(p.d):
-        warnings.append(
-            f"d is known to +- {100.0 * Z_95 * deviations['d'] / abs(p.d or 1.0):.2g} % only: "
-            "without a measured wheel motion damping is hardly seen"
-        )
     return warnings
+
+
+def is_determined(p: Parameters, covariance: np.ndarray, free: Sequence[str]) -> bool:
+    """Whether J_2 and C would be known if damping and delays were. Else no cause can be told: what the recording lacks
+    may look like any.
+
+    Args:
+        covariance: of the free parameters, in their order.
+    """
+    deviations = deviations_if_known(covariance, free, ("d", *DELAYS))
+    return all(deviations.get(name, 0.0) <= CLOSE * _size(name, p) for name in ("J_2", "C"))
+
+
+def _size(name: str, p: Parameters) -> float:
+    """What the interval of a parameter is compared with: its value, of damping at least a damping ratio of 0.1."""
+    return max(abs(p.d), damping(p)) if name == "d" else abs(getattr(p, name))
+
+
+def diagnose_damping(p: Parameters, deviations: Mapping[str, float]) -> list[str]:
+    """Whether damping is surely negative."""
+    if p.d >= -SURELY * deviations.get("d", 0.0):
+        return []
+    return [f"d = {p.d:.3g} N.m.s/rad is negative, which no damper is: something else is wrong"]
+
+
+def diagnose_rival(best: Fitted, other: Fitted) -> list[str]:
+    """Whether free runs fit about as well with quite other parameters."""
+    if not rivals(best, other):
+        return []
+    return [
+        f"free runs of 0.5 s fit about as well with J_2 = {other.p.J_2:.3g} and C = {other.p.C:.3g} (to "
+        f"{other.error:.2g} instead of {best.error:.2g} rad/s), which the intervals allow for; excite more, about zero "
+        "torque"
+    ]
 
 
 def diagnose_tyre(behind: Tyre) -> list[str]:

@@ -8,6 +8,7 @@ The damper acts between teeth that touch: s = min(1, |y|/Y_D), so that the torqu
 """
 
 from collections.abc import Sequence
+from math import sqrt
 from typing import NamedTuple
 
 import casadi as ca
@@ -49,8 +50,16 @@ class Parameters(NamedTuple):
         return self.late_T - self.late_1, self.late_L - self.late_1
 
 
+DAMPING = 0.1
+"""Damping ratio that a drive train is expected to have."""
+
 DELAYS = ("late_1", "late_T", "late_L")
 """Of the parameters those of the logger."""
+
+
+def damping(p: Parameters) -> float:
+    """d in N.m.s/rad with that ratio."""
+    return 2.0 * DAMPING * sqrt(p.C * p.J_1 * p.J_2 / (p.J_1 + p.J_2))
 
 
 class State(NamedTuple):

@@ -11,6 +11,7 @@ from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
 from .diagnostics import (
     LIKELY,
+    diagnose_damping,
     diagnose_delays,
     diagnose_demand,
     diagnose_excitation,
@@ -19,18 +20,20 @@ from .diagnostics import (
     diagnose_motor_gain,
     diagnose_offsets,
     diagnose_outliers,
+    diagnose_rival,
     diagnose_spectrum,
     diagnose_tyre,
     is_coloured,
+    is_determined,
 )
-from .drive_train import DELAYS, Parameters
+from .drive_train import DELAYS, Parameters, damping
 from .drive_train_response import Tyre, resonance, tyre
 from .global_start import best_start
 from .late_load import covariance_with_late_load, diagnose_late_load, price
 from .maximum_likelihood import Found, maximise
 from .model_inputs import Drive, model_inputs
 from .noise import white_noise
-from .output_error import Fitted
+from .output_error import Fitted, covariance_with_rival
 from .prediction import BURN_IN, Noise, Predictor, filtered
 from .quality import SIMULATED, Quality, judged, near_starts, segments
 from .torque_loop import FittedLoop
@@ -63,9 +66,6 @@ SURELY = 4.0
 
 EXPLAINED = 1.25
 """Size of the innovations up to which the model explains the recording."""
-
-DAMPING = 0.1
-"""Damping ratio with which a search begins."""
 
 MODEL_NOISE = Noise(omega_1=1.0, T_mot=0.0, T_load=3.0, acts=True)
 """Without the load torque: what model and resistance are off by. Narrower, the parameters are those of the next few
@@ -162,8 +162,9 @@ def identify(
     held_out = refit(drive.between(0, cut), estimate, measured)
     drift = WITHIN if measured else UNMEASURED
     filter_run = filtered(drive, estimate.p, estimate.noise)
+    determined = is_determined(estimate.p, estimate.covariance, estimate.free)
     tyre_found, tyre_warnings = None, []
-    if recording.T_load is not None:
+    if recording.T_load is not None and determined:
         load = shift(recording.T_load, -estimate.p.late_L / drive.T_s, mode="nearest")[1:] / estimate.p.g_L
         T_mot = drive.acting(estimate.p).T_mot.mean(axis=1)
         tyre_found = tyre(load, filter_run.states[:, 1], T_mot, drive.T_s, J_v)
@@ -171,18 +172,22 @@ def identify(
         tyre_found = None if tyre_warnings else tyre_found
     quality = judged(drive, held_out, estimate.noise, drift, cut)
     explained = measured and estimate.method == "prediction error"
+    causes = (
+        *(diagnose_offsets(filter_run, estimate.p) if measured else ()),
+        *diagnose_delays(estimate.p, estimate.deviations, explained),
+        *diagnose_motor_gain(estimate.p, estimate.deviations),
+        *diagnose_load_gain(estimate.p, estimate.deviations),
+        *diagnose_damping(estimate.p, estimate.deviations),
+        *(diagnose_innovations(quality.correlation) if explained else ()),
+        *tyre_warnings,
+    )
     warnings = (
         *recording.warnings,
         *(diagnose_demand(demand, drive.T_s, tau) if demand else ()),
         *diagnose_spectrum(recording.omega_1, drive.T_s),
         *diagnose_outliers(filter_run, drive.T_s),
-        *(diagnose_offsets(filter_run, estimate.p) if measured else ()),
-        *diagnose_delays(estimate.p, estimate.deviations),
-        *diagnose_motor_gain(estimate.p, estimate.deviations),
-        *diagnose_load_gain(estimate.p, estimate.deviations),
+        *(causes if determined else ()),
         *estimate.warnings,
-        *(diagnose_innovations(quality.correlation) if explained else ()),
-        *tyre_warnings,
         *diagnose_excitation(filter_run.states[:, 2], estimate.p, estimate.deviations, estimate.free),
     )
     return Identified(
@@ -212,7 +217,7 @@ def of_sensors(recording: Measurement, loop: FittedLoop | None) -> Noise:
 def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Sequence[str], log: Log) -> Estimate:
     if not measured:
         free = _names(*DAMPED, *more)
-        initial = best_start(Predictor(free), drive, start._replace(d=_damping(start), J_2=10.0 * start.J_1), noise)
+        initial = best_start(Predictor(free), drive, start._replace(d=damping(start), J_2=10.0 * start.J_1), noise)
         found = maximise(Predictor(free), drive, initial, noise)
         _log_stage(log, "predicted without load torque", found.p)
         return Estimate("prediction error", found.p, sandwich_covariance(found), free, noise, ())
@@ -230,20 +235,23 @@ def fit(drive: Drive, start: Parameters, noise: Noise, measured: bool, more: Seq
     predicted = best.p._replace(**dict.fromkeys(DELAYS, 0.0))._replace(**late)
     if free_run_error(drive, predicted, noise) < fitted.error:
         fitted = output_error_fit(drive, predicted, noise, free, near=True)
+    rival = output_error_fit(drive, start._replace(**late), noise, free, near=True)
+    fitted, rival = sorted((fitted, rival), key=lambda each: each.error)
     _log_stage(log, "simulated", fitted.p)
     warnings = (
+        *diagnose_rival(fitted, rival),
         "the two masses do not explain all of this car (with the noise of the sensors alone the innovations have the "
         f"size {best.innovations.rms:.2f}): "
         f"parameters are those with which free runs of 0.5 s fit best, to {fitted.error:.2g} rad/s",
     )
     of_model = Noise(fitted.error, noise.T_mot, noise.T_load)
-    return Estimate("output error", fitted.p, fitted.covariance, fitted.free, of_model, warnings)
+    return Estimate("output error", fitted.p, covariance_with_rival(fitted, rival), fitted.free, of_model, warnings)
 
 
 def coarse_fit(drive: Drive, start: Parameters, noise: Noise, more: Sequence[str] = ()) -> Parameters:
     """A coarse fit from anywhere, by a filter that follows the motor speed whatever the parameters are."""
     broad, free = Noise(noise.omega_1, noise.T_mot, WIDE_LOAD_NOISE, acts=True), _searched(more)
-    initial = best_start(Predictor(free), drive, start._replace(d=_damping(start)), broad)
+    initial = best_start(Predictor(free), drive, start._replace(d=damping(start)), broad)
     return maximise(Predictor((*free, "g_L")), drive, initial, broad, most=FEWER).p
 
 
@@ -320,10 +328,10 @@ def output_error_fit(
     least = BURN_IN + SIMULATED * (len(free) + 2)
     _require_long("the recording", drive, least, f"for {len(free)} parameters of a car that two masses do not explain")
     wider = Noise(noise.omega_1, noise.T_mot, WIDEST_LOAD_NOISE, acts=True)
-    begin = initial._replace(d=_damping(initial), g_T=1.0)
+    begin = initial._replace(d=damping(initial), g_T=1.0)
     p = begin if near else maximise(Predictor(known), drive, begin, wider, most=FEW).p
     pieces = segments(drive, known, WITHIN)
-    fitted = pieces.fit(p._replace(d=_damping(p)), near_starts(pieces, filtered(drive, p, wider)))
+    fitted = pieces.fit(p._replace(d=damping(p)), near_starts(pieces, filtered(drive, p, wider)))
     if free == known:
         return fitted
     scaled = segments(drive, free, WITHIN).fit(fitted.p, fitted.starts, most=FEW)
@@ -371,10 +379,6 @@ def _sure_delays(p: Parameters) -> dict[str, float]:
     if min(abs(late_T), abs(late_L)) > UNSURE >= abs(late_T - late_L):
         return {"late_1": -0.5 * (late_T + late_L)}
     return {name: late for name, late in (("late_T", late_T), ("late_L", late_L)) if abs(late) > UNSURE}
-
-
-def _damping(p: Parameters) -> float:
-    return 2.0 * DAMPING * float(np.sqrt(p.C * p.J_1 * p.J_2 / (p.J_1 + p.J_2)))
 
 
 def _log_stage(log: Log, stage: str, p: Parameters) -> None:

@@ -31,6 +31,10 @@ OF_START = (0, 1, 2, 4)
 O_T = 1.5
 """Standard deviation in N.m within which the offset of the motor torque is looked for."""
 
+AS_GOOD, OTHER = 1.15, 1.5
+"""Error of a fit over that of the best up to which it is about as good, and ratio of J_2 or C from which on it is
+another one."""
+
 ENOUGH = 1e-4
 """Share of its cost that a step must promise to gain for the search to go on."""
 
@@ -60,6 +64,20 @@ class Fitted:
         """Standard deviation of a free parameter, in its unit."""
         k = self.free.index(name)
         return float(np.sqrt(self.covariance[k, k]))
+
+
+def rivals(best: Fitted, other: Fitted) -> bool:
+    """Whether free runs fit about as well with quite other parameters."""
+    ratios = [getattr(other.p, name) / getattr(best.p, name) for name in ("J_2", "C")]
+    return other.error < AS_GOOD * best.error and max(*ratios, *(1.0 / ratio for ratio in ratios)) > OTHER
+
+
+def covariance_with_rival(best: Fitted, other: Fitted) -> np.ndarray:
+    """Covariance of the free parameters about the best fit, allowing for a rival, as likely as that."""
+    if not rivals(best, other):
+        return best.covariance
+    off = np.array([getattr(other.p, name) - getattr(best.p, name) for name in best.free])
+    return best.covariance + 0.5 * np.outer(off, off)
 
 
 @dataclass(frozen=True, eq=False)

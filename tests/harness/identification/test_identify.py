@@ -1,9 +1,12 @@
 """How surely parameters are known where innovations are not white, and which of them the data do not ask for."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from driveline.harness.identification import identify
+from driveline.harness.base.csv_file import write_csv
+from driveline.harness.identification import identify, prior_knowledge
 from driveline.harness.identification.diagnostics import LIKELY
 from driveline.harness.identification.drive_train import DELAYS, Parameters
 from driveline.harness.identification.identify import (
@@ -17,6 +20,10 @@ from driveline.harness.identification.maximum_likelihood import Found
 from driveline.harness.identification.model_inputs import Drive
 from driveline.harness.identification.output_error import Fitted
 from driveline.harness.identification.prediction import Innovations, Noise, Predictor
+from driveline.harness.manoeuvres.prbs import binary_torque
+from driveline.harness.recordings.measurement import read_measurement
+from driveline.harness.simulation.excitation_drive import MeasurementWheels, sensed
+from driveline.harness.simulation.simulate import simulate
 from tests.harness.identification.simulated import NOISE, P, simulated
 
 BLOCK = 50
@@ -158,8 +165,42 @@ def test_free_runs_are_fitted_from_the_predicted_parameters_where_those_do_bette
     monkeypatch.setattr(identify, "free_run_error", lambda *_: error)
     estimate = fit(drive, P, NOISE, True, (), lambda _: None)
     assert estimate.method == "output error"
-    assert given == [(P._replace(late_1=0.001), False), *([(predicted, True)] if near else [])]
-    assert estimate.p == given[-1][0]
+    *tried, last = given
+    assert tried == [(P._replace(late_1=0.001), False), *([(predicted, True)] if near else [])]
+    assert estimate.p == tried[-1][0]
+    assert last == (P._replace(late_1=0.001), True)
+
+
+@pytest.mark.parametrize(
+    ("C", "error", "found", "doubt"),
+    [
+        (1.6 * P.C, 0.99, 1.6 * P.C, 0.6),
+        (1.6 * P.C, 1.14, P.C, 0.6),
+        (1.6 * P.C, 1.16, P.C, 0.0),
+        (P.C / 1.6, 1.14, P.C, 1.0 - 1.0 / 1.6),
+        (1.4 * P.C, 1.14, P.C, 0.0),
+    ],
+)
+def test_of_two_valleys_that_fit_free_runs_alike_the_intervals_hold_both(
+    C: float, error: float, found: float, doubt: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second one is sought from what was known of the car; the better of both is the answer."""
+    size = np.full(100, 2.0)
+    best = Found(P, ("C",), Innovations(size, size, slice(None), False, np.ones((100, 1)), size[:, None]), 1)
+
+    def output_error_fit(_: Drive, begin: Parameters, *__: object, near: bool = False) -> Fitted:
+        p, off = (begin._replace(C=C), error) if near else (begin, 1.0)
+        return Fitted(p, ("C",), 0.0, np.zeros((1, 4)), np.eye(1), off)
+
+    monkeypatch.setattr(identify, "coarse_fit", lambda _, start, *__: start)
+    monkeypatch.setattr(identify, "prediction_error_fit", lambda *_: best)
+    monkeypatch.setattr(identify, "output_error_fit", output_error_fit)
+    monkeypatch.setattr(identify, "free_run_error", lambda *_: 2.0)
+    estimate = fit(simulated(seed=1, n=10), P, NOISE, True, (), lambda _: None)
+    assert estimate.p.C == pytest.approx(found)
+    assert estimate.deviations["C"] == pytest.approx(np.sqrt(1.0 + 0.5 * (doubt * P.C) ** 2))
+    named = [text for text in estimate.warnings if "fit about as well with J_2 = " in text]
+    assert len(named) == (doubt > 0.0)
 
 
 @pytest.mark.parametrize(("g_T", "kept"), [(0.83, True), (0.85, False), (1.15, False), (1.17, True)])
@@ -194,3 +235,18 @@ def test_a_motor_torque_that_is_recorded_late_is_found_and_nothing_else_where_al
     assert "late_L" not in found.free
     assert found.p.shifts[0] == pytest.approx(late, abs=5e-5)
     assert found.innovations.rms == pytest.approx(1.0, abs=0.08)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("amplitude", [2.0, 10.0])
+def test_a_weak_drive_of_a_car_that_is_no_two_masses_tells_what_is_not_determined_and_no_cause(
+    amplitude: float, both_built: Path, tmp_path: Path
+) -> None:
+    """What the model lacks is below the noise, and was named as gains, zeros and delays of the torques."""
+    manoeuvre = binary_torque("weak", 25.0, amplitude, 0.04, 9, 10.0, 15.0 / 3.6)
+    results = simulate(manoeuvre, "ValidationVehicle", control=False, seed=101, folder=both_built)
+    write_csv(sensed(results, 9.0, MeasurementWheels(), 101), tmp_path / "drive.csv")
+    warnings = prior_knowledge.identify(read_measurement(tmp_path / "drive.csv", 9.0, 0.29)).warnings
+    expected = ("not determined", "fit about as well with", "95 % interval wider", "do not explain all")
+    assert [text for text in warnings if not any(part in text for part in expected)] == []
+    assert any(text.startswith("J_2, C") and "not determined" in text for text in warnings)
