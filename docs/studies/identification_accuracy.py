@@ -4,7 +4,7 @@ Each case drives the car, writes the recording as its sensors would, reads it an
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from math import log
 from pathlib import Path
@@ -143,7 +143,7 @@ class Trap:
         cause: a word of the warning that names it; none: the answer must be right.
         parameters: of the blocks.
         wheels: the measurement wheels.
-        late: of the load torque in s.
+        late: of channels in s, a straight line between their samples.
         J_1: that is taken as known, over the true one.
     """
 
@@ -151,14 +151,16 @@ class Trap:
     cause: str
     parameters: Mapping[str, float]
     wheels: MeasurementWheels = WHEELS
-    late: float = 0.0
+    late: Mapping[str, float] = field(default_factory=dict)
     J_1: float = 1.0
 
 
 TRAPS = (
     Trap("nothing", "", {}),
     Trap("wheel speed 25 ms later over CAN", "", {"can.d_min": 0.026, "can.d_max": 0.05}),
-    Trap("load torque 4 ms late", "load torque looks late", {}, late=0.004),
+    Trap("load torque 4 ms late", "load torque looks late", {}, late={"T_load": 0.004}),
+    Trap("motor speed 2 ms late, a sample", "motor speed looks late", {}, late={"omega_1": 0.002}),
+    Trap("motor speed 1 ms late, between samples", "motor speed has no white noise", {}, late={"omega_1": 0.001}),
     Trap("J_1 taken 3 % too large", "J_1", {}, J_1=1.03),
     Trap("tau half as long again", "tau", {"motor.tau": 0.0045}),
     Trap("motor torque recorded 3 % too large", "motor torque looks", {"motor.g_T": 1.03}),
@@ -170,8 +172,9 @@ def trapped(case: tuple[int, int]) -> Found:
     """With bad data: number of the trap, seed."""
     trap, seed = TRAPS[case[0]], case[1]
     recorded, _ = recording(DESIGN_MODEL, seed, trap.parameters, trap.wheels)
-    if trap.late and recorded.T_load is not None:
-        recorded = replace(recorded, T_load=np.interp(recorded.time - trap.late, recorded.time, recorded.T_load))
+    time = recorded.time
+    late = {name: np.interp(time - by, time, getattr(recorded, name)) for name, by in trap.late.items()}
+    recorded = replace(recorded, **late)
     return found(recorded, KNOWN._replace(J_1=KNOWN.J_1 * trap.J_1))
 
 

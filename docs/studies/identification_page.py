@@ -60,7 +60,7 @@ LOOPS = {
 TYRES = {"spring": (0, 2), "damper": (1,)}
 """Numbers of the cars by what their tyre mostly is at 8 Hz."""
 
-OF_A_LOOP = 2
+OF_A_LOOP = 5
 """Recordings of each car."""
 
 RIGHT = {"J_2": 0.004, "C": 0.001, "phi_B": 0.0035}
@@ -224,34 +224,46 @@ def _traps(every: Sequence[Sequence[Found]]) -> str:
         named = [bool(trap.cause) and any(trap.cause in warning for warning in one.warnings) for one in found]
         fine = [a or b for a, b in zip(inside, named, strict=True)]
         shares = [f"{100.0 * np.mean(share):.0f}" for share in (inside, named, fine)]
-        rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2]])
-    return markdown_table(["", "right within 3 sd, %", "cause named, %", "either, %"], rows, labels=1)
+        J_2 = _rms_and_worst([100.0 * _off(one, "J_2") for one in found])
+        rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2], J_2])
+    headings = ["", "right within 3 sd, %", "cause named, %", "either, %", "J_2 off by, % (rms / worst)"]
+    return markdown_table(headings, rows, labels=1)
 
 
-def _foreign(every: Sequence[Sequence[tuple[tuple[int, Loop, int], tuple[Found, tuple[float, float]]]]]) -> str:
-    """A row for each loop and kind of tyre."""
+def _rms_and_worst(errors: Sequence[float]) -> str:
+    return f"{np.sqrt(np.mean(np.square(errors))):.2f} / {np.abs(errors).max():.2f}"
+
+
+Drives = Sequence[tuple[tuple[int, Loop, int], tuple[Found, tuple[float, float]]]]
+"""Number of the car, loop, seed; what was found, and the shifts of motor and load torque in s."""
+
+
+def _foreign(every: Sequence[Drives]) -> str:
+    """A row for each loop and kind of tyre, and for all loops."""
     rows = []
-    for name, of in zip(LOOPS, every, strict=True):
+    together = [drive for drives in every for drive in drives]
+    for name, of in (*zip(LOOPS, every, strict=True), ("all", together)):
         for tyre, numbers in TYRES.items():
-            off = {parameter: [] for parameter in ("J_2", "C", "phi_B")}
-            inside, shifts = [], []
-            for (k, loop, _), (found, seen) in of:
-                if k not in numbers:
-                    continue
-                for parameter, errors in off.items():
-                    true = getattr(CARS[k], parameter)
-                    errors.append(100.0 * abs(found.values[parameter] / true - 1.0))
-                    inside.append(abs(found.z(parameter, true)) < Z_95)
-                shifts.append(1e3 * np.subtract(seen, loop.shifts))
-            errors = [f"{np.sqrt(np.mean(np.square(each))):.2f} / {max(each):.2f}" for each in off.values()]
-            true = " / ".join(f"{1e3 * shift:.1f}" for shift in LOOPS[name].shifts)
-            worst = " / ".join(f"{shift:.2f}" for shift in np.abs(shifts).max(axis=0))
-            rows.append([name, tyre, *errors, f"{100.0 * np.mean(inside):.0f}", true, worst])
+            true = " / ".join(f"{1e3 * shift:.1f}" for shift in LOOPS[name].shifts) if name in LOOPS else "-"
+            rows.append([name, tyre, *_of_drives([drive for drive in of if drive[0][0] in numbers], true)])
     headings = [
         *("loop and logger", "tyre", "J_2, %", "C, %", "phi_B, %", "in the 95 % interval, %"),
         *("motor / load torque late, ms", "found, off by at most, ms"),
     ]
     return markdown_table(headings, rows, labels=2)
+
+
+def _of_drives(drives: Drives, true: str) -> list[str]:
+    off = {parameter: [] for parameter in ("J_2", "C", "phi_B")}
+    inside, shifts = [], []
+    for (k, loop, _), (found, seen) in drives:
+        for parameter, errors in off.items():
+            value = getattr(CARS[k], parameter)
+            errors.append(100.0 * (found.values[parameter] / value - 1.0))
+            inside.append(abs(found.z(parameter, value)) < Z_95)
+        shifts.append(1e3 * np.subtract(seen, loop.shifts))
+    worst = " / ".join(f"{shift:.2f}" for shift in np.abs(shifts).max(axis=0))
+    return [*map(_rms_and_worst, off.values()), f"{100.0 * np.mean(inside):.0f}", true, worst]
 
 
 def _redesigned(every: Sequence[Redesigned]) -> str:

@@ -14,6 +14,7 @@ from docs.studies.identification_accuracy import DESIGN_MODEL, KNOWN, TRAPS, tra
 class Recorded:
     time: np.ndarray = field(default_factory=lambda: 0.002 * np.arange(100))
     T_load: np.ndarray = field(default_factory=lambda: np.arange(100.0))
+    omega_1: np.ndarray = field(default_factory=lambda: np.arange(100.0))
 
 
 @pytest.mark.parametrize("number", range(len(TRAPS)))
@@ -29,4 +30,5 @@ def test_a_trap_is_the_one_that_is_asked_for(number: int, monkeypatch: pytest.Mo
     recorded, start = trapped((number, 70 + number))  # type: ignore[misc]
     assert given == [(DESIGN_MODEL, 70 + number, trap.parameters, trap.wheels)]
     assert start.J_1 == pytest.approx(KNOWN.J_1 * trap.J_1)
-    assert recorded.T_load[50] == pytest.approx(50.0 - trap.late / 0.002)
+    for name in ("T_load", "omega_1"):
+        assert getattr(recorded, name)[50] == pytest.approx(50.0 - trap.late.get(name, 0.0) / 0.002)

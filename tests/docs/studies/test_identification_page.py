@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import pytest
 
+from docs.studies.foreign_loop import CARS, Loop
 from docs.studies.identification_accuracy import TRAPS, Found, Judged, Method, Redesigned
 from docs.studies.identification_page import (
+    LOOPS,
     PAGE,
     TABLES,
     TRUE,
     _accuracy,
+    _foreign,
     _methods,
     _redesigned,
     _traps,
@@ -60,17 +63,41 @@ def test_a_wide_start_is_right_if_every_parameter_is_nearly_that_of_the_car(
 def test_a_trap_is_passed_by_the_right_answer_or_by_naming_the_cause() -> None:
     wrong = with_values(J_2=0.35)
     named = replace(wrong, warnings=("the load torque looks late: ...",))
-    late = next(k for k, trap in enumerate(TRAPS) if trap.late)
+    late = next(k for k, trap in enumerate(TRAPS) if "T_load" in trap.late)
     every = [[RIGHT, RIGHT] for _ in TRAPS]
     every[late] = [wrong, named]
-    assert row(_traps(every), TRAPS[late].name)[1:] == ["0", "50", "50"]
-    assert row(_traps(every), TRAPS[0].name)[1:] == ["100", "-", "100"]
+    assert row(_traps(every), TRAPS[late].name)[1:] == ["0", "50", "50", "16.67 / 16.67"]
+    assert row(_traps(every), TRAPS[0].name)[1:] == ["100", "-", "100", "0.00 / 0.00"]
 
 
 def test_a_wrong_J_1_is_only_passed_if_it_is_named() -> None:
     k = next(k for k, trap in enumerate(TRAPS) if trap.J_1 != 1.0)
     every = [[RIGHT] for _ in TRAPS]
-    assert row(_traps(every), TRAPS[k].name)[1:] == ["0", "0", "0"]
+    assert row(_traps(every), TRAPS[k].name)[1:4] == ["0", "0", "0"]
+
+
+def test_loops_that_are_not_ours_are_told_by_tyre_and_together() -> None:
+    """Each car with its parameters but one, whose J_2 is 2 % too large and whose load torque is found .1 ms off."""
+
+    def drive(
+        number: int, loop: Loop, off: float = 0.0
+    ) -> tuple[tuple[int, Loop, int], tuple[Found, tuple[float, float]]]:
+        car = CARS[number]
+        values = {"J_2": car.J_2 * (1.0 + off), "C": car.C, "phi_B": car.phi_B}
+        found = replace(RIGHT, values=values, deviations={name: 0.005 * value for name, value in values.items()})
+        late_T, late_L = loop.shifts
+        return (number, loop, 1), (found, (late_T, late_L + 0.005 * off))
+
+    every = [[drive(k, loop) for k in range(3)] for loop in LOOPS.values()]
+    every[0][1] = drive(1, next(iter(LOOPS.values())), off=0.02)
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in _foreign(every).splitlines()]
+    first, spring, damper = next(iter(LOOPS)), lines[-2], lines[-1]
+    assert lines[2] == [first, "spring", "0.00 / 0.00", "0.00 / 0.00", "0.00 / 0.00", "100", "0.0 / 0.0", "0.00 / 0.00"]
+    assert lines[3][:3] == [first, "damper", "2.00 / 2.00"]
+    assert lines[3][5:] == ["67", "0.0 / 0.0", "0.00 / 0.10"]
+    assert spring[:3] == ["all", "spring", "0.00 / 0.00"]
+    rms = 2.0 / len(LOOPS) ** 0.5
+    assert damper == ["all", "damper", f"{rms:.2f} / 2.00", *["0.00 / 0.00"] * 2, "96", "-", "0.00 / 0.10"]
 
 
 def test_redesigned_controllers_are_compared_car_by_car() -> None:
