@@ -10,12 +10,10 @@ What stands in `__init__.pyi` is public; all else can change from one release to
 is asked for first, so that a program waits for nothing that it does not use.
 """
 
-import ast
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from threading import RLock
-from typing import Any
 
 _CHECKOUT = Path(__file__).resolve().parents[1]
 if (_CHECKOUT / "build_fmus.py").is_file():  # its folders models, fmus and harness are packages of this one
@@ -28,6 +26,8 @@ _IMPORTING = RLock()
 @cache
 def _public() -> dict[str, tuple[str, str]]:
     """Module and name there of each public name, as `__init__.pyi` declares them."""
+    import ast  # not above: `driveline` asks for no name
+
     declared = ast.parse(Path(__file__).with_suffix(".pyi").read_bytes())
     return {
         alias.asname or alias.name: (f".{node.module}", alias.name)
@@ -37,7 +37,7 @@ def _public() -> dict[str, tuple[str, str]]:
     }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     if name == "__all__":
         return __dir__()
     if name not in _public():
