@@ -74,6 +74,8 @@ class Balance(NamedTuple):
     Attributes:
         worst: time in s at which they are furthest apart.
         correlation: of what the motion takes with what the motor gives, while the car rolls; 0 if too little happens.
+        driven, with_motor: standard deviation in N of what the motion takes where that is positive, as brakes cannot
+            give it, and its correlation with what the motor gives where that is.
         judged: whether enough happens while the motor pushes.
         together, ratio: correlation and ratio of standard deviations then.
         moved: standard deviation in N of what the motion takes then.
@@ -81,6 +83,8 @@ class Balance(NamedTuple):
 
     worst: float
     correlation: float = 0.0
+    driven: float = 0.0
+    with_motor: float = 0.0
     judged: bool = False
     together: float = 0.0
     ratio: float = 1.0
@@ -96,6 +100,9 @@ def balance(along: Forces, torque: float = 1.0) -> Balance:
     takes, gives, rolls = along.takes, torque * along.gives, along.rolls
     pushes = rolls & (gives > FORCE)
     found = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
+    if rolls.sum() >= LEAST:
+        taken, given = (np.maximum(force[rolls], 0.0) for force in (takes, gives))
+        found = found._replace(driven=float(np.std(taken)), with_motor=compared(taken, given)[0])
     if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:
         found = found._replace(correlation=compared(takes[rolls], gives[rolls])[0])
     if pushes.sum() >= LEAST and max(np.std(gives[pushes]), np.std(takes[pushes])) > FORCE:

@@ -89,6 +89,10 @@ SHORTEST = 2e-4
 KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
 """Factors on speed, time and torque that are tried. Those on a torque that never reaches FORCE leave no ratio out."""
 
+LIVELY, OWN = 600.0, 0.3
+"""Standard deviation in N of what drives a car, and its correlation with what the motor gives. Roads that rise and fall
+by 5 % take as much; by 14 %, they leave that correlation."""
+
 FOLLOWED = 0.3
 """Speed error in m/s, rms, from which on a recorded speed is not followed."""
 
@@ -142,6 +146,12 @@ RATIO = Rule(
     "0.84 and 0.92 in the recorded trips; 0.61 to 1.82 in 200 simulated drives of cars with half to one and a half of "
     "the mass",
 )
+OTHER = Rule(
+    "other torque",
+    "motor torque that has nothing to do with what drives the car: of another drive or channel, or late",
+    f"correlation below {OWN:g} where {LIVELY:g} N (standard deviation) and more drive it",
+    "0.92 and more in the recorded trips; 0.3 on a road that rises and falls by 14 %",
+)
 FAST = Rule(
     "unit of speed",
     "km/h called m/s: the car is 3.6 times too fast",
@@ -161,7 +171,7 @@ FOLLOWING = Rule(
     "the force along the road is corrected until 0.1 m/s are reached; 0.16 m/s at most in 200 simulated drives",
 )
 
-RULES = (SENTINEL, CLIPPED, SPIKED, JUMP, RATE, CAPPED, SIGN, RATIO, FAST, SLOW_TIME, FOLLOWING)
+RULES = (SENTINEL, CLIPPED, SPIKED, JUMP, RATE, CAPPED, SIGN, RATIO, OTHER, FAST, SLOW_TIME, FOLLOWING)
 """All that is looked for."""
 
 
@@ -317,6 +327,12 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
         unit = f"kN.m called N.m ({given})" if weak == WEAK[-1] else "its unit or the side of the gear looks wrong"
         odd = f"gives about 1/{weak:g} of what the motion takes, and follows it otherwise: {unit}"
         yield Finding(RATIO, torque, at, odd)
+    elif found.driven > LIVELY and found.with_motor < OWN:
+        odd = (
+            f"has nothing to do with what drives the car (correlation {found.with_motor:.2f}): it looks like that of "
+            "another drive or channel, or is late"
+        )
+        yield Finding(OTHER, torque, at, odd)
 
 
 def not_followed(drive: Drive, time: np.ndarray, v: np.ndarray) -> list[Finding]:

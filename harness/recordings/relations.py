@@ -143,6 +143,6 @@ def _slow_parts(x: np.ndarray, T_mot: np.ndarray, interval: float) -> tuple[floa
 def compared(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     """Correlation of two signals, and the standard deviation of the first over that of the second; 0 of one that does
     not vary, and infinity over it."""
-    x, y = x - x.mean(), y - y.mean()
-    size = np.sqrt((x @ x) * (y @ y))
-    return (float(x @ y / size) if size > 0.0 else 0.0), float(np.std(x) / np.std(y)) if y.any() else np.inf
+    size = float(np.std(x) * np.std(y))
+    correlation = float(np.mean((x - x.mean()) * (y - y.mean()))) / size if size > 0.0 else 0.0
+    return correlation, float(np.std(x) / np.std(y)) if np.std(y) > 0.0 else np.inf

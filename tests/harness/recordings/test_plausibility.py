@@ -67,6 +67,16 @@ SPOILED: dict[str, tuple[Spoil, str, str]] = {
         r"^Motor Torque \[Nm\] at \S+ s gives 9\.1 times what the motion",
     ),
     "kN.m": (scaled(T, 1e-3), "ratio of torque", r"kN\.m called N\.m \(--column T_mot='Motor Torque \[kNm\]'"),
+    "five seconds late": (
+        lambda table: table.assign(**{T: table[T].shift(50, fill_value=0.0)}),
+        "other torque",
+        r"^Motor Torque \[Nm\] at \S+ s has nothing to do with what drives the car \(correlation -?0\.[0-2]\d\): it",
+    ),
+    "no torque": (
+        scaled(T, 0.0),
+        "other torque",
+        r"^Motor Torque \[Nm\] at \S+ s has nothing to do .*correlation 0\.00",
+    ),
     "T_max": (scaled(T, 1.6), "T_max", r"^Motor Torque \[Nm\] at 33\.2 s is 200 N\.m; \S+% of the samples lie beyond"),
     "1 Hz": (
         lambda table: table.iloc[::10],
@@ -285,7 +295,7 @@ def test_the_forces_of_a_drive_are_computed_once_and_once_more_for_another_unit(
 def test_a_car_that_stands_or_coasts_tells_nothing_of_the_torque() -> None:
     one = drive()
     noise = np.random.default_rng(1).normal(0.0, 1.0, len(one.time))
-    for v, T_mot in ((0.0 * one.v, -one.T_mot), (one.v, noise), (np.linspace(20.0, 0.0, len(noise)), noise)):
+    for v, T_mot in ((0.0 * one.v, -one.T_mot), (np.linspace(20.0, 0.0, len(noise)), noise)):
         assert of_drive(replace(one, v=v, T_mot=T_mot), CAR, T_MAX) == []
 
 
@@ -294,6 +304,14 @@ def test_a_brake_is_no_wrong_sign() -> None:
     braked = np.where((one.time > 30.0) & (one.time < 33.0), one.v - 3.0 * (one.time - 30.0), one.v)
     braked = np.where(one.time >= 33.0, one.v - 9.0, braked)
     assert of_drive(replace(one, v=np.maximum(braked, 0.0)), CAR, T_MAX) == []
+
+
+def test_brakes_and_hills_are_no_other_torque() -> None:
+    """All braking by friction, and a road that rises and falls by up to 10 %."""
+    one = drive()
+    hills = CAR.m * CAR.g * 0.1 * np.sin(2.0 * pi * one.time / 20.0) * CAR.r / CAR.i
+    for T_mot in (np.maximum(one.T_mot, 0.0), one.T_mot + hills):
+        assert of_drive(replace(one, T_mot=T_mot), CAR, 10.0 * T_MAX) == []
 
 
 def test_a_speed_that_is_not_followed() -> None:
