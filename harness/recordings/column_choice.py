@@ -6,6 +6,7 @@ from shlex import quote
 
 from ..base.known_names import nearest
 from ..base.plain_text import plain
+from .clock_times import EXAMPLES
 from .headings import key, split, without_brackets
 from .quantities import BY_UNIT, QUANTITIES, Aliases, example
 from .recording_units import factor_to, is_unit
@@ -122,9 +123,10 @@ class Chooser:
         declared = QUANTITIES[quantity]
         mended = f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
         if unit is None and declared.unit != "1":
+            clock = f"; a time of day needs none, such as {EXAMPLES}" if quantity == "time" else ""
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
-                f"{example(quantity, self.names)}, or give it with {mended}"
+                f"{example(quantity, self.names)}, or give it with {mended}{clock}"
             )
         try:
             return si_of(quantity, unit or "1")

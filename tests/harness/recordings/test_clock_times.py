@@ -68,6 +68,12 @@ def test_a_date_in_a_column_of_its_own_is_passed_over(tmp_path: Path) -> None:
     assert read_drive(path).time.tolist() == [0.0, 1.0]
 
 
+def test_a_date_that_is_not_read_is_told_which_times_are(tmp_path: Path) -> None:
+    """Not only to give a unit, with which it is no number."""
+    with pytest.raises(RecordingError, match=r"Time has no unit; .*; a time of day needs none, such as 10:15:30\.5 or"):
+        read_drive(written(tmp_path, "11/22/2026 10:00:00", "11/22/2026 10:00:01"))
+
+
 def test_a_row_without_a_time_is_named(tmp_path: Path) -> None:
     with pytest.raises(
         RecordingError, match=r"line 3, column Time: soon is no time as in the first row, such as 10:15"
