@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from multiprocessing import get_context
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -12,8 +13,12 @@ import numpy as np
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
+from driveline.harness.recordings.bounded_reading import outcome
 from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.format_detection import is_text
+from driveline.harness.recordings.limits import PATIENCE
 from driveline.harness.recordings.measurement import read_measurement
+from driveline.harness.recordings.source import RecordingError
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
 from tests.fuzz.target import Attempt, Target, Unclean
 from tests.harness.recordings.car import RADIUS, RATIO
@@ -59,14 +64,36 @@ def sound_files(folder: Path) -> list[bytes]:
     return files
 
 
-def unlimited(read: Any) -> Any:
-    """The reader without a process of its own, which takes most of a second."""
-    return read.__wrapped__
+FORK = get_context("fork")
+
+
+def apart(read: Any) -> Any:
+    """The reader, without limits, of a file that is no text in a copy of this process: packages crash over some. A
+    process that begins anew, as for users, takes most of a second."""
+
+    def answered(path: Path, *others: float) -> Any:
+        if is_text(path):
+            return read.__wrapped__(path, *others)
+        receiver, sender = FORK.Pipe(duplex=False)
+        child = FORK.Process(target=lambda: sender.send(outcome(read.__module__, read.__name__, (path, *others), {})))
+        child.start()
+        sender.close()
+        try:
+            answer = receiver.recv() if receiver.poll(PATIENCE) else TimeoutError(f"no answer in {PATIENCE} s")
+        except EOFError:
+            answer = RecordingError(f"{path} ended the process that read it")
+        child.kill()
+        child.join()
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    return answered
 
 
 def driven(path: Path, random: Random) -> list[np.ndarray]:
     """The signals of a drive."""
-    track = Track.of(unlimited(read_drive)(path))
+    track = Track.of(apart(read_drive)(path))
     manoeuvre = drive(track, CAR, needed_force(track, CAR), held=random.choice((None, 0.5)))
     t = np.linspace(0.0, manoeuvre.duration, 50)
     return [signal(t) for signal in (manoeuvre.T_driver, manoeuvre.T_brake, manoeuvre.slope)]
@@ -74,7 +101,7 @@ def driven(path: Path, random: Random) -> list[np.ndarray]:
 
 def identified(path: Path, random: Random) -> list[np.ndarray]:
     """The signals of a drive to identify from."""
-    found = unlimited(read_measurement)(path, RATIO, RADIUS)
+    found = apart(read_measurement)(path, RATIO, RADIUS)
     return [x for x in (found.time, found.T_mot, found.omega_1, found.omega_2, found.T_load) if x is not None]
 
 
