@@ -1,7 +1,6 @@
 """The recording that a command reads: the file, and what its columns are called."""
 
 import argparse
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -53,14 +52,12 @@ def files_of(args: argparse.Namespace) -> list[Path]:
 
 
 def of_recording(args: argparse.Namespace) -> dict[str, Any]:
-    """What distinguishes a run by these files and by what the columns are said to be."""
+    """What distinguishes a run by these files, which have been read, and by what the columns are said to be."""
+    from ..simulation.provenance import digest
+
     given = {"databases": args.databases, "aliases": args.aliases}
     others = {name: [digest(path) for path in paths] for name, paths in given.items() if paths}
     return {"recording": digest(args.recording), "columns": dict(args.columns), **others}
-
-
-def digest(path: Path) -> str:
-    return sha256(path.read_bytes()).hexdigest()
 
 
 def column(text: str) -> tuple[str, str]:

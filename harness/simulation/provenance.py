@@ -222,8 +222,9 @@ def commit() -> str | None:
 
 
 def digest(path: Path) -> str:
-    """Of the content of a file."""
-    return f"sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}"
+    """Of the content of a file, which may be larger than the memory."""
+    with path.open("rb") as file:
+        return f"sha256:{hashlib.file_digest(file, 'sha256').hexdigest()}"
 
 
 def _text(content: Any) -> str:

@@ -63,3 +63,12 @@ def test_two_plants_of_one_name_are_named_before_the_folder(message, native: Pat
         (tmp_path / name).mkdir()
         plants += ["--plant", shutil.copy(native / "TwoMassDriveline.fmu", tmp_path / name)]
     assert "two plants are called TwoMassDriveline" in message("faults", *plants)
+
+
+@pytest.mark.parametrize("command", ["replay", "identify"])
+def test_what_is_no_file_is_refused_before_it_is_read(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A pipe that nobody writes to, or a device that gives without end, as a folder here."""
+    assert main([command, str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"driveline {command}: there is no recording {tmp_path}\n"
