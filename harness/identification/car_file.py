@@ -11,6 +11,7 @@ from ..recordings.source import RecordingError
 from .drive_train import Parameters
 from .drive_train_response import resonance
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
+from .maximum_likelihood import SIGNED
 from .quality import Z_95
 from .two_mass_equivalent import equivalent
 
@@ -35,6 +36,8 @@ MEANS = {
 WIDEST_INTERVAL = 0.5
 """Half of a 95 % interval over its value, up to which a parameter is one of a vehicle file."""
 
+NOT_DETERMINED = "is not determined"
+
 WIDEST = 118
 """Characters of a line of text in a vehicle file."""
 
@@ -46,6 +49,11 @@ def found(identified: Identified) -> list[tuple[str, float, float]]:
     if identified.loop:
         rows.append(("tau", identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]))
     return [row for row in rows if row[2] > 0.0]
+
+
+def is_determined(name: str, value: float, half: float) -> bool:
+    """Whether the interval tells anything: that of what cannot be 0 must not hold it."""
+    return half <= abs(value) or name in SIGNED
 
 
 def of_car(identified: Identified) -> tuple[float, float]:
@@ -86,6 +94,8 @@ def identified_lines(identified: Identified) -> list[str]:
     parameters = [
         f"{name:{width}} = {value:.5g} +- {half:.2g} {UNITS.get(name, '')}".rstrip()
         + f" ({100.0 * half / abs(value):.2g} %)"
+        if is_determined(name, value, half)
+        else f"{name:{width}} {NOT_DETERMINED}"
         for name, value, half in every
     ]
     return [

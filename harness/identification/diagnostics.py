@@ -194,7 +194,7 @@ def diagnose_excitation(
     crossed = ("phi_B",) if min(driving, braking) >= FLANK else ()
     over = {name: Z_95 * deviations.get(name, 0.0) / _size(name, p) for name in ("J_2", "C", *crossed, "d")}
     unknown = [name for name, share in over.items() if share > 1.0]
-    wide = [name for name, share in over.items() if Z_95 * CLOSE < share <= 1.0]
+    wide = [name for name, share in over.items() if Z_95 * CLOSE < share <= 1.0 and name != "d"]
     if unknown:
         warnings.append(f"{', '.join(unknown)}: not determined; excite more or longer")
     if wide:

@@ -11,7 +11,7 @@ from ..views.html.figure_selector import chosen
 from ..views.html.linked_figures import linked, shown, stacked
 from ..views.html.report_page import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within
-from .car_file import MEANS, UNITS, found, of_car
+from .car_file import MEANS, NOT_DETERMINED, UNITS, found, is_determined, of_car
 from .fit_figures import autocorrelations, distribution, innovations, simulated
 from .free_runs import FreeRuns, end_of, free_runs
 from .identify import Identified
@@ -52,7 +52,10 @@ def report(identified: Identified, recording: Measurement, provenance: Mapping[s
 def verdict(identified: Identified) -> str:
     """In one sentence."""
     text = ", ".join(
-        f"{name} = {value:.5g} ± {half:.2g} {UNITS.get(name, '')}".rstrip() for name, value, half in found(identified)
+        f"{name} = {value:.5g} ± {half:.2g} {UNITS.get(name, '')}".rstrip()
+        if is_determined(name, value, half)
+        else f"{name} {NOT_DETERMINED}"
+        for name, value, half in found(identified)
     )
     count = len(identified.warnings)
     return (
@@ -74,6 +77,8 @@ def _found(identified: Identified) -> Table:
         every.append(("C of the car, in the vehicle file", *of_car(identified)))
     rows = [
         Row([name, f"{value:.5g}", f"{half:.2g}", f"{100.0 * half / abs(value):.2g}", UNITS.get(name.split()[0], "")])
+        if is_determined(name, value, half)
+        else Row([name, NOT_DETERMINED, "", "", ""])
         for name, value, half in every
     ]
     return Table(headings, rows, [f"Warning: {warning}" for warning in identified.warnings])

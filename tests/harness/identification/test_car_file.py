@@ -11,6 +11,7 @@ from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.identification import car_file
 from driveline.harness.identification.car_file import WIDEST_INTERVAL
 from driveline.harness.identification.drive_train_response import Tyre, resonance
+from driveline.harness.identification.identification_report_html import verdict
 from driveline.harness.identification.identify import WITH_LOAD, WITHOUT_LOAD, Identified
 from driveline.harness.identification.quality import Z_95, Quality
 from driveline.harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop
@@ -75,6 +76,16 @@ def test_a_stiffness_that_is_hardly_known_makes_no_vehicle_file() -> None:
         RecordingError, match=r"C of the car = 117 \+- 59 N.m/rad is known to \+- 50 % only.*excite more"
     ):
         car_file.vehicle_file(known_to("C", 1.001 * WIDEST_INTERVAL), "A car.")
+
+
+def test_what_is_not_determined_is_told_so_and_not_as_a_number() -> None:
+    """Of what cannot be 0; damping and delays may be."""
+    for share, told in ((0.999, "phi_B = 0.157 +- 0.16 rad (1e+02 %)"), (1.001, "phi_B is not determined")):
+        found = known_to("phi_B", share)
+        assert f"  {told}" in car_file.identified_lines(found)
+        assert told.partition(" (")[0].replace("+-", "±") in verdict(found)
+    late = replace(FOUND, p=P._replace(late_1=1e-3), free=("J_2", "C", "phi_B", "late_1"))
+    assert any(line.startswith("  late_1 = 0.001 +- 0.0059 s") for line in car_file.identified_lines(late))
 
 
 def test_a_gap_that_is_hardly_known_stays_as_it_was() -> None:
