@@ -247,23 +247,25 @@ def _foreign(every: Sequence[Drives]) -> str:
             true = " / ".join(f"{1e3 * shift:.1f}" for shift in LOOPS[name].shifts) if name in LOOPS else "-"
             rows.append([name, tyre, *_of_drives([drive for drive in of if drive[0][0] in numbers], true)])
     headings = [
-        *("loop and logger", "tyre", "J_2, %", "C, %", "phi_B, %", "in the 95 % interval, %"),
-        *("motor / load torque late, ms", "found, off by at most, ms"),
+        *("loop and logger", "tyre", "J_2, %", "C, %", "phi_B, %", "95 % interval of J_2, +- %"),
+        *("in the intervals, %", "motor / load torque late, ms", "found, off by at most, ms"),
     ]
     return markdown_table(headings, rows, labels=2)
 
 
 def _of_drives(drives: Drives, true: str) -> list[str]:
     off = {parameter: [] for parameter in ("J_2", "C", "phi_B")}
-    inside, shifts = [], []
+    inside, shifts, half = [], [], []
     for (k, loop, _), (found, seen) in drives:
+        half.append(100.0 * Z_95 * found.deviations["J_2"] / CARS[k].J_2)
         for parameter, errors in off.items():
             value = getattr(CARS[k], parameter)
             errors.append(100.0 * (found.values[parameter] / value - 1.0))
             inside.append(abs(found.z(parameter, value)) < Z_95)
         shifts.append(1e3 * np.subtract(seen, loop.shifts))
     worst = " / ".join(f"{shift:.2f}" for shift in np.abs(shifts).max(axis=0))
-    return [*map(_rms_and_worst, off.values()), f"{100.0 * np.mean(inside):.0f}", true, worst]
+    errors = map(_rms_and_worst, off.values())
+    return [*errors, f"{np.mean(half):.2f}", f"{100.0 * np.mean(inside):.0f}", true, worst]
 
 
 def _redesigned(every: Sequence[Redesigned]) -> str:

@@ -92,12 +92,12 @@ def test_loops_that_are_not_ours_are_told_by_tyre_and_together() -> None:
     every[0][1] = drive(1, next(iter(LOOPS.values())), off=0.02)
     lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in _foreign(every).splitlines()]
     first, spring, damper = next(iter(LOOPS)), lines[-2], lines[-1]
-    assert lines[2] == [first, "spring", "0.00 / 0.00", "0.00 / 0.00", "0.00 / 0.00", "100", "0.0 / 0.0", "0.00 / 0.00"]
+    assert lines[2] == [first, "spring", *["0.00 / 0.00"] * 3, "0.98", "100", "0.0 / 0.0", "0.00 / 0.00"]
     assert lines[3][:3] == [first, "damper", "2.00 / 2.00"]
-    assert lines[3][5:] == ["67", "0.0 / 0.0", "0.00 / 0.10"]
+    assert lines[3][5:] == ["1.00", "67", "0.0 / 0.0", "0.00 / 0.10"]
     assert spring[:3] == ["all", "spring", "0.00 / 0.00"]
     rms = 2.0 / len(LOOPS) ** 0.5
-    assert damper == ["all", "damper", f"{rms:.2f} / 2.00", *["0.00 / 0.00"] * 2, "96", "-", "0.00 / 0.10"]
+    assert damper == ["all", "damper", f"{rms:.2f} / 2.00", *["0.00 / 0.00"] * 2, "0.98", "96", "-", "0.00 / 0.10"]
 
 
 def test_redesigned_controllers_are_compared_car_by_car() -> None:
