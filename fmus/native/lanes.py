@@ -81,9 +81,9 @@ def build_lanes(fmu: Fmu, lanes: int, path: Path) -> None:
         lanes: 4 or 8.
 
     Raises:
-        CompilerError: there is no compiler, it refuses the source, or the C library has no functions of vectors.
+        CompilerError: there is no compiler, or it refuses the source.
     """
     with TRACING:
         sources = lane_sources(fmu)
     command = [host_compiler(), *COMMON, *FLAGS[lanes], f"-DWIDTH={lanes}", "-shared", "-fPIC", "-s"]
-    path.write_bytes(compile_in([*command, "whole.c", "-o", path.name, "-lmvec", "-lm"], path.name, sources))
+    path.write_bytes(compile_in([*command, "whole.c", "-o", path.name, "-lm"], path.name, sources))
