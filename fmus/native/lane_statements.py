@@ -12,6 +12,11 @@ class LaneStatements(Statements):
 
     LEAST = 16
 
+    @staticmethod
+    def is_not_zero(number: str) -> str:
+        """Of a car."""
+        return f"is_any({number} != 0.0)"
+
     def _type(self, node: Node) -> str:
         return "mask" if node.operation in (*TRUTH_VALUES, "INDEX") else "lanes"
 

@@ -1,7 +1,8 @@
 """The C source of a block: block.h and block.c, and variables.h with what a host sees of it."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, NamedTuple
 
 from ...models.block.declaration import Enumeration
@@ -10,7 +11,7 @@ from ...models.block.types import SampledBlock
 from ..description.states import event_indicators, shown_by_fmi3, states
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
-from .arithmetic import TracedGraph
+from .arithmetic import Graph, TracedGraph
 from .records import IN_FMU, RECORDS, Names, paths, records_of, structs
 from .statements import DOUBLE, Precision, Statements
 from .terms import TERMS, Terms
@@ -21,7 +22,8 @@ MEANINGS = {
     "output": "The outputs.",
     "derivative": "The rate of change of the state.",
     "derivative_held": "The same, with what depends on inputs and parameters alone.",
-    "held_terms": "What the rate of change of the state needs that depends on inputs and parameters alone.",
+    "held_terms": "What the rate of change of the state needs that depends on inputs and parameters alone: all of it, "
+    "or what depends on inputs that move at the rates du.",
     "event_indicators": "Values that are zero where the equations have a kink.",
     "solution": "Whether the solution in closed form holds for a step of h s, and the state at its end, for inputs "
     "that move at the rates du.",
@@ -164,10 +166,11 @@ def functions(
         if each.name == "derivative" and held.outputs:
             x, u, p, dx = arguments
             add("derivative_held", [x, u, p, f"const {names.real} w[]", dx], lines, each.arguments)
-            add("held_terms", [u, p, f"{names.real} w[]"], statements(held, held.names(), precision).lines, "up")
+            moving = [u, p, u.replace("*u", "*du"), f"{names.real} w[]"]
+            add("held_terms", moving, _held_lines(held, partial(statements, precision=precision)), "up")
             lines = [
                 f"    {names.real} w[HELD_TERMS];",
-                f"    {names.function}held_terms(u, p, w);",
+                f"    {names.function}held_terms(u, p, 0, w);",
                 f"    {names.function}derivative_held(x, u, p, w, dx);",
             ]
         add(each.name, arguments, lines, each.arguments)
@@ -175,6 +178,16 @@ def functions(
         add("compute_terms", [f"{names.struct}Parameters *p"], statements(terms, terms.names(), precision).lines, "p")
     declared = terms.values(list(map(float, records["p"])))
     return Functions(heads, "\n\n".join(texts), declared, len(held.outputs))
+
+
+def _held_lines(held: Terms, statements: Callable[[Graph, list[str]], Statements]) -> list[str]:
+    """Those of held_terms: a block for all terms that depend on the same inputs."""
+    lines: list[str] = []
+    for inputs, part in held.by_inputs():
+        written = statements(part, held.names())
+        moves = " || ".join(["!du", *(written.is_not_zero(f"d{name}") for name in inputs)])
+        lines += [f"    if ({moves}) {{", *(f"    {line}" for line in written.lines), "    }"]
+    return lines
 
 
 def _arguments(each: Traced, names: Names) -> list[str]:

@@ -85,6 +85,11 @@ class Statements:
             self._need(k, frozenset())
             self._line(f"{outputs[element]} = {self._number(k).text};")
 
+    @staticmethod
+    def is_not_zero(number: str) -> str:
+        """The C of it."""
+        return f"{number} != 0"
+
     def _line(self, text: str) -> None:
         self.lines.append(self._indent + text)
 

@@ -6,6 +6,7 @@ step. Python computes them every time, by the same operations, so that the bits 
 
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
 from functools import partial
 from typing import Any
 
@@ -70,6 +71,22 @@ class Terms(Graph):
             self.outputs[place] = same[k]
             graph.nodes[k] = Node("INPUT", (), (len(graph.inputs), place))
         graph.inputs.append(self.names())
+
+    def by_inputs(self) -> Iterator[tuple[tuple[str, ...], Graph]]:
+        """Which elements of the first vector terms depend on, and a graph of those that depend on the same ones."""
+        alike: dict[tuple[str, ...], dict[int, int]] = {}
+        for place, k in self.outputs.items():
+            alike.setdefault(self._inputs_of(k), {})[place] = k
+        for inputs, outputs in alike.items():
+            part = copy(self)
+            part.outputs = outputs
+            yield inputs, part
+
+    def _inputs_of(self, k: int) -> tuple[str, ...]:
+        of = copy(self)
+        of.outputs = {0: k}
+        found = sorted(self.nodes[n] for n in of.users() if self.nodes[n].operation in ("INPUT", "ELEMENT"))
+        return tuple(self.inputs[0][node.place[1]] for node in found if node.place[0] == 0)
 
     def names(self) -> list[str]:
         """What C calls each of them."""

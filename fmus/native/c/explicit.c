@@ -22,7 +22,13 @@ const Input *inputs_at(const Problem *problem, double t, Input *room)
 static void moving_rate_at(const Problem *problem, double t, const Point *x, Point *dx)
 {
     Input room;
-    derivative(&x->state, inputs_at(problem, t, &room), problem->p, &dx->state);
+    const Input *u = inputs_at(problem, t, &room);
+#ifdef HELD_TERMS
+    held_terms(u, problem->p, problem->du, problem->held);
+    derivative_held(&x->state, u, problem->p, problem->held, &dx->state);
+#else
+    derivative(&x->state, u, problem->p, &dx->state);
+#endif
 }
 
 static inline void rate_at(const Problem *problem, double t, const Point *x, Point *dx)

@@ -22,7 +22,7 @@ typedef struct {
     const Input *du;
     const Parameters *p;
     long *work;       /* explicit steps that it has come to; kept by integrate */
-    const real *held; /* what depends on held inputs and the parameters alone; kept by integrate */
+    real *held;       /* what depends on inputs and parameters alone; kept by integrate */
 } Problem;
 
 /* Where a step starts: time since the start of the communication step in s, state, its derivative. */

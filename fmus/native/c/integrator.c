@@ -275,9 +275,9 @@ int integrate(const Problem *whole, double duration, const State *state, State *
 {
 #ifdef HELD_TERMS
     real held[HELD_TERMS];
-    held_terms(whole->u, whole->p, held);
+    held_terms(whole->u, whole->p, NULL, held);
 #else
-    const real *held = NULL;
+    real *held = NULL;
 #endif
     long work = 0;
     const Problem counted = {whole->u, whole->du, whole->p, &work, held}, *problem = &counted;

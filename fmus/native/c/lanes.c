@@ -163,8 +163,8 @@ typedef lanes LanesVector[STATES];
 
 typedef struct {
     const Lanes *all;
-    const lanes *held; /* what depends on parameters and held inputs alone */
-    int moving;        /* whether inputs move */
+    lanes *held; /* what depends on parameters and inputs alone */
+    int moving;  /* whether inputs move */
 } LanesProblem;
 
 static void inputs_in_lanes(const Lanes *all, double t, LanesInput *at)
@@ -178,15 +178,19 @@ static void rate_in_lanes(const LanesProblem *problem, double t, const LanesVect
 {
     const Lanes *all = problem->all;
     const LanesState *state = (const LanesState *)(const void *)x;
-    LanesInput u;
-#ifdef HELD_TERMS
-    if (!problem->moving) {
-        lanes_derivative_held(state, &all->values.u, &all->values.p, problem->held, (LanesState *)(void *)dx);
-        return;
+    const LanesInput *u = &all->values.u;
+    LanesInput moved;
+    if (problem->moving) {
+        inputs_in_lanes(all, t, &moved);
+        u = &moved;
     }
+#ifdef HELD_TERMS
+    if (problem->moving)
+        lanes_held_terms(u, &all->values.p, &all->du, problem->held);
+    lanes_derivative_held(state, u, &all->values.p, problem->held, (LanesState *)(void *)dx);
+#else
+    lanes_derivative(state, u, &all->values.p, (LanesState *)(void *)dx);
 #endif
-    inputs_in_lanes(all, t, &u);
-    lanes_derivative(state, &u, &all->values.p, (LanesState *)(void *)dx);
 }
 
 #include "lane_dop853.h"
@@ -259,7 +263,7 @@ static mask advance_in_lanes(const Lanes *all, double duration, LanesVector end)
         return ~(mask){0};
 #ifdef HELD_TERMS
     lanes held[HELD_TERMS];
-    lanes_held_terms(&all->values.u, &all->values.p, held);
+    lanes_held_terms(&all->values.u, &all->values.p, NULL, held);
     const LanesProblem with_held = {all, held, problem.moving};
     return integrate_in_lanes(&with_held, duration, end);
 #else

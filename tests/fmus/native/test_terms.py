@@ -1,5 +1,6 @@
 """What depends on parameters, or on parameters and held inputs alone, is computed once."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -78,3 +79,11 @@ def test_the_slope_is_no_matter_of_the_stages(native_builder: None) -> None:
     stages = text.partition("void derivative_held(")[2].partition("\n}")[0]
     assert "sin(u->slope)" in text
     assert "slope" not in stages
+
+
+def test_at_a_stage_only_that_is_computed_again_which_an_input_moves(native_builder: None) -> None:
+    text = block_sources(FMUS["ValidationVehicle"])["block.c"]
+    blocks = text.partition("void held_terms(")[2].partition("\n}")[0].split("if (")[1:]
+    for name, block in zip(("T_mot", "T_brake", "slope"), blocks, strict=True):
+        assert block.startswith(f"!du || du->{name} != 0)")
+        assert set(re.findall(r"\bu->(\w+)", block)) == {name}
