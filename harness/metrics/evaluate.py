@@ -3,6 +3,7 @@
 The signals are read at the samples of the controller, T_s apart.
 """
 
+from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
@@ -38,6 +39,9 @@ COLUMNS = (
 )
 """What the metrics are computed from."""
 
+Rows = np.ndarray | Mapping[str, np.ndarray]
+"""Results, or columns of them by name."""
+
 
 def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Metrics:
     """The metrics of one run. One that makes no sense for it is NaN, and `absent` has the reason.
@@ -53,9 +57,14 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     """
     require_kind("results", results, np.ndarray, "results of a run, as simulate gives them")
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    sampled, t_0 = at_samples(results, T_s), manoeuvre.t_0
+    every, t_0 = _stride(results, T_s), manoeuvre.t_0
+    rows, sampled = results, results[::every]
+    if (
+        getattr(results, "file", None) is None
+    ):  # else columns are read when they are needed: all would not fit in memory
+        rows = {name: np.ascontiguousarray(results[name]) for name in COLUMNS}
+        sampled = {name: column[::every] for name, column in rows.items()}
 
-    # columns are read when they are needed: all those of a long run would not fit in memory
     def t() -> np.ndarray:
         return sampled["time"]
 
@@ -82,7 +91,7 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "damping_ratio": lambda: step().damping_ratio,
         "gear_torque_rms": lambda: band_rms(windowed(T_gear()), T_s),
         "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, derivative=True),
-        "impact_speed": lambda: impact_speed(results, t_0),
+        "impact_speed": lambda: impact_speed(rows, t_0),
         "response_delay": lambda: step().delay,
         "withheld_time": lambda: withheld_time(_piece(e(), t(), t_0, t_0 + WITHHELD), T_s, dT()),
         "stationary_torque_change": lambda: stationary_change(sampled["controller.T_driver"], e(), T_s),
@@ -93,10 +102,10 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "end_swing": lambda: float(amplitude(T_gear()[-round((1.0 + SPAN) / T_s) :], T_s)[-round(1.0 / T_s) :].max()),
         "plateau_swing": lambda: plateau_swing(t(), T_gear(), manoeuvre.plateau_ends),
     }
-    return Metrics(**measured(computed, none_because=not_finite(results)))
+    return Metrics(**measured(computed, none_because=not_finite(rows)))
 
 
-def not_finite(results: np.ndarray) -> str | None:
+def not_finite(results: Rows) -> str | None:
     """Which signal is not finite, and from when on; None if all are."""
     for name in COLUMNS:
         wrong = np.flatnonzero(~np.isfinite(results[name]))
@@ -123,6 +132,10 @@ def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
     Raises:
         ValueError: T_s is not a multiple of the interval of the results.
     """
+    return results[:: _stride(results, T_s)]
+
+
+def _stride(results: np.ndarray, T_s: float) -> int:
     interval = float(np.diff(results[:2]["time"])[0])
     stride = round(T_s / interval)
     if stride < 1 or abs(stride * interval - T_s) > 1e-6 * T_s:
@@ -130,7 +143,7 @@ def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
             f"the results are {interval * 1e3:g} ms apart; the metrics need a whole fraction of the "
             f"controller's sample time of {T_s * 1e3:g} ms"
         )
-    return results[::stride]
+    return stride
 
 
 def added_torque(T_driver: np.ndarray, T_ref: np.ndarray) -> np.ndarray:
@@ -146,7 +159,7 @@ def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
     return -float(np.sum(e)) * T_s / dT + 0.0  # nothing withheld is 0, not -0
 
 
-def impact_speed(results: np.ndarray, t_0: float) -> float:
+def impact_speed(results: Rows, t_0: float) -> float:
     """Largest speed in rad/s, motor side, with which the teeth meet from t_0 on; 0 if they never do.
 
     The gap closes between two rows when T_gear leaves zero or changes its sign, at the moment to which its
@@ -211,7 +224,7 @@ def _piece(signal: np.ndarray, t: np.ndarray, start: float, end: float) -> np.nd
     Raises:
         Absent: there are less than two.
     """
-    piece = signal[(t >= start - 1e-9) & (t <= end + 1e-9)]
+    piece = signal[np.searchsorted(t, start - 1e-9) : np.searchsorted(t, end + 1e-9, side="right")]
     if len(piece) < 2:
         raise Absent(f"the run has no samples from {start:g} to {end:g} s")
     return piece

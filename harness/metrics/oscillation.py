@@ -1,5 +1,6 @@
 """How far a record swings, and how fast the swinging fades."""
 
+from functools import lru_cache
 from math import ceil, log, pi, sqrt, tan
 
 import numpy as np
@@ -65,14 +66,8 @@ def low_passed(x: np.ndarray, T_s: float, corner: float) -> np.ndarray:
     """
     if len(x) <= CONTINUED or corner * T_s >= 0.5:
         raise Absent(f"{len(x)} samples every {T_s:g} s are too few for a low-pass at {corner:g} Hz")
-    w = tan(pi * corner * T_s)
     length = 1 << (len(x) + 2 * CONTINUED + ceil(FADED / (corner * T_s))).bit_length()
-    z = np.exp(-2j * pi * np.fft.rfftfreq(length))  # z^-1
-    response = (
-        w**2
-        * (1.0 + z) ** 2
-        / (1.0 + sqrt(2.0) * w + w**2 + 2.0 * (w**2 - 1.0) * z + (1.0 - sqrt(2.0) * w + w**2) * z**2)
-    )
+    response = _response(length, tan(pi * corner * T_s))
     before, after = 2.0 * x[0] - x[CONTINUED:0:-1], 2.0 * x[-1] - x[-2 : -CONTINUED - 2 : -1]
     passed = np.concatenate((before, x, after))
     for _ in ("forwards", "backwards"):
@@ -80,6 +75,17 @@ def low_passed(x: np.ndarray, T_s: float, corner: float) -> np.ndarray:
         moving = np.fft.irfft(response * np.fft.rfft(passed - constant, length), length)[: len(passed)]
         passed = (constant + moving)[::-1]
     return passed[CONTINUED:-CONTINUED]
+
+
+@lru_cache(1)
+def _response(length: int, w: float) -> np.ndarray:
+    """Of the low-pass with the warped corner w, for so many samples; the next run often has the same."""
+    z = np.exp(-2j * pi * np.fft.rfftfreq(length))  # z^-1
+    return (
+        w**2
+        * (1.0 + z) ** 2
+        / (1.0 + sqrt(2.0) * w + w**2 + 2.0 * (w**2 - 1.0) * z + (1.0 - sqrt(2.0) * w + w**2) * z**2)
+    )
 
 
 def _alternating_extremes(y: np.ndarray, least_distance: int) -> list[float]:
