@@ -30,9 +30,9 @@ def parted(name: str) -> tuple[str, float | None]:
     Raises:
         WiringError: what stands behind the @ is no time. In a quoted name of FMI the @ is part of it.
     """
-    parameter, at, time = (part.strip() for part in name.partition("@"))
-    if not at or "'" in name:
+    if "@" not in name or "'" in name:
         return name, None
+    parameter, _, time = (part.strip() for part in name.partition("@"))
     instant = real(time)
     if instant is None or isnan(instant):
         raise WiringError(f"{name}: {quoted(time)} is no time in s, as 2.0 in controller.k_d@2.0")

@@ -73,7 +73,7 @@ class KeptLoops:
 
     def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop | IsolatedLoop:
         """The loop of a system after reset, or as `loaded` gives it."""
-        key = repr(system), *map(_version, system.instances.values())
+        key = system.key, *map(_version, system.instances.values())
         stack, loop = self._loops.pop(key, (ExitStack(), None))
         try:
             if loop is not None:

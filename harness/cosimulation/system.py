@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
@@ -77,6 +78,11 @@ class System:
     own: frozenset[str] = frozenset()
     limits: Limits = USUAL_LIMITS
     any_value: frozenset[str] = frozenset()
+
+    @cached_property
+    def key(self) -> str:
+        """The same for systems that are the same."""
+        return repr(self)
 
     @property
     def ports(self) -> dict[str, list[Port]]:

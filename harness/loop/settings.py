@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import TypedDict, Unpack
 
@@ -128,7 +129,7 @@ def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Chang
         TypeError: there is no such field, or the plant is given twice.
     """
     if isinstance(given, Settings):
-        return given.replace(**changes)
+        return given.replace(**changes) if changes else given
     if given is not None:
         if "plant" in changes:
             raise TypeError(f"plant is given twice: {given} and {changes['plant']}")
@@ -176,6 +177,7 @@ def _files(made: Settings, build: str) -> dict[str, Path]:
     return {place: _file(place, block, folder) for place, block in made.blocks.items()}
 
 
+@lru_cache(64)  # every run asks for them
 def _file(place: str, block: NameOrFile, folder: Path) -> Path:
     names = PLACES[place]
     if str(block) in names:

@@ -72,7 +72,7 @@ class _Asked(NamedTuple):
     def key(self) -> Hashable:
         """The same for runs that can be made in lanes together."""
         experiment = self.experiment
-        return repr(self.system), experiment.step_size, Scheme(experiment.scheme), tuple(experiment.inputs)
+        return self.system.key, experiment.step_size, Scheme(experiment.scheme), tuple(experiment.inputs)
 
 
 class _Turn(KeptLoops):

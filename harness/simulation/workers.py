@@ -27,6 +27,7 @@ from ..base.errors import SimulationError
 from ..base.interruption import end_with, uninterrupted_children
 from ..base.plain_text import words
 from ..base.progress import hidden
+from ..cosimulation.row_file import keep_freed
 from ..cosimulation.runs import kept_loaded
 from .together import Together, outcomes
 
@@ -165,6 +166,7 @@ def _begin(folder: Path, function: Callable[[Any], Any] | Together, waiting: int
     kept = ExitStack()
     kept.enter_context(kept_loaded(folder))
     atexit.register(kept.close)
+    keep_freed()
     gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
 
 
