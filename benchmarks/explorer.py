@@ -25,6 +25,7 @@ from driveline.harness.explorer.request_runs import RequestRunner
 from driveline.harness.loop.places import NATIVE, PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
 from tests.browser import browser
+from tests.harness.explorer.served import DRAWN
 
 OURS = PLACES["controller"][0]
 
@@ -35,14 +36,20 @@ KINDS = {"k_d": "gains", "phi_B": "car"}
 
 MOVE = """
 const [name, start, step, moves, done] = arguments
-const control = Bokeh.documents[0].get_model_by_name(name), took = []
-const [curve] = [...Bokeh.index.query((view) => view.model.type === "GlyphRenderer")]
+const control = sliders[name], took = [], drawn = draw
 let began = 0
-const move = () => { began = performance.now(); control.value = start + step * (took.length + 1) }
-curve.model.data_source.properties.data.change.connect(() => requestAnimationFrame(() => requestAnimationFrame(() => {
-  took.push(performance.now() - began)
-  if (took.length < moves) setTimeout(move, 100); else done(took)
-})))
+const move = () => {
+  began = performance.now()
+  control.value = start + step * (took.length + 1)
+  control.dispatchEvent(new Event("input"))
+}
+draw = () => {
+  drawn()
+  requestAnimationFrame(() => requestAnimationFrame(() => {
+    took.push(performance.now() - began)
+    if (took.length < moves) setTimeout(move, 100); else done(took)
+  }))
+}
 move()
 """
 
@@ -75,8 +82,7 @@ def main() -> None:
                 found = re.match(r"\S+", served.stdout.readline())
                 assert found
                 for what, given in MOVES.items():
-                    opened.open(found[0])
-                    opened.until("Bokeh.documents[0].get_model_by_name('metrics').text")
+                    opened.open(found[0], DRAWN)
                     cost = f"{computing(plant, *given, moves):.0f}"
                     took = opened.chrome.execute_async_script(MOVE, *given, moves)
                     table.add_row(f"{plant}, {what}", *(f"{f(took):.0f}" for f in (min, median, max)), cost)

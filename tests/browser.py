@@ -1,7 +1,7 @@
 """A page in a real browser: Chromium of the distribution, driven by selenium."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
@@ -54,12 +54,13 @@ class Browser:
     def __init__(self, chrome: Any) -> None:
         self.chrome = chrome
 
-    def open(self, address: str) -> None:
-        """Opens a page and waits until its figures are drawn; what was logged before is forgotten."""
+    def open(self, address: str, drawn: str = "window.Bokeh?.documents[0]?.is_idle") -> None:
+        """Opens a page and waits until its figures are drawn, as an expression says; what was logged before is
+        forgotten."""
         for log in ("browser", "performance"):
             self.chrome.get_log(log)
         self.chrome.get(address)
-        self.until("window.Bokeh?.documents[0]?.is_idle")
+        self.until(drawn)
         self.painted()
 
     def js(self, code: str, *given: Any) -> Any:
@@ -87,6 +88,13 @@ class Browser:
         if path:
             path.write_bytes(shot)
         return np.asarray(Image.open(BytesIO(shot)).convert("RGB"))
+
+    def pixels(self, frame: Sequence[float], colour: str) -> int:
+        """How many between left, top, right and bottom are of a colour."""
+        left, top, right, bottom = map(round, frame)
+        piece = self.picture()[top:bottom, left:right].astype(int)
+        wanted = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
+        return int((np.abs(piece - wanted).max(axis=2) < 12).sum())
 
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Between two points of the window."""
@@ -147,10 +155,7 @@ class Figure:
 
     def pixels(self, colour: str) -> int:
         """How many in its frame are of a colour."""
-        left, top, right, bottom = map(round, self.seen())
-        piece = self._page.picture()[top:bottom, left:right].astype(int)
-        wanted = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
-        return int((np.abs(piece - wanted).max(axis=2) < 12).sum())
+        return self._page.pixels(self.seen(), colour)
 
     def x(self) -> tuple[float, float]:
         """From where to where its abscissa goes."""

@@ -11,10 +11,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from time import sleep
 from types import FrameType
-from typing import TYPE_CHECKING, NoReturn
-
-if TYPE_CHECKING:
-    from asyncio import AbstractEventLoop
+from typing import NoReturn
 
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that end a process as an interruption at the keyboard does."""
@@ -96,31 +93,6 @@ def unswallowed() -> Iterator[None]:
                 signal.signal(number, handler)
     if raised:
         raise raised[0]
-
-
-@contextmanager
-def between_callbacks(loop: "AbstractEventLoop") -> Iterator[None]:
-    """Within it signals that stop the process end the loop after the callback that it is at, which could swallow what
-    they raise; that is raised at the end."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    come: list[int] = []
-
-    def end(number: int) -> None:
-        come.append(number)
-        loop.stop()
-
-    before = {number: handler for number in (signal.SIGINT, *ENDING) if callable(handler := signal.getsignal(number))}
-    for number in before:
-        signal.signal(number, lambda number, _: loop.call_soon_threadsafe(end, number))
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-    for number in come[:1]:
-        before[number](number, None)
 
 
 class Abandoned(BaseException):

@@ -58,7 +58,6 @@ def _port(text: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    require_drawing("the explorer")
     asked, offered = chosen(args.manoeuvre), chosen([*args.manoeuvre, *MANOEUVRES]).manoeuvres
     given = settings_of_pairs(args)
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
@@ -81,6 +80,7 @@ def run(args: argparse.Namespace) -> int:
         return save_files(runner, answer.request, gains, args.output)
 
     def report(answer: Answer) -> list[Path]:
+        require_drawing("a report")
         return [save_report(runner, answer, read, args.output)]
 
     def announce(address: str) -> None:

@@ -20,9 +20,6 @@ values can be typed."""
 NEAR = {"C": 2.0, "c_slip": 2.0}
 """The same where half shafts would follow that are stiffer than any."""
 
-STEPS = 200
-"""Of a slider."""
-
 
 class Knob(NamedTuple):
     """A parameter.
@@ -40,10 +37,6 @@ class Knob(NamedTuple):
     value: float
     unit: str
     meaning: str
-
-    @property
-    def step(self) -> float:
-        return (self.high - self.low) / STEPS
 
 
 def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float]) -> Iterator[Knob]:

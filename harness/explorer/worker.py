@@ -1,8 +1,7 @@
 """A thread that runs what tabs ask for, each time the latest, so that none waits for an outdated request."""
 
 from collections.abc import Callable, Hashable
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextvars import copy_context
 from threading import Condition, Thread
 from typing import Any
@@ -12,6 +11,8 @@ from ..base.progress import hidden
 from ..cosimulation.runs import KeptLoops, kept_by
 
 Job = Callable[[], Any]
+
+Asked = tuple[Job, "Future[Any]"]
 
 
 class Beside:
@@ -40,7 +41,7 @@ class Worker:
     turns."""
 
     def __init__(self) -> None:
-        self._asked: dict[Hashable, Job] = {}
+        self._asked: dict[Hashable, Asked] = {}
         self._asker: Hashable = None  # whose job is under way
         self._abandoned = False  # that job
         self._changed = Condition()
@@ -48,24 +49,32 @@ class Worker:
         self._thread = Thread(target=self._work, name="worker", daemon=True)
         self._thread.start()
 
-    def ask(self, asker: Hashable, job: Job) -> None:
-        """Has a job done; it answers errors itself."""
+    def ask(self, asker: Hashable, job: Job) -> "Future[Any]":
+        """The future of what a job gives; cancelled if it is forgotten."""
+        future: Future[Any] = Future()
         with self._changed:
-            self._asked[asker] = job
+            self._drop(asker)
+            self._asked[asker] = job, future
             self._changed.notify()
+        return future
 
     def forget(self, asker: Hashable) -> None:
         """Nothing more is done for someone who has gone; a run that is under way ends."""
         with self._changed:
-            self._asked.pop(asker, None)
+            self._drop(asker)
             self._abandoned |= self._asker == asker
+
+    def _drop(self, asker: Hashable) -> None:
+        if asker in self._asked:
+            self._asked.pop(asker)[1].cancel()
 
     def close(self) -> None:
         """Ends the thread; a run that is under way ends at once, and a file that is being written is finished."""
         with self._changed:
             self._open = False
             self._abandoned = True
-            self._asked.clear()
+            for asker in list(self._asked):
+                self._drop(asker)
             self._changed.notify()
         self._thread.join()
 
@@ -73,13 +82,18 @@ class Worker:
         loops = KeptLoops(None)
         try:
             with kept_by(loops), hidden(), abandonable(lambda: self._abandoned):
-                while (job := self._next()) is not None:
-                    with suppress(Abandoned):
-                        job()
+                while (asked := self._next()) is not None:
+                    job, future = asked
+                    try:
+                        future.set_result(job())
+                    except Abandoned:
+                        future.cancel()
+                    except Exception as error:
+                        future.set_exception(error)
         finally:
             loops.close()
 
-    def _next(self) -> Job | None:
+    def _next(self) -> Asked | None:
         with self._changed:
             self._asker = None
             self._changed.wait_for(lambda: self._asked or not self._open)

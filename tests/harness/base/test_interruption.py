@@ -1,6 +1,5 @@
 """However a command is stopped, it says so in one line and leaves nothing behind."""
 
-import asyncio
 import os
 import signal
 import subprocess
@@ -13,13 +12,13 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.interruption import Stopped, between_callbacks, stoppable, uninterrupted_children
+from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.provenance import BEGINS_ANEW
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
-from tests.signals import STOPPING, started
+from tests.signals import started
 from tests.slow import slow
 
 TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
@@ -142,31 +141,6 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
         sender.join()
         sys.setswitchinterval(turn)
         signal.signal(number, before)
-
-
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-def test_a_callback_that_swallows_all_that_is_raised_in_it_swallows_no_stop(number: int, code: int) -> None:
-    loop, swallowed = asyncio.new_event_loop(), []
-
-    def callback() -> None:
-        try:
-            signal.raise_signal(number)
-        except BaseException as stop:
-            swallowed.append(stop)
-
-    before = {each: signal.signal(each, signal.default_int_handler) for each in STOPPING}
-    try:
-        loop.call_soon(callback)
-        loop.call_later(30.0, loop.stop)
-        with pytest.raises(KeyboardInterrupt) as stopped, stoppable(), between_callbacks(loop):
-            loop.run_forever()
-        assert getattr(stopped.value, "exit_code", 130) == code
-        assert swallowed == []
-        assert {signal.getsignal(each) for each in STOPPING} == {signal.default_int_handler}
-    finally:
-        loop.close()
-        for each, handler in before.items():
-            signal.signal(each, handler)
 
 
 @pytest.mark.parametrize("last", ["driveline.harness.base.errors", "driveline.harness.commands.options"])

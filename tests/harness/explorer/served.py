@@ -6,6 +6,9 @@ from pathlib import Path
 
 from tests.signals import started
 
+DRAWN = "typeof shown !== 'undefined' && shown && !busy"
+"""Whether a page shows its first answer."""
+
 PATIENCE = 60.0
 """In s, for what takes milliseconds on a machine that has nothing else to do."""
 

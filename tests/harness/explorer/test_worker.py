@@ -1,7 +1,11 @@
 """The thread that runs what tabs ask for."""
 
+from concurrent.futures import Future
 from threading import Event
 from threading import enumerate as threads
+from typing import Any
+
+import pytest
 
 from driveline.harness.base.progress import progress
 from driveline.harness.explorer.worker import Worker
@@ -17,14 +21,24 @@ def test_only_the_latest_of_what_a_tab_asks_for_is_done_and_tabs_take_turns() ->
 
     worker.ask("a", first)
     assert begun.wait(10.0)
+    futures = []
     for k in range(5):
-        worker.ask("a", lambda k=k: done.append(("a", k)))
+        futures.append(worker.ask("a", lambda k=k: done.append(("a", k))))
         worker.ask("b", lambda k=k: done.append(("b", k)))
     worker.ask("c", ended.set)
     go.set()
     assert ended.wait(10.0)
     worker.close()
     assert done == [("a", 4), ("b", 4)]
+    assert [future.cancelled() for future in futures] == [True] * 4 + [False]
+
+
+def test_who_asks_gets_the_answer_or_the_error() -> None:
+    worker = Worker()
+    assert worker.ask("a", lambda: 7).result(10.0) == 7
+    with pytest.raises(ZeroDivisionError):
+        worker.ask("a", lambda: 1 / 0).result(10.0)
+    worker.close()
 
 
 def test_nothing_is_done_for_a_tab_that_has_gone_and_no_thread_is_left() -> None:
@@ -36,16 +50,17 @@ def test_nothing_is_done_for_a_tab_that_has_gone_and_no_thread_is_left() -> None
 
     worker.ask("a", first)
     assert begun.wait(10.0)
-    worker.ask("b", lambda: done.append("b"))
+    forgotten = worker.ask("b", lambda: done.append("b"))
     worker.forget("b")
     worker.forget("b")
+    assert forgotten.cancelled()
     go.set()
     worker.close()
     assert done == []
     assert "worker" not in [thread.name for thread in threads()]
 
 
-def endless(worker: Worker, asker: str) -> None:
+def endless(worker: Worker, asker: str) -> "Future[Any]":
     """Has a run begun that never ends by itself."""
     begun = Event()
 
@@ -55,14 +70,16 @@ def endless(worker: Worker, asker: str) -> None:
                 begun.set()
                 done(0)
 
-    worker.ask(asker, run)
+    future = worker.ask(asker, run)
     assert begun.wait(10.0)
+    return future
 
 
 def test_a_run_under_way_ends_with_the_server() -> None:
     worker = Worker()
-    endless(worker, "a")
+    future = endless(worker, "a")
     worker.close()
+    assert future.cancelled()
     assert "worker" not in [thread.name for thread in threads()]
 
 
