@@ -94,8 +94,8 @@ def run(args: argparse.Namespace) -> int:
         made.out.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
         results = simulate(manoeuvre, given)
         made.begin()
-        write_run(args, made, given, manoeuvre, results, results)
         _tell(made, given, manoeuvre, results)
+        write_run(args, made, given, manoeuvre, results, results)  # its libraries are large, and so are the metrics
         if args.plot:
             _draw(args, made, given, manoeuvre, results, options)
     return 0

@@ -14,6 +14,9 @@ SPAN = 0.2
 CONTINUED = 9
 """Samples by which a record is continued before a filter, turned about its ends."""
 
+SHORT = 2**16
+"""Samples of a record whose filter is kept for the next one, which often is as long."""
+
 FADED = 10.0
 """Periods of its corner after which the answer of a low-pass to an impulse is below 1e-19 of its largest value."""
 
@@ -67,7 +70,7 @@ def low_passed(x: np.ndarray, T_s: float, corner: float) -> np.ndarray:
     if len(x) <= CONTINUED or corner * T_s >= 0.5:
         raise Absent(f"{len(x)} samples every {T_s:g} s are too few for a low-pass at {corner:g} Hz")
     length = 1 << (len(x) + 2 * CONTINUED + ceil(FADED / (corner * T_s))).bit_length()
-    response = _response(length, tan(pi * corner * T_s))
+    response = (_kept_response if length <= SHORT else _response)(length, tan(pi * corner * T_s))
     before, after = 2.0 * x[0] - x[CONTINUED:0:-1], 2.0 * x[-1] - x[-2 : -CONTINUED - 2 : -1]
     passed = np.concatenate((before, x, after))
     for _ in ("forwards", "backwards"):
@@ -77,15 +80,17 @@ def low_passed(x: np.ndarray, T_s: float, corner: float) -> np.ndarray:
     return passed[CONTINUED:-CONTINUED]
 
 
-@lru_cache(1)
 def _response(length: int, w: float) -> np.ndarray:
-    """Of the low-pass with the warped corner w, for so many samples; the next run often has the same."""
+    """Of the low-pass with the warped corner w, for so many samples."""
     z = np.exp(-2j * pi * np.fft.rfftfreq(length))  # z^-1
     return (
         w**2
         * (1.0 + z) ** 2
         / (1.0 + sqrt(2.0) * w + w**2 + 2.0 * (w**2 - 1.0) * z + (1.0 - sqrt(2.0) * w + w**2) * z**2)
     )
+
+
+_kept_response = lru_cache(1)(_response)
 
 
 def _alternating_extremes(y: np.ndarray, least_distance: int) -> list[float]:

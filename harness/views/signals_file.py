@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -50,11 +51,21 @@ def _parquet(results: np.ndarray, path: Path) -> None:
     with (
         complete(path) as unfinished,
         unfinished.open("wb") as file,
-        parquet.ParquetWriter(file, schema) as writer,
+        parquet.ParquetWriter(file, schema, use_dictionary=False) as writer,  # numbers hardly come twice
     ):
         for piece in _pieces(results):
-            columns = [arrow.array(piece[name]) for name in results.dtype.names or ()]
+            columns = [
+                arrow.Array.from_buffers(field.type, len(piece), [None, arrow.py_buffer(_packed(piece[name]))])
+                for field, name in zip(schema, piece.dtype.names or (), strict=True)
+            ]
             writer.write_table(arrow.table(columns, schema=schema))
+
+
+def _packed(column: np.ndarray) -> np.ndarray:
+    """Its values as they are in the memory of Arrow, which would load pandas to bring them there."""
+    import numpy as np
+
+    return np.packbits(column, bitorder="little") if column.dtype == bool else np.ascontiguousarray(column)
 
 
 def _pieces(results: np.ndarray) -> Iterator[np.ndarray]:
@@ -107,7 +118,7 @@ def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
         yield column, name, unit or units.get(column)
 
 
-ROWS_AT_ONCE = 2**15
+ROWS_AT_ONCE = 2**13
 """That are copied at a time to be written."""
 
 
@@ -137,7 +148,8 @@ def require_format(name: str) -> None:
     Raises:
         MissingExtra: the package that writes it is not installed.
     """
-    if package := FORMATS[name].package:
+    package = FORMATS[name].package
+    if package and not find_spec(package):  # it is loaded when it is needed
         required(package, f"writing {FORMATS[name].ending.removeprefix('.')} files", "recordings")
 
 
