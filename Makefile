@@ -23,12 +23,12 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 
 $(DEMO): $(INSTALLED)
 	$(environment)
-	$(INSTALL) '.[native,replay]'
+	$(INSTALL) '.[replay]'
 	@touch $@
 
 $(READY): $(INSTALLED)
 	$(environment)
-	$(INSTALL) '.[recordings,replay,design,bound,native,cluster,report,notebook,dev]'
+	$(INSTALL) '.[recordings,replay,design,bound,identification,cluster,report,notebook,dev]'
 	@touch $(DEMO) $@
 
 setup: $(READY) ## the virtual environment alone, with all that the other targets need

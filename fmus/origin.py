@@ -17,7 +17,7 @@ ENTRY = "extra/driveline.damping/origin.json"
 PACKAGES, KINDS = ("models", "fmus"), (".py", ".c", ".h", ".toml")
 """What the sources of every FMU of the project are."""
 
-TOOLS = {"python": ("pythonfmu",), "native": ("casadi", "fmpy")}
+TOOLS = {"python": ("pythonfmu",), "native": ("fmpy",)}
 """Packages that each build is made with."""
 
 

@@ -19,7 +19,7 @@ class Symbol:
     """A number or truth value that is not known: the protocol of `models.block.operators`.
 
     A subclass says with `after(operation, *operands)` what an operation makes of its operands, which are
-    symbols and numbers; the operations have CasADi's names.
+    symbols and numbers; the names of the operations are those of `fmus.native.arithmetic`.
     """
 
     __slots__ = ()
@@ -27,17 +27,21 @@ class Symbol:
     def __bool__(self) -> bool:
         raise TypeError("a model function branches on data; it must call `where` of models.block.operators")
 
-    __add__, __radd__ = _operators("plus")
-    __sub__, __rsub__ = _operators("minus")
-    __mul__, __rmul__ = _operators("times")
-    __truediv__, __rtruediv__ = _operators("rdivide")
-    __pow__, __rpow__ = _operators("power")
-    __mod__, __rmod__ = _operators("fmod")
-    __neg__, __pos__, __abs__ = map(_operator, ("neg", "pos", "fabs"))
-    __lt__, __le__, __gt__, __ge__ = map(_operator, ("lt", "le", "gt", "ge"))
-    __eq__, __ne__ = map(_operator, ("eq", "ne"))
+    __add__, __radd__ = _operators("ADD")
+    __sub__, __rsub__ = _operators("SUB")
+    __mul__, __rmul__ = _operators("MUL")
+    __truediv__, __rtruediv__ = _operators("DIV")
+    __pow__, __rpow__ = _operators("POW")
+    __mod__, __rmod__ = _operators("FMOD")
+    __neg__, __abs__ = map(_operator, ("NEG", "FABS"))
+    __lt__, __gt__ = _operators("LT")
+    __le__, __ge__ = _operators("LE")
+    __eq__, __ne__ = map(_operator, ("EQ", "NE"))
     __hash__ = object.__hash__
 
-    sin, cos, atan, tanh = map(_operator, ("sin", "cos", "atan", "tanh"))
-    sqrt, log, exp, floor = map(_operator, ("sqrt", "log", "exp", "floor"))
-    where, logical_and, logical_or, logical_not = map(_operator, ("if_else", "logic_and", "logic_or", "logic_not"))
+    def __pos__(self) -> "Symbol":
+        return self
+
+    sin, cos, atan, tanh = map(_operator, ("SIN", "COS", "ATAN", "TANH"))
+    sqrt, log, exp, floor = map(_operator, ("SQRT", "LOG", "EXP", "FLOOR"))
+    where, logical_and, logical_or, logical_not = map(_operator, ("CHOICE", "AND", "OR", "NOT"))

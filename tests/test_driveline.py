@@ -143,7 +143,7 @@ def test_one_thread_at_a_time_imports_a_name(monkeypatch: pytest.MonkeyPatch) ->
 def test_a_package_that_is_missing_is_named_with_its_extra(tmp_path: Path) -> None:
     missing = "import sys\nsys.modules['casadi'] = None\nimport driveline\n"
     identify = "try:\n    driveline.identify\nexcept driveline.MissingExtra as error:\n    print(error)\n"
-    assert "driveline-damping[native]" in ran(missing + identify, tmp_path)
+    assert "driveline-damping[identification]" in ran(missing + identify, tmp_path)
 
 
 def test_a_script_beside_folders_of_the_same_names_runs(both_built: Path, tmp_path: Path) -> None:

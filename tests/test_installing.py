@@ -165,4 +165,4 @@ def test_the_changelog_names_the_release_and_its_date() -> None:
 
 def test_the_demo_needs_no_development_tools() -> None:
     commands = ran("make", "--dry-run", "--always-make", "demo", folder=ROOT).stdout
-    assert re.findall(r"--editable '\.\[(.+)\]'", commands) == ["native,replay"]
+    assert re.findall(r"--editable '\.\[(.+)\]'", commands) == ["replay"]

@@ -15,8 +15,8 @@ the same files, byte by byte.
 A vehicle file and the gains that `driveline design` makes of it become start values: the FMUs are that car.
 
 They are for co-simulation with FMI 2.0; the native ones of continuous blocks are for model exchange too, in either FMI.
-The native builds go into the folder native/ in that of the others. They need the extra `native` and a
-C compiler; where one of them is missing, they are left out unless they are asked for. With --fmi 3 the
+The native builds go into the folder native/ in that of the others. They need a C compiler;
+where it is missing, they are left out unless they are asked for. With --fmi 3 the
 FMUs are native ones for FMI 3.0, in the folder fmi3/.
 """
 

@@ -5,7 +5,6 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from difflib import get_close_matches
-from importlib.util import find_spec
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -240,11 +239,6 @@ def _native_builder(platform: str, fmi: int, own_folder: str, database: bytes = 
         own_folder: of the files, in the folder that the builder gets.
         database: as of `build_native`.
     """
-    if find_spec("casadi") is None:
-        raise NotPossible(
-            "the native build needs the package casadi: "
-            "install the extra `native`, as in pip install 'driveline-damping[native]'"
-        )
     from ..native import compiler
     from ..native.packaging import build_native
 

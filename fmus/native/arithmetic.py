@@ -1,28 +1,51 @@
-"""The operations of a CasADi function as a graph, and which of them can be left out at run time.
+"""Operations as a graph, and which of them can be left out at run time.
 
-CasADi writes `where` as the sum of two products with a truth value, so that both values are always
-computed. Here it becomes a choice again, and what only one side of a choice needs is found, so that
-it can be put into a branch. A choice between equal values is that value, and one among the elements of an
-array, by the whole part of a number, is a look-up.
+What only one side of a choice needs is found, so that it can be put into a branch. A choice between equal values is
+that value, and one among the elements of an array, by the whole part of a number, is a look-up.
 """
 
+import operator
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import Any, NamedTuple
 
-import casadi
+import numpy as np
 
 TRUTH_VALUES = ("LT", "LE", "EQ", "NE", "NOT", "AND", "OR")
 
-NUMBERS = (
-    *("ADD", "SUB", "MUL", "DIV", "NEG", "SQ", "TWICE", "INV", "FABS", "SIGN", "FLOOR", "CEIL", "SQRT", "FMOD"),
-    *("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SINH", "COSH", "TANH", "EXP", "LOG", "POW", "CONSTPOW"),
-    *("FMIN", "FMAX", "COPYSIGN", "IF_ELSE_ZERO"),
-)
-
-OPERATIONS = {getattr(casadi, f"OP_{name}"): name for name in (*NUMBERS, *TRUTH_VALUES)}
-"""Names of CasADi's operations by their numbers."""
-
+COMPUTED: dict[str, Callable[..., Any]] = {
+    "ADD": operator.add,
+    "SUB": operator.sub,
+    "MUL": operator.mul,
+    "DIV": operator.truediv,
+    "NEG": operator.neg,
+    "SQ": np.square,
+    "TWICE": partial(operator.mul, 2.0),
+    "INV": partial(operator.truediv, 1.0),
+    "FABS": abs,
+    "SIGN": np.sign,
+    "FLOOR": np.floor,
+    "FMOD": operator.mod,
+    "POW": operator.pow,
+    "LT": operator.lt,
+    "LE": operator.le,
+    "EQ": operator.eq,
+    "NE": operator.ne,
+    "AND": np.logical_and,
+    "OR": np.logical_or,
+    "NOT": np.logical_not,
+    "CHOICE": np.where,
+    "SQRT": np.sqrt,
+    "LOG": np.log,
+    "EXP": np.exp,
+    "SIN": np.sin,
+    "COS": np.cos,
+    "ATAN": np.arctan,
+    "TANH": np.tanh,
+    "WHOLE": np.float64,
+}
+"""What operations make of numbers."""
 
 LOOKED_UP = 4
 """Choices by the whole part of a number that are worth a look-up."""
@@ -32,9 +55,9 @@ class Node(NamedTuple):
     """One operation.
 
     Attributes:
-        operation: a name in OPERATIONS, "CHOICE" (condition, value, otherwise), "INPUT", "CONSTANT", "INDEX" (the
-            whole part of a number, not less than 0 and not more than the value), "WHOLE" (an index as a real number)
-            or "ELEMENT" (of an array, by an index from its element in `value`).
+        operation: a name in COMPUTED, as "CHOICE" (condition, value, otherwise) or "WHOLE" (an index as a real number);
+            "INPUT", "CONSTANT", "INDEX" (the whole part of a number, not less than 0 and not more than the value) or
+            "ELEMENT" (of an array, by an index from its element in `value`).
         operands: numbers of other nodes.
         value: number of the input and of its element, or the constant.
     """
@@ -127,35 +150,77 @@ class Graph:
         return guards
 
 
-class TracedGraph(Graph):
-    """All operations of a CasADi function."""
+class Recording(Graph):
+    """What symbols compute, in its order; nothing is simplified but operations on constants."""
 
-    def __init__(self, function: casadi.Function, inputs: Sequence[Sequence[str]]) -> None:
+    def __init__(self) -> None:
+        super().__init__([])
+
+    def constant(self, value: float) -> int:
+        """The node of a number."""
+        return self.number(Node("CONSTANT", (), value))
+
+    def is_constant(self, k: int, *values: float) -> bool:
+        """Whether a node is a constant, one of these if any are given."""
+        node = self.nodes[k]
+        return node.operation == "CONSTANT" and (not values or node.value in values)
+
+    def after(self, operation: str, *operands: int) -> int:
+        """The node of an operation on others."""
+        if operation == "POW":
+            return self._power(*operands)
+        if all(map(self.is_constant, operands)):
+            with np.errstate(all="ignore"):
+                numbers = (np.float64(self.nodes[k].number) for k in operands)
+                return self.constant(float(COMPUTED[operation](*numbers)))
+        return self.number(Node(operation, operands))
+
+    def _power(self, base: int, exponent: int) -> int:
+        """By products, where the exponent is a whole number from 1 on."""
+        count = self.nodes[exponent].value
+        if not (self.is_constant(exponent) and count in range(1, 100)):
+            return self.number(Node("POW", (base, exponent)))
+        assert not isinstance(count, tuple)
+        if count == 1.0:
+            return base
+        if count % 2.0:
+            return self.after("MUL", base, self._power(base, self.constant(count - 1.0)))
+        half = self._power(base, self.constant(count / 2.0))
+        return self.after("MUL", half, half)
+
+    def needed(self, outputs: Iterable[int]) -> list[int]:
+        """The nodes that others need, and these, in their order."""
+        found, waiting = set[int](), list(outputs)
+        while waiting:
+            k = waiting.pop()
+            if k not in found:
+                found.add(k)
+                waiting += self.nodes[k].operands
+        return sorted(found)
+
+
+class TracedGraph(Graph):
+    """The operations of one function.
+
+    Args:
+        recording: has them.
+        outputs: their nodes there.
+        vectors: the numbers there of its inputs.
+    """
+
+    def __init__(
+        self, recording: Recording, outputs: Sequence[int], vectors: Sequence[int], inputs: Sequence[Sequence[str]]
+    ) -> None:
         super().__init__(inputs)
         self._ladders: dict[int, Ladder] = {}
         held: dict[int, int] = {}
-        for k in range(function.n_instructions()):
-            operation = function.instruction_id(k)
-            to, of = function.instruction_output(k), function.instruction_input(k)
-            if operation == casadi.OP_INPUT:
-                held[to[0]] = self.number(Node("INPUT", (), (of[0], of[1])))
-            elif operation == casadi.OP_CONST:
-                held[to[0]] = self.number(Node("CONSTANT", (), function.instruction_constant(k)))
-            elif operation == casadi.OP_OUTPUT:
-                self.outputs[to[1]] = held[of[0]]
-            else:
-                held[to[0]] = self._operation(OPERATIONS[operation], tuple(held[k] for k in of))
-
-    def _operation(self, operation: str, operands: tuple[int, ...]) -> int:
-        if operation == "ADD":
-            value, otherwise = (self.nodes[k] for k in operands)
-            if value.operation == otherwise.operation == "CHOICE":
-                condition, negated = value.operands[0], self.nodes[otherwise.operands[0]]
-                if negated == Node("NOT", (condition,)):
-                    return self._choice(condition, value.operands[1], otherwise.operands[1])
-        if operation == "IF_ELSE_ZERO":
-            return self.number(Node("CHOICE", (*operands, self.number(Node("CONSTANT", (), 0.0)))))
-        return self.number(Node(operation, operands))
+        for k in recording.needed(outputs):
+            node = recording.nodes[k]._replace(operands=tuple(held[each] for each in recording.nodes[k].operands))
+            if node.operation == "INPUT":
+                vector, element = node.place
+                node = node._replace(value=(vectors.index(vector), element))
+            held[k] = self._choice(*node.operands) if node.operation == "CHOICE" else self.number(node)
+        self.outputs = {element: held[k] for element, k in enumerate(outputs)}
 
     def _choice(self, condition: int, value: int, otherwise: int) -> int:
         if value == otherwise:

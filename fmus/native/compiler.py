@@ -136,7 +136,7 @@ def zig_compiler() -> list[str]:
     if find_spec("ziglang") is None:
         raise CompilerError(
             "to compile for all platforms, and on Windows, install the extra `cross`, "
-            "as in pip install 'driveline-damping[native,cross]'"
+            "as in pip install 'driveline-damping[cross]'"
         )
     return [sys.executable, "-m", "ziglang", "cc"]
 

@@ -9,7 +9,7 @@ from ...models.block.types import ContinuousBlock
 from ..fmu import Fmu
 from .compiler import compile_in, host_compiler
 from .lane_statements import LaneStatements
-from .packaging import C_FILES, TRACING, c_sources
+from .packaging import C_FILES, c_sources
 from .records import Names, records_of, structs
 from .source import RARE, functions
 from .statements import DOUBLE
@@ -83,7 +83,5 @@ def build_lanes(fmu: Fmu, lanes: int, path: Path) -> None:
     Raises:
         CompilerError: there is no compiler, or it refuses the source.
     """
-    with TRACING:
-        sources = lane_sources(fmu)
     command = [host_compiler(), *COMMON, *FLAGS[lanes], f"-DWIDTH={lanes}", "-shared", "-fPIC", "-s"]
-    path.write_bytes(compile_in([*command, "whole.c", "-o", path.name, "-lm"], path.name, sources))
+    path.write_bytes(compile_in([*command, "whole.c", "-o", path.name, "-lm"], path.name, lane_sources(fmu)))

@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
-from threading import Lock
 
 from ...models.block.types import ContinuousBlock
 from ..archive import guid_of, write_archive
@@ -88,9 +87,6 @@ EXCHANGE = {
 }
 """What model exchange can do in a native build of each FMI."""
 
-TRACING = Lock()
-"""Held while a block is traced: how CasADi simplifies is set for all threads."""
-
 
 def build_native(
     fmu: Fmu,
@@ -112,10 +108,9 @@ def build_native(
     """
     sends = bool(database)
     kind, describe = native_kind(fmu, fmi, sends), DESCRIPTIONS[fmi]
-    with TRACING:
-        sources = c_sources(fmu, fmi, sends)
-        guid = guid_of(describe(fmu, kind, ""), sources)
-        sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
+    sources = c_sources(fmu, fmi, sends)
+    guid = guid_of(describe(fmu, kind, ""), sources)
+    sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
     packed = {f"sources/{name}": content for name, content in sources.items()}
     compiled = binaries(fmu.name, sources, fmi)
     packed |= (
@@ -172,7 +167,7 @@ def native_kind(fmu: Fmu, fmi: int = 2, sends: bool = False) -> BuildKind:
         3: {"providesDirectionalDerivatives": differentiable},
     }
     return BuildKind(
-        tool=f"CasADi {version('casadi')}",
+        tool=f"FMPy {version('fmpy')}",
         capabilities={"maxOutputDerivativeOrder": "1" if continuous else "0"}
         | of_version[fmi]
         | ({"hasEventMode": "true"} if sends else {}),

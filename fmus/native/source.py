@@ -11,7 +11,7 @@ from ...models.block.types import SampledBlock
 from ..description.states import event_indicators, shown_by_fmi3, states
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
-from .arithmetic import Graph, TracedGraph
+from .arithmetic import Graph
 from .records import IN_FMU, RECORDS, Names, paths, records_of, structs
 from .statements import DOUBLE, Precision, Statements
 from .terms import TERMS, Terms
@@ -90,7 +90,7 @@ def _constants(fmu: Fmu, traced: tuple[Traced, ...], held: int) -> list[str]:
     """What else there is to know of the block."""
     if isinstance(fmu.block, SampledBlock):
         return [f"#define SAMPLE_TIME {fmu.block.sample_time!r} /* s */"]
-    sizes = {each.name: each.function.size1_out(0) for each in traced}
+    sizes = {each.name: len(each.values) for each in traced}
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define ALLOWED_ERROR {fmu.block.allowed_error!r} /* of a step, in units of what is tolerated */",
@@ -155,12 +155,12 @@ def functions(
         texts.append(_function(heads[-1][0], lines, used))
 
     for each in traced:
-        graph = TracedGraph(each.function, [_lvalues(name, records) for name in each.arguments])
+        graph = each.graph([_lvalues(name, records) for name in each.arguments])
         if computed_once and each.name not in RARE:
             terms.take(graph, [each.arguments.index("p")])
         if each.name == "derivative":
             held.take(graph, [each.arguments.index("u"), each.arguments.index("p"), len(graph.inputs) - 1])
-        size = each.function.size1_out(0)
+        size = len(each.values)
         outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
         lines, arguments = statements(graph, outputs, precision).lines, _arguments(each, names)
         if each.name == "derivative" and held.outputs:

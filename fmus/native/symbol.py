@@ -1,37 +1,29 @@
-"""A number that is not known yet, as a CasADi expression."""
+"""A number that is not known yet, as a node of a graph of operations."""
 
-import operator
 from typing import Any
 
-import casadi
-
 from ..symbol import Symbol
+from .arithmetic import Recording
 
 
-def expression(value: Any) -> casadi.SX:
-    """The expression of a symbol, a number or a truth value."""
-    return value.expression if isinstance(value, CasadiSymbol) else casadi.SX(float(value))
+class TracedSymbol(Symbol):
+    """A real number or a truth value (0 or 1).
+
+    Attributes:
+        recording: the graph.
+        node: its number there.
+    """
+
+    __slots__ = ("node", "recording")
+
+    def __init__(self, recording: Recording, node: int) -> None:
+        self.recording, self.node = recording, node
+
+    def after(self, operation: str, *operands: Any) -> "TracedSymbol":
+        nodes = (node_of(each, self.recording) for each in operands)
+        return TracedSymbol(self.recording, self.recording.after(operation, *nodes))
 
 
-def _remainder(x: casadi.SX, y: casadi.SX) -> casadi.SX:
-    """CasADi's fmod stands for the % of Python, which it is but for the sign; C gets it with Python's."""
-    if x.is_constant() and y.is_constant():
-        return casadi.SX(float(x) % float(y))
-    return casadi.fmod(x, y)
-
-
-OPERATIONS = {"neg": operator.neg, "pos": operator.pos, "fmod": _remainder}
-"""Those that are not functions of CasADi."""
-
-
-class CasadiSymbol(Symbol):
-    """A real number or a truth value (0 or 1)."""
-
-    __slots__ = ("expression",)
-
-    def __init__(self, expression: casadi.SX) -> None:
-        self.expression = expression
-
-    def after(self, operation: str, *operands: Any) -> "CasadiSymbol":
-        operate = OPERATIONS.get(operation) or getattr(casadi, operation)
-        return CasadiSymbol(operate(*map(expression, operands)))
+def node_of(value: Any, recording: Recording) -> int:
+    """The node of a symbol, a number or a truth value."""
+    return value.node if isinstance(value, TracedSymbol) else recording.constant(float(value))

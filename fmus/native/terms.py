@@ -4,50 +4,16 @@ Those of the parameters alone stand behind these, those of parameters and inputs
 step. Python computes them every time, by the same operations, so that the bits are the same.
 """
 
-import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from .arithmetic import TRUTH_VALUES, Graph, Node
+from .arithmetic import COMPUTED, TRUTH_VALUES, Graph, Node
 
 TERMS = "terms"
 """What C calls the array of those that stand behind the parameters."""
-
-COMPUTED: dict[str, Callable[..., Any]] = {
-    "ADD": operator.add,
-    "SUB": operator.sub,
-    "MUL": operator.mul,
-    "DIV": operator.truediv,
-    "NEG": operator.neg,
-    "SQ": np.square,
-    "TWICE": partial(operator.mul, 2.0),
-    "INV": partial(operator.truediv, 1.0),
-    "FABS": abs,
-    "SIGN": np.sign,
-    "FLOOR": np.floor,
-    "FMOD": operator.mod,
-    "LT": operator.lt,
-    "LE": operator.le,
-    "EQ": operator.eq,
-    "NE": operator.ne,
-    "AND": np.logical_and,
-    "OR": np.logical_or,
-    "NOT": np.logical_not,
-    "CHOICE": np.where,
-    "SQRT": np.sqrt,
-    "LOG": np.log,
-    "EXP": np.exp,
-    "SIN": np.sin,
-    "COS": np.cos,
-    "ATAN": np.arctan,
-    "TANH": np.tanh,
-    "WHOLE": np.float64,
-}
-"""What operations make of numbers."""
 
 
 class Terms(Graph):

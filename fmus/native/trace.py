@@ -1,35 +1,44 @@
-"""The functions of a block as CasADi functions, found by calling them with symbols.
+"""The functions of a block as operations, found by calling them with symbols.
 
-While a block is called CasADi does not simplify, so that the expressions hold the operations of the
-Python functions in their order and round as they do. Only derivatives, which Python does not have,
-are simplified.
+The operations are those of the Python functions in their order, and round as they do.
 """
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from typing import Any, NamedTuple
-
-import casadi
 
 from ...models.block.declaration import is_tuple
 from ...models.block.frame import count, layout
 from ...models.block.types import Block, ContinuousBlock
-from .symbol import CasadiSymbol, expression
+from .arithmetic import Node, Recording, TracedGraph
+from .rates import rates
+from .symbol import TracedSymbol, node_of
 
 
 class Traced(NamedTuple):
     """One function of a block.
 
     Attributes:
-        function: its inputs are the flattened records `arguments`, its output the flattened `result`.
+        recording: has its operations, with those of other functions.
+        vectors: numbers of its inputs there, the flattened records `arguments`.
+        values: nodes of its output, the flattened `result`.
         arguments: of x, u, y, p, and dx, du, dp for rates of change of these, h for a time.
         result: x, dx, ddx, y, dy or, for numbers that are no record, z.
     """
 
     name: str
-    function: casadi.Function
+    recording: Recording
+    vectors: tuple[int, ...]
+    values: tuple[int, ...]
     arguments: tuple[str, ...]
     result: str
+
+    def graph(self, inputs: Sequence[Sequence[str]]) -> TracedGraph:
+        """Its operations alone.
+
+        Args:
+            inputs: what C calls each number of the arguments.
+        """
+        return TracedGraph(self.recording, self.values, self.vectors, inputs)
 
 
 def trace(block: Block) -> tuple[Traced, ...]:
@@ -40,50 +49,31 @@ def trace(block: Block) -> tuple[Traced, ...]:
     Raises:
         TypeError: a function branches on data, or does what symbols cannot.
     """
-    x0 = block.start(block.Input(), block.Parameters())
-    symbols = {"x": _symbols("x", x0), "u": _symbols("u", block.Input()), "p": _symbols("p", block.Parameters())}
-    x, u, p = symbols.values()
-    with exact():
-        results: dict[str, tuple[Sequence[str], str, Any]] = {
-            "start": ("up", "x", block.start(u, p)),
-            "output": ("xup", "y", block.output(x, u, p)),
-        }
-        if isinstance(block, ContinuousBlock):
-            results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
-            if indicators := block.event_indicators(x, u, p):
-                results["event_indicators"] = ("xup", "z", indicators)
-            if block.solution:
-                symbols |= {"du": _symbols("du", block.Input()), "h": CasadiSymbol(casadi.SX.sym("h"))}
-                solved = block.solution(x, u, symbols["du"], p, symbols["h"])
-                results["solution"] = (("x", "u", "du", "p", "h"), "z", solved)
-            if block.next_event:
-                results["next_event"] = ("xup", "z", (block.next_event(x, u, p),))
-        else:
-            results["update"] = ("xup", "next", block.update(x, u, p))
-    vectors = {name: _vector(record if is_tuple(record) else (record,)) for name, record in symbols.items()}
-    traced = [
-        _traced(name, {argument: vectors[argument] for argument in arguments}, result, _vector(values))
-        for name, (arguments, result, values) in results.items()
-    ]
+    vectors = _Vectors()
+    u, p = vectors.of("u", block.Input()), vectors.of("p", block.Parameters())
+    x = vectors.of("x", block.start(block.Input(), block.Parameters()))
+    results: dict[str, tuple[Sequence[str], str, Any]] = {
+        "start": ("up", "x", block.start(u, p)),
+        "output": ("xup", "y", block.output(x, u, p)),
+    }
     if isinstance(block, ContinuousBlock):
-        xup = {name: vectors[name] for name in "xup"}
-        traced.append(_rate("output_rate", "dy", _vector(results["output"][2]), xup, ("x", "u")))
+        results["derivative"] = ("xup", "dx", block.derivative(x, u, p))
+        if indicators := block.event_indicators(x, u, p):
+            results["event_indicators"] = ("xup", "z", indicators)
+        if block.solution:
+            du, h = vectors.of("du", block.Input()), vectors.of("h", 0.0)
+            results["solution"] = (("x", "u", "du", "p", "h"), "z", block.solution(x, u, du, p, h))
+        if block.next_event:
+            results["next_event"] = ("xup", "z", (block.next_event(x, u, p),))
+    else:
+        results["update"] = ("xup", "next", block.update(x, u, p))
+    traced = [vectors.traced(name, arguments, result, value) for name, (arguments, result, value) in results.items()]
+    if isinstance(block, ContinuousBlock):
+        by_name = {each.name: each for each in traced}
+        traced.append(vectors.rate("output_rate", by_name["output"], ("x", "u")))
         for name in ("output", "derivative", "start"):
-            arguments, result, values = results[name]
-            own = {argument: vectors[argument] for argument in arguments}
-            traced.append(_rate(f"{name}_tangent", f"d{result}", _vector(values), own, tuple(arguments)))
+            traced.append(vectors.rate(f"{name}_tangent", by_name[name], by_name[name].arguments))
     return tuple(traced)
-
-
-@contextmanager
-def exact() -> Iterator[None]:
-    """While it lasts CasADi keeps every operation as it is written."""
-    before = casadi.GlobalOptions.getSimplificationOnTheFly()
-    casadi.GlobalOptions.setSimplificationOnTheFly(False)
-    try:
-        yield
-    finally:
-        casadi.GlobalOptions.setSimplificationOnTheFly(before)
 
 
 def leaves(value: Any) -> list[Any]:
@@ -97,34 +87,51 @@ def trace_frame(block: Block) -> Traced:
     Raises:
         ValueError: the bits of a signal do not hold its largest value.
     """
-    declared = block.Parameters()
+    declared, vectors = block.Parameters(), _Vectors()
     x0 = block.start(block.Input(), declared)
-    p, y = _symbols("p", declared), _symbols("y", block.output(x0, block.Input(), declared))
+    y, p = vectors.of("y", block.output(x0, block.Input(), declared)), vectors.of("p", declared)
     contents = [(content, layout(content, declared)) for content in block.frames[0].contents]
-    with exact():
-        counts = tuple(count(content, of, getattr(y, content.quantity), p) for content, of in contents)
-    return _traced("frame", {"y": _vector(y), "p": _vector(p)}, "z", _vector(counts))
+    counts = tuple(count(content, of, getattr(y, content.quantity), p) for content, of in contents)
+    return vectors.traced("frame", "yp", "z", counts)
 
 
-def _symbols(name: str, template: Any) -> Any:
-    """A symbol in the place of every number."""
+class _Vectors:
+    """Records of symbols, by the letters of the arguments, and what is computed from them."""
+
+    def __init__(self) -> None:
+        self._recording = Recording()
+        self._nodes: dict[str, list[int]] = {}
+
+    def of(self, name: str, template: Any) -> Any:
+        """A record with symbols in the place of the numbers of a template."""
+        return _filled(template, (TracedSymbol(self._recording, k) for k in self._vector(name, len(leaves(template)))))
+
+    def _vector(self, name: str, length: int) -> list[int]:
+        """The nodes of its numbers."""
+        if name not in self._nodes:
+            places = [(len(self._nodes), element) for element in range(length)]
+            self._nodes[name] = [self._recording.number(Node("INPUT", (), place)) for place in places]
+        return self._nodes[name]
+
+    def traced(self, name: str, arguments: Sequence[str], result: str, value: Any) -> Traced:
+        """A function of records."""
+        return self._function(name, arguments, result, [node_of(leaf, self._recording) for leaf in leaves(value)])
+
+    def rate(self, name: str, of: Traced, moving: Sequence[str]) -> Traced:
+        """How fast the values of a function change while some of its arguments change at given rates."""
+        moves: dict[int, int] = {}
+        for argument in moving:
+            nodes = self._nodes[argument]
+            moves |= dict(zip(nodes, self._vector(f"d{argument}", len(nodes)), strict=True))
+        arguments = (*of.arguments, *(f"d{argument}" for argument in moving))
+        return self._function(name, arguments, f"d{of.result}", rates(self._recording, of.values, moves))
+
+    def _function(self, name: str, arguments: Sequence[str], result: str, values: Sequence[int]) -> Traced:
+        vectors = tuple(list(self._nodes).index(argument) for argument in arguments)
+        return Traced(name, self._recording, vectors, tuple(values), tuple(arguments), result)
+
+
+def _filled(template: Any, symbols: Iterator[TracedSymbol]) -> Any:
     if not is_tuple(template):
-        return CasadiSymbol(casadi.SX.sym(name))
-    make = getattr(type(template), "_make", tuple)
-    return make([_symbols(name, item) for item in template])
-
-
-def _vector(record: Any) -> casadi.SX:
-    return casadi.vertcat(*map(expression, leaves(record)))
-
-
-def _traced(name: str, arguments: dict[str, casadi.SX], result: str, value: casadi.SX) -> Traced:
-    return Traced(name, casadi.Function(name, list(arguments.values()), [value]), tuple(arguments), result)
-
-
-def _rate(name: str, result: str, value: casadi.SX, vectors: dict[str, casadi.SX], moving: tuple[str, ...]) -> Traced:
-    """The rate of change of a value while the vectors `moving` change at given rates."""
-    rates = {f"d{of}": casadi.SX.sym(f"d{of}", vectors[of].numel()) for of in moving}
-    at = casadi.vertcat(*(vectors[of] for of in moving))
-    rate = casadi.densify(casadi.jtimes(value, at, casadi.vertcat(*rates.values())))
-    return _traced(name, vectors | rates, result, rate)
+        return next(symbols)
+    return getattr(type(template), "_make", tuple)([_filled(item, symbols) for item in template])

@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
     require_possible(args.free, output)
     recording = read(args, vehicle)
     options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
-    required("casadi", "identifying a model", "native")
+    required("casadi", "identifying a model", "identification")
     runs = compared_in() if args.design else None
     from ..identification.prior_knowledge import identify
 

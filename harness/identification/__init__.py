@@ -2,4 +2,4 @@
 
 from ..base.optional_packages import required
 
-required("casadi", "identifying a model", "native")
+required("casadi", "identifying a model", "identification")

@@ -32,7 +32,7 @@ def identify(
 
     Raises:
         RecordingError: the recording is too short, or nothing moves in it.
-        MissingExtra: the extra `native` is not installed.
+        MissingExtra: the extra `identification` is not installed.
     """
     require_kind("recording", recording, Measurement, "a Measurement, as read_measurement reads it")
     require_each("more", more, str, "names of parameters")

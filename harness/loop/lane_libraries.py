@@ -4,7 +4,6 @@ import logging
 import zipfile
 from ctypes import CDLL
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -67,8 +66,6 @@ def _library(name: str, sources: str) -> CDLL | None:
 
 
 def _make(name: str, lanes: int, path: Path) -> None:
-    if find_spec("casadi") is None:
-        raise RuntimeError("the package casadi is not installed")
     from ...fmus.native.lanes import build_lanes
 
     build_lanes(_blocks()[name], lanes, path)

@@ -8,7 +8,6 @@ from ....fmus.building.one_car import of_one_car
 from ....fmus.building.parameter_files import read_files, require_taken
 from ....fmus.errors import ParameterFileError
 from ...base.errors import DrivelineError
-from ...base.optional_packages import required
 
 
 def values_of(controller: str, vehicle: Path | None, parameters: Path | None) -> dict[str, Any]:
@@ -34,11 +33,7 @@ def with_values(controller: str, precision: str, values: Mapping[str, Any]) -> d
         controller: a name in `fmus.target.sources.CONTROLLERS`.
         precision: float or double.
         values: of its parameters, by name; others are declared.
-
-    Raises:
-        MissingExtra: the extra `native` is not installed.
     """
-    required("casadi", "the C of a controller", "native")
     from ....fmus.target.sources import CONTROLLERS, PRECISIONS, target_sources
 
     return target_sources(CONTROLLERS[controller].started_with(values), PRECISIONS[precision])

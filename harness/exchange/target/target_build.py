@@ -8,7 +8,6 @@ from tempfile import TemporaryDirectory
 from ....fmus.fmu import Fmu
 from ...base.atomic_files import complete, write_text
 from ...base.errors import DrivelineError
-from ...base.optional_packages import required
 from .c_export import values_of
 
 
@@ -50,7 +49,6 @@ def write_image(
 def _compiling(controller: str, vehicle: Path | None, parameters: Path | None) -> Iterator[Fmu]:
     """The controller with the values of two files; what the compiler refuses within is an error of the command."""
     values = values_of(controller, vehicle, parameters)
-    required("casadi", "the C of a controller", "native")
     from ....fmus.native.compiler import CompilerError
     from ....fmus.target.sources import CONTROLLERS
 

@@ -23,7 +23,7 @@ class Functions:
     def __init__(self, fmu, folder):
         sources = block_sources(fmu) | {"operators.h": (C_FILES / "operators.h").read_text()}
         traced = trace(fmu.block)
-        self._sizes = {each.name: each.function.size1_out(0) for each in traced}
+        self._sizes = {each.name: len(each.values) for each in traced}
         self._parameters = {each.name: each.arguments.index("p") for each in traced}
         exported = "".join(EXPORTED.format(name=name) for name in (*self._sizes, "compute_terms"))
         sources["exported.c"] = f'#include "block.c"\n#include <stddef.h>\n{exported}'

@@ -4,8 +4,6 @@ import re
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.packaging import c_sources
 

@@ -6,8 +6,6 @@ import subprocess
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import interface
 from driveline.fmus.native.compiler import host_compiler

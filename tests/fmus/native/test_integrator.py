@@ -17,8 +17,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.native.compiler import FLAGS, host_compiler
 from driveline.fmus.native.packaging import C_FILES
 from driveline.fmus.native.shared_header import shared_header

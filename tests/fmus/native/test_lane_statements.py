@@ -3,27 +3,15 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
-import casadi
-
-from driveline.fmus.native.arithmetic import TracedGraph
 from driveline.fmus.native.lane_statements import LaneStatements
 from driveline.fmus.native.lanes import LANES
-from driveline.fmus.native.symbol import CasadiSymbol
-from driveline.fmus.native.trace import exact
 from driveline.models.block.operators import interpolate, logical_and, sin, where
+from tests.fmus.native.recorded import recorded
 
 
 def written(of: Callable[..., Any], names: list[str]) -> list[str]:
     """The C of a function of so many numbers."""
-    symbols = [casadi.SX.sym("x") for _ in names]
-    with exact():
-        result = of(*map(CasadiSymbol, symbols)).expression
-    function = casadi.Function("f", [casadi.vertcat(*symbols)], [result])
-    return [line.strip() for line in LaneStatements(TracedGraph(function, [names]), ["y"], LANES).lines]
+    return [line.strip() for line in LaneStatements(recorded(of, names), ["y"], LANES).lines]
 
 
 def test_a_choice_takes_both_values() -> None:

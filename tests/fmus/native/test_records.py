@@ -5,8 +5,6 @@ from typing import Annotated, NamedTuple
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.fmu import Fmu
 from driveline.fmus.native.records import records_of, structs
 from driveline.models.block.declaration import Boolean, Real

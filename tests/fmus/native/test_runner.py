@@ -8,8 +8,6 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.fmu import Fmu
 from driveline.fmus.native.compiler import FLAGS, host_compiler
 from driveline.fmus.native.packaging import c_sources

@@ -5,26 +5,17 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
-import casadi
-
-from driveline.fmus.native.arithmetic import LOOKED_UP, TracedGraph
+from driveline.fmus.native.arithmetic import LOOKED_UP
 from driveline.fmus.native.statements import Statements
-from driveline.fmus.native.symbol import CasadiSymbol
-from driveline.fmus.native.trace import exact
 from driveline.models.block.operators import interpolate, where
+from tests.fmus.native.recorded import recorded
 
 NAMES = [f"a[{k}]" for k in range(6)]
 
 
 def written(of: Callable[..., Any], names: list[str]) -> list[str]:
     """The C of a function of so many numbers."""
-    symbols = [casadi.SX.sym("x") for _ in names]
-    with exact():
-        result = of(*map(CasadiSymbol, symbols)).expression
-    function = casadi.Function("f", [casadi.vertcat(*symbols)], [result])
-    return [line.strip() for line in Statements(TracedGraph(function, [names]), ["y"]).lines]
+    return [line.strip() for line in Statements(recorded(of, names), ["y"]).lines]
 
 
 def test_an_interpolation_in_an_array_looks_its_neighbours_up() -> None:

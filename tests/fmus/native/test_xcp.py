@@ -12,8 +12,6 @@ from zipfile import ZipFile
 import fmpy
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import interface
 from driveline.fmus.native.xcp import FOLDER, address_in

@@ -4,8 +4,6 @@ import shutil
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.native.compiler import CompilerError
 from driveline.fmus.native.statements import SINGLE
 from driveline.fmus.target.deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason

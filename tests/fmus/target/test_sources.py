@@ -11,8 +11,6 @@ from platform import machine
 import numpy as np
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.native.compiler import host_compiler
 from driveline.fmus.native.statements import SINGLE
 from driveline.fmus.target.image import FLAGS, host_program

@@ -274,5 +274,5 @@ def test_without_casadi_the_extra_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, "casadi", None)
     assert identify() == 2
-    assert "identifying a model needs the package casadi: install the extra `native`" in capsys.readouterr().err
+    assert "identifying a model needs the package casadi: install the extra `identification`" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -7,8 +7,6 @@ import pytest
 from driveline.harness.commands.cli import main
 from tests import ROOT
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 EXPORT = ("target", "export", "--quiet")
 
 

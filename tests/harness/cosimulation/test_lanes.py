@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.catalogue import EVERY
 from driveline.fmus.lanes_here import FEATURES, lanes_here
 from driveline.fmus.native.lanes import build_lanes

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from driveline.fmus.native.trace import leaves, trace
 from driveline.models.block.declaration import variables
 from driveline.models.block.runner import runner
 from driveline.models.comparators import measured_speeds, speed_washout
@@ -14,6 +15,7 @@ from driveline.models.controller.interfaces import Addition, Estimator, Law, Mot
 from driveline.models.controller.supervised_controller import supervised
 from driveline.models.controller.supervision import T_S
 from driveline.models.controller.trust import TrustState
+from tests.fmus.native.recorded import computed
 from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken
 
 
@@ -121,16 +123,13 @@ def test_a_runner_takes_it_as_it_takes_any_block() -> None:
 
 def test_it_is_traced_for_the_native_build() -> None:
     """And computes with symbols what it computes with numbers, in fallback too."""
-    pytest.importorskip("casadi", reason="the extra `native` is not installed")
-    from driveline.fmus.native.trace import leaves, trace
-
-    functions = {each.name: each.function for each in trace(OTHER)}
+    functions = {each.name: each for each in trace(OTHER)}
     p, inputs = OTHER.Parameters(), shaken(0.2)
     inputs = [u._replace(T_mot_est=math.nan) if 40 <= k < 60 else u for k, u in enumerate(inputs)]
     states = run(OTHER, inputs)
     assert supervision.FALLBACK in {x.status for x in states}
     for x, u, after in zip(states, inputs, states[1:], strict=False):
-        computed = functions["update"](leaves(x), leaves(u), leaves(p)).full().ravel()
-        assert computed.tolist() == pytest.approx([float(value) for value in leaves(after)], rel=1e-12)
-    shown = functions["output"](leaves(states[-1]), leaves(ROLLING), leaves(p)).full().ravel()
-    assert shown.tolist() == list(OTHER.output(states[-1], ROLLING, p))
+        found = computed(functions["update"], leaves(x), leaves(u), leaves(p))
+        assert found == pytest.approx([float(value) for value in leaves(after)], rel=1e-12)
+    shown = computed(functions["output"], leaves(states[-1]), leaves(ROLLING), leaves(p))
+    assert shown == list(OTHER.output(states[-1], ROLLING, p))

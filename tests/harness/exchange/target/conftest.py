@@ -4,8 +4,6 @@ from collections.abc import Iterator
 
 import pytest
 
-pytest.importorskip("casadi", reason="the extra `native` is not installed")
-
 from driveline.fmus.target.image import require_packages
 from driveline.harness.exchange.target.programs import Programs, programs
 from tests.skipping import skipped_if_impossible

@@ -1,0 +1,44 @@
+"""Functions of numbers as the operations that they make."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from driveline.fmus.native.arithmetic import COMPUTED, Node, Recording, TracedGraph
+from driveline.fmus.native.symbol import TracedSymbol, node_of
+from driveline.fmus.native.trace import Traced
+
+
+def recorded(of: Callable[..., Any], *vectors: Sequence[str]) -> TracedGraph:
+    """Those of a function of as many numbers as these vectors have names in C."""
+    recording = Recording()
+    symbols = [
+        TracedSymbol(recording, recording.number(Node("INPUT", (), (vector, element))))
+        for vector, names in enumerate(vectors)
+        for element in range(len(names))
+    ]
+    value = node_of(of(*symbols), recording)
+    return TracedGraph(recording, [value], range(len(vectors)), vectors)
+
+
+def computed(function: Traced, *arguments: Sequence[float]) -> list[float]:
+    """What a traced function makes of numbers."""
+    given = dict(zip(function.vectors, arguments, strict=True))
+    found = values(function.recording, function.values, lambda vector, element: given[vector][element])
+    return [float(found[k]) for k in function.values]
+
+
+def values(recording: Recording, needed: Sequence[int], given: Callable[[int, int], Any]) -> Mapping[int, Any]:
+    """Those of nodes, by their numbers."""
+    found: dict[int, Any] = {}
+    with np.errstate(all="ignore"):
+        for k in recording.needed(needed):
+            node = recording.nodes[k]
+            if node.operation == "INPUT":
+                found[k] = np.float64(given(*node.place))
+            elif node.operation == "CONSTANT":
+                found[k] = np.float64(node.number)
+            else:
+                found[k] = COMPUTED[node.operation](*(found[each] for each in node.operands))
+    return found
