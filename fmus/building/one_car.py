@@ -47,6 +47,9 @@ DIGITS = 6
 FURTHEST = 100.0
 """Factor on what is elastic in the default car, within which it is looked for."""
 
+SECANTS, NEAR = 8, 1e-6
+"""Steps in which it is found, and the last of them; what is missed after one is far less."""
+
 DESIGN, DETAILED = two_mass_driveline.BLOCK, validation_vehicle.BLOCK
 
 DECLARED = {
@@ -196,20 +199,42 @@ def _solved(frequency: Callable[[float], float], wanted: float, low: float, high
     Raises:
         ParameterFileError: there is none between low and high; begins with what is looked for.
     """
-    from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
 
+    def missed(x: float) -> float:
+        return log(frequency(exp(x)) / wanted)
+
+    found = _by_secants(missed, log(low), log(high))
+    if found is not None:
+        return exp(found)
     least, most = frequency(low), frequency(high)
     if not least <= wanted <= most:
         raise ParameterFileError(
             f"{what} does not follow: the drive train would have to swing at {wanted:.3g} Hz, and can at "
             f"{least:.3g} to {most:.3g} Hz"
         )
-
-    def missed(x: float) -> float:
-        return frequency(exp(x)) - wanted
+    from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
 
     found = brentq(missed, log(low), log(high), xtol=1e-9)  # pyright: ignore[reportUnknownVariableType]
     return exp(found)  # pyright: ignore[reportArgumentType, reportUnknownArgumentType]
+
+
+def _by_secants(missed: Callable[[float], float], low: float, high: float) -> float | None:
+    """Where what is missed is zero, from the middle in few steps; None: these lead out or do not end.
+
+    A linearised plant is costly, and the logarithms of stiffness and frequency are nearly on a line.
+    """
+    before, was = (low + high) / 2.0, missed((low + high) / 2.0)
+    x = before - 2.0 * was  # a frequency grows as the root of the stiffness
+    for _ in range(SECANTS):
+        if not low <= x <= high:
+            return None
+        now = missed(x)
+        if now == was:
+            return x if now == 0.0 else None
+        before, was, x = x, now, x - now * (x - before) / (now - was)
+        if abs(x - before) <= NEAR:
+            return x
+    return None
 
 
 def _close(frequency: float, other: float) -> bool:

@@ -1,5 +1,8 @@
 """One car for both plants and the design: what follows from what a vehicle file names."""
 
+from collections.abc import Callable
+from math import exp, sqrt
+
 import numpy as np
 import pytest
 
@@ -11,6 +14,7 @@ from driveline.fmus.building.one_car import (
     DETAILED,
     FOLLOW,
     SHAFTS,
+    _solved,
     differences,
     of_one_car,
     updated,
@@ -162,3 +166,26 @@ def test_what_no_longer_follows_goes_back_to_the_default_car() -> None:
 def test_what_follows_is_what_the_validation_vehicle_alone_has() -> None:
     assert set(FOLLOW) <= set(DETAILED.Parameters._fields) - set(DESIGN.Parameters._fields)
     assert all(DECLARED[name][0] == DETAILED.name for name in FOLLOW)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "most"),
+    [
+        (lambda k: sqrt(k / (1.0 + k / 50.0)), 7),  # as a spring in series with another
+        (lambda k: 1.0 + (k > 3.0) + 1e-3 * k, 60),  # steps lead nowhere: halved
+        (lambda k: exp(min(k, 9.0)), 60),
+    ],
+)
+def test_a_stiffness_is_found_in_few_linearisations_where_frequencies_are_those_of_springs(
+    frequency: Callable[[float], float], most: int
+) -> None:
+    asked = list[float]()
+
+    def seen(k: float) -> float:
+        asked.append(k)
+        return frequency(k)
+
+    for k in (0.02, 0.9, 8.0):
+        asked.clear()
+        assert _solved(seen, frequency(k), 0.01, 100.0, "k") == pytest.approx(k, rel=1e-8)
+        assert len(asked) <= most
