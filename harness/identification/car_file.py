@@ -2,16 +2,15 @@
 
 from collections.abc import Mapping
 from textwrap import wrap
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...fmus.building.one_car import updated
 from ..recordings.source import RecordingError
-from .drive_train import Parameters
-from .drive_train_response import resonance
+from .drive_train import DELAYS, Parameters
+from .drive_train_response import PEAK, resonance
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
-from .maximum_likelihood import SIGNED
 from .quality import Z_95
 from .two_mass_equivalent import equivalent
 
@@ -38,22 +37,70 @@ WIDEST_INTERVAL = 0.5
 
 NOT_DETERMINED = "is not determined"
 
+SHORT = 2e-4
+"""Half of an interval in s that tells something of a delay, though it holds 0."""
+
 WIDEST = 118
 """Characters of a line of text in a vehicle file."""
 
 
-def found(identified: Identified) -> list[tuple[str, float, float]]:
-    """Name, value and half of the 95 % interval of each parameter that was identified."""
-    half = {name: Z_95 * deviation for name, deviation in identified.deviations.items()}
-    rows = [(name, float(value), half.get(name, 0.0)) for name, value in identified.p._asdict().items()]
+class Interval(NamedTuple):
+    """95 % interval of a parameter.
+
+    Attributes:
+        half: of its width.
+        determined: whether it tells anything. Else the value is not to be shown.
+    """
+
+    name: str
+    value: float
+    half: float
+    determined: bool
+
+    def __str__(self) -> str:
+        """With its unit, to stand after the name."""
+        return f"= {self.value:.5g} +- {self.half:.2g} {self.unit}".rstrip() if self.determined else NOT_DETERMINED
+
+    @property
+    def unit(self) -> str:
+        """Empty if it has none."""
+        return UNITS.get(self.name, "")
+
+    @property
+    def percent(self) -> str:
+        """The half over the value in %; empty of a delay, of which 0 is as good a value as another."""
+        return "" if self.name in DELAYS else f"{100.0 * self.half / abs(self.value):.2g}"
+
+
+def found(identified: Identified) -> list[Interval]:
+    """Of each parameter that was identified. Where J_2 or C is not determined, nothing of the drive train is: a model
+    without wheels, or of another car, fits as well, and its gains and delays mean nothing."""
+    values = identified.p._asdict()
+    halves = {name: Z_95 * deviation for name, deviation in identified.deviations.items() if deviation > 0.0}
+    tells = {name: _tells(name, float(values[name]), half) for name, half in halves.items()}
+    known = all(tells.get(name, True) for name in ("J_2", "C"))
+    rows = [
+        Interval(name, float(values[name]), halves[name], known and tells[name]) for name in values if name in halves
+    ]
     if identified.loop:
-        rows.append(("tau", identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]))
-    return [row for row in rows if row[2] > 0.0]
+        tau, half = identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]
+        rows.append(Interval("tau", tau, half, _tells("tau", tau, half)))
+    return rows
 
 
-def is_determined(name: str, value: float, half: float) -> bool:
-    """Whether the interval tells anything: that of what cannot be 0 must not hold it."""
-    return half <= abs(value) or name in SIGNED
+def _tells(name: str, value: float, half: float) -> bool:
+    return half <= max(abs(value), SHORT if name in DELAYS else 0.0)
+
+
+def _is_known(rows: list[Interval]) -> bool:
+    """The drive train."""
+    return all(row.determined for row in rows if row.name in ("J_2", "C"))
+
+
+def peak(identified: Identified) -> str:
+    """The frequency in Hz at which the car answers most, or that the recording does not tell it."""
+    frequency = identified.resonance
+    return f"{frequency:.2f}" if _is_known(found(identified)) and PEAK[0] < frequency < PEAK[1] else NOT_DETERMINED
 
 
 def of_car(identified: Identified) -> tuple[float, float]:
@@ -76,33 +123,35 @@ def of_car(identified: Identified) -> tuple[float, float]:
 
 
 def of_car_line(identified: Identified) -> str:
-    """Which C is for what, where there are two."""
+    """Which C is for what, where there are two; and where there should be, that there is one."""
     C, half = of_car(identified)
-    return (
-        f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): "
+    means = (
         "of two masses that answer as the car does, tyres in it"
+        if identified.tyre
+        else "of the drive train alone, as no tyre is found behind it; with tyres it is less"
     )
+    return f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): {means}"
 
 
 def identified_lines(identified: Identified) -> list[str]:
     """What was found, for people, a line each: parameters with unit and 95 % interval, and how they fit."""
     quality = identified.quality
     every = found(identified)
-    width = max(len(name) for name, *_ in every)
+    width = max(len(row.name) for row in every)
     explained = identified.method == "prediction error"
     expected = "1 if all is right" if explained else "over what the free runs are off by"
-    parameters = [
-        f"{name:{width}} = {value:.5g} +- {half:.2g} {UNITS.get(name, '')}".rstrip()
-        + f" ({100.0 * half / abs(value):.2g} %)"
-        if is_determined(name, value, half)
-        else f"{name:{width}} {NOT_DETERMINED}"
-        for name, value, half in every
-    ]
+    shares = [f" ({row.percent} %)" if row.determined and row.percent else "" for row in every]
+    answers = peak(identified)
+    where = (
+        f"the frequency at which the car answers most {answers}"
+        if answers == NOT_DETERMINED
+        else (f"the car answers most at {answers} Hz")
+    )
     return [
         f"identified {identified.name}, by {identified.method}: {MEANS[identified.name]}; 95 % intervals",
-        *(f"  {line}" for line in parameters),
-        *([of_car_line(identified)] if identified.tyre else []),
-        f"the car answers most at {identified.resonance:.2f} Hz",
+        *(f"  {row.name:{width}} {row}{share}" for row, share in zip(every, shares, strict=True)),
+        *([of_car_line(identified)] if identified.name == WITH_LOAD and _is_known(every) else []),
+        where,
         f"fit to the last quarter, which was not used: simulated 0.5 s {quality.simulated:.1f} %, "
         f"predicted 50 ms {quality.predicted:.1f} %, one step {quality.one_step:.1f} %",
         f"innovations: size {quality.size:.2f} ({expected}), correlation {quality.correlation:.2f} (0 if white)",
@@ -121,13 +170,18 @@ def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = N
         RecordingError: C is not known any better.
     """
     C, half = of_car(identified)
-    if not half <= WIDEST_INTERVAL * C:
-        raise RecordingError(
-            f"C of the car = {C:.3g} +- {half:.2g} N.m/rad is known to +- {100.0 * half / C:.2g} % "
-            f"only, and a vehicle file needs +- {100.0 * WIDEST_INTERVAL:g} % or less: excite more or longer, and give "
-            "every channel as it was sampled"
+    every = found(identified)
+    if not (_is_known(every) and half <= WIDEST_INTERVAL * C):
+        known = (
+            f"= {C:.3g} +- {half:.2g} N.m/rad is known to +- {100.0 * half / C:.2g} % only"
+            if _is_known(every)
+            else NOT_DETERMINED
         )
-    rows = {name: value for name, value, half in found(identified) if half <= WIDEST_INTERVAL * value}
+        raise RecordingError(
+            f"C of the car {known}, and a vehicle file needs +- {100.0 * WIDEST_INTERVAL:g} % or less: excite more or "
+            "longer, and give every channel as it was sampled"
+        )
+    rows = {row.name: row.value for row in every if row.half <= WIDEST_INTERVAL * row.value}
     entries = {"C": C, **{name: rows[name] for name in ("phi_B", "J_1", "tau") if name in rows}}
     return updated(vehicle or {}, {name: float(f"{value:.6g}") for name, value in entries.items()})
 
@@ -167,7 +221,9 @@ def document(identified: Identified) -> dict[str, Any]:
         "covariance": identified.covariance.tolist(),
         "torque_loop": _loop(identified),
         "tyre": vars(identified.tyre) if identified.tyre else None,
-        "intervals_95": {name: {"value": value, "half": half} for name, value, half in found(identified)},
+        "intervals_95": {
+            row.name: {"value": row.value, "half": row.half, "determined": row.determined} for row in found(identified)
+        },
         "resonance_Hz": identified.resonance,
         "vehicle_file": identified_car(identified),
         "C_of_the_car": dict(zip(("value", "half"), of_car(identified), strict=True)),

@@ -11,7 +11,7 @@ from ..views.html.figure_selector import chosen
 from ..views.html.linked_figures import linked, shown, stacked
 from ..views.html.report_page import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within
-from .car_file import MEANS, NOT_DETERMINED, UNITS, found, is_determined, of_car
+from .car_file import MEANS, NOT_DETERMINED, Interval, found, of_car, peak
 from .fit_figures import autocorrelations, distribution, innovations, simulated
 from .free_runs import FreeRuns, end_of, free_runs
 from .identify import Identified
@@ -51,12 +51,7 @@ def report(identified: Identified, recording: Measurement, provenance: Mapping[s
 
 def verdict(identified: Identified) -> str:
     """In one sentence."""
-    text = ", ".join(
-        f"{name} = {value:.5g} ± {half:.2g} {UNITS.get(name, '')}".rstrip()
-        if is_determined(name, value, half)
-        else f"{name} {NOT_DETERMINED}"
-        for name, value, half in found(identified)
-    )
+    text = ", ".join(f"{row.name} {row}".replace("+-", "±") for row in found(identified))
     count = len(identified.warnings)
     return (
         f"{text} (95 %); the model fits {identified.quality.simulated:.0f} % of the motor speed over {SIMULATED:g} s, "
@@ -73,14 +68,16 @@ def _found(identified: Identified) -> Table:
         Heading("unit"),
     ]
     every = found(identified)
-    if identified.tyre:
-        every.append(("C of the car, in the vehicle file", *of_car(identified)))
     rows = [
-        Row([name, f"{value:.5g}", f"{half:.2g}", f"{100.0 * half / abs(value):.2g}", UNITS.get(name.split()[0], "")])
-        if is_determined(name, value, half)
-        else Row([name, NOT_DETERMINED, "", "", ""])
-        for name, value, half in every
+        Row([row.name, f"{row.value:.5g}", f"{row.half:.2g}", row.percent, row.unit])
+        if row.determined
+        else Row([row.name, NOT_DETERMINED, "", "", ""])
+        for row in every
     ]
+    if identified.tyre:
+        C = Interval("C", *of_car(identified), True)
+        name = "C of the car, in the vehicle file"
+        rows.append(Row([name, f"{C.value:.5g}", f"{C.half:.2g}", C.percent, C.unit]))
     return Table(headings, rows, [f"Warning: {warning}" for warning in identified.warnings])
 
 
@@ -99,9 +96,7 @@ def _quality(identified: Identified) -> Table:
         Heading("resonance, Hz", "frequency at which the car answers most on its own", True),
     ]
     fits = [f"{fit:.1f}" for fit in (quality.simulated, quality.predicted, quality.one_step)]
-    return Table(
-        headings, [Row([*fits, *(f"{x:.2f}" for x in (quality.size, quality.correlation, identified.resonance))])]
-    )
+    return Table(headings, [Row([*fits, f"{quality.size:.2f}", f"{quality.correlation:.2f}", peak(identified)])])
 
 
 def _pieces(runs: FreeRuns) -> list[tuple[float, float, float]]:

@@ -14,7 +14,7 @@ from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.figure_options import PLAIN, FigureOptions
 from ..views.figure_style import plot, sheet
 from ..views.panels import DASHED, DOTTED, SOLID, Axis, Band, Curve, Level, Panel, Part, Points
-from .car_file import MEANS
+from .car_file import MEANS, NOT_DETERMINED, peak
 from .cost_surface import POINTS, cost_over, curvature, ellipse, exact
 from .drive_train_response import FREQUENCIES, WINDOW, Tyre, response
 from .fit_figures import headline
@@ -123,13 +123,16 @@ def responses(identified: Identified, seed: int = 1) -> list[Panel]:
     f, recorded = recorded_response(identified)
     at = (f >= RESPONSE[0]) & (f <= RESPONSE[-1])
     f, recorded = f[at], recorded[at]
-    models = [(identified.tyre, f"car on its own, peak at {identified.resonance:.2f} Hz", VERMILION, SOLID)]
+    most = peak(identified)
+    own_peak = "" if most == NOT_DETERMINED else f", peak at {most} Hz"
+    models = [(identified.tyre, f"car on its own{own_peak}", VERMILION, SOLID)]
     models += [(None, "load torque held", BLUE, DASHED)] * (identified.tyre is not None)
     answers = [response(identified.p, RESPONSE, tyre) for tyre, *_ in models]
     drawn = [drawn_responses(identified, RESPONSE, tyre, seed) for tyre, *_ in models]
 
     def parts(of: Callable[[np.ndarray], np.ndarray]) -> Iterator[Part]:
-        yield Level(identified.resonance, VERMILION, DOTTED, upright=True)
+        if own_peak:
+            yield Level(identified.resonance, VERMILION, DOTTED, upright=True)
         yield Points(f, of(recorded), "recording", "#666666", 3.0)
         for answer, others, (_, name, color, dashes) in zip(answers, drawn, models, strict=True):
             low, high = np.percentile(of(others), PERCENTILES, axis=0)

@@ -79,13 +79,50 @@ def test_a_stiffness_that_is_hardly_known_makes_no_vehicle_file() -> None:
 
 
 def test_what_is_not_determined_is_told_so_and_not_as_a_number() -> None:
-    """Of what cannot be 0; damping and delays may be."""
     for share, told in ((0.999, "phi_B = 0.157 +- 0.16 rad (1e+02 %)"), (1.001, "phi_B is not determined")):
         found = known_to("phi_B", share)
         assert f"  {told}" in car_file.identified_lines(found)
         assert told.partition(" (")[0].replace("+-", "±") in verdict(found)
-    late = replace(FOUND, p=P._replace(late_1=1e-3), free=("J_2", "C", "phi_B", "late_1"))
-    assert any(line.startswith("  late_1 = 0.001 +- 0.0059 s") for line in car_file.identified_lines(late))
+        assert car_file.document(found)["intervals_95"]["phi_B"]["determined"] == (share < 1.0)
+
+
+def freed(**values: float) -> Identified:
+    """The fourth parameter is another one, with a standard deviation of 3e-3 and so half an interval of 5.9e-3."""
+    return replace(FOUND, tyre=None, p=P._replace(**values), free=("J_2", "C", "phi_B", *values))
+
+
+def test_damping_whose_interval_holds_zero_is_not_determined() -> None:
+    for d, told in ((0.02, "d     = 0.02 +- 0.0059 N.m.s/rad (29 %)"), (0.005, "d     is not determined")):
+        assert f"  {told}" in car_file.identified_lines(freed(d=d))
+
+
+def test_of_a_delay_zero_is_as_good_a_value_as_another() -> None:
+    """It has no per cent, and is determined if it is known to .2 ms."""
+    assert "  late_1 is not determined" in car_file.identified_lines(freed(late_1=1e-3))
+    short = replace(freed(late_1=1e-5), covariance=np.diag(np.square([1e-3, 0.1, 2e-4, 0.95e-4])))
+    assert "  late_1 = 1e-05 +- 0.00019 s" in car_file.identified_lines(short)
+
+
+@pytest.mark.parametrize("name", ["J_2", "C"])
+def test_without_a_drive_train_nothing_of_it_is_determined(name: str) -> None:
+    """But the lag of motor control, which the torques tell."""
+    lines = car_file.identified_lines(known_to(name, 1.001))
+    assert lines[1:7] == [
+        "  J_2   is not determined",
+        "  C     is not determined",
+        "  phi_B is not determined",
+        "  g_L   is not determined",
+        "  tau   = 0.0031235 +- 2e-05 s (0.63 %)",
+        "the frequency at which the car answers most is not determined",
+    ]
+    with pytest.raises(RecordingError, match=r"^C of the car is not determined, and a vehicle file needs \+- 50 %"):
+        car_file.identified_car(known_to(name, 1.001))
+
+
+def test_an_answer_that_grows_to_the_edge_has_no_peak() -> None:
+    """Of a motor with next to no inertia behind it: the slower, the larger."""
+    light = replace(FOUND, p=P._replace(J_2=1e-5, d=5.0), tyre=None, covariance=1e-12 * np.eye(4))
+    assert "the frequency at which the car answers most is not determined" in car_file.identified_lines(light)
 
 
 def test_a_gap_that_is_hardly_known_stays_as_it_was() -> None:
@@ -124,7 +161,11 @@ def test_the_stiffness_in_the_file_is_the_one_that_is_told() -> None:
     assert car_file.identified_car(FOUND)["C"] == pytest.approx(C, rel=1e-5)
     assert f"in the vehicle file C = {C:.5g}" in car_file.vehicle_file(FOUND, "A car.")
     assert car_file.document(FOUND)["vehicle_file"]["C"] == car_file.identified_car(FOUND)["C"]
-    assert car_file.document(FOUND)["intervals_95"]["C"] == {"value": P.C, "half": pytest.approx(0.196, abs=1e-3)}
+    assert car_file.document(FOUND)["intervals_95"]["C"] == {
+        "value": P.C,
+        "half": pytest.approx(0.196, abs=1e-3),
+        "determined": True,
+    }
 
 
 @pytest.mark.slow
@@ -140,6 +181,11 @@ def test_its_interval_is_that_of_what_it_is_made_of() -> None:
 def test_where_there_is_one_stiffness_no_other_is_told() -> None:
     lines = car_file.identified_lines(replace(FOUND, name=WITHOUT_LOAD, tyre=None))
     assert not any(line.startswith("in the vehicle file") for line in lines)
+
+
+def test_a_stiffness_without_tyres_is_told_to_be_the_one_in_the_file() -> None:
+    lines = car_file.identified_lines(replace(FOUND, tyre=None))
+    assert any(line.startswith("in the vehicle file C = 117.4 +- 0.2 N.m/rad") and "no tyre" in line for line in lines)
 
 
 def test_shafts_that_were_known_give_way_to_the_stiffness_that_was_identified() -> None:
