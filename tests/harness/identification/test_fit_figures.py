@@ -125,6 +125,15 @@ def test_the_band_is_that_of_small_deviations() -> None:
     assert found == pytest.approx(0.5 * abs(up - down) / 0.2, rel=0.1)
 
 
+def test_a_peak_that_is_not_determined_is_not_drawn() -> None:
+    k, unknown = FREE.index("J_2"), answer().covariance.copy()
+    unknown[k, k] = 1.0
+    for one, drawn in ((answer(), True), (replace(answer(), covariance=unknown), False)):
+        labels = [getattr(part, "label", "") for part in uncertainty_figures.responses(one)[0].parts]
+        assert any("peak at" in label for label in labels) == drawn
+        assert any(label.startswith("car on its own") for label in labels)
+
+
 def test_without_a_gap_the_recording_answers_as_the_model() -> None:
     p = CAR._replace(phi_B=1e-6, d=2.0)
     one = replace(answer(), p=p, drive=truth(p, 20000)[0])
