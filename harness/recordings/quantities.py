@@ -19,7 +19,11 @@ OWN = Path(__file__).with_name("aliases.toml")
 Aliases = Mapping[str, Sequence[str]]
 """Names by quantity; the first one is shown."""
 
-BY_UNIT: Mapping[str, Sequence[str]] = {"T_mot": ("T", "M"), "omega_1": ("Speed", "n")}
+BY_UNIT: Mapping[str, Sequence[str]] = {
+    "time": ("Date", "Datum", "Datetime", "Date Time", "Date/Time", "Datum/Uhrzeit", "Datum/Zeit", "Uhrzeit"),
+    "T_mot": ("T", "M"),
+    "omega_1": ("Speed", "n"),
+}
 """Names that leave open what they mean, by quantity: they count with a unit of it, where no column has a better one."""
 
 

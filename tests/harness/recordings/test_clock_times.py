@@ -68,6 +68,15 @@ def test_a_date_in_a_column_of_its_own_is_passed_over(tmp_path: Path) -> None:
     assert read_drive(path).time.tolist() == [0.0, 1.0]
 
 
+@pytest.mark.parametrize("heading", ["Date", "DATUM", "DateTime", "Date_Time", "Date/Time", "Uhrzeit"])
+def test_a_date_with_the_time_of_day_is_the_time_where_nothing_else_is(tmp_path: Path, heading: str) -> None:
+    path = written(tmp_path, "2026-11-22 10:00:00", "2026-11-22 10:00:01", "2026-11-22 10:00:03", heading=heading)
+    assert read_drive(path).time.tolist() == [0.0, 1.0, 3.0]
+    rows = ("2026-11-22 10:00:00,5,1,1", "2026-11-22 10:00:01,7,2,2")
+    path.write_text("\n".join((f"{heading},Time [s],v [m/s],Torque [Nm]", *rows)))
+    assert read_drive(path).time.tolist() == [5.0, 7.0]
+
+
 def test_a_date_that_is_not_read_is_told_which_times_are(tmp_path: Path) -> None:
     """Not only to give a unit, with which it is no number."""
     with pytest.raises(RecordingError, match=r"Time has no unit; .*; a time of day needs none, such as 10:15:30\.5 or"):
