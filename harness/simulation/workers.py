@@ -5,6 +5,7 @@ import gc
 import logging
 import os
 import sys
+import tempfile
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
@@ -41,7 +42,7 @@ class Workers:
     Args:
         function: of a case.
         count: how many.
-        folder: for what they unpack and note.
+        folder: for what they unpack and note, and for all their temporary files; who gives it removes it.
     """
 
     def __init__(self, function: Callable[[Any], Any] | Together, count: int, folder: Path) -> None:
@@ -161,6 +162,7 @@ def _begin(folder: Path, function: Callable[[Any], Any] | Together, waiting: int
     _function = function
     end_with(waiting, tidy=lambda: rmtree(folder, ignore_errors=True))
     note_unfinished(folder)
+    tempfile.tempdir = str(folder)  # a worker that is killed while a compiler runs removes nothing itself
     collect_warnings().propagate = False
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
     kept = ExitStack()

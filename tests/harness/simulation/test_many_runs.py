@@ -9,6 +9,7 @@ import weakref
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from threading import Lock
 
 import pytest
@@ -323,6 +324,7 @@ def test_a_size_of_batches_that_is_none_is_refused(batch):
 SCRIPT = """
 import sys, tempfile
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from threading import Lock
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -376,6 +378,25 @@ def test_what_a_killed_worker_was_writing_goes_and_nothing_else(tmp_path):
     with pytest.raises(ValueError, match="this case fails"):
         run_many(write, range(2), workers=2)
     assert list(tmp_path.iterdir()) == [others]
+
+
+def test_what_a_killed_worker_has_in_temporary_folders_goes(tmp_path):
+    """As the files of a compiler that it had begun."""
+    found = tmp_path / "found"
+
+    def compile_long(case):
+        if case == 0:
+            while not found.exists():
+                time.sleep(0.01)
+            raise ValueError("this case fails while the other one compiles")
+        with TemporaryDirectory() as folder:
+            with complete(found) as unfinished:
+                unfinished.write_text(folder)
+            time.sleep(60.0)
+
+    with pytest.raises(ValueError, match="this case fails"):
+        run_many(compile_long, range(2), workers=2)
+    assert not Path(found.read_text()).exists()
 
 
 ORPHANED = """
