@@ -128,7 +128,7 @@ def of_car_line(identified: Identified) -> str:
     means = (
         "of two masses that answer as the car does, tyres in it"
         if identified.tyre
-        else "of the drive train alone, as no tyre is found behind it; with tyres it is less"
+        else "of the drive train alone, as no tyre is found behind it; that with tyres is another"
     )
     return f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): {means}"
 

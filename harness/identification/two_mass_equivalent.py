@@ -35,6 +35,7 @@ def equivalent(p: Parameters, behind: Tyre | None, peak: float) -> Parameters:
         return np.concatenate([off.real, off.imag])
 
     C = p.J_1 * (2.0 * np.pi * peak) ** 2
-    found = least_squares(missed, np.log([behind.J_v, C, 0.1 * C / (2.0 * np.pi * peak)]))
+    with np.errstate(over="ignore", invalid="ignore"):  # a step into infinity is taken back and made smaller
+        found = least_squares(missed, np.log([behind.J_v, C, 0.1 * C / (2.0 * np.pi * peak)]))
     J_2, C, d = map(float, np.exp(found.x))
     return p._replace(J_2=J_2, C=C, d=d)

@@ -113,6 +113,13 @@ def test_a_stiff_tyre_makes_the_vehicle_part_of_the_wheels() -> None:
     assert found.d == pytest.approx(p.d, rel=1e-2)
 
 
+def test_two_masses_that_would_have_all_of_the_world_are_found_in_silence(recwarn: pytest.WarningsRecorder) -> None:
+    """Behind heavy wheels and a tyre that slips, the likeliest second mass has no end."""
+    p, behind = Parameters(0.055, 0.42, 96.0, 0.0, 0.11), Tyre(611.5, 36.0, 1.505, 1.0)
+    assert 96.0 < equivalent(p, behind, resonance(p, behind)).C < 100.0
+    assert [str(each.message) for each in recwarn] == []
+
+
 def test_a_recording_that_is_shorter_than_the_window_is_one_window(recwarn: pytest.WarningsRecorder) -> None:
     rng = np.random.default_rng(1)
     T_mot, T_load, omega_2 = rng.standard_normal((3, WINDOW // 2))
