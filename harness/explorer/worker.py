@@ -6,11 +6,15 @@ from contextvars import copy_context
 from threading import Condition, Thread
 from typing import Any
 
+from ..base.errors import DrivelineError
 from ..base.interruption import Abandoned, abandonable
 from ..base.progress import hidden
 from ..cosimulation.runs import KeptLoops, kept_by
 
 Job = Callable[[], Any]
+
+MOST_WAITING = 20
+"""Askers whose jobs have not begun: ten tabs, each with a run and a file to save."""
 
 Asked = tuple[Job, "Future[Any]"]
 
@@ -50,10 +54,16 @@ class Worker:
         self._thread.start()
 
     def ask(self, asker: Hashable, job: Job) -> "Future[Any]":
-        """The future of what a job gives; cancelled if it is forgotten."""
+        """The future of what a job gives; cancelled if it is forgotten.
+
+        Raises:
+            DrivelineError: too many wait.
+        """
         future: Future[Any] = Future()
         with self._changed:
             self._drop(asker)
+            if len(self._asked) >= MOST_WAITING:
+                raise DrivelineError(f"{MOST_WAITING} requests wait, which is all there may be: close a tab")
             self._asked[asker] = job, future
             self._changed.notify()
         return future

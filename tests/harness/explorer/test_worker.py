@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
+from driveline.harness.base.errors import DrivelineError
 from driveline.harness.base.progress import progress
-from driveline.harness.explorer.worker import Worker
+from driveline.harness.explorer.worker import MOST_WAITING, Worker
 
 
 def test_only_the_latest_of_what_a_tab_asks_for_is_done_and_tabs_take_turns() -> None:
@@ -95,4 +96,24 @@ def test_a_run_under_way_ends_with_its_tab_and_the_next_one_is_made() -> None:
     worker.forget("a")
     worker.ask("b", run)
     assert ended.wait(10.0)
+    worker.close()
+
+
+def test_no_more_wait_than_there_may_be() -> None:
+    worker, begun, go = Worker(), Event(), Event()
+
+    def first() -> None:
+        begun.set()
+        go.wait(10.0)
+
+    worker.ask("first", first)
+    assert begun.wait(10.0)
+    for asker in range(MOST_WAITING):
+        worker.ask(asker, int)
+    worker.ask(0, int)
+    with pytest.raises(DrivelineError, match=f"^{MOST_WAITING} requests wait"):
+        worker.ask("one more", int)
+    worker.forget(0)
+    worker.ask("one more", int)
+    go.set()
     worker.close()
