@@ -27,8 +27,10 @@ settings.load_profile("driveline")
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compiles through what keeps its results with the cache of pytest, unless a compiler is named from outside. What
-    would start a process on each core runs in one: tests that need several say so."""
+    would start a process on each core runs in one: tests that need several say so. The parser of A2L files works by
+    gRPC, whose handlers of fork abort one in a hundred of the programs that a test starts after it."""
     os.environ["LOKY_MAX_CPU_COUNT"] = "1"
+    os.environ["GRPC_ENABLE_FORK_SUPPORT"] = "0"
     if "CC" not in os.environ and hasattr(config, "cache"):
         command = caching_compiler(config.cache.mkdir("compiled"))
         if command:
