@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
 
-from ..base.errors import WiringError
+from ..base.errors import LONGEST_LINE, WiringError
 from ..base.known_names import nearest
 from ..base.plain_text import plain
 from . import mapping
@@ -64,8 +64,8 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
 
 
 def require(problems: Iterable[str]) -> None:
-    """Raises a WiringError that lists the problems if there are any, each once."""
-    if lines := list(dict.fromkeys(problems)):
+    """Raises a WiringError that lists the problems if there are any, each once and in one line."""
+    if lines := list(dict.fromkeys(plain(problem, LONGEST_LINE) for problem in problems)):
         raise WiringError("\n".join(lines))
 
 
@@ -173,7 +173,7 @@ def _check_ends(connection: Connection, interfaces: Mapping[str, Interface]) -> 
 
 
 def _unit(variable: ModelVariable) -> str:
-    return unit_of(variable) or "no unit"
+    return plain(unit_of(variable) or "no unit", 60)
 
 
 def find(name: str, causality: str, interfaces: Mapping[str, Interface]) -> tuple[ModelVariable | None, list[str]]:

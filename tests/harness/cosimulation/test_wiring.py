@@ -163,8 +163,19 @@ def test_what_an_fmu_says_at_length_is_repeated_in_short_and_printable(built, tm
     with pytest.raises(WiringError) as error:
         simulate(MANOEUVRES["tipin15"], plant, folder=built)
     lines = str(error.value).split("\n")
-    assert all(line.isprintable() for line in lines)
+    assert all(line.isprintable() and line.startswith("plant.") for line in lines)
     assert max(map(len, lines)) < LONGEST_LINE + 50
+
+
+@pytest.mark.parametrize("own", ["N&#10;m", "m." * 3000 + "m"])
+def test_a_problem_is_one_line_whatever_the_unit_of_an_fmu_is(built, tmp_path, own):
+    plant = tampered(built / f"{PLANTS[0]}.fmu", tmp_path / "theirs.fmu", in_unit("T_mot", "N.m", own))
+    for mapping in ({}, {"plant.T_mot": "T_mot"}):
+        with pytest.raises(WiringError) as error:
+            simulate(MANOEUVRES["tipin15"], plant, folder=built, mapping=mapping)
+        (line,) = [text for text in str(error.value).split("\n") if "T_gear" not in text]
+        assert line.startswith(("plant.T_mot is in ", "plant.T_mot=T_mot: in theirs.fmu T_mot is in "))
+        assert line.endswith(("it must be in N.m (--map plant.T_mot=T_mot converts it)", "such as N.m/rad)"))
 
 
 def test_everything_that_is_wrong_is_named_at_once(built, tmp_path):
