@@ -37,7 +37,7 @@ def named_as_cache(folder: Path) -> Iterator[None]:
         if not (at.is_relative_to(folder) or folder.is_relative_to(at)):
             raise
         raise DrivelineError(
-            f"the cache {folder} cannot be written: {plain(error.strerror or error)}; "
+            f"the cache {plain(folder)} cannot be written: {plain(error.strerror or error)}; "
             f"the environment variable {MOVED_BY} names another place"
         ) from error
 

@@ -129,6 +129,18 @@ def test_a_cache_that_cannot_be_written_is_named_with_what_moves_it(given: Path,
     )
 
 
+def test_the_name_of_a_cache_that_cannot_be_written_stays_in_its_line(
+    given: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a\n\x1b[31mb").write_text("a file where a folder would be")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "a\n\x1b[31mb"))
+    with pytest.raises(
+        DrivelineError, match=r"^the cache \S+/a \[31mb/driveline-damping/fmus cannot be written: "
+    ) as refused:
+        refreshed_copy([CAN], given, "python")
+    assert str(refused.value).isprintable()
+
+
 def test_what_cannot_be_read_elsewhere_is_no_fault_of_the_cache(
     given: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
