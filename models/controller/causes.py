@@ -14,7 +14,6 @@ class Cause(NamedTuple):
         number, word: as the output `cause` gives them.
         finding: what is found in a sample.
         after: the parameter with the time for which it is found until it counts; none: it counts at once.
-        latched: good signals alone do not heal it.
         heals: what ends it.
     """
 
@@ -22,7 +21,6 @@ class Cause(NamedTuple):
     word: str
     finding: str
     after: str | None = "t_bad"
-    latched: bool = False
     heals: str = "good signals for t_proof, of another direction for t_turn"
 
 
@@ -48,13 +46,15 @@ FAILURES = (
     Cause(
         WRONG_DIRECTION,
         "wrong_direction",
-        "out of rest the motor turns against its torque as a free motor would turn with it",
-        after=None,
-        latched=True,
-        heals="the same, confirmed by the wheel speed; or rest",
+        "the motor turns against the direction that the bus tells; one that sets off against its torque counts at once",
+        after="t_apart",
+        heals="the same, once the motor turns with the direction, or at rest",
     ),
 )
-"""Lead to fallback. Where several are found, the first is the cause; a latched one takes its place."""
+"""Lead to fallback. Where several are found, the first is the cause."""
+
+CLOCKS = tuple(dict.fromkeys(str(row.after) for row in FAILURES))
+"""The times after which they count; one runs for all rows that have it."""
 
 FEEDING = Cause(
     FEEDS,

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from typing import Any, Generic
 
 from ..block.declaration import merged
-from ..block.operators import branch, clip, logical_and, logical_not, maximum, where
+from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, sign, where
 from ..block.types import SampledBlock
-from . import causes, direction, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
+from . import causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
 from .fading import toward
 from .interfaces import Addition, Estimator, Law, Motion
-from .supervision import T_S, E, L, Output, State, damping_limited, demand, limited, output, status
-from .supervision_interface import Input, Parameters, added_speed
+from .supervision import T_S, E, L, Output, State, demand, limited, output, status
+from .supervision_interface import Input, Parameters
 from .trust import Found
 
 
@@ -32,9 +32,9 @@ class Supervised(Generic[E, L]):
             law=self.law.start(motion, T_driver, p),
             motor=motor,
             wheel=wheel_messages.start(u, motor.omega_1, p),
-            direction=direction.start(motor.omega_1, T_S, p),
             swings=oscillation.start(),
-            trust=trust.start(),
+            launch=launch.start(T_S, p),
+            trust=trust.start(motor.omega_1, p),
             level=where(u.enable, 1.0, 0.0),
             quiet=where(standstill.is_still(T_driver, motor.omega_1, p), standstill.longest(p), 0.0),
             T_ref=T_driver,
@@ -52,12 +52,11 @@ class Supervised(Generic[E, L]):
 
         level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p.t_fade)
         share = level * (1.0 - standstill.share(x.quiet, p))
-        whole = limited(share * (adding.damping + adding.landing), T_driver, p)
-        landing = limited(share * adding.landing, T_driver, p)
-        damping = clip(T_driver + whole, -p.T_max, p.T_max) - T_driver - landing
-        swings = oscillation.update(x.swings, damping, T_driver - x.T_ref + x.T_damp, trusted, T_S, p)
-        left, fades = oscillation.share(swings), level / maximum(x.level, T_S / p.t_fade)
-        added = where(trusted, left * whole, limited(fades * x.T_damp, T_driver, p))
+        change = T_driver - (x.T_ref - x.T_damp)
+        swings = oscillation.update(x.swings, share * adding.damping, change, trusted, T_S, p)
+        share = share * oscillation.share(swings)
+        fading = level / maximum(x.level, T_S / p.t_fade) * x.T_damp
+        added = limited(where(trusted, share * (adding.damping + adding.landing), fading), T_driver, p)
         T_ref = clip(T_driver + added, -p.T_max, p.T_max)
         wheel = logical_and(wheel_messages.is_reference(x.wheel, u, p), trusted)
         return x._replace(
@@ -67,49 +66,44 @@ class Supervised(Generic[E, L]):
             level=level,
             T_ref=T_ref,
             T_damp=T_ref - T_driver,
-            T_landing=where(trusted, left * landing, limited(fades * x.T_landing, T_driver, p)),
+            T_landing=where(trusted, limited(share * adding.landing, T_driver, p), 0.0),
             ahead=self.estimator.motion_after(x.estimator, x.motor.T_mot, T_S, p),
             status=status(u.enable, trusted, wheel),
         )
 
     def measured(self, x: State[E, L], u: Input, p: Parameters) -> State[E, L]:
         """The state with the signals of this sample: what they are, whether they are trusted, and the estimate."""
-        T_driver, was_resting = demand(u, p), standstill.share(x.quiet, p) >= 1.0
+        T_driver = demand(u, p)
         T_mot = motor_signals.torque(u.T_mot_est, x.motor.loop, p)
         e = self.estimator.predict(x.estimator, 0.5 * (x.motor.T_mot + T_mot), T_S, p)
         increment = self.estimator.motion(e, p).omega_1 - self.estimator.motion(x.estimator, p).omega_1
-        motor, finding = motor_signals.update(x.motor, u, increment, x.T_ref, x.trust.cause, T_S, p)
+        motor, finding = motor_signals.update(x.motor, u, increment, x.T_ref, T_S, p)
         bad = finding != causes.NONE
-        good = logical_and(trust.is_trusted(x.trust), logical_not(bad))
-        headed, against = direction.update(
-            x.direction, u, T_driver, x.motor.loop.T_mot, motor.omega_1, was_resting, good, T_S, p
-        )
-        way = headed.direction
+        resting = standstill.share(x.quiet, p) >= 1.0
+        launching, against = launch.update(x.launch, T_driver, x.motor.loop.T_mot, motor.omega_1, resting, T_S, p)
+        way = where(against, sign(launching.free), trust.direction(x.trust, u, motor.omega_1, logical_not(bad), p))
+        turned = way * motor.omega_1 < -p.omega_still
         wheel, taken = wheel_messages.update(x.wheel, u, motor.omega_1, bad, way, T_S, p)
+        told = logical_and(turned, u.direction != 0)
+        contradiction = where(told, causes.WRONG_DIRECTION, causes.WHEEL_CONTRADICTS)
+        found = {"t_bad": Found(finding, motor.bad), "t_apart": Found(contradiction, wheel.contradicting)}
+        trusting = trust.update(x.trust, found, against, way, turned, T_S, p)
         quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, motor.omega_1, p), T_S, p)
-        resting = standstill.share(quiet, p) >= 1.0
-        found = {row.number: Found(finding == row.number, motor.bad) for row in causes.FAILURES}
-        found[causes.WHEEL_CONTRADICTS] = Found(wheel.contradicting > 0.0, wheel.contradicting)
-        found[causes.WRONG_DIRECTION] = Found(against, 0.0)
-        confirmed, turned = wheel_messages.is_reference(wheel, u, p), direction.has_turned(headed, motor.omega_1, p)
-        trusting = trust.update(x.trust, found, confirmed, turned, resting, T_S, p)
 
-        doubts = maximum(motor.bad + wheel.contradicting, x.motor.bad + x.wheel.contradicting) > 0.0
-        restart = logical_and(doubts, logical_not(trust.is_trusted(trusting)))
+        resting = standstill.share(quiet, p) >= 1.0
+        begins = logical_or(resting, trust.is_healing(trusting, T_S))
+        omega_1, T_mot = where(resting, 0.0, motor.omega_1), where(resting, 0.0, motor.T_mot)
         e = self.estimator.take_motor_speed(e, motor.omega_1, T_S, p)
-        omega_2 = way * wheel.omega_2
-        near = abs(omega_2 - self.estimator.motion(e, p).omega_2) <= p.near * added_speed(p, T_S)
-        e = branch(logical_and(taken, near), lambda: self.estimator.take_wheel_speed(e, omega_2, T_S, p), lambda: e)
+        e = branch(taken, lambda: self.estimator.take_wheel_speed(e, way * wheel.omega_2, T_S, p), lambda: e)
         e = self.estimated(e, u, p)
-        e = branch(restart, lambda: self.estimator.restart(e, motor.omega_1, motor.T_mot, p), lambda: e)
-        e = branch(resting, lambda: self.estimator.restart(e, 0.0, 0.0, p), lambda: e)
+        e = branch(begins, lambda: self.estimator.restart(e, omega_1, T_mot, p), lambda: e)
         motion = self.estimator.motion(e, p)
         return x._replace(
             estimator=e,
-            law=branch(restart, lambda: self.law.start(motion, T_driver, p), lambda: x.law),
+            law=branch(begins, lambda: self.law.start(motion, T_driver, p), lambda: x.law),
             motor=motor,
             wheel=wheel,
-            direction=headed,
+            launch=launching,
             trust=trusting,
             quiet=quiet,
         )
@@ -131,7 +125,7 @@ class Supervised(Generic[E, L]):
 
         motion = self.estimator.motion(x.estimator, p)
         law, adding = self.law.update(x.law, motion, later, T_driver, T_S, p)
-        return law, damping_limited(adding, p)
+        return law, adding._replace(damping=clip(adding.damping, -p.T_add_max, p.T_add_max))
 
 
 def supervised(

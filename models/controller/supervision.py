@@ -14,8 +14,8 @@ from typing import Annotated, Any, Generic, NamedTuple, TypeVar
 from ..block.declaration import Enumeration, Real
 from ..block.operators import clip, is_finite, where
 from . import causes, oscillation, trust
-from .direction import DirectionState
-from .interfaces import Addition, Motion
+from .interfaces import Motion
+from .launch import LaunchState
 from .motor_signals import MotorState
 from .oscillation import SwingState
 from .supervision_interface import Input, Parameters
@@ -39,8 +39,8 @@ class State(NamedTuple, Generic[E, L]):
     law: L
     motor: MotorState
     wheel: WheelState
-    direction: DirectionState
     swings: SwingState
+    launch: LaunchState
     trust: TrustState
     level: Annotated[float, Real("1", "share of the damping that acts")]
     quiet: Annotated[float, Real("s", "time without demand and motion")]
@@ -99,10 +99,6 @@ def output(x: AnyState, u: Input, p: Parameters) -> Output:
         T_landing=x.T_landing,
         cause=where(trust.is_trusted(x.trust), feeding, x.trust.cause),
     )
-
-
-def damping_limited(added: Addition, p: Parameters) -> Addition:
-    return added._replace(damping=clip(added.damping, -p.T_add_max, p.T_add_max))
 
 
 def limited(torque: float, T_driver: float, p: Parameters) -> float:

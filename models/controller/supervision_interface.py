@@ -43,10 +43,8 @@ class Parameters(NamedTuple):
     frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.15
     apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
-    near: Annotated[float, speed("largest distance of a message that corrects the estimate")] = 6.0
     free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
     like: Annotated[float, Real("1", "share of that by which a launch against the torque may be off", 0.0, 1.0)] = 0.25
-    firm: Annotated[float, Real("1", "least torque of a launch, over T_still", 0.0, 100.0)] = 1.5
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35

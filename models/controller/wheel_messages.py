@@ -2,13 +2,13 @@
 
 A message tells what the wheels did some time ago. So it is compared with the least and the largest speed that the
 motor had of late (t_late). One that has leapt out of that range since the message before, while the motor speed has
-not, is not taken. The others correct the estimate, where they are near it, and are a reference for the motor speed.
+not, is not taken. The others correct the estimate, and are a reference for the motor speed.
 """
 
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import is_finite, logical_and, logical_not, maximum, minimum, where
+from ..block.operators import logical_and, logical_not, logical_or, maximum, minimum, where
 from .motor_signals import in_range
 from .supervision_interface import Input, Parameters, added_speed
 
@@ -28,7 +28,7 @@ def start(u: Input, omega_1: float, p: Parameters) -> WheelState:
     known = tells_a_speed(u, p)
     return WheelState(
         counter=1.0 * u.counter,
-        omega_2=where(known, magnitude(u), 0.0),
+        omega_2=where(known, abs(u.omega_2_can), 0.0),
         least=omega_1,
         largest=omega_1,
         silence=where(known, 0.0, p.t_stale),
@@ -40,11 +40,6 @@ def tells_a_speed(u: Input, p: Parameters) -> bool:
     """Whether the bus has a speed; that of standing wheels is none, for they have no direction."""
     turning = abs(u.omega_2_can) > p.omega_still
     return logical_and(logical_and(u.valid, turning), in_range(u.omega_2_can, p.omega_max))
-
-
-def magnitude(u: Input) -> float:
-    """Of the received wheel speed in rad/s; zero where it is not finite."""
-    return where(is_finite(u.omega_2_can), abs(u.omega_2_can), 0.0)
 
 
 def update(
@@ -63,27 +58,24 @@ def update(
     least = where(strict, omega_1, minimum(omega_1, x.least + decay * (omega_1 - x.least)))
     largest = where(strict, omega_1, maximum(omega_1, x.largest + decay * (omega_1 - x.largest)))
 
-    def outside(speed: float) -> float:
-        """How far a wheel speed is from what the motor speed was, beyond the error of the radius, rad/s."""
-        signed = direction * speed
-        return maximum(signed - largest, least - signed) - p.g_radius * speed
-
-    received = magnitude(u)
-    changed = logical_and(x.omega_2 > 0.0, abs(received - x.omega_2) > p.leap * unit)
-    leapt = logical_and(changed, outside(received) > p.leap * unit)
-    taken = logical_and(logical_and(u.counter != x.counter, known), logical_not(leapt))
-    omega_2 = where(taken, received, where(known, x.omega_2, 0.0))
+    arrives = logical_and(known, u.counter != x.counter)
+    speed = where(arrives, abs(u.omega_2_can), where(known, x.omega_2, 0.0))
+    signed = direction * speed
+    outside = maximum(signed - largest, least - signed) - p.g_radius * speed  # of what the motor speed was
+    changed = logical_and(x.omega_2 > 0.0, abs(speed - x.omega_2) > p.leap * unit)
+    leapt = logical_and(logical_and(arrives, changed), outside > p.leap * unit)
+    taken = logical_and(arrives, logical_not(leapt))
     silence = where(taken, 0.0, minimum(x.silence + T_s, p.t_stale))
-    contradicts = logical_and(
-        logical_and(known, silence < p.t_stale), logical_and(omega_2 > 0.0, outside(omega_2) > p.apart * unit)
-    )
+    far = where(leapt, x.contradicting > 0.0, logical_and(speed > 0.0, outside > p.apart * unit))
+    far = logical_and(far, logical_and(known, silence < p.t_stale))
+    against = direction * u.direction * omega_1 < -p.omega_still
     return WheelState(
         counter=1.0 * u.counter,
-        omega_2=omega_2,
+        omega_2=where(leapt, x.omega_2, speed),
         least=least,
         largest=largest,
         silence=silence,
-        contradicting=where(contradicts, minimum(x.contradicting + T_s, p.t_apart + T_s), 0.0),
+        contradicting=where(logical_or(far, against), minimum(x.contradicting + T_s, p.t_apart + T_s), 0.0),
     ), taken
 
 

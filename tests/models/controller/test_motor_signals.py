@@ -33,11 +33,11 @@ def last(omega_1: float, **state: float) -> MotorState:
 
 
 def after(
-    inputs: Iterable[Input], x: MotorState, increment: float = 0.0, T_ref: float = 50.0, cause: int = NONE
+    inputs: Iterable[Input], x: MotorState, increment: float = 0.0, T_ref: float = 50.0
 ) -> tuple[MotorState, int]:
     finding = NONE
     for u in inputs:
-        x, finding = motor_signals.update(x, u, increment, T_ref, cause, T_S, P)
+        x, finding = motor_signals.update(x, u, increment, T_ref, T_S, P)
     return x, finding
 
 
@@ -96,7 +96,7 @@ def test_a_fast_change_may_go_on(side: float) -> None:
     for change, finding in ((60.0 + most, NONE), (60.0 + most + 1e-9, SPEED_JUMP), (60.0 - most - 1e-9, SPEED_JUMP)):
         y, found = after([U._replace(omega_1_meas=side * (60.0 + change))], x)
         assert (found, y.change) == (finding, pytest.approx(side * change))
-    back = last(side * 60.0, received=side * 60.0, change=side * 60.0)
+    back = last(side * 60.0, received=side * 60.0, change=side * 60.0, bad=0.0)
     assert after([U._replace(omega_1_meas=side * 120.0)], back)[1] == SPEED_JUMP, "nor one back from a spike"
     slow = last(-side * 60.0, received=side * 60.0, change=side * most, bad=T_S)
     assert after([U._replace(omega_1_meas=side * 90.0)], slow)[1] == SPEED_JUMP, "one that was not fast is none"
@@ -144,12 +144,11 @@ def test_a_movement_that_the_model_expects_is_forgotten_in_t_move() -> None:
 
 def test_a_frozen_motor_speed_stays_so_until_it_changes() -> None:
     """In fallback the model follows it, and expects no movement."""
-    x, finding = after([U] * 9, last(150.0, movement=9.0), cause=SPEED_FROZEN)
+    x, finding = after([U] * 9, last(150.0, movement=9.0, bad=T_S))
     assert (finding, x.movement) == (SPEED_FROZEN, 9.0)
-    x, finding = after([U._replace(omega_1_meas=151.0)], x, cause=SPEED_FROZEN)
+    x, finding = after([U._replace(omega_1_meas=151.0)], x)
     assert (finding, x.movement, x.bad) == (NONE, 0.0, 0.0)
-    repeated = after([U._replace(omega_1_meas=151.0)], x, cause=SPEED_FROZEN)
-    assert repeated[1] == NONE, "two samples alike are no fault"
+    assert after([U._replace(omega_1_meas=151.0)], x)[1] == NONE, "two samples alike are no fault"
 
 
 def test_what_is_found_first_is_what_the_table_has_first() -> None:
@@ -165,7 +164,7 @@ def test_bad_signals_count_their_time_no_further_than_needed() -> None:
 
 
 def test_at_the_start_all_that_is_in_range_is_believed() -> None:
-    assert motor_signals.start(U, P) == MotorState(150.0, 150.0, 0.0, 50.0, 0.0, LoopState(50.0, 0.0), 0.0)
+    assert motor_signals.start(U, P) == MotorState(150.0, 150.0, 0.0, 0.0, 50.0, LoopState(50.0, 0.0), 0.0)
     x = motor_signals.start(Input(omega_1_meas=math.nan, T_mot_est=300.0), P)
     assert (x.omega_1, x.T_mot) == (0.0, 0.0)
     assert motor_signals.start(Input(T_mot_est=200.0), P).T_mot == 200.0, "twice T_max"

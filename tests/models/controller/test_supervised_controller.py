@@ -87,7 +87,7 @@ def test_a_free_motor_is_compared_with_the_torque_of_the_same_sample(T_driver: f
     """Out of rest, with a step of the demand: the motor's speed follows from the torque that it has."""
     p, standing = OURS.Parameters(), ROLLING._replace(T_driver=0.0, omega_1_meas=0.0, T_mot_est=0.0, valid=False)
     x = OURS.start(standing, p)
-    x = x._replace(direction=x.direction._replace(free=0.0))
+    x = x._replace(launch=x.launch._replace(free=0.0))
     omega, T_mot, causes_shown = 0.0, 0.0, set()
     while omega < 6.0:
         x = OURS.update(x, standing._replace(T_driver=T_driver, T_mot_est=T_mot, omega_1_meas=side * omega), p)
@@ -102,9 +102,7 @@ def test_a_speed_of_the_other_sign_needs_longer_to_heal() -> None:
     p, backwards = OURS.Parameters(), ROLLING._replace(T_driver=20.0, T_mot_est=20.0, omega_1_meas=-10.0, valid=False)
     x = OURS.start(backwards, p)
     for direction, needed in ((-1.0, p.t_proof), (1.0, p.t_turn)):
-        y = x._replace(
-            direction=x.direction._replace(direction=direction), trust=TrustState(causes.SPEED_JUMP, healing=0.0)
-        )
+        y = x._replace(trust=TrustState(causes.SPEED_JUMP, 0.0, direction))
         statuses = []
         for k in range(round(1.2 / T_S)):
             y = OURS.update(y, backwards._replace(omega_1_meas=-10.0 + 0.3 * (-1) ** k), p)

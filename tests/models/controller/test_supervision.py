@@ -125,7 +125,7 @@ def test_bad_motor_signals_lead_to_the_demand_of_the_driver_and_back(
 
 
 @every_controller
-@pytest.mark.parametrize("bad", [*ABSURD, 150.0 + 2.0 * P.near * UNIT])
+@pytest.mark.parametrize("bad", ABSURD)
 def test_an_absurd_wheel_speed_only_ends_its_mode(block: SampledBlock, bad: float) -> None:
     states = run(block, [u._replace(omega_2_can=bad) if k >= 100 else u for k, u in enumerate(drive_inputs(0.5))])
     assert states[100].status == WITH_WHEEL_SPEED
@@ -226,14 +226,6 @@ def test_a_message_is_taken_once() -> None:
     assert OTHER.update(x, ROLLING._replace(omega_2_can=140.0, counter=1), p).estimator.omega_2 == 149.0
 
 
-def test_a_message_far_from_the_estimate_is_not_taken() -> None:
-    x, p = started()
-    x, far = x._replace(wheel=x.wheel._replace(omega_2=180.0)), 150.0 + p.near * UNIT
-    for omega_2, taken in ((far - 0.01, True), (far + 0.01, False)):
-        y = OTHER.update(x, ROLLING._replace(omega_2_can=omega_2, counter=1), p)
-        assert y.estimator.omega_2 == (omega_2 if taken else 150.0)
-
-
 def test_what_the_law_says_is_added_to_the_demand() -> None:
     x, p = started()
     x = OTHER.update(x, ROLLING._replace(omega_1_meas=153.0), p)
@@ -319,26 +311,27 @@ def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> N
 @every_controller
 def test_a_motor_that_sets_off_against_its_torque_is_not_believed(block: SampledBlock) -> None:
     """Below the least wheel speed; until the car rests."""
-    resting = [Input(T_driver=0.0, T_mot_est=1e-3 * (k % 2)) for k in range(round(0.5 / T_S))]
-    lag = T_S + 2.0**0.5 * P.tau
-    speeds = [-10.0 / P.J_1 * max(k * T_S - lag, 0.0) for k in range(100)]
-    launch = [
-        Input(T_driver=10.0, T_mot_est=10.0 + 1e-3 * (k % 2), omega_1_meas=omega_1, counter=k // 10)
-        for k, omega_1 in enumerate(speeds)
-    ]
-    standing = [Input(T_mot_est=1e-3 * (k % 2)) for k in range(400)]
 
-    def driven_with(sign: float) -> list[State]:
-        measured = [u._replace(omega_1_meas=sign * u.omega_1_meas) for u in launch]
-        return run_with_motor(block, [*resting, *measured, *standing])[1:]
+    def launched_with(sign: float) -> tuple[list[int], float]:
+        """Statuses of a launch with 10 N.m and of the rest after it, and when the free motor had its speed."""
+        p, omega, statuses, found = block.Parameters(), 0.0, [], math.inf
+        x = block.start(Input(), p)
+        for k in range(500):
+            T_mot = x.motor.loop.T_mot
+            driving = k < 100
+            omega = omega + T_S * T_mot / p.J_1 if driving else max(omega - 5.0, 0.0)
+            u = Input(T_driver=10.0 if driving else 0.0, T_mot_est=T_mot + 1e-3 * (k % 2), omega_1_meas=sign * omega)
+            x = block.update(x, u, p)
+            statuses.append(x.status)
+            found = min(found, k) if omega > P.free * UNIT else found
+        return statuses, found
 
-    wrong, right = driven_with(1.0), driven_with(-1.0)
-    first = [x.status for x in wrong].index(FALLBACK)
-    soonest = P.free * UNIT * P.J_1 / 10.0 + lag
-    assert soonest - 2.0 * T_S <= (first - len(resting)) * T_S <= soonest + 5.0 * T_S, "a landing withholds torque"
-    assert {x.status for x in wrong[first : len(resting) + len(launch)]} == {FALLBACK}
-    assert wrong[-1].status == WITHOUT_WHEEL_SPEED
-    assert {x.status for x in right[: len(resting) + len(launch)]} == {WITHOUT_WHEEL_SPEED}
+    wrong, found = launched_with(-1.0)
+    first = wrong.index(FALLBACK)
+    assert abs(first - found) <= 2
+    assert set(wrong[first:100]) == {FALLBACK}
+    assert wrong[-1] == WITHOUT_WHEEL_SPEED
+    assert set(launched_with(1.0)[0][:100]) == {WITHOUT_WHEEL_SPEED}
 
 
 def test_damping_that_feeds_an_oscillation_lets_go_without_fallback() -> None:
