@@ -24,6 +24,8 @@ CODE = (
     *("-ffp-contract=off", "-fno-math-errno"),
     # small, and no choice is written as two conditional moves, which is longer than a branch
     *("-Os", "-fno-if-conversion", "-fno-if-conversion2"),
+    # fewer jumps: blocks are laid out as at -O2, and ends that are alike stay where they are
+    *("-freorder-blocks-algorithm=stc", "-fno-tree-tail-merge"),
 )
 
 FLAGS = (*WARNINGS, *CODE)

@@ -121,7 +121,7 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
         "brake": weights.brake,
         "haste": weights.haste,
         "omega_slow": weights.recent * train.omega_v,
-        "t_return": weights.comeback / train.omega_0,
+        "t_return": max(weights.comeback / train.omega_0, PARAMETERS["t_return"].bounds()[0]),
         "t_land": weights.longest_landing / train.omega_v,
     }
 

@@ -25,7 +25,7 @@ class DesignError(DrivelineError):
 def estimator_gains(
     plant: Plant, motor: Motor, can: Can, train: DriveTrain, weights: Weights, literal: bool = False
 ) -> dict[str, float]:
-    """Gains on the motor speed without and with the wheel speed and while the wheels slip, and on a message.
+    """Gains on the motor speed, also while the wheels slip, and on a message.
 
     Args:
         literal: of the paper's observer as it stands, where the vehicle takes no share of the gear torque and there is
@@ -36,10 +36,10 @@ def estimator_gains(
     A = transition(plant, 0.0 if literal else train.lambda_v)[own, own]
     Q = process_noise(plant, motor, train, weights)[own, own]
     R_1, R_2 = speed_noise(motor), message_noise(plant, motor, can, train, weights)
-    Lw, L_can = both_speed_gains(A, Q, R_1, R_2, round(train.T_age / T_S), round(can.T_cyc / T_S))
+    L, L_can = motor_speed_gains(A, Q, R_1), message_gains(A, Q, R_1, R_2, train.T_age, round(can.T_cyc / T_S))
     Q_slip = process_noise(plant, motor, train, replace(weights, slow_load_error=weights.slip_load_error))[own, own]
     Ls = motor_speed_gains(A, Q_slip, R_1)
-    rows = {"L": motor_speed_gains(A, Q, R_1), "Lw": Lw, "Ls": Ls, "L_can": L_can}
+    rows = {"L": L, "Ls": Ls, "L_can": L_can}
     return {
         f"{name}_{state}": float(gain) for name, row in rows.items() for state, gain in zip(states, row, strict=True)
     }
@@ -97,32 +97,25 @@ def motor_speed_gains(A: np.ndarray, Q: np.ndarray, R_1: float) -> np.ndarray:
     return P[:, 0] / (P[0, 0] + R_1)
 
 
-def both_speed_gains(
-    A: np.ndarray, Q: np.ndarray, R_1: float, R_2: float, delay: int, cycle: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Gains (n,) on the motor speed (mean over a cycle) and on a message, in the periodic optimum.
-
-    The state is augmented by the past values of omega_2, so that a message measures the last of them.
+def message_gains(A: np.ndarray, Q: np.ndarray, R_1: float, R_2: float, T_age: float, cycle: int) -> np.ndarray:
+    """Gains (n,) on a message in the periodic optimum; what it tells is omega_2, the second state, behind a lag.
 
     Args:
         R_1, R_2: variances of the motor speed and of a message.
-        delay, cycle: of the messages, in samples.
+        T_age: age of a message, the lag in s.
+        cycle: of the messages, in samples.
     """
-    n = len(A)
-    size = n + delay
-    F, noise = np.zeros((size, size)), np.zeros((size, size))
+    n, share = len(A), min(T_S / T_age, 1.0)
+    F, noise = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
     F[:n, :n], noise[:n, :n] = A, Q
-    F[n, 1] = 1.0
-    F[n + 1 :, n:-1] = np.eye(delay - 1)
-    H_1, H_2 = np.eye(size)[0], np.eye(size)[-1]
-    P, gains, L_2 = np.eye(size), [], np.zeros(size)
+    F[n, n], F[n, 1] = 1.0 - share, share
+    H_1, H_2 = np.eye(n + 1)[0], np.eye(n + 1)[-1]
+    P, L_2 = np.eye(n + 1), np.zeros(n + 1)
     for k in range(SAMPLES):
-        P = F @ P @ F.T + noise
-        P, L_1 = _measured(P, H_1, R_1)
-        gains = [*gains[1 - cycle :], L_1[:n]]
+        P, _ = _measured(F @ P @ F.T + noise, H_1, R_1)
         if k % cycle == 0:
             P, L_2 = _measured(P, H_2, R_2)
-    return np.mean(gains, axis=0), L_2[:n]
+    return L_2[:n]
 
 
 def _measured(P: np.ndarray, H: np.ndarray, R: float) -> tuple[np.ndarray, np.ndarray]:

@@ -9,8 +9,8 @@ motor stands for it. It fades from one to the other.
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import where
-from ..controller.fading import toward
+from ..block.operators import clip, where
+from ..controller.fading import faded
 from ..controller.interfaces import Motion
 
 
@@ -22,6 +22,7 @@ class AllParameters(Parameters):
     """With those of the supervision that it takes beside its own: a type of p, never made."""
 
     t_fade: float
+    omega_max: float
 
 
 class SpeedState(NamedTuple):
@@ -29,7 +30,7 @@ class SpeedState(NamedTuple):
 
     omega_1: Annotated[float, Real("rad/s", "speed of the motor")]
     omega_2: Annotated[float, Real("rad/s", "speed in the last message, motor side")]
-    T_mot: Annotated[float, Real("N.m", "motor torque of the last sample")]
+    T_mot: Annotated[float, Real("N.m", "motor torque until the next sample")]
     share: Annotated[float, Real("1", "share of the wheel speed, 0 while none comes")]
 
 
@@ -41,10 +42,6 @@ def restart(x: SpeedState, omega_1: float, T_mot: float, p: Parameters) -> Speed
     return SpeedState(omega_1, omega_1, T_mot, x.share)
 
 
-def predict(x: SpeedState, T_mot: float, T_s: float, p: Parameters) -> SpeedState:
-    return x._replace(omega_1=x.omega_1 + T_s * T_mot / p.J, T_mot=T_mot)
-
-
 def take_motor_speed(x: SpeedState, omega_1: float, T_s: float, p: Parameters) -> SpeedState:
     return x._replace(omega_1=omega_1)
 
@@ -53,14 +50,12 @@ def take_wheel_speed(x: SpeedState, omega_2: float, T_s: float, p: Parameters) -
     return x._replace(omega_2=omega_2)
 
 
-def finish(x: SpeedState, wheel: bool, T_s: float, p: AllParameters) -> SpeedState:
-    return x._replace(share=toward(x.share, where(wheel, 1.0, 0.0), T_s, p.t_fade))
+def predict(x: SpeedState, T_mot: float, wheel: bool, T_s: float, p: AllParameters) -> SpeedState:
+    share = faded(x.share, wheel, T_s, p.t_fade)
+    omega_1 = clip(x.omega_1 + T_s * T_mot / p.J, -p.omega_max, p.omega_max)
+    return x._replace(omega_1=omega_1, T_mot=T_mot, share=share)
 
 
 def motion(x: SpeedState, p: Parameters) -> Motion:
     omega_2 = x.omega_1 - x.share * (x.omega_1 - x.omega_2)
     return Motion(x.omega_1, omega_2, phi=0.0, T_gear=x.T_mot)
-
-
-def motion_after(x: SpeedState, T_mot: float, h: float, p: Parameters) -> Motion:
-    return motion(predict(x, T_mot, h, p), p)

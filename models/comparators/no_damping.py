@@ -3,7 +3,6 @@
 T_damp = 0
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 from ..controller.interfaces import Addition, Motion
@@ -24,7 +23,7 @@ class NoLaw:
         return Nothing()
 
     def update(
-        self, x: Nothing, motion: Motion, later: Callable[[float], Motion], T_driver: float, T_s: float, p: Nothing
+        self, x: Nothing, motion: Motion, expected: Motion, T_driver: float, T_s: float, p: Nothing
     ) -> tuple[Nothing, Addition]:
         return x, Addition(damping=0.0, landing=0.0)
 

@@ -18,12 +18,9 @@ GAINS = {
     "L_omega_1": 0.299725,
     "L_omega_2": 0.131277,
     "L_phi": -0.00690267,
-    "Lw_omega_1": 0.2996,
-    "Lw_omega_2": 0.130838,
-    "Lw_phi": -0.00689257,
-    "L_can_omega_1": 0.000864739,
-    "L_can_omega_2": 0.00368111,
-    "L_can_phi": -7.63251e-05,
+    "L_can_omega_1": 0.000766178,
+    "L_can_omega_2": 0.00415915,
+    "L_can_phi": -7.25991e-05,
 }
 """Of the Riccati equations that ours come from, for this model (harness.design.design, literal_observer)."""
 
@@ -36,6 +33,6 @@ BLOCK = supervised(
     name="PaperObserver",
     description="Comparator: damping by the derivative of the gear torque that the paper's observer estimates",
     module=__name__,
-    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, Lw_T_l=0.0, L_can_T_l=0.0, **NO_SLIP),
-    law=fixed(damping_law, {"k_T": 4.32, "omega_w": 293.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, **NO_LANDING),
+    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, L_can_T_l=0.0, **NO_SLIP),
+    law=fixed(damping_law, {"k_T": 4.45, "omega_w": 299.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, **NO_LANDING),
 )

@@ -8,11 +8,12 @@ from dataclasses import replace
 from typing import Annotated, NamedTuple, cast
 
 from ..block.declaration import Real, merged
-from ..block.operators import branch, clip, is_finite
+from ..block.operators import branch, clip, is_finite, logical_and
 from ..controller import damping_law, supervision, supervision_interface, torque_estimator
 from ..controller.damping_law import LawState
+from ..controller.motor_signals import in_range
 from ..controller.supervised_controller import Supervised, supervised
-from ..controller.torque_estimator import AllParameters, Estimate, EstimatorState, bounded
+from ..controller.torque_estimator import Estimate, EstimatorState
 from .fixed import fixed
 
 NO_GAINS = {name: 0.0 for name in torque_estimator.Parameters._fields if name.startswith("L")}
@@ -30,6 +31,12 @@ class Truth(NamedTuple):
     T_gear: Annotated[float, Real("N.m", "true gear torque, motor side")] = 0.0
 
 
+class AllParameters(torque_estimator.AllParameters):
+    """With those of the supervision that it takes beside its own: a type of p, never made."""
+
+    omega_max: float
+
+
 class WithTrueMotion(Supervised[EstimatorState, LawState]):
     """A controller that gets the true motion of the plant."""
 
@@ -40,13 +47,14 @@ class WithTrueMotion(Supervised[EstimatorState, LawState]):
 
 
 def with_true_motion(expected: EstimatorState, u: Truth, p: AllParameters) -> EstimatorState:
-    """The state of the model with the plant's motion; as expected where that is not finite.
+    """The state of the model with the plant's motion; as expected where that is none.
 
     Its twist is that which makes the true gear torque and, in the gap, the true one.
     """
     phi = u.T_gear / p.C + clip(u.phi, -p.phi_B, p.phi_B)
-    true = expected._replace(base=0.0, estimate=bounded(Estimate(u.omega_1, u.omega_2, phi, 0.0), 0.0, p))
-    known = is_finite(u.omega_1 + u.omega_2 + u.phi + u.T_gear)
+    true = expected._replace(base=0.0, estimate=Estimate(u.omega_1, u.omega_2, phi, 0.0))
+    known = logical_and(in_range(u.omega_1, p.omega_max), in_range(u.omega_2, p.omega_max))
+    known = logical_and(logical_and(known, is_finite(u.phi)), in_range(u.T_gear, 4.0 * p.T_max))
     return branch(known, lambda: true, lambda: expected)
 
 

@@ -6,7 +6,6 @@ Nothing while no wheel speed comes, as below 5 km/h. The washout takes away what
 speeds up, and an error of the wheel radius; omega_delta = 0 leaves it out.
 """
 
-from collections.abc import Callable
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
@@ -19,10 +18,10 @@ from . import measured_speeds
 class DifferenceParameters(NamedTuple):
     k_delta: Annotated[
         float, Real("N.m.s/rad", "damping over the speed difference", 0.0, 200.0, search=(0.2, 10.0), tunable=True)
-    ] = 2.53
+    ] = 2.37
     omega_delta: Annotated[
         float, Real("rad/s", "corner frequency of its washout", 0.0, 400.0, search=(0.5, 200.0), tunable=True)
-    ] = 5.81
+    ] = 13.1
 
 
 class DifferenceState(NamedTuple):
@@ -43,7 +42,7 @@ class Difference:
         self,
         x: DifferenceState,
         motion: Motion,
-        later: Callable[[float], Motion],
+        expected: Motion,
         T_driver: float,
         T_s: float,
         p: DifferenceParameters,

@@ -6,7 +6,6 @@ Of second order, so that a car which gains speed steadily is not opposed; for a 
 first order, s/(s + 2 zeta_v omega_v). Sampled by the trapezoidal rule, which is stable at any corner frequency.
 """
 
-from collections.abc import Callable
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
@@ -18,12 +17,12 @@ from . import measured_speeds
 class WashoutParameters(NamedTuple):
     k_v: Annotated[
         float, Real("N.m.s/rad", "damping over the motor speed", 0.0, 200.0, search=(0.2, 10.0), tunable=True)
-    ] = 2.80
+    ] = 2.32
     omega_v: Annotated[
         float, Real("rad/s", "corner frequency of the washout", 0.0, 400.0, search=(1.0, 200.0), tunable=True)
-    ] = 10.3
+    ] = 9.50
     zeta_v: Annotated[float, Real("1", "damping ratio of the washout", 0.1, 10.0, search=(0.2, 5.0), tunable=True)] = (
-        0.426
+        0.373
     )
 
 
@@ -46,7 +45,7 @@ class Washout:
         self,
         x: WashoutState,
         motion: Motion,
-        later: Callable[[float], Motion],
+        expected: Motion,
         T_driver: float,
         T_s: float,
         p: WashoutParameters,

@@ -8,9 +8,9 @@ with the motion T_pred ahead. Without a gap there is nothing to land in.
 from ..controller import damping_law
 from .fixed import fixed
 
-NO_LANDING = dict.fromkeys(("T_gap", "bounce", "brake", "haste", "omega_slow", "t_return", "t_land"), 0.0)
+NO_LANDING = dict.fromkeys(("T_gap", "bounce", "brake", "haste", "omega_slow", "t_land"), 0.0) | {"t_return": 1.0}
 
-GAINS = {"k_d": 3.45, "k_T": 0.00474, "omega_w": 2.75, "T_pred": 0.00241}
+GAINS = {"k_d": 2.92, "k_T": 0.0157, "omega_w": 3.83, "T_pred": 0.00114}
 """Found by `driveline design --search`, see docs/tuning.md."""
 
 LAW = fixed(damping_law, GAINS, phi_B=0.0, k_gap=1.0, **NO_LANDING)

@@ -1,10 +1,13 @@
 """Causes for which the damping lets go, a row each: what is found, after how long it counts, how it heals."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..block.declaration import Enumeration
+from ..block.operators import where
 
-NONE, SPEED_RANGE, SPEED_JUMP, SPEED_FROZEN, TORQUE_IMPLAUSIBLE, WHEEL_CONTRADICTS, WRONG_DIRECTION, FEEDS = range(1, 9)
+NONE, SPEED_RANGE, SPEED_JUMP, SPEED_FROZEN, TORQUE_IMPLAUSIBLE = range(1, 6)
+WHEEL_CONTRADICTS, WRONG_DIRECTION, WRONG_LAUNCH, FEEDS = range(6, 10)
 
 
 class Cause(NamedTuple):
@@ -13,54 +16,73 @@ class Cause(NamedTuple):
     Attributes:
         number, word: as the output `cause` gives them.
         finding: what is found in a sample.
-        after: the parameter with the time for which it is found until it counts; none: it counts at once.
+        after: the parameter with the time for which something is found until it counts; none: it counts at once.
         heals: what ends it.
     """
 
     number: int
     word: str
     finding: str
-    after: str | None = "t_bad"
+    after: str = ""
     heals: str = "good signals for t_proof, of another direction for t_turn"
 
 
 FAILURES = (
-    Cause(SPEED_RANGE, "speed_range", "the motor speed is no number or beyond omega_max"),
+    Cause(SPEED_RANGE, "speed_range", "the motor speed is no number or beyond omega_max", "t_bad"),
     Cause(
         SPEED_JUMP,
         "speed_jump",
         "the motor speed is farther than jump from the last one and from the model, and no fast change goes on",
+        "t_bad",
     ),
-    Cause(SPEED_FROZEN, "speed_frozen", "the motor speed stays the same where the model moves by more than frozen"),
+    Cause(
+        SPEED_FROZEN,
+        "speed_frozen",
+        "the motor speed stays the same where the model moves by more than frozen",
+        "t_bad",
+    ),
     Cause(
         TORQUE_IMPLAUSIBLE,
         "torque_implausible",
         "the torque estimate is not what the motor should have, by more than T_off and g_off",
+        "t_bad",
     ),
     Cause(
         WHEEL_CONTRADICTS,
         "wheel_contradicts",
         "the wheel speed is outside what the motor speed has been of late, by more than apart and g_radius",
-        after="t_apart",
+        "t_apart",
     ),
+    Cause(WRONG_DIRECTION, "wrong_direction", "the motor turns against the direction that the bus tells", "t_apart"),
     Cause(
-        WRONG_DIRECTION,
-        "wrong_direction",
-        "the motor turns against the direction that the bus tells; one that sets off against its torque counts at once",
-        after="t_apart",
-        heals="the same, once the motor turns with the direction, or at rest",
+        WRONG_LAUNCH,
+        "wrong_launch",
+        "the motor sets off from rest against its torque, and turns on against it",
+        heals="the same, once it turns the other way, or at rest",
     ),
 )
 """Lead to fallback. Where several are found, the first is the cause."""
 
-CLOCKS = tuple(dict.fromkeys(str(row.after) for row in FAILURES))
-"""The times after which they count; one runs for all rows that have it."""
+CLOCKS = tuple(dict.fromkeys(row.after for row in FAILURES))
+"""The times after which they count; a clock runs for all rows that have the same."""
+
+
+def first_of(found: Mapping[int, bool]) -> int:
+    """The number of the first row of which something is found, that of none where nothing is.
+
+    Args:
+        found: by the numbers of rows, in their order.
+    """
+    first = NONE
+    for number in reversed(found):
+        first = where(found[number], number, first)
+    return first
+
 
 FEEDING = Cause(
     FEEDS,
     "feeds_oscillation",
     "half swings of the damping torque do not decay, and no change of the demand explains them",
-    after=None,
     heals="is forgotten at one half swing a t_forget",
 )
 """Leads to less damping, and in the end to none."""

@@ -16,7 +16,6 @@ the torque bounce T. What the landing has withheld comes back with the time cons
 most, and a demand that is next to nothing has none. All that with the motion T_pred ahead, when the torque will act.
 """
 
-from collections.abc import Callable
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
@@ -83,9 +82,9 @@ class Parameters(NamedTuple):
         Real(
             "s",
             "time within which the torque that a landing withheld comes back",
-            0.0,
+            0.002,
             1.0,
-            search=(0.0, 0.03),
+            search=(0.002, 0.03),
             tunable=True,
         ),
     ] = GAINS["t_return"]
@@ -113,9 +112,9 @@ def start(motion: Motion, T_driver: float, p: Parameters) -> LawState:
 
 
 def update(
-    x: LawState, motion: Motion, later: Callable[[float], Motion], T_driver: float, T_s: float, p: AllParameters
+    x: LawState, motion: Motion, expected: Motion, T_driver: float, T_s: float, p: AllParameters
 ) -> tuple[LawState, Addition]:
-    ahead = later(p.T_pred)
+    ahead = Motion(*(now + p.T_pred / T_s * (then - now) for now, then in zip(motion, expected, strict=True)))
     changing = fed_back(ahead, p)
     damping = clip(x.washout - changing, -p.T_add_max, p.T_add_max)
     T_next = T_driver + p.haste * (T_driver - x.slow)
@@ -123,9 +122,9 @@ def update(
     pushing = logical_and(abs(T_driver) > p.T_still, T_driver * T_next > 0.0)
     floating = logical_and(in_gap(motion, p), pushing)
     afloat = where(floating, minimum(x.afloat + T_s, p.t_land + T_s), 0.0)
-    landing = logical_and(afloat > 0.0, afloat < p.t_land + 0.5 * T_s)
+    landing = logical_and(floating, afloat < p.t_land + 0.5 * T_s)
     withheld = where(landing, T_driver + damping - landing_torque(ahead, T_next, p), x.withheld)
-    left = where(landing, 1.0, 1.0 - minimum(T_s / maximum(p.t_return, T_s), 1.0))
+    left = where(landing, 1.0, 1.0 - T_s / p.t_return)
     x = LawState(
         washout=washed_out(x.washout, changing, p.omega_w, T_s),
         slow=washed_out(x.slow, T_driver, p.omega_slow, T_s),
@@ -147,7 +146,7 @@ def fed_back(motion: Motion, p: Parameters) -> float:
 
 def washed_out(stationary: float, value: float, corner: float, T_s: float) -> float:
     """The stationary part of `value` at the next sample, behind a washout with that corner frequency (rad/s)."""
-    return stationary + minimum(corner * T_s, 1.0) * (value - stationary)
+    return stationary + corner * T_s * (value - stationary)
 
 
 def landing_torque(motion: Motion, T_next: float, p: Parameters) -> float:

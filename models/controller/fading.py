@@ -1,9 +1,9 @@
-"""Fading from one mode to another, so that nothing jumps."""
+"""How modes fade from one to the other."""
 
-from ..block.operators import clip
+from ..block.operators import maximum, minimum, where
 
 
-def toward(value: float, target: float, T_s: float, t_fade: float) -> float:
-    """A share, one sample nearer to its target; from 0 to 1 takes t_fade (s)."""
+def faded(level: float, on: bool, T_s: float, t_fade: float) -> float:
+    """The level one sample later, which goes to 1 where it is on and to 0 where not, within t_fade (s)."""
     step = T_s / t_fade
-    return value + clip(target - value, -step, step)
+    return where(on, minimum(level + step, 1.0), maximum(level - step, 0.0))

@@ -5,7 +5,6 @@ functions. p holds the parameters of all parts and of the supervision by name, T
 in s. All quantities are referred to the motor side.
 """
 
-from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple, Protocol, TypeVar
 
 from ..block.declaration import Real
@@ -48,10 +47,6 @@ class Estimator(Part, Protocol[S, P]):
         """State that has forgotten what it estimated, as at the start."""
         ...
 
-    def predict(self, x: S, T_mot: float, T_s: float, p: P) -> S:
-        """State one sample later under the mean motor torque of that sample."""
-        ...
-
     def take_motor_speed(self, x: S, omega_1: float, T_s: float, p: P) -> S:
         """State corrected by the measured motor speed."""
         ...
@@ -60,16 +55,12 @@ class Estimator(Part, Protocol[S, P]):
         """State corrected by a message that has just arrived."""
         ...
 
-    def finish(self, x: S, wheel: bool, T_s: float, p: P) -> S:
-        """State at the end of the sample; `wheel`: the wheel speed is in use."""
+    def predict(self, x: S, T_mot: float, wheel: bool, T_s: float, p: P) -> S:
+        """State one sample later under the mean motor torque (N.m) until then; `wheel`: the wheel speed is in use."""
         ...
 
     def motion(self, x: S, p: P) -> Motion:
         """The estimate."""
-        ...
-
-    def motion_after(self, x: S, T_mot: float, h: float, p: P) -> Motion:
-        """The estimate h seconds later under a motor torque (N.m), its mean over that time."""
         ...
 
 
@@ -80,14 +71,12 @@ class Law(Part, Protocol[S, P]):
         """State in which motion and demand (N.m) of the start are taken for stationary."""
         ...
 
-    def update(
-        self, x: S, motion: Motion, later: Callable[[float], Motion], T_driver: float, T_s: float, p: P
-    ) -> tuple[S, Addition]:
-        """Next state, and what is to be added; the supervision limits it.
+    def update(self, x: S, motion: Motion, expected: Motion, T_driver: float, T_s: float, p: P) -> tuple[S, Addition]:
+        """Next state, and what is to be added; the supervision limits the whole.
 
         Args:
             motion: of this sample.
-            later: gives the motion so many seconds later, under the torque that the motor will have by then.
+            expected: motion of the next sample, in which what is added begins to act.
             T_driver: demand in N.m.
         """
         ...

@@ -36,9 +36,10 @@ def update(
         resting: whether the car was at rest until now.
     """
     far = p.free * added_speed(p, T_s)
-    counting = abs(x.free) < far
-    free = x.free + where(logical_and(counting, T_mot * T_driver > 0.0), T_s * T_mot / p.J_1, 0.0)
-    off = x.off + abs(free - x.free) * abs(omega_1 + 0.5 * (free + x.free))
+    counting = logical_and(abs(x.free) < far, T_mot * T_driver > 0.0)
+    gained = T_s * T_mot / p.J_1
+    free = x.free + where(counting, gained, 0.0)
+    off = x.off + where(counting, abs(gained * (omega_1 + x.free + 0.5 * gained)), 0.0)
     against = logical_and(logical_and(counting, abs(free) >= far), off <= p.like * 0.5 * free * free)
     none = abs(T_driver) <= p.T_still
     return LaunchState(where(resting, 0.0, where(none, far, free)), where(resting, 0.0, off)), against

@@ -12,7 +12,7 @@ there is no fallback.
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import clip, logical_and, logical_not, maximum, minimum, where
+from ..block.operators import clip, logical_and, logical_not, logical_or, maximum, minimum, where
 from .supervision_interface import Parameters
 
 AHEAD = 1.0
@@ -25,14 +25,13 @@ SWINGS, LONGEST = 2.0, 5.5
 class SwingState(NamedTuple):
     """State of the count."""
 
-    side: Annotated[float, Real("1", "sign of the present half swing, 0 at first")]
-    peak: Annotated[float, Real("N.m", "largest torque of that half swing, in magnitude")]
+    peak: Annotated[float, Real("N.m", "largest torque of the present half swing, 0 at first")]
     enough: Annotated[float, Real("N.m", "torque with which it counts, 0 if it does not or has")]
     count: Annotated[float, Real("1", "half swings that nothing explains")]  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 def start() -> SwingState:
-    return SwingState(side=0.0, peak=0.0, enough=0.0, count=0.0)
+    return SwingState(peak=0.0, enough=0.0, count=0.0)
 
 
 def update(x: SwingState, damping: float, change: float, acting: bool, T_s: float, p: Parameters) -> SwingState:
@@ -42,18 +41,17 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
         damping: as it would be if nothing was counted.
         acting: there is damping.
     """
-    size = abs(damping)
-    side = where(size > p.swing * p.T_max, where(damping > 0.0, 1.0, -1.0), x.side)
-    turned = side * x.side < 0.0
-    peak = where(side * damping > 0.0, maximum(where(turned, 0.0, x.peak), size), x.peak)
-    enough = where(turned, p.grows * x.peak, x.enough)
-    counts = logical_and(enough > 0.0, peak >= enough)
+    swings = abs(damping) > p.swing * p.T_max
+    turned = logical_and(swings, damping * x.peak < 0.0)
+    larger = logical_and(swings, logical_or(damping * x.peak <= 0.0, abs(damping) > abs(x.peak)))
+    peak = where(larger, damping, x.peak)
+    enough = where(turned, p.grows * abs(x.peak), x.enough)
+    counts = logical_and(enough > 0.0, abs(peak) >= enough)
     least = T_s / where(x.count < SWINGS, p.t_forget, p.t_relapse)
     forgotten = x.count - clip(x.count, -least, least)
     explained = abs(change) / (p.excuse * p.T_max)
     count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
     return SwingState(
-        side=where(acting, side, 0.0),
         peak=where(acting, peak, 0.0),
         enough=where(logical_and(acting, logical_not(counts)), enough, 0.0),
         count=where(acting, count, 0.0),
@@ -63,3 +61,8 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
 def share(x: SwingState) -> float:
     """Of the damping that is left."""
     return clip(SWINGS - x.count, 0.0, 1.0)
+
+
+def is_less(x: SwingState) -> bool:
+    """Whether less of the damping is left than all."""
+    return x.count > SWINGS - 1.0

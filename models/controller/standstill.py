@@ -3,7 +3,7 @@
 Sensor noise would otherwise rattle the motor of a standing car in its gap.
 """
 
-from ..block.operators import logical_and, maximum, minimum, where
+from ..block.operators import logical_and, minimum, where
 from .supervision_interface import Parameters
 
 
@@ -22,9 +22,11 @@ def quiet_time(quiet: float, still: bool, T_s: float, p: Parameters) -> float:
     return where(still, minimum(quiet + T_s, longest(p)), 0.0)
 
 
-def share(quiet: float, p: Parameters) -> float:
-    """From 0 to 1 as the damping fades out, `quiet` s after the last demand or motion.
+def is_complete(quiet: float, p: Parameters) -> bool:
+    """Whether it is complete rest, `quiet` s after the last demand or motion."""
+    return quiet >= longest(p)
 
-    Written so that it is exactly 1 at complete rest, whatever the rounding.
-    """
-    return maximum(1.0 - (longest(p) - quiet) / p.t_fade, 0.0)
+
+def left(quiet: float, p: Parameters) -> float:
+    """Share of the damping that is left, `quiet` s after the last demand or motion: 0 at complete rest."""
+    return minimum((longest(p) - quiet) / p.t_fade, 1.0)

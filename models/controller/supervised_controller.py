@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from typing import Any, Generic
 
 from ..block.declaration import merged
-from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, sign, where
+from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, where
 from ..block.types import SampledBlock
-from . import causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
-from .fading import toward
-from .interfaces import Addition, Estimator, Law, Motion
-from .supervision import T_S, E, L, Output, State, demand, limited, output, status
+from . import causes, launch, motor_signals, oscillation, standstill, trust, wheel_messages
+from .fading import faded
+from .interfaces import Estimator, Law
+from .supervision import T_S, E, L, Output, State, demand, limited, status
 from .supervision_interface import Input, Parameters
-from .trust import Found
 
 
 @dataclass(frozen=True)
@@ -23,13 +22,12 @@ class Supervised(Generic[E, L]):
 
     def start(self, u: Input, p: Parameters) -> State[E, L]:
         """Estimate from the motor signals of t = 0, the driver's demand passed through."""
-        T_driver = demand(u, p)
-        motor, wheel = motor_signals.start(u, p), wheel_messages.tells_a_speed(u, p)
-        e = self.estimator.start(motor.omega_1, motor.T_mot, wheel, p)
-        motion = self.estimator.motion(e, p)
+        T_driver, wheel = demand(u, p), wheel_messages.tells_a_speed(u, p)
+        motor = motor_signals.start(u, p)
+        e = self.estimator.start(motor.omega_1, motor.loop.T_mot, wheel, p)
         return State(
             estimator=e,
-            law=self.law.start(motion, T_driver, p),
+            law=self.law.start(self.estimator.motion(e, p), T_driver, p),
             motor=motor,
             wheel=wheel_messages.start(u, motor.omega_1, p),
             swings=oscillation.start(),
@@ -40,67 +38,91 @@ class Supervised(Generic[E, L]):
             T_ref=T_driver,
             T_damp=0.0,
             T_landing=0.0,
-            ahead=motion,
             status=status(u.enable, True, wheel),
         )
 
-    def update(self, x: State[E, L], u: Input, p: Parameters) -> State[E, L]:
-        """What was measured, whether it is trusted, and what is added to the demand."""
-        before, x = x, self.measured(x, u, p)
-        T_driver, trusted = demand(u, p), trust.is_trusted(x.trust)
-        law, adding = self.acting(before, x, T_driver, p)
+    def output(self, x: State[E, L], u: Input, p: Parameters) -> Output:
+        """What was computed at the last sample, and the estimate for this one."""
+        motion = self.estimator.motion(x.estimator, p)
+        feeding = where(oscillation.is_less(x.swings), causes.FEEDS, causes.NONE)
+        return Output(
+            T_ref=x.T_ref,
+            T_damp=x.T_damp,
+            T_gear_hat=motion.T_gear,
+            phi_hat=motion.phi,
+            omega_2_hat=motion.omega_2,
+            status=x.status,
+            T_landing=x.T_landing,
+            cause=where(trust.is_trusted(x.trust), feeding, x.trust.cause),
+        )
 
-        level = toward(x.level, where(logical_and(u.enable, trusted), 1.0, 0.0), T_S, p.t_fade)
-        share = level * (1.0 - standstill.share(x.quiet, p))
+    def update(self, x: State[E, L], u: Input, p: Parameters) -> State[E, L]:
+        """What was measured, whether it is trusted, what is added to the demand, and what is expected next."""
+        T_driver, T_mot = demand(u, p), motor_signals.torque(x.motor, u.T_mot_est, p)
+        x = self.measured(x, u, T_driver, T_mot, p)
+        trusted = trust.is_trusted(x.trust)
+
+        wheel = logical_and(wheel_messages.is_reference(x.wheel, u, p), trusted)
+        motor = motor_signals.predict(x.motor, x.T_ref, T_S, p)
+        e = self.estimator.predict(x.estimator, T_mot + 0.5 * (motor.loop.T_mot - x.motor.loop.T_mot), wheel, T_S, p)
+        motion, expected = self.estimator.motion(x.estimator, p), self.estimator.motion(e, p)
+
+        law, adding = self.law.update(x.law, motion, expected, T_driver, T_S, p)
+        damping = clip(adding.damping, -p.T_add_max, p.T_add_max)
+
+        level = faded(x.level, logical_and(u.enable, trusted), T_S, p.t_fade)
+        share = level * standstill.left(x.quiet, p)
         change = T_driver - (x.T_ref - x.T_damp)
-        swings = oscillation.update(x.swings, share * adding.damping, change, trusted, T_S, p)
+        swings = oscillation.update(x.swings, share * damping, change, trusted, T_S, p)
         share = share * oscillation.share(swings)
         fading = level / maximum(x.level, T_S / p.t_fade) * x.T_damp
-        added = limited(where(trusted, share * (adding.damping + adding.landing), fading), T_driver, p)
+        added = limited(where(trusted, share * (damping + adding.landing), fading), T_driver, p)
         T_ref = clip(T_driver + added, -p.T_max, p.T_max)
-        wheel = logical_and(wheel_messages.is_reference(x.wheel, u, p), trusted)
+
         return x._replace(
-            estimator=self.estimator.finish(x.estimator, wheel, T_S, p),
+            estimator=e,
             law=law,
+            motor=motor_signals.moved(motor, expected.omega_1 - motion.omega_1, T_S, p),
             swings=swings,
             level=level,
             T_ref=T_ref,
             T_damp=T_ref - T_driver,
             T_landing=where(trusted, limited(share * adding.landing, T_driver, p), 0.0),
-            ahead=self.estimator.motion_after(x.estimator, x.motor.T_mot, T_S, p),
             status=status(u.enable, trusted, wheel),
         )
 
-    def measured(self, x: State[E, L], u: Input, p: Parameters) -> State[E, L]:
-        """The state with the signals of this sample: what they are, whether they are trusted, and the estimate."""
-        T_driver = demand(u, p)
-        T_mot = motor_signals.torque(u.T_mot_est, x.motor.loop, p)
-        e = self.estimator.predict(x.estimator, 0.5 * (x.motor.T_mot + T_mot), T_S, p)
-        increment = self.estimator.motion(e, p).omega_1 - self.estimator.motion(x.estimator, p).omega_1
-        motor, finding = motor_signals.update(x.motor, u, increment, x.T_ref, T_S, p)
-        bad = finding != causes.NONE
-        resting = standstill.share(x.quiet, p) >= 1.0
-        launching, against = launch.update(x.launch, T_driver, x.motor.loop.T_mot, motor.omega_1, resting, T_S, p)
-        way = where(against, sign(launching.free), trust.direction(x.trust, u, motor.omega_1, logical_not(bad), p))
-        turned = way * motor.omega_1 < -p.omega_still
-        wheel, taken = wheel_messages.update(x.wheel, u, motor.omega_1, bad, way, T_S, p)
-        told = logical_and(turned, u.direction != 0)
-        contradiction = where(told, causes.WRONG_DIRECTION, causes.WHEEL_CONTRADICTS)
-        found = {"t_bad": Found(finding, motor.bad), "t_apart": Found(contradiction, wheel.contradicting)}
-        trusting = trust.update(x.trust, found, against, way, turned, T_S, p)
-        quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, motor.omega_1, p), T_S, p)
+    def measured(self, x: State[E, L], u: Input, T_driver: float, T_mot: float, p: Parameters) -> State[E, L]:
+        """The state with the signals of this sample: what they are, whether they are trusted, and the estimate.
 
-        resting = standstill.share(quiet, p) >= 1.0
-        begins = logical_or(resting, trust.is_healing(trusting, T_S))
-        omega_1, T_mot = where(resting, 0.0, motor.omega_1), where(resting, 0.0, motor.T_mot)
-        e = self.estimator.take_motor_speed(e, motor.omega_1, T_S, p)
+        Args:
+            T_driver, T_mot: torque that the driver demands and that of the motor, N.m.
+        """
+        expected = self.estimator.motion(x.estimator, p).omega_1
+        motor, omega_1, found = motor_signals.update(x.motor, u, expected, trust.is_trusted(x.trust), T_S, p)
+        bad = causes.first_of(found) != causes.NONE
+        rested = standstill.is_complete(x.quiet, p)
+        launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
+        way = where(against, trust.way(T_driver), trust.direction(x.trust, u, omega_1, logical_not(bad), p))
+        turned = way * omega_1 < -p.omega_still
+        wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, way, T_S, p)
+        found |= {
+            causes.WHEEL_CONTRADICTS: contradicts,
+            causes.WRONG_DIRECTION: logical_and(turned, u.direction != 0),
+            causes.WRONG_LAUNCH: logical_or(against, logical_and(turned, x.trust.cause == causes.WRONG_LAUNCH)),
+        }
+        trusting = trust.update(x.trust, found, way, turned, T_S, p)
+        quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, omega_1, p), T_S, p)
+
+        rests = standstill.is_complete(quiet, p)
+        begins = logical_or(rests, trust.is_healing(trusting, T_S))
+        e = self.estimator.take_motor_speed(x.estimator, omega_1, T_S, p)
         e = branch(taken, lambda: self.estimator.take_wheel_speed(e, way * wheel.omega_2, T_S, p), lambda: e)
         e = self.estimated(e, u, p)
+        omega_1, T_mot = where(rests, 0.0, omega_1), where(rests, 0.0, T_mot)
         e = branch(begins, lambda: self.estimator.restart(e, omega_1, T_mot, p), lambda: e)
-        motion = self.estimator.motion(e, p)
         return x._replace(
             estimator=e,
-            law=branch(begins, lambda: self.law.start(motion, T_driver, p), lambda: x.law),
+            law=branch(begins, lambda: self.law.start(self.estimator.motion(e, p), T_driver, p), lambda: x.law),
             motor=motor,
             wheel=wheel,
             launch=launching,
@@ -111,21 +133,6 @@ class Supervised(Generic[E, L]):
     def estimated(self, e: E, u: Input, p: Parameters) -> E:
         """The estimate from the signals of this sample."""
         return e
-
-    def acting(self, before: State[E, L], x: State[E, L], T_driver: float, p: Parameters) -> tuple[L, Addition]:
-        """The state of the law, and what it would add to the demand.
-
-        Args:
-            before: the state of the last sample.
-        """
-
-        def later(h: float) -> Motion:
-            T_mot = x.motor.T_mot + torque_loop.change(before.motor.loop, before.T_ref, h, p)
-            return self.estimator.motion_after(x.estimator, T_mot, h, p)
-
-        motion = self.estimator.motion(x.estimator, p)
-        law, adding = self.law.update(x.law, motion, later, T_driver, T_S, p)
-        return law, adding._replace(damping=clip(adding.damping, -p.T_add_max, p.T_add_max))
 
 
 def supervised(
@@ -146,7 +153,7 @@ def supervised(
         State=State,
         Output=Output,
         start=controller.start,
-        output=output,
+        output=controller.output,
         update=controller.update,
         sample_time=T_S,
         tolerates_bad_input=True,

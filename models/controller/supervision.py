@@ -1,7 +1,7 @@
 """What surrounds an estimator and a law: which signals to trust, when to act, and within what limits.
 
-In every sample the estimator goes one sample on and takes what was measured, the law says what to add
-to the driver's demand. Motor signals that have failed lead to fallback: the demand is passed through,
+In every sample the estimator takes what was measured, the law says what to add to the driver's demand, and
+the estimator goes one sample on. Motor signals that have failed lead to fallback: the demand is passed through,
 estimator and law restart, until the signals have healed (causes). A lost, late or absurd wheel speed
 only ends the mode that uses it. A demand that is not finite counts as zero. At rest the damping fades out
 and the estimator is held. Modes fade within t_fade. Whatever comes in, T_ref is finite and within T_max,
@@ -9,12 +9,11 @@ and takes no more than T_take_max from the demand and adds no more than T_add_ma
 what the damping alone may take.
 """
 
-from typing import Annotated, Any, Generic, NamedTuple, TypeVar
+from typing import Annotated, Generic, NamedTuple, TypeVar
 
 from ..block.declaration import Enumeration, Real
 from ..block.operators import clip, is_finite, where
-from . import causes, oscillation, trust
-from .interfaces import Motion
+from . import causes
 from .launch import LaunchState
 from .motor_signals import MotorState
 from .oscillation import SwingState
@@ -47,11 +46,7 @@ class State(NamedTuple, Generic[E, L]):
     T_ref: Annotated[float, Real("N.m", "torque reference")]
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
     T_landing: Annotated[float, Real("N.m", "part of it that lets the teeth land softly")]
-    ahead: Motion
     status: Annotated[int, Real("1", "number of the status")]
-
-
-AnyState = State[Any, Any]
 
 
 class Output(NamedTuple):
@@ -85,20 +80,6 @@ def demand(u: Input, p: Parameters) -> float:
 def status(enable: bool, trusted: bool, wheel: bool) -> int:
     damping = where(wheel, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED)
     return where(enable, where(trusted, damping, FALLBACK), OFF)
-
-
-def output(x: AnyState, u: Input, p: Parameters) -> Output:
-    feeding = where(oscillation.share(x.swings) < 1.0, causes.FEEDS, causes.NONE)
-    return Output(
-        T_ref=x.T_ref,
-        T_damp=x.T_damp,
-        T_gear_hat=x.ahead.T_gear,
-        phi_hat=x.ahead.phi,
-        omega_2_hat=x.ahead.omega_2,
-        status=x.status,
-        T_landing=x.T_landing,
-        cause=where(trust.is_trusted(x.trust), feeding, x.trust.cause),
-    )
 
 
 def limited(torque: float, T_driver: float, p: Parameters) -> float:

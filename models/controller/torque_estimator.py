@@ -1,15 +1,15 @@
 """Estimator of the gear torque: the paper's third-order nonlinear Kalman filter (section V).
 
     J_1 domega_1/dt = T_mot - T_gear
-    J_2 domega_2/dt = T_l + (1 - lambda) T_gear
+    J_2 domega_2/dt = T_l + (1 - lambda_v) T_gear
            dphi/dt  = omega_1 - omega_2          T_gear = C b(phi, phi_B)
 
-The vehicle takes the share lambda of the gear torque; T_l is the rest of the load, a slow state.
-With lambda = 0 and no gain on T_l this is literally the paper's observer. Between samples the
+The vehicle takes the share lambda_v of the gear torque; T_l is the rest of the load, a slow state.
+With lambda_v = 0 and no gain on T_l this is literally the paper's observer. Between samples the
 model is integrated by the leapfrog method. The measured motor speed corrects it at every sample,
-the wheel speed when a message arrives, against the estimate of T_age before: so old is the message.
-The constant gains come from a Riccati equation (harness, design), one set for each mode; `share` fades
-from the set without (0) to the set with the wheel speed (1).
+the wheel speed when a message arrives; what that tells is omega_2 behind a lag of T_age. The constant gains come from
+a Riccati equation (harness, design). Those of a message act with `share`, which fades from 0 to 1 while messages come.
+An estimate whose twist is beyond what the drive train can bear begins anew.
 
 Wheels that spin or lock leave the vehicle behind, and the road that catches them is a load that steps. The model has
 neither, and shows it: its innovations drift, or the slow load becomes larger than any vehicle's. `slip` then fades to
@@ -20,19 +20,17 @@ estimate are counted from the motor speed that was measured last. They are small
 rounds them as little as the twist, which is the integral of their difference.
 """
 
+from collections.abc import Sequence
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import clip, interpolate, maximum, minimum, where
+from ..block.operators import branch, clip, maximum, where
 from ..physics.backlash import dead_zone
 from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia
-from .fading import toward
+from .fading import faded
 from .gains import GAINS
 from .interfaces import Motion
 from .supervision_interface import added_speed
-
-HISTORY = 50
-"""Past estimates of omega_2 that are kept, one a sample: the age of messages every 50 ms that are late by as much."""
 
 
 class Parameters(NamedTuple):
@@ -43,26 +41,10 @@ class Parameters(NamedTuple):
     lambda_v: Annotated[float, Real("1", "share of the gear torque that the vehicle takes", 0.0, 0.99)] = GAINS[
         "lambda_v"
     ]
-    L_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, without wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
-        "L_omega_1"
-    ]
-    L_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, without wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
-        "L_omega_2"
-    ]
-    L_phi: Annotated[float, Real("s", "gain on phi_hat, without wheel speed", -0.1, 0.1, tunable=True)] = GAINS["L_phi"]
-    L_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, without wheel speed", -10.0, 10.0, tunable=True)] = (
-        GAINS["L_T_l"]
-    )
-    Lw_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, with wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
-        "Lw_omega_1"
-    ]
-    Lw_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, with wheel speed", -2.0, 2.0, tunable=True)] = GAINS[
-        "Lw_omega_2"
-    ]
-    Lw_phi: Annotated[float, Real("s", "gain on phi_hat, with wheel speed", -0.1, 0.1, tunable=True)] = GAINS["Lw_phi"]
-    Lw_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load, with wheel speed", -10.0, 10.0, tunable=True)] = (
-        GAINS["Lw_T_l"]
-    )
+    L_omega_1: Annotated[float, Real("1", "gain on omega_1_hat", -2.0, 2.0, tunable=True)] = GAINS["L_omega_1"]
+    L_omega_2: Annotated[float, Real("1", "gain on omega_2_hat", -2.0, 2.0, tunable=True)] = GAINS["L_omega_2"]
+    L_phi: Annotated[float, Real("s", "gain on phi_hat", -0.1, 0.1, tunable=True)] = GAINS["L_phi"]
+    L_T_l: Annotated[float, Real("N.m.s/rad", "gain on the load", -10.0, 10.0, tunable=True)] = GAINS["L_T_l"]
     L_can_omega_1: Annotated[float, Real("1", "gain of a message on omega_1_hat", -2.0, 2.0, tunable=True)] = GAINS[
         "L_can_omega_1"
     ]
@@ -103,7 +85,6 @@ class AllParameters(Parameters):
 
     T_max: float
     t_fade: float
-    omega_max: float
 
 
 class Estimate(NamedTuple):
@@ -120,31 +101,29 @@ class EstimatorState(NamedTuple):
 
     base: Annotated[float, Real("rad/s", "motor speed measured last, from which the speeds of the estimate count")]
     estimate: Estimate
-    past: Annotated[tuple[float, ...], Real("rad/s", "estimates of omega_2 of the last samples, newest first")]
-    share: Annotated[float, Real("1", "share of the gains with wheel speed")]
+    late: Annotated[float, Real("rad/s", "estimate of omega_2 as a message that arrives now would tell it")]
+    share: Annotated[float, Real("1", "share of the gains of a message")]
     drift: Annotated[float, Real("rad/s", "mean of the recent innovations")]
     slip: Annotated[float, Real("1", "share of the gains for wheels that slip")]
 
 
 def start(omega_1: float, T_mot: float, wheel: bool, p: Parameters) -> EstimatorState:
-    e = at_rest_with(T_mot, p)
-    return EstimatorState(omega_1, e, past=(omega_1,) * HISTORY, share=where(wheel, 1.0, 0.0), drift=0.0, slip=0.0)
+    return EstimatorState(omega_1, at_rest_with(T_mot, p), omega_1, where(wheel, 1.0, 0.0), drift=0.0, slip=0.0)
 
 
 def restart(x: EstimatorState, omega_1: float, T_mot: float, p: Parameters) -> EstimatorState:
-    return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p), drift=0.0, slip=0.0)
-
-
-def predict(x: EstimatorState, T_mot: float, T_s: float, p: Parameters) -> EstimatorState:
-    return x._replace(estimate=integrated(x.estimate, T_mot, T_s, p))
+    return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p), late=omega_1, drift=0.0, slip=0.0)
 
 
 def take_motor_speed(x: EstimatorState, omega_1: float, T_s: float, p: AllParameters) -> EstimatorState:
     e = counted_from(omega_1 - x.base, x.estimate)
-    drift = x.drift - minimum(T_s / p.t_drift, 1.0) * (e.omega_1 + x.drift)
-    slip = maximum(slipping(drift, e.T_l, T_s, p), x.slip - minimum(T_s / p.t_grip, 1.0))
-    corrected = corrected_by_motor_speed(e, 0.0, x.share, slip, p)
-    return x._replace(base=omega_1, estimate=bounded(corrected, omega_1, p), drift=drift, slip=slip)
+    drift = x.drift - T_s / p.t_drift * (e.omega_1 + x.drift)
+    slip = maximum(slipping(drift, e.T_l, T_s, p), x.slip - T_s / p.t_grip)
+    L, Ls = (p.L_omega_1, p.L_omega_2, p.L_phi, p.L_T_l), (p.Ls_omega_1, p.Ls_omega_2, p.Ls_phi, p.Ls_T_l)
+    e = corrected(e, -e.omega_1, [a + slip * (b - a) for a, b in zip(L, Ls, strict=True)])
+    x = x._replace(base=omega_1, estimate=e, drift=drift, slip=slip)
+    plausible = p.C * (abs(e.phi) - p.phi_B) <= 4.0 * p.T_max
+    return branch(plausible, lambda: x, lambda: restart(x, omega_1, 0.0, p))
 
 
 def slipping(drift: float, T_l: float, T_s: float, p: AllParameters) -> float:
@@ -155,24 +134,21 @@ def slipping(drift: float, T_l: float, T_s: float, p: AllParameters) -> float:
 
 
 def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: Parameters) -> EstimatorState:
-    return x._replace(estimate=corrected_by_message(x, omega_2, p.T_age / T_s, p))
+    L = (p.L_can_omega_1, p.L_can_omega_2, p.L_can_phi, p.L_can_T_l)
+    return x._replace(estimate=corrected(x.estimate, x.share * (omega_2 - x.late), L))
 
 
-def finish(x: EstimatorState, wheel: bool, T_s: float, p: AllParameters) -> EstimatorState:
-    share = toward(x.share, where(wheel, 1.0, 0.0), T_s, p.t_fade)
-    return x._replace(past=(x.base + x.estimate.omega_2, *x.past[:-1]), share=share)
+def predict(x: EstimatorState, T_mot: float, wheel: bool, T_s: float, p: AllParameters) -> EstimatorState:
+    return x._replace(
+        estimate=integrated(x.estimate, T_mot, T_s, p),
+        late=x.late + T_s / p.T_age * (x.base + x.estimate.omega_2 - x.late),
+        share=faded(x.share, wheel, T_s, p.t_fade),
+    )
 
 
 def motion(x: EstimatorState, p: Parameters) -> Motion:
-    return seen(x.estimate, x.base, p)
-
-
-def motion_after(x: EstimatorState, T_mot: float, h: float, p: Parameters) -> Motion:
-    return seen(integrated(x.estimate, T_mot, h, p), x.base, p)
-
-
-def seen(e: Estimate, base: float, p: Parameters) -> Motion:
-    return Motion(base + e.omega_1, base + e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
+    e = x.estimate
+    return Motion(x.base + e.omega_1, x.base + e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
 
 
 def counted_from(omega: float, e: Estimate) -> Estimate:
@@ -195,39 +171,6 @@ def integrated(e: Estimate, T_mot: float, h: float, p: Parameters) -> Estimate:
     return Estimate(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), e.T_l)
 
 
-def corrected_by_motor_speed(e: Estimate, omega_1_meas: float, share: float, slip: float, p: Parameters) -> Estimate:
-    error = omega_1_meas - e.omega_1
-
-    def gain(without: float, with_wheel_speed: float, slipping: float) -> float:
-        L = without + share * (with_wheel_speed - without)
-        return L + slip * (slipping - L)
-
-    return Estimate(
-        e.omega_1 + error * gain(p.L_omega_1, p.Lw_omega_1, p.Ls_omega_1),
-        e.omega_2 + error * gain(p.L_omega_2, p.Lw_omega_2, p.Ls_omega_2),
-        e.phi + error * gain(p.L_phi, p.Lw_phi, p.Ls_phi),
-        e.T_l + error * gain(p.L_T_l, p.Lw_T_l, p.Ls_T_l),
-    )
-
-
-def corrected_by_message(x: EstimatorState, omega_2_can: float, samples: float, p: Parameters) -> Estimate:
-    """Correction by a message that is `samples` samples old; past[k] is the estimate k + 1 samples ago."""
-    e = x.estimate
-    error = x.share * (omega_2_can - interpolate(x.past, samples - 1.0))
-    return Estimate(
-        e.omega_1 + error * p.L_can_omega_1,
-        e.omega_2 + error * p.L_can_omega_2,
-        e.phi + error * p.L_can_phi,
-        e.T_l + error * p.L_can_T_l,
-    )
-
-
-def bounded(e: Estimate, base: float, p: AllParameters) -> Estimate:
-    """The estimate within what the drive train can bear, whatever was measured at the motor."""
-    phi_max = p.phi_B + 4.0 * p.T_max / p.C
-    return Estimate(
-        clip(e.omega_1, -p.omega_max - base, p.omega_max - base),
-        clip(e.omega_2, -p.omega_max - base, p.omega_max - base),
-        clip(e.phi, -phi_max, phi_max),
-        clip(e.T_l, -4.0 * p.T_max, 4.0 * p.T_max),
-    )
+def corrected(e: Estimate, error: float, L: Sequence[float]) -> Estimate:
+    """The estimate after a measurement that was `error` (rad/s) above what it should be, with the gains L."""
+    return Estimate(*(value + error * gain for value, gain in zip(e, L, strict=True)))

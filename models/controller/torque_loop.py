@@ -32,11 +32,6 @@ def update(x: LoopState, T_ref: float, T_s: float, p: Parameters) -> LoopState:
     return LoopState(x.T_mot + 2.0 * h * r, 2.0 * r - x.r)
 
 
-def change(x: LoopState, T_ref: float, h: float, p: Parameters) -> float:
-    """Mean change of the torque (N.m) over the next h seconds with the demand T_ref (N.m)."""
-    return 0.5 * (update(x, T_ref, h, p).T_mot - x.T_mot)
-
-
 def agrees(x: LoopState, T_mot_est: float, p: Parameters) -> bool:
     """Whether an estimate (N.m) can be that of this torque; one that is no number cannot."""
     return abs(T_mot_est - x.T_mot) <= p.T_off * p.T_max + p.g_off * abs(x.T_mot)

@@ -1,40 +1,33 @@
 """Trust in the motor signals: lost by one of the causes, got back when it has healed; and the direction of the car.
 
+While there is trust, a clock runs for each time after which causes count (t_bad, t_apart), as long as one of these is
+found. Without trust, the first of them runs as long as nothing is found, until trust is back.
+
 A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which a trusted motor
 turns.
 """
 
 from collections.abc import Mapping
+from functools import reduce
 from typing import Annotated, Any, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, minimum, sign, where
-from .causes import CLOCKS, NONE, WRONG_DIRECTION
+from ..block.operators import logical_and, logical_not, logical_or, where
+from .causes import CLOCKS, FAILURES, NONE, first_of
 from .supervision_interface import Input, Parameters
 
 
 class TrustState(NamedTuple):
-    """The cause of the fallback, how far it has healed, and the direction."""
+    """The cause of the fallback, for how long the signals have spoken against it, and the direction."""
 
     cause: Annotated[int, Real("1", "number of the cause, that of none while the motor signals are trusted")]
-    healing: Annotated[float, Real("s", "time for which the motor signals have been good")]
+    clock: Annotated[float, Real("s", "time for which motor signals have been bad, or good where there is a cause")]
+    apart: Annotated[float, Real("s", "time for which the motor speed has been contradicted")]
     direction: Annotated[float, Real("1", "of the car, 1 forwards, -1 backwards")]
 
 
-class Found(NamedTuple):
-    """What was found in a sample.
-
-    Attributes:
-        cause: its number.
-        lasting: for how long it has been found, s; 0 if it is not.
-    """
-
-    cause: int
-    lasting: float
-
-
 def start(omega_1: float, p: Parameters) -> TrustState:
-    return TrustState(NONE, 0.0, where(omega_1 < -p.omega_still, -1.0, 1.0))
+    return TrustState(NONE, 0.0, 0.0, where(omega_1 < -p.omega_still, -1.0, 1.0))
 
 
 def is_trusted(x: TrustState) -> bool:
@@ -44,32 +37,46 @@ def is_trusted(x: TrustState) -> bool:
 def direction(x: TrustState, u: Input, omega_1: float, good: bool, p: Parameters) -> float:
     """Of the car in this sample, by the motor speed (rad/s) where it is good."""
     turning = logical_and(logical_and(is_trusted(x), good), abs(omega_1) > p.omega_still)
-    return where(u.direction == 0, where(turning, sign(omega_1), x.direction), sign(1.0 * u.direction))
+    return where(u.direction == 0, where(turning, way(omega_1), x.direction), way(1.0 * u.direction))
+
+
+def way(value: float) -> float:
+    """1 for what is forwards, -1 for what is not."""
+    return where(value > 0.0, 1.0, -1.0)
 
 
 def update(
-    x: TrustState, found: Mapping[str, Found], against: bool, direction: float, turned: bool, T_s: float, p: Parameters
+    x: TrustState, found: Mapping[int, bool], direction: float, turned: bool, T_s: float, p: Parameters
 ) -> TrustState:
     """The state after one sample.
 
     Args:
-        found: in it, by the parameter with the time after which it counts.
-        against: the motor has just set off against its torque.
+        found: whether what a row of FAILURES is about was found, by its number.
         direction: of the car.
         turned: whether the motor turns the other way.
     """
     limits: Any = p
-    cause, good = NONE, True
-    for after in reversed(CLOCKS):
-        cause = where(found[after].lasting > getattr(limits, after), found[after].cause, cause)
-        good = logical_and(good, found[after].lasting <= 0.0)
-    cause = where(against, WRONG_DIRECTION, cause)
-    wrong = logical_or(against, logical_and(turned, x.cause == WRONG_DIRECTION))
-    healing = where(logical_and(good, logical_not(wrong)), minimum(x.healing + T_s, p.t_turn), 0.0)
-    healed = healing >= where(turned, p.t_turn, p.t_proof) - 0.5 * T_s
-    return TrustState(where(is_trusted(x), cause, where(healed, NONE, x.cause)), healing, direction)
+    clocks = {"t_bad": x.clock + T_s, "t_apart": x.apart + T_s}
+    firsts = {
+        after: first_of({row.number: found[row.number] for row in FAILURES if row.after == after}) for after in CLOCKS
+    }
+    lost = NONE
+    for after, first in reversed(firsts.items()):
+        counts = logical_and(first != NONE, clocks[after] > getattr(limits, after)) if after else first != NONE
+        lost = where(counts, first, lost)
+    trusted, bad, apart = is_trusted(x), firsts["t_bad"] != NONE, firsts["t_apart"] != NONE
+    good = reduce(logical_and, (first == NONE for first in firsts.values()), logical_not(trusted))
+    healed = logical_and(good, clocks["t_bad"] >= where(turned, p.t_turn, p.t_proof) - 0.5 * T_s)
+    cause = where(trusted, lost, where(healed, NONE, x.cause))
+    runs = logical_or(good, logical_and(trusted, bad))
+    return TrustState(
+        cause=cause,
+        clock=where(logical_and(runs, cause == x.cause), clocks["t_bad"], 0.0),
+        apart=where(logical_and(cause == NONE, apart), clocks["t_apart"], 0.0),
+        direction=direction,
+    )
 
 
 def is_healing(x: TrustState, T_s: float) -> bool:
     """Whether the motor signals are not trusted, and have not been good for more than a sample."""
-    return logical_and(logical_not(is_trusted(x)), x.healing < 1.5 * T_s)
+    return logical_and(logical_not(is_trusted(x)), x.clock < 1.5 * T_s)

@@ -2,13 +2,13 @@
 
 A message tells what the wheels did some time ago. So it is compared with the least and the largest speed that the
 motor had of late (t_late). One that has leapt out of that range since the message before, while the motor speed has
-not, is not taken. The others correct the estimate, and are a reference for the motor speed.
+not, is not taken, and changes nothing. The others correct the estimate, and are a reference for the motor speed.
 """
 
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, maximum, minimum, where
+from ..block.operators import logical_and, logical_not, maximum, minimum, where
 from .motor_signals import in_range
 from .supervision_interface import Input, Parameters, added_speed
 
@@ -21,7 +21,6 @@ class WheelState(NamedTuple):
     least: Annotated[float, Real("rad/s", "least motor speed of late")]
     largest: Annotated[float, Real("rad/s", "largest motor speed of late")]
     silence: Annotated[float, Real("s", "time since a message was taken")]
-    contradicting: Annotated[float, Real("s", "time for which the wheel speed contradicts the motor speed")]
 
 
 def start(u: Input, omega_1: float, p: Parameters) -> WheelState:
@@ -32,7 +31,6 @@ def start(u: Input, omega_1: float, p: Parameters) -> WheelState:
         least=omega_1,
         largest=omega_1,
         silence=where(known, 0.0, p.t_stale),
-        contradicting=0.0,
     )
 
 
@@ -43,18 +41,19 @@ def tells_a_speed(u: Input, p: Parameters) -> bool:
 
 
 def update(
-    x: WheelState, u: Input, omega_1: float, strict: bool, direction: float, T_s: float, p: Parameters
-) -> tuple[WheelState, bool]:
-    """The state after one sample, and whether a message was taken in it.
+    x: WheelState, u: Input, omega_1: float, strict: bool, apart: bool, direction: float, T_s: float, p: Parameters
+) -> tuple[WheelState, bool, bool]:
+    """The state after one sample, whether a message was taken in it, and whether it contradicts the motor speed.
 
     Args:
         u: input with omega_2_can, valid, counter.
         omega_1: motor speed in use, rad/s.
         strict: only the present motor speed counts: it is not what it was before.
+        apart: whether the messages have contradicted until now.
         direction: of the car, 1 forwards, -1 backwards; wheel sensors count teeth and have none.
     """
     unit, known = added_speed(p, T_s), tells_a_speed(u, p)
-    decay = minimum(T_s / p.t_late, 1.0)
+    decay = T_s / p.t_late
     least = where(strict, omega_1, minimum(omega_1, x.least + decay * (omega_1 - x.least)))
     largest = where(strict, omega_1, maximum(omega_1, x.largest + decay * (omega_1 - x.largest)))
 
@@ -65,18 +64,15 @@ def update(
     changed = logical_and(x.omega_2 > 0.0, abs(speed - x.omega_2) > p.leap * unit)
     leapt = logical_and(logical_and(arrives, changed), outside > p.leap * unit)
     taken = logical_and(arrives, logical_not(leapt))
-    silence = where(taken, 0.0, minimum(x.silence + T_s, p.t_stale))
-    far = where(leapt, x.contradicting > 0.0, logical_and(speed > 0.0, outside > p.apart * unit))
-    far = logical_and(far, logical_and(known, silence < p.t_stale))
-    against = direction * u.direction * omega_1 < -p.omega_still
-    return WheelState(
+    far = where(leapt, apart, logical_and(speed > 0.0, outside > p.apart * unit))
+    x = WheelState(
         counter=1.0 * u.counter,
         omega_2=where(leapt, x.omega_2, speed),
         least=least,
         largest=largest,
-        silence=silence,
-        contradicting=where(logical_or(far, against), minimum(x.contradicting + T_s, p.t_apart + T_s), 0.0),
-    ), taken
+        silence=where(taken, 0.0, minimum(x.silence + T_s, p.t_stale)),
+    )
+    return x, taken, logical_and(far, is_reference(x, u, p))
 
 
 def is_reference(x: WheelState, u: Input, p: Parameters) -> bool:

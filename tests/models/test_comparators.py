@@ -2,7 +2,8 @@
 
 import math
 from itertools import pairwise
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from driveline.models.block.declaration import without
 from driveline.models.comparators import (
     linear_observer,
+    measured_speeds,
     no_damping,
     paper_observer,
     perfect_state,
@@ -17,7 +19,7 @@ from driveline.models.comparators import (
     speed_washout,
     state_feedback,
 )
-from driveline.models.controller import supervision
+from driveline.models.controller import supervision, torque_estimator
 from driveline.models.controller.interfaces import Motion
 from driveline.models.controller.supervision import T_S, Input, State
 from driveline.models.physics.backlash import dead_zone
@@ -28,7 +30,6 @@ LITERAL = {
     "k_d": 0.0,
     "T_pred": 0.0,
     "L_T_l": 0.0,
-    "Lw_T_l": 0.0,
     "L_can_T_l": 0.0,
     "t_land": 0.0,
     **paper_observer.NO_SLIP,
@@ -47,11 +48,12 @@ def test_without_damping_the_demand_is_passed_through() -> None:
 
 def washed_out(speeds: np.ndarray, **values: float) -> np.ndarray:
     """What the law opposes of a motor speed, over k_v; a value each sample."""
-    p, law = speed_washout.WashoutParameters(k_v=1.0, **values), speed_washout.Washout()
+    p: Any = speed_washout.BLOCK.Parameters(k_v=1.0, **values)
+    law = speed_washout.Washout()
     motions = [Motion(float(omega), float(omega), 0.0, 0.0) for omega in speeds]
     x, opposed = law.start(motions[0], 0.0, p), []
     for motion in motions:
-        x, addition = law.update(x, motion, lambda _, seen=motion: seen, 0.0, T_S, p)
+        x, addition = law.update(x, motion, motion, 0.0, T_S, p)
         opposed.append(-addition.damping)
     return np.array(opposed)
 
@@ -63,7 +65,7 @@ def test_the_washout_of_the_motor_speed_opposes_no_steady_acceleration(zeta_v: f
 
 
 @pytest.mark.parametrize("frequency", [1.0, 4.0, 30.0])
-@pytest.mark.parametrize(("omega_v", "zeta_v"), [(10.3, 0.426), (100.0, 2.0), (400.0, 10.0)])
+@pytest.mark.parametrize(("omega_v", "zeta_v"), [(9.5, 0.373), (100.0, 2.0), (400.0, 10.0)])
 def test_the_washout_has_the_response_of_second_order_that_it_states(
     frequency: float, omega_v: float, zeta_v: float
 ) -> None:
@@ -81,6 +83,20 @@ def test_for_a_large_damping_ratio_the_washout_is_one_of_first_order() -> None:
     k = np.arange(125)
     found = washed_out(np.where(k > 0, 1.0, 0.0), omega_v=1.0, zeta_v=10.0)[1:]
     assert found == pytest.approx(np.exp(-20.0 * T_S * k[:-1]), abs=0.03)
+
+
+def test_between_samples_measured_speeds_are_those_of_a_rigid_drive_train() -> None:
+    """Whose gear torque is that of the motor; that of the wheels stays, and fades to that of the motor without it."""
+    p = SimpleNamespace(J=2.0, t_fade=1.0, omega_max=500.0)
+    x = measured_speeds.SpeedState(omega_1=100.0, omega_2=96.0, T_mot=10.0, share=0.5)
+    for wheel, share in ((True, 0.75), (False, 0.25)):
+        later = measured_speeds.predict(x, -40.0, wheel, 0.25, cast(Any, p))
+        assert later == (95.0, 96.0, -40.0, share)
+        assert measured_speeds.motion(later, cast(Any, p)) == (95.0, 95.0 + share, 0.0, -40.0)
+    for side in (1.0, -1.0):
+        fast = x._replace(omega_1=side * 499.0)
+        for T_mot, omega_1 in ((8.0, 500.0), (8.1, 500.0), (7.0, 499.875)):
+            assert measured_speeds.predict(fast, side * T_mot, True, 0.25, cast(Any, p)).omega_1 == side * omega_1
 
 
 @pytest.mark.parametrize("omega_delta", [0.0, 20.0])
@@ -122,10 +138,16 @@ def test_the_paper_s_observer_is_ours_without_vehicle_and_load() -> None:
 
 
 def test_the_gear_torque_that_it_estimates_is_washed_out() -> None:
-    states = run(paper_observer.BLOCK, shaken(0.4), k_T=0.5, swing=1.0)
+    """That of the sample: what was expected, corrected by what came."""
+    inputs = shaken(0.4)
+    states = run(paper_observer.BLOCK, inputs, k_T=0.5, swing=1.0)
     p, slow = paper_observer.BLOCK.Parameters(k_T=0.5), states[0].law.washout
-    for x in states[1:]:
-        fed_back = 0.5 * p.C * dead_zone(x.estimator.estimate.phi, p.phi_B)
+    every = OURS.Parameters(**p._asdict() | LITERAL)
+    for before, x, u in zip(states, states[1:], inputs, strict=False):
+        e = torque_estimator.take_motor_speed(before.estimator, u.omega_1_meas, T_S, every)
+        if x.wheel.silence == 0.0:
+            e = torque_estimator.take_wheel_speed(e, u.omega_2_can, T_S, every)
+        fed_back = 0.5 * p.C * dead_zone(e.estimate.phi, p.phi_B)
         assert x.T_damp == pytest.approx(slow - fed_back, abs=1e-9)
         slow += p.omega_w * T_S * (fed_back - slow)
 
@@ -135,7 +157,8 @@ def test_the_linear_observer_is_ours_without_a_gap() -> None:
     states, p = run(linear_observer.BLOCK, inputs), linear_observer.BLOCK.Parameters()
     assert torques(states) == torques(run(OURS, inputs, **LINEAR, **state_feedback.GAINS))
     for x in states:
-        assert x.ahead.T_gear == p.C * x.ahead.phi
+        seen = linear_observer.BLOCK.output(x, inputs[0], p)
+        assert seen.T_gear_hat == p.C * seen.phi_hat
 
 
 @pytest.mark.parametrize(
@@ -143,7 +166,7 @@ def test_the_linear_observer_is_ours_without_a_gap() -> None:
     [
         (paper_observer.BLOCK, [*LITERAL, "k_gap", *state_feedback.NO_LANDING]),
         (linear_observer.BLOCK, LINEAR),
-        (perfect_state.BLOCK, ["L_phi", "Lw_phi", "T_age"]),
+        (perfect_state.BLOCK, ["L_phi", "Ls_phi", "L_can_phi", "T_age"]),
     ],
     ids=lambda value: getattr(value, "name", ""),
 )
@@ -158,9 +181,9 @@ def informed(inputs: list[Input], **truth: float) -> list[Any]:
 
 
 def test_perfect_signals_are_fed_back_as_they_are() -> None:
+    """Against what was fed back at the start: half the motor torque of 50.1 N.m."""
     states = run(perfect_state.BLOCK, informed(shaken(0.1)), T_pred=0.0, k_d=1.0, k_T=0.5, omega_w=0.0)
-    at_start = 0.5 * states[0].ahead.T_gear
-    assert [x.T_damp for x in states[1:]] == pytest.approx([at_start - (10.0 + 0.5 * 40.0)] * 50, abs=0.2)
+    assert [x.T_damp for x in states[1:]] == pytest.approx([0.5 * 50.1 - (10.0 + 0.5 * 40.0)] * 50, abs=1e-9)
 
 
 def test_what_is_measured_changes_nothing_of_what_perfect_signals_damp() -> None:

@@ -30,7 +30,7 @@ OPEN = NOISELESS | {
 }
 """The estimator takes its signals however far off they are, and nothing is done with what it finds."""
 
-NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Lw", "Ls") for state in Estimate._fields}
+NO_MOTOR_SPEED = {f"controller.{gain}_{state}": 0.0 for gain in ("L", "Ls") for state in Estimate._fields}
 NO_WHEEL_SPEED = {f"controller.L_can_{state}": 0.0 for state in Estimate._fields}
 NO_TORQUE = {"controller.J_1": 10.0}
 WHEEL_SPEED_HELD = NO_WHEEL_SPEED | {

@@ -20,7 +20,7 @@ def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.Ca
     assert lines[0].startswith(
         "# Gains of the DampingController for van.toml, by `driveline design` (driveline-damping"
     )
-    assert lines[1] == "# Drive train: 6.97 Hz; damped: 8.14 Hz, damping ratio 0.60."
+    assert lines[1] == "# Drive train: 6.97 Hz; damped: 8.15 Hz, damping ratio 0.60."
     expected = design(read_vehicle(VAN))
     assert tomllib.loads(text) == pytest.approx(expected, rel=1e-5)
     assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)

@@ -54,7 +54,6 @@ def test_values_are_those_of_the_default_car() -> None:
         (r"rad/s, and ([\d.]+) N·m of twist", sqrt(2.0 * 100.0 * 2.0 * LAW.phi_B * LAW.C)),
         (r"\$\\mathrm\{haste\}/\\omega_\\mathrm\{slow\}\$ \(([\d.]+) ms\)", 1e3 * LAW.haste / LAW.omega_slow),
         (r"\$h = T_s\$ of ([\d.]+) ms", 1e3 * T_S),
-        (r"the last ([\d.]+) values", torque_estimator.HISTORY),
     ],
 )
 def test_what_follows_is_computed_from_them(text: str, value: float) -> None:

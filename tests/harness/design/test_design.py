@@ -6,14 +6,23 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_discrete_are
 
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.commands.design import designed
 from driveline.harness.design.design import AUTHORITY, design, gains_of, literal_observer
 from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
-from driveline.harness.design.kalman import DesignError, motor_speed_gains, process_noise, speed_noise, transition
+from driveline.harness.design.kalman import (
+    DesignError,
+    message_gains,
+    motor_speed_gains,
+    process_noise,
+    speed_noise,
+    transition,
+)
 from driveline.harness.studies.margins.modes import swing
 from driveline.models.block.declaration import variables
+from driveline.models.controller.supervision import T_S
 from driveline.models.damping_controller import BLOCK
 from tests import ROOT
 
@@ -42,6 +51,29 @@ def test_the_gains_of_the_paper_s_observer_are_stationary_for_its_model() -> Non
     assert pytest.approx(L, rel=1e-6) == K
 
 
+@pytest.mark.parametrize("T_age", [T_S, 2.0 * T_S, 0.023])
+def test_a_message_in_every_sample_is_a_measurement_of_the_speed_behind_a_lag(T_age: float) -> None:
+    """Then the gains are those of the stationary filter with both measurements, for the state with the lag."""
+    train = drive_train(PLANT, MOTOR, CAN)
+    A, Q = transition(PLANT, train.lambda_v), process_noise(PLANT, MOTOR, train, WEIGHTS)
+    F, noise, H, R = np.zeros((5, 5)), np.zeros((5, 5)), np.eye(5)[[0, 4]], np.diag([speed_noise(MOTOR), 0.25])
+    F[:4, :4], noise[:4, :4] = A, Q
+    F[4] = [0.0, T_S / T_age, 0.0, 0.0, 1.0 - T_S / T_age]
+    P = solve_discrete_are(F.T, H.T, noise, R)
+    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + R)
+    assert message_gains(A, Q, R[0, 0], R[1, 1], T_age, cycle=1) == pytest.approx(K[:4, 1], rel=1e-6)
+
+
+@pytest.mark.parametrize("cycle", [1, 10])
+def test_the_rarer_a_message_the_more_it_tells(cycle: int) -> None:
+    """Of a speed that is a random walk, told with the age of a sample: the variance before a message is known."""
+    q, R = 0.5, 2.0
+    walked = cycle * q
+    m = 0.5 * (walked + sqrt(walked * walked + 4.0 * walked * R))
+    found = message_gains(np.eye(2), q * np.eye(2), 1.0, R, T_S, cycle)
+    assert found == pytest.approx([0.0, m / (m + R)])
+
+
 def test_the_controller_takes_its_defaults_from_the_design() -> None:
     defaults = BLOCK.Parameters()._asdict()
     for name, value in design().items():
@@ -65,7 +97,7 @@ def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float
     """All inertias, stiffness and torques larger by one factor: the same motions, torques larger by that factor."""
     plant = PLANT._replace(J_1=scale * PLANT.J_1, J_2=scale * PLANT.J_2, C=scale * PLANT.C, m=scale * PLANT.m)
     gains, default = gains_of(plant, MOTOR._replace(T_max=scale * MOTOR.T_max)), design()
-    with_torque = {"k_d", "T_gap", *AUTHORITY, *(f"{L}_T_l" for L in ("L", "Lw", "Ls", "L_can"))}
+    with_torque = {"k_d", "T_gap", *AUTHORITY, *(f"{L}_T_l" for L in ("L", "Ls", "L_can"))}
     for name, value in gains.items():
         assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
 
@@ -106,11 +138,15 @@ def test_a_slower_motor_is_looked_ahead_further_as_far_as_the_controller_can() -
 
 
 def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
-    """Washout, haste and return follow its frequencies, of which one is the motor's with it and one the vehicle's."""
-    stiff, default = gains_of(PLANT._replace(C=4.0 * PLANT.C)), design()
+    """Washout, haste and return follow its frequencies, of which one is the motor's with it and one the vehicle's.
+
+    As far as the controller can: it gives nothing back sooner than in a sample.
+    """
+    twice, stiff, default = (gains_of(PLANT._replace(C=factor * PLANT.C)) for factor in (2.0, 4.0, 1.0))
     assert stiff["omega_w"] == pytest.approx(2.0 * default["omega_w"], rel=STORED_DIGITS)
     assert stiff["omega_slow"] == pytest.approx(2.0 * default["omega_slow"], rel=STORED_DIGITS)
-    assert stiff["t_return"] == pytest.approx(0.5 * default["t_return"], rel=STORED_DIGITS)
+    assert twice["t_return"] == pytest.approx(sqrt(0.5) * default["t_return"], rel=STORED_DIGITS)
+    assert stiff["t_return"] == T_S > 0.5 * default["t_return"]
     assert stiff["t_land"] == pytest.approx(0.5 * default["t_land"], rel=STORED_DIGITS)
 
 

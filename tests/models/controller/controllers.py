@@ -38,7 +38,7 @@ class Washout:
         return WashoutState(motion.omega_1)
 
     def update(
-        self, x: WashoutState, motion: Motion, later: Any, T_driver: float, T_s: float, p: WashoutParameters
+        self, x: WashoutState, motion: Motion, expected: Any, T_driver: float, T_s: float, p: WashoutParameters
     ) -> tuple[WashoutState, Addition]:
         slow = washed_out(x.slow, motion.omega_1, p.omega_v, T_s)
         return WashoutState(slow), Addition(damping=-p.k_v * (motion.omega_1 - x.slow), landing=0.0)

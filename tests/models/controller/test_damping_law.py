@@ -1,7 +1,6 @@
 """The damping law: what it feeds back, washes out, limits, and how it lets the teeth land."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -9,9 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from driveline.models import damping_controller
+from driveline.models.block.declaration import Real, variables
 from driveline.models.controller import damping_law as law
 from driveline.models.controller.damping_law import LawState
 from driveline.models.controller.interfaces import Addition, Motion
+from driveline.models.controller.supervision import T_S as SAMPLE
 
 P = damping_controller.BLOCK.Parameters(
     phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, t_land=1.0, t_return=0.5
@@ -24,20 +25,16 @@ AFLOAT = STILL._replace(phi=0.0, T_gear=0.0)
 """The teeth between the flanks."""
 
 
-def staying(motion: Motion) -> Callable[[float], Motion]:
-    return lambda h: motion
-
-
 def added(motion: Motion, x: LawState, T_driver: float = 50.0, p: Any = P) -> float:
     """Torque in N.m that is added to the demand when the motion stays."""
-    return sum(law.update(x, motion, staying(motion), T_driver, T_S, p)[1])
+    return sum(law.update(x, motion, motion, T_driver, T_S, p)[1])
 
 
 def demanded(motions: list[Motion], T_driver: float, p: Any = P) -> list[float]:
     """T_ref in N.m of each sample under a demand that stays."""
     x, torques = law.start(motions[0], T_driver, p), []
     for motion in motions:
-        x, torque = law.update(x, motion, staying(motion), T_driver, T_S, p)
+        x, torque = law.update(x, motion, motion, T_driver, T_S, p)
         torques.append(T_driver + sum(torque))
     return torques
 
@@ -71,17 +68,35 @@ def test_the_speed_difference_counts_by_k_gap_between_the_flanks(side: float) ->
     assert added(between, law.start(AFLOAT, 2.0, P), 2.0) == -0.5 * 2.0 * 3.0
 
 
-def test_what_will_be_when_the_torque_acts_is_opposed() -> None:
-    asked = []
+@pytest.mark.parametrize("T_pred", [0.0, 0.125, 0.25, 0.5])
+def test_what_will_be_when_the_torque_acts_is_opposed(T_pred: float) -> None:
+    """T_pred ahead, be it between this sample and the next one, of 0.25 s, or beyond that."""
+    p = P._replace(T_pred=T_pred)
+    now, expected = STILL._replace(omega_1=101.0, T_gear=48.0), STILL._replace(omega_1=104.0, omega_2=99.0, T_gear=56.0)
+    opposed = 2.0 * (1.0 + 4.0 * T_pred * (5.0 - 1.0)) + 0.125 * (8.0 + 4.0 * T_pred * 8.0)
+    x, torque = law.update(law.start(STILL, 50.0, p), now, expected, 50.0, T_S, p)
+    assert torque == (-opposed, 0.0)
+    assert x.washout == 5.0 + 0.5 * opposed
 
-    def later(h: float) -> Motion:
-        asked.append(h)
-        return STILL._replace(omega_1=104.0)
 
-    x, torque = law.update(law.start(STILL, 50.0, P), STILL, later, 50.0, T_S, P)
-    assert asked == [P.T_pred]
-    assert torque == (-2.0 * 4.0, 0.0)
-    assert x.washout == 5.0 + 0.5 * 8.0
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_twist_too_is_taken_ahead(side: float) -> None:
+    """Where the teeth will touch T_pred ahead the speed difference counts in full, and there is no way left to land."""
+    now, x = AFLOAT._replace(omega_1=100.0 + side * 3.0), law.start(AFLOAT, 2.0, P)
+    for phi, k_d in ((math.nextafter(0.125, 0.0), 1.0), (0.125, 2.0)):
+        _, torque = law.update(x, now, now._replace(phi=side * phi), 2.0, T_S, P)
+        assert torque == (-side * k_d * 3.0, 0.0)
+    for phi, speed in ((0.0625, math.sqrt(64.0 + 2.0 * 18.0 * 0.125 / 0.25)), (0.125, 8.0), (0.5, 8.0)):
+        _, torque = law.update(x, AFLOAT, AFLOAT._replace(phi=side * phi), side * 16.0, T_S, P)
+        assert side * (side * 16.0 + sum(torque)) == pytest.approx(speed, rel=1e-9)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_landing_is_for_teeth_that_are_in_the_gap_now(side: float) -> None:
+    """Not for those that will be, and for those that will not be."""
+    x, touching = law.start(AFLOAT, 16.0, P), AFLOAT._replace(phi=side * 0.25)
+    assert law.update(x, AFLOAT, touching, 16.0, T_S, P)[0].afloat == T_S
+    assert law.update(x, touching, AFLOAT, 16.0, T_S, P)[0].afloat == 0.0
 
 
 def test_the_washout_forgets_what_stays() -> None:
@@ -89,14 +104,35 @@ def test_the_washout_forgets_what_stays() -> None:
     x, torques = law.start(STILL, 50.0, P), []
     for _ in range(4):
         turning = STILL._replace(omega_1=108.0)
-        x, torque = law.update(x, turning, staying(turning), 50.0, T_S, P)
+        x, torque = law.update(x, turning, turning, 50.0, T_S, P)
         torques.append(torque.damping)
     assert torques == [-16.0, -8.0, -4.0, -2.0]
 
 
-@pytest.mark.parametrize(("omega_w", "share"), [(3.5, 0.875), (4.0, 1.0), (4.5, 1.0)])
-def test_a_washout_faster_than_the_samples_takes_one(omega_w: float, share: float) -> None:
+@pytest.mark.parametrize(("omega_w", "share"), [(0.0, 0.0), (3.5, 0.875), (4.0, 1.0)])
+def test_the_washout_takes_its_share_of_what_is_new(omega_w: float, share: float) -> None:
     assert law.washed_out(10.0, 26.0, omega_w, T_S) == 10.0 + share * 16.0
+
+
+def test_no_washout_or_return_is_faster_than_a_sample() -> None:
+    """So that its share is at most 1, without a limit in the code."""
+    declared = {v.name: v.declaration for v in variables(damping_controller.BLOCK.Parameters)}
+    washout, slow, t_return = (declared[name] for name in ("omega_w", "omega_slow", "t_return"))
+    assert isinstance(washout, Real)
+    assert isinstance(slow, Real)
+    assert isinstance(t_return, Real)
+    assert (washout.maximum, slow.maximum, t_return.minimum) == (400.0, 400.0, SAMPLE)
+    assert 400.0 * SAMPLE < 1.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_damping_is_limited_to_t_add_max_both_ways(side: float) -> None:
+    """And the washout goes on by what would be opposed without a limit."""
+    for turning, damping in ((29.5, 59.0), (30.0, 60.0), (30.5, 60.0), (1e6, 60.0)):
+        motion = STILL._replace(omega_1=100.0 + side * turning)
+        x, torque = law.update(law.start(STILL, 50.0, P), motion, motion, 50.0, T_S, P._replace(T_add_max=60.0))
+        assert torque == (-side * damping, 0.0)
+        assert x.washout == 5.0 + side * turning
 
 
 @pytest.mark.parametrize("omega", [-8.0, 0.0, 3.0, 12.0])
@@ -116,6 +152,12 @@ def test_the_nearer_the_flank_the_slower() -> None:
         assert demanded([motion._replace(phi=-motion.phi)], -16.0) == [-demanded([motion], 16.0)[0]]
 
 
+def test_a_stiffer_drive_train_is_landed_in_more_slowly() -> None:
+    """Four times as stiff, with half the speed: 16 N.m allow 4 rad/s."""
+    at_the_flank = AFLOAT._replace(phi=math.nextafter(0.25, 0.0))
+    assert demanded([at_the_flank], 16.0, P._replace(C=4.0 * P.C)) == [pytest.approx(4.0, rel=1e-9)]
+
+
 def test_the_motor_is_not_driven_towards_the_flank_with_more_than_the_demand() -> None:
     """Unless it goes the other way: then with what brakes it."""
     assert demanded([AFLOAT._replace(omega_1=97.0)], 4.0) == [4.0]
@@ -128,7 +170,7 @@ def test_a_demand_that_rises_will_rise_further(side: float) -> None:
     p, x = P._replace(haste=2.0), law.start(AFLOAT, -side * 2.0, P)
     torques = []
     for _ in range(3):
-        x, torque = law.update(x, AFLOAT, staying(AFLOAT), side * 2.5, T_S, p)
+        x, torque = law.update(x, AFLOAT, AFLOAT, side * 2.5, T_S, p)
         torques.append(side * (side * 2.5 + sum(torque)))
     expected = [min(math.sqrt((0.5 * T) ** 2 + 9.0 * T / 4.0), T) for T in (2.5 + 9.0, 2.5 + 4.5, 2.5 + 2.25)]
     assert torques == pytest.approx(expected)
@@ -140,8 +182,8 @@ def test_a_demand_that_falls_to_zero_is_not_led_through_the_gap_before_it_has_tu
     for T_driver in (4.0, 2.0, 0.0, -2.0):
         assert added(AFLOAT, x, T_driver, p) == 0.0
     assert added(AFLOAT, x, -just_above(2.0), p) == pytest.approx(-8.0)
-    assert law.update(x, AFLOAT, staying(AFLOAT), 20.0, T_S, p)[0].afloat == 0.0
-    assert law.update(x, AFLOAT, staying(AFLOAT), 21.0, T_S, p)[0].afloat == T_S
+    assert law.update(x, AFLOAT, AFLOAT, 20.0, T_S, p)[0].afloat == 0.0
+    assert law.update(x, AFLOAT, AFLOAT, 21.0, T_S, p)[0].afloat == T_S
 
 
 @pytest.mark.parametrize("T_driver", [0.0, 2.0, -2.0])
@@ -149,10 +191,10 @@ def test_without_a_demand_there_is_no_landing(T_driver: float) -> None:
     """T_still is none; a car that stands in its gap waits for the demand of its launch, however long."""
     x = law.start(AFLOAT, T_driver, P)
     for _ in range(20):
-        x, torque = law.update(x, AFLOAT, staying(AFLOAT), T_driver, T_S, P)
+        x, torque = law.update(x, AFLOAT, AFLOAT, T_driver, T_S, P)
         assert torque == (0.0, 0.0)
     assert x.afloat == 0.0
-    assert law.update(x, AFLOAT, staying(AFLOAT), just_above(2.0), T_S, P)[0].afloat == T_S
+    assert law.update(x, AFLOAT, AFLOAT, just_above(2.0), T_S, P)[0].afloat == T_S
     assert added(AFLOAT, x, -16.0) == -10.0 + 16.0
 
 
@@ -165,23 +207,22 @@ def test_the_teeth_have_t_land_to_land() -> None:
 
 
 def test_what_was_withheld_comes_back_after_contact() -> None:
-    """With a time constant below the sample time in one."""
+    """With a time constant of the sample time in one."""
     touching = [AFLOAT] * 2 + [STILL._replace(T_gear=0.0)] * 3
-    assert demanded(touching, 16.0) == pytest.approx([10.0, 10.0, 10.0, 13.0, 14.5])
-    for t_return in (0.0, 0.125, 0.25):
-        assert demanded(touching, 16.0, P._replace(t_return=t_return)) == pytest.approx([10.0] * 3 + [16.0] * 2)
+    for t_return, back in ((1.0, [11.5, 12.625]), (0.5, [13.0, 14.5]), (T_S, [16.0, 16.0])):
+        assert demanded(touching, 16.0, P._replace(t_return=t_return)) == pytest.approx([10.0] * 3 + back)
 
 
 def test_teeth_that_touched_may_land_again() -> None:
     touching = STILL._replace(T_gear=0.0)
-    torques = demanded([AFLOAT] * 9 + [touching] + [AFLOAT] * 5, 16.0, P._replace(t_return=0.0))
+    torques = demanded([AFLOAT] * 9 + [touching] + [AFLOAT] * 5, 16.0, P._replace(t_return=T_S))
     assert torques == pytest.approx([10.0] * 5 + [16.0] * 5 + [10.0] * 5)
 
 
 def test_the_time_afloat_is_counted_no_further_than_needed() -> None:
     x = law.start(AFLOAT, 16.0, P)
     for _ in range(20):
-        x, _ = law.update(x, AFLOAT, staying(AFLOAT), 16.0, T_S, P)
+        x, _ = law.update(x, AFLOAT, AFLOAT, 16.0, T_S, P)
     assert x.afloat == P.t_land + T_S
 
 
@@ -189,7 +230,7 @@ def test_the_landing_stands_for_the_damping_too() -> None:
     """And is right about a damping that is limited."""
     for omega in (4.0, 100.0):
         motion = AFLOAT._replace(omega_1=100.0 + omega)
-        _, torque = law.update(law.start(AFLOAT, 16.0, P), motion, staying(motion), 16.0, T_S, P)
+        _, torque = law.update(law.start(AFLOAT, 16.0, P), motion, motion, 16.0, T_S, P)
         assert torque == pytest.approx(
             Addition(damping=-min(omega, P.T_add_max), landing=-6.0 - max(0.0, omega - 60.0))
         )

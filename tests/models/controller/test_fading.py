@@ -1,27 +1,30 @@
-"""Fading: even, as long as said, and no further than the target."""
-
-from types import SimpleNamespace
+"""Fading: even, as long as said, and no further than to the end."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.models.controller.fading import toward
+from driveline.models.controller.fading import faded
 
-P = SimpleNamespace(t_fade=1.0)
 T_S = 0.25
 
 
-@pytest.mark.parametrize(("value", "target"), [(0.0, 1.0), (1.0, 0.0)])
-def test_from_one_end_to_the_other_takes_the_time_to_fade(value: float, target: float) -> None:
-    values = []
+@pytest.mark.parametrize("on", [True, False])
+def test_from_one_end_to_the_other_takes_the_time_to_fade(on: bool) -> None:
+    level, end = (0.0, 1.0) if on else (1.0, 0.0)
+    left = []
     for _ in range(5):
-        value = toward(value, target, T_S, P.t_fade)
-        values.append(abs(target - value))
-    assert values == [0.75, 0.5, 0.25, 0.0, 0.0]
+        level = faded(level, on, T_S, 1.0)
+        left.append(abs(end - level))
+    assert left == [0.75, 0.5, 0.25, 0.0, 0.0]
 
 
-@given(value=st.floats(0.0, 1.0), target=st.floats(0.0, 1.0), t_fade=st.floats(0.002, 5.0))
-def test_the_target_is_never_passed(value: float, target: float, t_fade: float) -> None:
-    nearer = toward(value, target, 0.002, t_fade)
-    assert min(value, target) - 1e-15 <= nearer <= max(value, target) + 1e-15
+def test_from_between_the_ends_a_step_is_as_large() -> None:
+    assert (faded(0.375, True, T_S, 0.5), faded(0.625, False, T_S, 0.5)) == (0.875, 0.125)
+    assert (faded(0.625, True, T_S, 0.5), faded(0.375, False, T_S, 0.5)) == (1.0, 0.0)
+
+
+@given(level=st.floats(0.0, 1.0), t_fade=st.floats(0.002, 5.0))
+def test_the_ends_are_never_passed(level: float, t_fade: float) -> None:
+    assert level <= faded(level, True, 0.002, t_fade) <= 1.0
+    assert 0.0 <= faded(level, False, 0.002, t_fade) <= level

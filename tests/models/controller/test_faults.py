@@ -12,6 +12,7 @@ from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.studies.coupling import monolithic
 from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.block.types import ContinuousBlock
+from driveline.models.controller.causes import WRONG_LAUNCH
 from driveline.models.controller.supervision import FALLBACK
 from tests.slow import slow
 
@@ -95,5 +96,6 @@ def test_a_launch_with_a_motor_speed_of_the_wrong_sign_does_not_shake_the_gear(
     y, alone = launched(plant, rise, wrong=True), launched(plant, rise, enable=False)
     fallback = y["controller.status"] == FALLBACK
     assert all(fallback[(y["time"] > 0.2) & (y["time"] < 0.8)])
+    assert set(y["controller.cause"][fallback]) == {WRONG_LAUNCH}
     shaken, usual = (band_rms(run["plant.T_gear"], monolithic.INTERVAL) for run in (y, alone))
     assert shaken < 1.2 * usual

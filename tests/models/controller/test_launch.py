@@ -4,9 +4,12 @@ import math
 
 import pytest
 
-from driveline.models.controller import launch
+from driveline.models.controller import launch, supervision
+from driveline.models.controller.causes import NONE, WRONG_LAUNCH
 from driveline.models.controller.launch import LaunchState
-from driveline.models.controller.supervision import Parameters
+from driveline.models.controller.supervision import Input, Parameters, State
+from driveline.models.controller.supervision_interface import added_speed
+from tests.models.controller.controllers import OURS
 
 P = Parameters(T_max=1.0, J_1=0.25, T_still=0.25, free=4.5)
 T_S = 0.25
@@ -82,3 +85,78 @@ def test_it_is_the_demand_that_ends_the_rest(side: float) -> None:
 def test_torque_against_the_demand_does_not_count(side: float) -> None:
     assert after([0.0], T_driver=side * 0.5, T_mot=side * 2.0)[0].free == side * 2.0
     assert after([0.0], T_driver=side * 0.5, T_mot=-side * 2.0)[0].free == 0.0
+
+
+@each_side
+def test_torque_against_the_demand_is_left_out(side: float) -> None:
+    """However the motor turns meanwhile, and without an end of the launch."""
+    x, _ = after(against(side)[:4], T_mot=side * 0.5)
+    y, found = after([99.0, -99.0], x, T_mot=-side * 0.5, T_driver=side * 0.5)
+    assert (y, found) == (x, [False, False])
+    assert after(against(side)[4:], y, T_mot=side * 0.5)[1] == [False] * 4 + [True]
+    nearly, _ = after(against(side)[:8], T_mot=side * 0.5)
+    assert after([-side * 4.25], nearly, T_mot=side * 0.5, T_driver=-side * 0.5) == (nearly, [False])
+
+
+@each_side
+def test_how_far_it_is_off_is_what_the_motor_differs_from_the_mean_speed_in_the_sample(side: float) -> None:
+    for omega_1, free, off in ((1.0, 0.0, 0.625), (-1.0, 0.0, 0.375), (1.0, 1.0, 1.125), (-2.0, 1.0, 0.375)):
+        x, _ = after([side * omega_1], LaunchState(side * free, 0.25), T_mot=side * 0.5)
+        assert x == LaunchState(side * (free + 0.5), 0.25 + off)
+
+
+CAR = OURS.Parameters()
+
+
+def set_off(side: float) -> list[State]:
+    """States of the controller as a free motor sets off against its torque, up to when it is looked at."""
+    states, omega_1 = [OURS.start(Input(), CAR)], 0.0
+    while len(states) == 1 or abs(states[-1].launch.free) < CAR.free * added_speed(CAR, supervision.T_S):
+        gained = -supervision.T_S * states[-1].motor.loop.T_mot / CAR.J_1
+        states += driven(states[-1], side, [omega_1 + 0.5 * gained])
+        omega_1 += gained
+    return states
+
+
+def driven(x: State, side: float, speeds: list[float]) -> list[State]:
+    """States after samples with these motor speeds, where the motor has the torque demanded of it."""
+    states = [x]
+    for omega_1 in speeds:
+        u = Input(T_driver=side * 60.0, omega_1_meas=omega_1, T_mot_est=states[-1].motor.loop.T_mot)
+        states.append(OURS.update(states[-1], u, CAR))
+    return states[1:]
+
+
+@each_side
+def test_trust_is_lost_at_once(side: float) -> None:
+    states = set_off(side)
+    assert [x.trust.cause for x in states] == [NONE] * (len(states) - 1) + [WRONG_LAUNCH]
+    assert (states[-1].trust.clock, states[-1].trust.direction) == (0.0, side)
+
+
+@each_side
+def test_trust_is_back_once_the_motor_turns_the_other_way_or_rests_and_not_before(side: float) -> None:
+    """Other wrong directions heal in t_turn."""
+    turning = [-side * (3.5 + 0.01 * (-1.0) ** k) for k in range(2 * round(CAR.t_turn / supervision.T_S))]
+    states = driven(set_off(side)[-1], side, turning)
+    assert {(x.trust.cause, x.trust.clock) for x in states} == {(WRONG_LAUNCH, 0.0)}
+    proof, still = round(CAR.t_proof / supervision.T_S), CAR.omega_still
+    beyond = math.nextafter(still, math.inf)
+    for omega_1, other, heals in (
+        (3.5, 3.6, True),
+        (beyond, 3.1, True),
+        (-still, -2.9, True),
+        (-beyond, -3.1, False),
+    ):
+        speeds = [side * (other if k % 2 else omega_1) for k in range(proof)]
+        causes = [x.trust.cause for x in driven(states[-1], side, speeds)]
+        assert causes == [WRONG_LAUNCH] * (proof - 1) + [NONE if heals else WRONG_LAUNCH]
+
+
+@each_side
+def test_the_direction_is_that_of_the_demand_even_if_it_ends_in_that_sample(side: float) -> None:
+    before, found = set_off(side)[-2:]
+    u = Input(T_driver=side * 1.0, omega_1_meas=found.motor.omega_1, T_mot_est=before.motor.loop.T_mot)
+    x = OURS.update(before, u, CAR)
+    assert abs(u.T_driver) < CAR.T_still
+    assert (x.trust.cause, x.trust.direction, x.launch.free > 0.0) == (WRONG_LAUNCH, side, True)

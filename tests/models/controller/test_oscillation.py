@@ -77,9 +77,27 @@ def test_one_half_swing_may_follow_a_change_of_the_demand(side: float) -> None:
         assert after([0.0] * 8, x=x).count == 0.0
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_peak_of_a_half_swing_has_its_sign(side: float) -> None:
+    """It is the largest torque since the last change of side; what is too small for a half swing changes nothing."""
+    more = math.nextafter(PEAK, math.inf)
+    for torques, peak in (
+        ([PEAK], 0.0),
+        ([more], more),
+        ([20.0, 15.0], 20.0),
+        ([20.0, 25.0], 25.0),
+        ([20.0, 0.0], 20.0),
+        ([20.0, -PEAK], 20.0),
+        ([20.0, -more], -more),
+        ([20.0, -14.0, -13.0], -14.0),
+        ([20.0, -14.0, -40.0, 13.0], 13.0),
+    ):
+        assert after([side * torque for torque in torques]).peak == side * peak
+
+
 def test_nothing_is_counted_while_there_is_no_damping() -> None:
     x = oscillation.update(after([20.0]), -20.0, 0.0, False, T_S, P)
-    assert x == oscillation.start() == SwingState(0.0, 0.0, 0.0, 0.0)
+    assert x == oscillation.start() == SwingState(peak=0.0, enough=0.0, count=0.0)
 
 
 @pytest.mark.parametrize(("amplitude", "growth"), [(30.0, 1.0), (13.0, 1.1), (30.0, 0.9)])
@@ -108,3 +126,9 @@ def test_an_oscillation_that_is_damped_is_not_found() -> None:
 def test_there_is_less_damping_from_one_half_swing_on_and_none_from_two() -> None:
     shares = [oscillation.share(oscillation.start()._replace(count=count)) for count in (-1.0, 1.0, 1.5, 2.0, 5.5)]
     assert shares == [1.0, 1.0, 0.5, 0.0, 0.0]
+
+
+def test_the_damping_is_less_from_just_above_one_half_swing_on() -> None:
+    for count, less in ((-1.0, False), (1.0, False), (math.nextafter(1.0, 2.0), True), (2.0, True), (5.5, True)):
+        x = oscillation.start()._replace(count=count)
+        assert (oscillation.is_less(x), oscillation.share(x) < 1.0) == (less, less)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from driveline.models.block.declaration import Enumeration, variables
 from driveline.models.block.types import SampledBlock
-from driveline.models.controller import causes, supervision
+from driveline.models.controller import causes, supervision, torque_loop
 from driveline.models.controller.supervision import (
     FALLBACK,
     OFF,
@@ -64,7 +64,7 @@ def test_the_torque_is_finite_and_limited_whatever_comes_in(
     block: SampledBlock, inputs: list[Input], T_max: float
 ) -> None:
     for x in run(block, inputs, T_max=T_max):
-        y = block.output(x, inputs[0], None)
+        y = block.output(x, inputs[0], block.Parameters()._replace(T_max=T_max))
         assert all(math.isfinite(value) for value in y)
         assert abs(y.T_ref) <= T_max
         assert y.status in (1, 2, 3, 4)
@@ -174,7 +174,7 @@ def started(u: Input = ROLLING, **parameters: float) -> tuple[State, Any]:
 
 
 def test_it_starts_with_the_demand_and_what_is_measured() -> None:
-    x, _ = started()
+    x, p = started()
     assert (x.T_ref, x.T_damp, x.quiet, x.level, x.status) == (
         50.0,
         0.0,
@@ -184,7 +184,7 @@ def test_it_starts_with_the_demand_and_what_is_measured() -> None:
     )
     assert x.estimator == (150.0, 150.0, 50.0, 1.0)
     assert x.law == (150.0,)
-    assert (x.ahead.omega_1, x.ahead.T_gear) == (150.0, 50.0)
+    assert OTHER.output(x, ROLLING, p).T_gear_hat == 50.0
 
 
 def test_it_starts_in_the_mode_that_it_is_asked_for() -> None:
@@ -198,22 +198,30 @@ def test_a_car_that_stands_at_the_start_is_at_rest() -> None:
     standing = Input(T_driver=2.0, omega_1_meas=3.0, T_mot_est=0.0)
     x, p = started(standing)
     assert x.quiet == p.t_rest + p.t_fade
-    assert OTHER.update(x, standing, p).estimator[:3] == (0.0, 0.0, 0.0)
+    x = OTHER.update(x, standing, p)
+    T_mot = 0.5 * x.motor.loop.T_mot
+    assert x.estimator[:3] == (T_S * T_mot / p.J, 0.0, T_mot), "from rest on, under what is demanded"
+    assert OTHER.update(x, standing, p).estimator.omega_1 < 2.0 * T_S * standing.T_driver / p.J, (
+        "and again from rest on"
+    )
     assert started(standing._replace(T_driver=2.1))[0].quiet == 0.0
 
 
-def test_the_estimator_is_predicted_under_the_mean_torque_of_the_sample() -> None:
-    """Seen where no measured speed takes its place."""
-    x, p = started()
-    x = OTHER.update(x, ROLLING._replace(T_mot_est=70.0, omega_1_meas=math.nan), p)
-    assert x.estimator.omega_1 == 150.0 + T_S * 60.0 / p.J
-    assert x.motor.omega_1 == x.estimator.omega_1
+def test_the_estimator_is_predicted_under_the_torque_that_the_motor_has_and_will_have() -> None:
+    """Half of the change until the next sample acts; a speed that is no number is the predicted one."""
+    x, p = started(ROLLING._replace(T_driver=70.0))
+    loop = torque_loop.update(x.motor.loop, 70.0, T_S, p)
+    assert loop.T_mot - x.motor.loop.T_mot > 2.0
+    y = OTHER.update(x, ROLLING._replace(T_driver=70.0, T_mot_est=51.0, omega_1_meas=math.nan), p)
+    assert y.motor.omega_1 == x.estimator.omega_1
+    T_mot = 51.0 + 0.5 * (loop.T_mot - x.motor.loop.T_mot)
+    assert y.estimator[:3] == (y.motor.omega_1 + T_S * T_mot / p.J, 150.0, T_mot)
 
 
-def test_the_motion_shown_is_ahead_by_a_sample_under_the_present_torque() -> None:
+def test_the_motion_shown_is_ahead_by_a_sample() -> None:
     x, p = started()
     x = OTHER.update(x, ROLLING._replace(T_mot_est=70.0, omega_1_meas=151.0, omega_2_can=149.0, counter=1), p)
-    assert x.ahead == (151.0 + T_S * 70.0 / p.J, 149.0, 0.0, 70.0)
+    assert x.estimator == (151.0 + T_S * 70.0 / p.J, 149.0, 70.0, 1.0)
     y = OTHER.output(x, ROLLING, p)
     assert (y.T_ref, y.T_damp, y.status) == (x.T_ref, x.T_damp, WITH_WHEEL_SPEED)
     assert (y.T_gear_hat, y.phi_hat, y.omega_2_hat) == (70.0, 0.0, 149.0)
@@ -280,20 +288,21 @@ def test_in_fallback_the_estimator_starts_anew_from_what_it_gets() -> None:
     """From any plausible speed, however far from the estimate; it is trusted when it has proved itself."""
     x, p = started(ROLLING._replace(valid=False), t_bad=2.0 * T_S, t_proof=3.0 * T_S, k_v=1.0, omega_v=0.0)
     statuses, slow = [], []
-    for k in range(7):
+    for k in range(8):
         x = OTHER.update(x, ROLLING._replace(valid=False, omega_1_meas=300.0 + k, T_mot_est=60.0 + k), p)
         statuses.append(x.status)
         slow.append(x.law.slow)
-    assert statuses == [WITHOUT_WHEEL_SPEED] * 2 + [FALLBACK] * 3 + [WITHOUT_WHEEL_SPEED] * 2
-    assert slow == [150.0] * 2 + [302.0] + [303.0] * 4, "the law starts anew with the first good sample"
-    assert x.estimator.omega_1 == 306.0
+    assert statuses == [WITHOUT_WHEEL_SPEED] * 2 + [FALLBACK] * 4 + [WITHOUT_WHEEL_SPEED] * 2
+    assert slow[:2] == [150.0] * 2
+    assert slow[3:] == [303.0] + [304.0] * 4, "the law starts anew with the first good sample"
+    assert x.motor.omega_1 == 307.0
 
 
 def test_what_is_no_number_gives_estimator_and_law_a_new_start_when_it_is_over() -> None:
     x, p = started(ROLLING._replace(valid=False), t_bad=0.0, k_v=1.0, omega_v=0.0)
     for k, omega_1 in enumerate([math.nan] * 3 + [152.0] * 2):
         x = OTHER.update(x, ROLLING._replace(valid=False, omega_1_meas=omega_1, T_mot_est=50.0 + k), p)
-    assert (x.estimator.omega_1, x.law.slow) == (152.0, 152.0)
+    assert (x.motor.omega_1, x.law.slow) == (152.0, 152.0)
 
 
 def test_a_wheel_speed_that_contradicts_the_motor_speed_leads_to_fallback() -> None:
@@ -382,10 +391,11 @@ def test_no_more_is_taken_and_added_than_is_said_whatever_comes_in(
 
 
 def test_the_part_of_the_landing_is_shown() -> None:
-    """And fades as the whole does; `T_max` is so large that the motor need not have what is demanded."""
+    """And fades as the whole does; `T_max` is so large that the motor need not have what is demanded, and
+    `tau` so long that it need not begin to."""
     afloat = ROLLING._replace(T_driver=120.0, T_mot_est=0.0)
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(40)]
-    still = {"frozen": 1000.0, "T_max": 2000.0, "T_pred": 0.0}
+    still = {"frozen": 1000.0, "T_max": 2000.0, "T_pred": 0.0, "tau": 10.0}
     states = run(OURS, inputs, **still, T_take_max=50.0)
     assert {x.T_landing for x in states[2:30]} == {-50.0}, "no more than may be taken"
     whole = run(OURS, inputs, **still)[2].T_landing
@@ -393,13 +403,13 @@ def test_the_part_of_the_landing_is_shown() -> None:
     fading = run(OURS, [u._replace(enable=k < 10) for k, u in enumerate(inputs)], **still)
     for x in fading[1:40]:
         assert x.T_landing == pytest.approx(whole * x.level, abs=1e-3)
-        assert OURS.output(x, afloat, None).T_landing == x.T_landing
+        assert OURS.output(x, afloat, OURS.Parameters()).T_landing == x.T_landing
 
 
 def test_in_fallback_the_wheel_speed_is_not_in_use() -> None:
     x, p = started(ROLLING, t_bad=0.0)
     x = OTHER.update(x, ROLLING._replace(T_mot_est=math.nan), p)
-    assert (x.status, x.estimator) == (FALLBACK, (150.0, 150.0, 50.0, 1.0 - T_S / p.t_fade))
+    assert (x.status, x.estimator.share) == (FALLBACK, 1.0 - T_S / p.t_fade)
 
 
 def test_the_state_moves_by_one_sample_a_sample() -> None:
@@ -408,7 +418,7 @@ def test_the_state_moves_by_one_sample_a_sample() -> None:
         OTHER, [u._replace(T_driver=50.0 + 0.01 * k**2) for k, u in enumerate(shaken(0.1))], swing=0.0, excuse=5.0
     )
     for a, b in pairwise(states[1:]):
-        for name in ("estimator", "law", "motor", "wheel", "swings", "T_ref", "T_damp", "ahead"):
+        for name in ("estimator", "law", "motor", "wheel", "swings", "T_ref", "T_damp"):
             assert getattr(a, name) != getattr(b, name), name
 
 

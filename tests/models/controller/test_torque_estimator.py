@@ -9,7 +9,7 @@ from driveline.models import damping_controller
 from driveline.models.block.declaration import Real, variables
 from driveline.models.controller import torque_estimator as estimator
 from driveline.models.controller.supervision import T_S
-from driveline.models.controller.torque_estimator import HISTORY, Estimate, EstimatorState
+from driveline.models.controller.torque_estimator import Estimate, EstimatorState
 from tests.models.controller.controllers import ROLLING
 
 BLOCK = damping_controller.BLOCK
@@ -17,9 +17,9 @@ P = BLOCK.Parameters()
 IN_CONTACT = Estimate(omega_1=150.0, omega_2=148.0, phi=P.phi_B + 50.0 / P.C, T_l=-3.0)
 
 
-def estimating(e: Estimate, share: float = 1.0) -> EstimatorState:
+def estimating(e: Estimate, share: float = 1.0, late: float = 0.0) -> EstimatorState:
     """With the speeds of the estimate counted from 0."""
-    return EstimatorState(0.0, e, past=(e.omega_2,) * HISTORY, share=share, drift=0.0, slip=0.0)
+    return EstimatorState(0.0, e, late=late, share=share, drift=0.0, slip=0.0)
 
 
 def estimate(x: EstimatorState) -> Estimate:
@@ -70,20 +70,18 @@ def test_the_smallest_torque_bears_on_its_flank() -> None:
 def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
     with_wheel, without = (estimator.start(120.0, 10.0, wheel, P) for wheel in (True, False))
     assert (with_wheel.share, without.share) == (1.0, 0.0)
-    assert with_wheel.past == without.past == (120.0,) * HISTORY
+    assert with_wheel.late == without.late == 120.0
 
 
-def test_a_new_start_forgets_the_estimate_alone() -> None:
-    x = EstimatorState(140.0, IN_CONTACT, past=tuple(map(float, range(HISTORY))), share=0.25, drift=1.0, slip=0.5)
-    repeated = estimator.restart(x, 90.0, -20.0, P)
-    assert repeated == x._replace(
-        base=90.0, estimate=estimator.start(90.0, -20.0, True, P).estimate, drift=0.0, slip=0.0
-    )
+def test_a_new_start_keeps_the_mode_alone() -> None:
+    x = EstimatorState(140.0, IN_CONTACT, late=130.0, share=0.25, drift=1.0, slip=0.5)
+    for wheel in (True, False):
+        fresh = estimator.start(90.0, -20.0, wheel, P)
+        assert estimator.restart(x, 90.0, -20.0, P) == fresh._replace(share=0.25)
 
 
 GAINS = P._replace(
     L_omega_1=0.5, L_omega_2=0.25, L_phi=-0.0625, L_T_l=1.0,
-    Lw_omega_1=1.0, Lw_omega_2=0.5, Lw_phi=-0.03125, Lw_T_l=2.0,
     Ls_omega_1=0.25, Ls_omega_2=1.0, Ls_phi=-0.125, Ls_T_l=8.0, slip_drift=100.0, slip_load=4.0,
     L_can_omega_1=0.0625, L_can_omega_2=0.75, L_can_phi=-0.015625, L_can_T_l=4.0,
 )  # fmt: skip
@@ -91,23 +89,17 @@ GAINS = P._replace(
 E_0 = Estimate(omega_1=150.0, omega_2=148.0, phi=0.5, T_l=-3.0)
 
 
-@pytest.mark.parametrize(
-    ("share", "correction"),
-    [
-        (0.0, (2.0, 1.0, -0.25, 4.0)),
-        (1.0, (4.0, 2.0, -0.125, 8.0)),
-        (0.5, (3.0, 1.5, -0.1875, 6.0)),
-    ],
-)
-def test_the_motor_speed_corrects_with_the_gains_of_the_mode(share: float, correction: tuple[float, ...]) -> None:
-    """4 rad/s above the estimate."""
-    x = estimator.take_motor_speed(estimating(E_0, share), 154.0, T_S, GAINS)
-    assert x.base == 154.0
-    corrected = estimating(advanced(E_0, 1.0, Estimate(*correction)), share)
-    assert x._replace(base=0.0, estimate=estimate(x)) == corrected._replace(past=x.past, drift=x.drift)
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("error", [4.0, -4.0])
+def test_the_motor_speed_corrects_with_the_same_gains_with_and_without_messages(share: float, error: float) -> None:
+    """4 rad/s above the estimate or below it; what a message is compared with waits for the end of the sample."""
+    x = estimator.take_motor_speed(estimating(E_0, share, late=140.0), 150.0 + error, T_S, GAINS)
+    assert x.base == 150.0 + error
+    corrected = estimating(advanced(E_0, error, Estimate(0.5, 0.25, -0.0625, 1.0)), share, late=140.0)
+    assert x._replace(base=0.0, estimate=estimate(x)) == corrected._replace(drift=x.drift)
 
 
-@pytest.mark.parametrize(("slip", "correction"), [(1.0, (1.0, 4.0, -0.5, 32.0)), (0.5, (2.5, 3.0, -0.3125, 20.0))])
+@pytest.mark.parametrize(("slip", "correction"), [(1.0, (1.0, 4.0, -0.5, 32.0)), (0.5, (1.5, 2.5, -0.375, 18.0))])
 def test_while_the_wheels_slip_the_load_may_change_fast(slip: float, correction: tuple[float, ...]) -> None:
     """With the gains for slip, half of them when half of it is forgotten; 4 rad/s above the estimate."""
     x = estimating(E_0)._replace(slip=slip)
@@ -148,7 +140,9 @@ def test_what_the_speeds_are_counted_from_is_of_no_account(base: float) -> None:
     moved = x._replace(base=base, estimate=estimator.counted_from(base, E_0))
     assert estimator.motion(moved, GAINS) == estimator.motion(x, GAINS)
     assert estimator.take_motor_speed(moved, 154.0, T_S, GAINS) == estimator.take_motor_speed(x, 154.0, T_S, GAINS)
-    assert estimator.finish(moved, True, T_S, GAINS).past == estimator.finish(x, True, T_S, GAINS).past
+    later, expected = (estimator.predict(y, 60.0, True, T_S, GAINS) for y in (moved, x))
+    assert later.late == expected.late
+    assert estimate(later) == pytest.approx(expected.estimate, rel=1e-12)
 
 
 def test_after_a_sample_the_speeds_are_counted_from_the_measured_one() -> None:
@@ -161,94 +155,127 @@ def test_after_a_sample_the_speeds_are_counted_from_the_measured_one() -> None:
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_a_message_corrects_as_far_as_the_wheel_speed_is_in_use(share: float) -> None:
-    """It is 4 rad/s above the estimate of its time."""
-    x = estimating(E_0, share)._replace(past=(140.0,) * HISTORY)
-    e = estimator.take_wheel_speed(x, 144.0, T_S, GAINS).estimate
-    assert e == advanced(E_0, 4.0 * share, Estimate(0.0625, 0.75, -0.015625, 4.0))
+    """It is 4 rad/s above what it should tell, or below."""
+    x = estimating(E_0, share, late=140.0)
+    for error in (4.0, -4.0):
+        e = advanced(E_0, error * share, Estimate(0.0625, 0.75, -0.015625, 4.0))
+        assert estimator.take_wheel_speed(x, 140.0 + error, T_S, GAINS) == x._replace(estimate=e)
 
 
-@pytest.mark.parametrize(("samples", "estimate"), [(1, 100.0), (2, 104.0), (2.5, 106.0), (HISTORY, 296.0)])
-def test_a_message_is_compared_with_the_estimate_of_its_time(samples: float, estimate: float) -> None:
-    x = estimating(E_0)._replace(past=tuple(100.0 + 4.0 * k for k in range(HISTORY)))
-    p = GAINS._replace(T_age=samples * 0.25)
-    assert estimator.take_wheel_speed(x, estimate, 0.25, p).estimate == E_0
+def test_a_message_is_compared_with_the_estimate_behind_a_lag_of_its_age() -> None:
+    """In which the estimate of a sample takes part from the next one on."""
+    p, x, told = GAINS._replace(T_age=1.0), estimating(E_0, late=140.0), []
+    for omega_2 in (148.0, 148.0, 136.0):
+        x = estimator.predict(x._replace(estimate=E_0._replace(omega_2=omega_2)), 0.0, True, 0.25, p)
+        told.append(x.late)
+        assert estimator.take_wheel_speed(x, x.late, 0.25, p) == x
+    assert told == [142.0, 143.5, 141.625]
+
+
+def test_a_message_of_the_least_age_is_compared_with_the_estimate_of_the_sample_before() -> None:
+    x = estimating(E_0, late=140.0)
+    assert estimator.predict(x, 60.0, True, 0.25, GAINS._replace(T_age=0.25)).late == 148.0
+
+
+@pytest.mark.parametrize("late", [0, 1, -1])
+def test_a_message_as_old_as_assumed_corrects_a_steady_acceleration_by_nothing(late: int) -> None:
+    """The lag is as late as a message of that age, 11.5 samples; a sample more or less shows."""
+    p, x = P._replace(T_age=0.023), estimating(E_0)
+    for k in range(2000):
+        x = estimator.predict(x._replace(estimate=E_0._replace(omega_2=0.05 * k)), 0.0, True, T_S, p)
+    message = 0.05 * (2000 - 11.5 - late)
+    assert message - x.late == pytest.approx(-0.05 * late, abs=1e-9)
 
 
 @pytest.mark.parametrize("late", [0, 1])
 def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: int) -> None:
-    """The innovation is that of the message's own age, 11.5 samples; a sample more shows."""
-    p, x = P._replace(T_age=0.023), BLOCK.start(ROLLING, P)
-    true = [estimate(x.estimator)]
-    for k in range(1, 400):
-        true.append(estimator.integrated(true[-1], 50.0, T_S, p))
-        u = ROLLING._replace(omega_1_meas=true[k].omega_1)
+    """It tells the true speed of the wheels behind the lag; one that is a sample older shows."""
+    off = ROLLING._replace(enable=False)
+    p, x = P._replace(T_age=0.023), BLOCK.start(off, P)
+    true, told = [estimate(x.estimator)], [150.0]
+    for k in range(400):
+        u = off._replace(omega_1_meas=true[k].omega_1)
         if k > 40:
-            message = 0.5 * (true[k - 11 - late].omega_2 + true[k - 12 - late].omega_2)
-            u = u._replace(omega_2_can=message, counter=k // 10)
+            u = u._replace(omega_2_can=told[k - late], counter=k // 10)
         x = BLOCK.update(x, u, p)
+        true.append(estimator.integrated(true[k], 50.0, T_S, p))
+        told.append(told[k] + T_S / p.T_age * (true[k].omega_2 - told[k]))
     e = estimate(x.estimator)
     error = max(abs(e.omega_2 - true[-1].omega_2), abs(e.phi - true[-1].phi))
     assert error > 1e-6 if late else error < 1e-9
 
 
-def test_the_oldest_message_that_may_be_assumed_is_as_old_as_the_oldest_estimate() -> None:
-    """And the newest as old as the newest past estimate."""
-    (age,) = (v.declaration for v in variables(estimator.Parameters) if v.name == "T_age")
-    assert isinstance(age, Real)
-    assert (age.minimum, age.maximum) == (T_S, HISTORY * T_S)
-
-
-def test_past_estimates_are_kept_newest_first() -> None:
-    x = estimating(E_0)
-    for k in range(HISTORY + 5):
-        x = estimator.finish(x._replace(estimate=E_0._replace(omega_2=float(k))), True, T_S, P)
-    assert x.past == tuple(float(HISTORY + 4 - k) for k in range(HISTORY))
+def test_no_lag_or_mean_is_faster_than_a_sample() -> None:
+    """So that its share of what is new is at most 1, without a limit in the code."""
+    declared = {v.name: v.declaration for v in variables(BLOCK.Parameters)}
+    for name in ("T_age", "t_drift", "t_grip", "t_fade"):
+        declaration = declared[name]
+        assert isinstance(declaration, Real)
+        assert declaration.minimum == T_S, name
 
 
 def test_the_gains_fade_from_one_mode_to_the_other() -> None:
     p, shares = P._replace(t_fade=1.0), []
     x = estimating(E_0, share=0.0)
     for wheel in [True] * 5 + [False] * 5:
-        x = estimator.finish(x, wheel, 0.25, p)
+        x = estimator.predict(x, 0.0, wheel, 0.25, p)
         shares.append(x.share)
     assert shares == [0.25, 0.5, 0.75, 1.0, 1.0, 0.75, 0.5, 0.25, 0.0, 0.0]
 
 
-BOUNDS = {
-    "omega_1": 800.0,
-    "omega_2": 800.0,
-    "phi": 0.25 + 4.0 * 100.0 / 128.0,
-    "T_l": 400.0,
-}
-"""For omega_max = 800 rad/s, T_max = 100 N.m, C = 128 N.m/rad and phi_B = 0.25 rad."""
+ANEW = Estimate(0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("name", BOUNDS)
-def test_the_estimate_stays_within_what_the_drive_train_can_bear(name: str, side: float) -> None:
-    """Four times the largest motor torque in gear and load, and the largest plausible speed."""
-    p = GAINS._replace(omega_max=800.0, T_max=100.0, C=128.0, phi_B=0.25)
-    zero, bound = Estimate(0.0, 0.0, 0.0, 0.0), BOUNDS[name]
-    below, beyond = (zero._replace(**{name: side * size}) for size in (bound - 0.125, bound + 0.125))
-    for base in (0.0, 512.0):
-        inside, outside, there = (
-            estimator.counted_from(base, e) for e in (below, beyond, zero._replace(**{name: side * bound}))
-        )
-        assert estimator.bounded(inside, base, p) == inside
-        assert estimator.bounded(outside, base, p) == there
+def test_an_estimate_with_more_twist_than_the_drive_train_can_bear_begins_anew(side: float) -> None:
+    """Four times the largest motor torque in the gear: at the measured speed, in the middle of the gap."""
+    p = GAINS._replace(T_max=100.0, C=128.0, phi_B=0.25)
+    bound = 0.25 + 4.0 * 100.0 / 128.0
+    for phi, known in ((bound, True), (math.nextafter(bound, math.inf), False)):
+        x = estimating(E_0._replace(phi=side * phi), 0.5, late=140.0)
+        y = estimator.take_motor_speed(x, E_0.omega_1, T_S, p)
+        assert (y.estimate.phi == side * phi) is known
+        assert (y == estimator.restart(x, E_0.omega_1, 0.0, p)) is not known
+    assert y == EstimatorState(E_0.omega_1, ANEW, late=E_0.omega_1, share=0.5, drift=0.0, slip=0.0)
 
 
-def test_a_correction_by_the_motor_speed_stays_within_the_bounds() -> None:
-    """A message cannot leave them: it is near the estimate."""
-    x = estimator.take_motor_speed(estimating(E_0._replace(T_l=4.0 * P.T_max)), 151.0, T_S, GAINS)
-    assert x.estimate.T_l == 4.0 * P.T_max
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_correction_itself_may_lead_beyond_the_bound(side: float) -> None:
+    """With 16 times -0.0625 s the twist changes by a radian."""
+    p = GAINS._replace(T_max=100.0, C=128.0, phi_B=0.25)
+    for margin, known in ((1.125, True), (0.875, False)):
+        e = E_0._replace(phi=side * (0.25 + 4.0 * 100.0 / 128.0 - margin))
+        x = estimator.take_motor_speed(estimating(e), e.omega_1 - side * 16.0, T_S, p)
+        assert (x.estimate != ANEW) is known
 
 
-def test_the_motion_ahead_is_that_of_the_model() -> None:
-    x = estimating(IN_CONTACT)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_twist_that_is_no_number_begins_anew(value: float) -> None:
+    assert estimator.take_motor_speed(estimating(E_0._replace(phi=value)), 150.0, T_S, P).estimate == ANEW
+
+
+def test_whatever_load_there_is_it_is_no_reason_to_begin_anew() -> None:
+    e = E_0._replace(phi=0.5, T_l=100.0 * P.T_max)
+    assert estimator.take_motor_speed(estimating(e), e.omega_1, T_S, P).estimate.T_l == e.T_l
+
+
+def test_from_whatever_estimate_a_finite_one_comes() -> None:
+    """A speed or a load that runs away twists the drive train beyond what it can bear, and begins anew."""
+    for name in Estimate._fields:
+        x = estimating(E_0._replace(**{name: 1e6}))
+        for _ in range(2000):
+            x = estimator.predict(estimator.take_motor_speed(x, 150.0, T_S, P), 50.0, True, T_S, P)
+        assert estimator.motion(x, P).omega_2 == pytest.approx(150.0, abs=20.0), name
+        assert abs(x.estimate.phi) <= P.phi_B + 4.0 * P.T_max / P.C, name
+
+
+def test_what_is_expected_of_the_next_sample_is_that_of_the_model() -> None:
+    """Speeds stay counted from the measured one; what is found out about slip is kept."""
+    x = EstimatorState(64.0, IN_CONTACT, late=212.0, share=1.0, drift=1.0, slip=0.5)
     ahead = estimator.integrated(IN_CONTACT, 60.0, 0.005, P)
-    assert estimator.motion_after(x, 60.0, 0.005, P) == estimator.motion(estimating(ahead), P)
-    assert estimator.predict(x, 60.0, 0.005, P) == x._replace(estimate=ahead)
+    assert estimator.predict(x, 60.0, True, 0.005, P) == x._replace(estimate=ahead)
+    seen = estimator.motion(x._replace(estimate=ahead), P)
+    assert seen == (64.0 + ahead.omega_1, 64.0 + ahead.omega_2, ahead.phi, P.C * (ahead.phi - P.phi_B))
 
 
 def test_the_estimate_follows_a_perfect_model() -> None:
@@ -257,8 +284,8 @@ def test_the_estimate_follows_a_perfect_model() -> None:
     x = BLOCK.start(ROLLING._replace(valid=False), P)
     for k in range(3000):
         T_mot = 50.0 + 20.0 * math.sin(0.02 * k)
-        true = estimator.integrated(true, T_mot, T_S, P)
         u = ROLLING._replace(omega_1_meas=true.omega_1, T_mot_est=T_mot, valid=False)
         x = BLOCK.update(x, u, P)
+        true = estimator.integrated(true, T_mot, T_S, P)
     assert x.estimator.estimate.phi == pytest.approx(true.phi, abs=0.02)
     assert estimate(x.estimator).omega_2 == pytest.approx(true.omega_2, abs=0.5)

@@ -30,10 +30,13 @@ def test_a_torque_that_is_demanded_stays() -> None:
     assert torque_loop.update(torque_loop.start(50.0), 50.0, T_S, P) == (50.0, 0.0)
 
 
-def test_the_mean_change_is_half_of_that_to_the_end() -> None:
-    x = LoopState(20.0, 30.0)
-    assert torque_loop.change(x, 100.0, T_S, P) == 0.5 * (torque_loop.update(x, 100.0, T_S, P).T_mot - 20.0) > 1.0
-    assert torque_loop.change(x, 100.0, 0.0, P) == 0.0
+def test_a_sample_goes_as_the_trapezoidal_rule_has_it() -> None:
+    """Means of the torque and of its rate over the sample are those in the middle, in both equations."""
+    x, g = LoopState(20.0, 30.0), T_S / P.tau
+    y = torque_loop.update(x, 100.0, T_S, P)
+    T_mot, r = 0.5 * (x.T_mot + y.T_mot), 0.5 * (x.r + y.r)
+    assert y.T_mot - x.T_mot == pytest.approx(g * r, rel=1e-12)
+    assert y.r - x.r == pytest.approx(g * (100.0 - T_mot - sqrt(2.0) * r), rel=1e-12)
 
 
 @each_side

@@ -1,6 +1,7 @@
 """Trust in the motor signals: each cause just long enough and just not, how it heals; and the direction."""
 
 import math
+from collections.abc import Collection
 
 import pytest
 
@@ -10,12 +11,14 @@ from driveline.models.controller.causes import (
     FAILURES,
     NONE,
     SPEED_JUMP,
+    SPEED_RANGE,
     WHEEL_CONTRADICTS,
     WRONG_DIRECTION,
+    WRONG_LAUNCH,
     Cause,
 )
 from driveline.models.controller.supervision import Input, Parameters
-from driveline.models.controller.trust import Found, TrustState
+from driveline.models.controller.trust import TrustState
 
 P = Parameters(t_bad=1.0, t_apart=2.0, t_proof=1.0, t_turn=2.0, omega_still=3.0)
 T_S = 0.25
@@ -26,95 +29,190 @@ each_cause = pytest.mark.parametrize("row", FAILURES, ids=lambda row: row.word)
 each_side = pytest.mark.parametrize("side", [1.0, -1.0])
 
 
+def lost(cause: int, clock: float = 0.0) -> TrustState:
+    """Without trust, and the signals good for so long."""
+    return TrustState(cause, clock, apart=0.0, direction=1.0)
+
+
 def after(
-    samples: int,
-    x: TrustState = TRUSTED,
-    found: dict[int, float] | None = None,
-    turned: bool = False,
-    against: bool = False,
+    samples: int, x: TrustState = TRUSTED, found: Collection[int] = (), turned: bool = False, p: Parameters = P
 ) -> TrustState:
-    """The state after samples in which these causes were found for so long."""
-    seen = dict.fromkeys(CLOCKS, Found(NONE, 0.0))
-    for row in FAILURES:
-        if row.number in (found or {}):
-            seen[str(row.after)] = Found(row.number, (found or {})[row.number])
+    """The state after samples in which these causes were found."""
     for _ in range(samples):
-        x = trust.update(x, seen, against, x.direction, turned, T_S, P)
+        x = trust.update(x, {row.number: row.number in found for row in FAILURES}, x.direction, turned, T_S, p)
     return x
 
 
 def lasting(row: Cause) -> float:
     """Time for which a cause may be found before it counts."""
-    return getattr(P, str(row.after))
+    return getattr(P, row.after) if row.after else 0.0
 
 
 def test_all_is_trusted_at_the_start_and_stays_so() -> None:
     assert trust.is_trusted(TRUSTED)
-    assert trust.is_trusted(after(20))
+    assert after(20) == TRUSTED
 
 
 @each_cause
 def test_a_cause_counts_after_its_time(row: Cause) -> None:
-    assert after(1, found={row.number: math.nextafter(lasting(row), 9.0)}).cause == row.number
-    assert after(1, found={row.number: lasting(row)}).cause == NONE
+    """What counts at once does with its first sample."""
+    samples = round(lasting(row) / T_S)
+    assert [after(n, found=[row.number]).cause for n in (samples, samples + 1)] == [NONE, row.number]
+    if row.after:
+        shorter = P._replace(**{row.after: math.nextafter(lasting(row), 0.0)})
+        assert after(samples, found=[row.number], p=shorter).cause == row.number
+
+
+@each_cause
+def test_a_good_sample_is_enough_to_begin_anew(row: Cause) -> None:
+    samples = round(lasting(row) / T_S)
+    x = after(1, after(samples, found=[row.number]))
+    assert x == TRUSTED
+    assert trust.is_trusted(after(samples, x, found=[row.number]))
 
 
 @each_cause
 def test_good_signals_heal_in_t_proof_and_of_another_direction_in_t_turn(row: Cause) -> None:
-    lost = TrustState(row.number, 0.0, 1.0)
-    assert [trust.is_trusted(after(n, lost)) for n in (3, 4)] == [False, True]
-    healed = [trust.is_trusted(after(n, lost, turned=True)) for n in (7, 8)]
-    assert healed == [False, row.number != WRONG_DIRECTION], "that of the car is known"
+    assert [trust.is_trusted(after(n, lost(row.number))) for n in (3, 4)] == [False, True]
+    assert [trust.is_trusted(after(n, lost(row.number), turned=True)) for n in (7, 8)] == [False, True]
 
 
 @each_cause
-def test_a_bad_sample_is_enough_to_begin_anew(row: Cause) -> None:
-    x = after(3, TrustState(SPEED_JUMP, 0.0, 1.0))
-    assert after(1, x, found={row.number: T_S}).healing == 0.0
+def test_a_time_to_heal_is_met_to_half_a_sample(row: Cause) -> None:
+    for turned, samples in ((False, 3.5), (True, 7.5)):
+        for clock, healed in ((samples * T_S, True), (math.nextafter(samples * T_S, 0.0), False)):
+            assert trust.is_trusted(after(1, lost(row.number, clock - T_S), turned=turned)) is healed
+
+
+@each_cause
+@pytest.mark.parametrize("turned", [True, False])
+def test_what_is_found_on_and_on_never_heals(row: Cause, turned: bool) -> None:
+    """A wrong direction, too, for as long as the bus tells another."""
+    assert after(20, lost(row.number), found=[row.number], turned=turned) == lost(row.number)
+
+
+@each_cause
+def test_a_bad_sample_is_enough_to_begin_the_healing_anew(row: Cause) -> None:
+    x = after(3, lost(SPEED_JUMP))
+    assert x == lost(SPEED_JUMP, 0.75)
+    assert after(1, x, found=[row.number]) == lost(SPEED_JUMP)
 
 
 def test_a_motor_that_sets_off_against_its_torque_is_not_trusted_until_it_turns_with_it() -> None:
-    x = after(1, after(20), against=True)
-    assert (x.cause, x.healing) == (WRONG_DIRECTION, 0.0)
-    x = after(20, x, turned=True)
+    x = after(1, after(20), found=[WRONG_LAUNCH])
+    assert x == lost(WRONG_LAUNCH)
+    x = after(20, x, found=[WRONG_LAUNCH], turned=True)
     assert [trust.is_trusted(after(n, x)) for n in (3, 4)] == [False, True]
 
 
+def test_the_clock_starts_anew_when_trust_is_lost() -> None:
+    """The time for which signals were bad is none for which they are good."""
+    x = after(4, found=[SPEED_JUMP])
+    assert x == TRUSTED._replace(clock=1.0)
+    assert after(1, x, found=[SPEED_JUMP]) == lost(SPEED_JUMP)
+    x = after(3, found=[SPEED_JUMP])
+    assert x.clock == 0.75
+    assert after(1, x, found=[SPEED_JUMP, WRONG_LAUNCH]) == lost(WRONG_LAUNCH), "nor where another cause counts"
+    x = after(1, after(7, found=[WHEEL_CONTRADICTS]), found=[SPEED_JUMP, WHEEL_CONTRADICTS])
+    assert (x.clock, x.apart) == (0.25, 2.0)
+    x = after(1, x, found=[SPEED_JUMP, WHEEL_CONTRADICTS])
+    assert (x.cause, x.clock) == (WHEEL_CONTRADICTS, 0.0)
+    assert after(1, x, found=[SPEED_JUMP, WHEEL_CONTRADICTS]) == lost(WHEEL_CONTRADICTS)
+    assert after(1, x) == lost(WHEEL_CONTRADICTS, T_S)
+
+
+@pytest.mark.parametrize("turned", [True, False])
+def test_the_clock_starts_anew_when_trust_is_back(turned: bool) -> None:
+    """The time for which signals were good is none for which they are bad."""
+    x = after(8 if turned else 4, lost(SPEED_JUMP), turned=turned)
+    assert x == TRUSTED
+    assert [trust.is_trusted(after(n, x, found=[SPEED_JUMP])) for n in (4, 5)] == [True, False]
+
+
+def test_time_apart_runs_only_while_there_is_trust() -> None:
+    x = after(20, lost(SPEED_JUMP), found=[WHEEL_CONTRADICTS])
+    assert x == lost(SPEED_JUMP)
+    x = after(4, x)
+    assert [trust.is_trusted(after(n, x, found=[WHEEL_CONTRADICTS])) for n in (8, 9)] == [True, False]
+
+
+def test_each_time_has_its_clock() -> None:
+    """A contradiction and a bad sample do not add up."""
+    apart = after(8, found=[WHEEL_CONTRADICTS])
+    assert apart == TRUSTED._replace(apart=2.0)
+    assert after(1, apart, found=[SPEED_JUMP]) == TRUSTED._replace(clock=0.25)
+    bad = after(4, found=[SPEED_JUMP])
+    assert after(1, bad, found=[WHEEL_CONTRADICTS]) == TRUSTED._replace(apart=0.25)
+    both = after(1, after(7, found=[WHEEL_CONTRADICTS]), found=[SPEED_JUMP, WHEEL_CONTRADICTS])
+    assert both == TRUSTED._replace(clock=0.25, apart=2.0), "both at a time run both"
+
+
+def test_causes_with_the_same_time_have_the_same_clock() -> None:
+    """The cause is that which is found in the end."""
+    for first, second, samples in ((SPEED_RANGE, SPEED_JUMP, 4), (WHEEL_CONTRADICTS, WRONG_DIRECTION, 8)):
+        assert after(1, after(samples, found=[first]), found=[second]).cause == second
+        assert after(1, after(samples, found=[second]), found=[first]).cause == first
+
+
 def test_estimator_and_law_begin_anew_until_signals_have_been_good_for_a_sample() -> None:
-    lost = TrustState(SPEED_JUMP, 0.0, 1.0)
-    assert [trust.is_healing(after(n, lost), T_S) for n in (0, 1, 2)] == [True, True, False]
+    assert [trust.is_healing(after(n, lost(SPEED_JUMP)), T_S) for n in (0, 1, 2)] == [True, True, False]
     assert not trust.is_healing(TRUSTED, T_S)
+    assert not trust.is_healing(after(1, found=[SPEED_JUMP]), T_S), "nor where they are bad, and trusted yet"
 
 
-def test_the_first_clock_is_the_cause_and_stays_it() -> None:
-    both = {SPEED_JUMP: 9.0, WHEEL_CONTRADICTS: 9.0}
-    assert after(1, found=both).cause == SPEED_JUMP
-    assert after(1, TrustState(WHEEL_CONTRADICTS, 0.0, 1.0), found=both).cause == WHEEL_CONTRADICTS
+def test_the_first_of_those_that_count_is_the_cause_and_stays_it() -> None:
+    every = [row.number for row in FAILURES]
+    late = TRUSTED._replace(clock=1.0, apart=2.0)
+    for x, cause in (
+        (TRUSTED, WRONG_LAUNCH),
+        (late._replace(clock=0.75), WHEEL_CONTRADICTS),
+        (late._replace(apart=1.75), SPEED_RANGE),
+        (late, SPEED_RANGE),
+    ):
+        assert after(1, x, found=every).cause == cause
+    assert after(1, late, found=[WRONG_LAUNCH, WRONG_DIRECTION]).cause == WRONG_DIRECTION
+    assert after(9, lost(WHEEL_CONTRADICTS), found=every).cause == WHEEL_CONTRADICTS
 
 
 @each_side
 def test_the_direction_is_that_of_a_trusted_motor(side: float) -> None:
     """Which is beyond its noise; a fault takes nothing away."""
-    x, lost = TrustState(NONE, 0.0, -side), TrustState(SPEED_JUMP, 0.0, -side)
-    for omega_1, good, way in ((3.0, True, -side), (3.1, True, side), (99.0, False, -side)):
+    x = TRUSTED._replace(direction=-side)
+    for omega_1, good, way in ((3.0, True, -side), (math.nextafter(3.0, 9.0), True, side), (99.0, False, -side)):
         assert trust.direction(x, U, side * omega_1, good, P) == way
-        assert trust.direction(lost, U, side * omega_1, good, P) == -side
+        assert trust.direction(x._replace(cause=SPEED_JUMP), U, side * omega_1, good, P) == -side
 
 
 @each_side
 def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
     told = U._replace(direction=int(side))
-    assert trust.direction(TrustState(NONE, 0.0, -side), told, -side * 99.0, True, P) == side
+    for x in (TRUSTED, lost(SPEED_JUMP)):
+        assert trust.direction(x._replace(direction=-side), told, -side * 99.0, True, P) == side
+
+
+@each_side
+def test_the_direction_of_the_sample_is_kept(side: float) -> None:
+    for x in (TRUSTED, lost(SPEED_JUMP)):
+        nothing = dict.fromkeys([row.number for row in FAILURES], False)
+        assert trust.update(x, nothing, side, False, T_S, P).direction == side
 
 
 def test_it_starts_with_the_direction_of_the_motor() -> None:
-    for omega_1, way in ((60.0, 1.0), (-3.0, 1.0), (-3.1, -1.0)):
-        assert trust.start(omega_1, P) == TrustState(NONE, 0.0, way)
+    for omega_1, way in ((60.0, 1.0), (-3.0, 1.0), (math.nextafter(-3.0, -9.0), -1.0)):
+        assert trust.start(omega_1, P) == TrustState(NONE, 0.0, 0.0, way)
 
 
 def test_each_cause_is_a_row_with_a_number_a_word_and_a_parameter() -> None:
-    """As the output `cause` declares them."""
+    """As the output `cause` declares them; a row without a parameter counts at once."""
     rows = (*FAILURES, causes.FEEDING)
     assert [row.number for row in rows] == list(range(2, 2 + len(rows)))
     assert [name for name, _ in causes.OUTPUT.items] == ["none", *(row.word for row in rows)]
-    assert set(CLOCKS) <= set(Parameters._fields)
+    assert CLOCKS == ("t_bad", "t_apart", "")
+    assert set(CLOCKS) - {""} <= set(Parameters._fields)
+
+
+def test_the_first_row_of_which_something_is_found() -> None:
+    for found, first in (((False, True, True), SPEED_JUMP), ((True, False, True), SPEED_RANGE), ((False,) * 3, NONE)):
+        numbers = (SPEED_RANGE, SPEED_JUMP, WHEEL_CONTRADICTS)
+        assert causes.first_of(dict(zip(numbers, found, strict=True))) == first
+    assert causes.first_of({}) == NONE

@@ -27,10 +27,16 @@ def above(limit: float) -> float:
 
 
 def updated(
-    u: Input, x: WheelState | None = None, omega_1: float = 150.0, strict: bool = False, direction: float = 1.0
-) -> tuple[WheelState, bool]:
-    """The state after a sample, and whether a message was taken."""
-    return wheels.update(wheels.start(U, 150.0, P) if x is None else x, u, omega_1, strict, direction, T_S, P)
+    u: Input,
+    x: WheelState | None = None,
+    omega_1: float = 150.0,
+    strict: bool = False,
+    direction: float = 1.0,
+    apart: bool = False,
+) -> tuple[WheelState, bool, bool]:
+    """The state after a sample, whether a message was taken, and whether it contradicts."""
+    x = wheels.start(U, 150.0, P) if x is None else x
+    return wheels.update(x, u, omega_1, strict, apart, direction, T_S, P)
 
 
 def new(omega_2_can: float = 150.0, **signals: Any) -> Input:
@@ -40,8 +46,8 @@ def new(omega_2_can: float = 150.0, **signals: Any) -> Input:
 def test_what_is_no_number_tells_no_speed() -> None:
     for signal in NO_NUMBERS:
         assert not wheels.tells_a_speed(U._replace(omega_2_can=signal), P)
-        x, taken = updated(new(signal))
-        assert (x.omega_2, x.silence, x.contradicting, taken) == (0.0, T_S, 0.0, False)
+        x, taken, contradicts = updated(new(signal), omega_1=400.0, strict=True)
+        assert (x.omega_2, x.silence, taken, contradicts) == (0.0, T_S, False, False)
 
 
 @each_side
@@ -55,7 +61,7 @@ def test_a_wheel_speed_is_one_above_standstill_and_up_to_omega_max_while_it_is_v
 def test_a_message_is_taken_once_and_while_it_is_valid() -> None:
     assert not updated(U)[1], "it was there at the start"
     for counter in (6, 8, -(2**31)):
-        x, taken = updated(new(counter=counter))
+        x, taken, _ = updated(new(counter=counter))
         assert taken
         assert not updated(new(counter=counter), x)[1]
         assert not updated(new(counter=counter, valid=False))[1]
@@ -65,7 +71,7 @@ def test_messages_are_a_reference_while_they_keep_coming() -> None:
     x, seen = updated(new())[0], []
     for _ in range(6):
         seen.append((x.silence, wheels.is_reference(x, U, P)))
-        x, _ = updated(new(), x)
+        x, _, _ = updated(new(), x)
     assert seen == [(0.0, True), (0.25, True), (0.5, True), (0.75, True), (1.0, False), (1.0, False)]
     assert not wheels.is_reference(updated(new())[0], U._replace(valid=False), P)
 
@@ -76,10 +82,10 @@ def test_a_motor_speed_is_contradicted_from_a_distance_and_a_share_of_the_wheel_
     side: float, direction: float
 ) -> None:
     limit = APART + P.g_radius * 200.0
-    for distance, time in ((limit, 0.0), (limit + 1e-9, T_S)):
+    for distance, contradicts in ((limit, False), (limit + 1e-9, True)):
         omega_1 = direction * 200.0 + side * distance
         x = wheels.start(new(200.0, counter=7), omega_1, P)
-        assert updated(new(200.0), x, omega_1, direction=direction)[0].contradicting == time
+        assert updated(new(200.0), x, omega_1, direction=direction)[1:] == (True, contradicts)
 
 
 @each_side
@@ -87,15 +93,15 @@ def test_a_message_tells_what_the_wheels_did_some_time_ago(side: float) -> None:
     """Wheels that lock take the motor far from it; what the motor speed was is forgotten in t_late."""
     x, far = wheels.start(U, 150.0, P), 150.0 + side * 100.0
     for forgotten in (0.25, 0.4375, 0.578125):
-        x, _ = updated(new(), x, omega_1=far)
+        x, _, contradicts = updated(new(), x, omega_1=far)
         near, other = (x.least, x.largest) if side > 0.0 else (x.largest, x.least)
         assert (near, other) == (150.0 + side * 100.0 * forgotten, far)
-        assert (x.contradicting > 0.0) == (100.0 * forgotten > APART + P.g_radius * 150.0)
+        assert contradicts is (100.0 * forgotten > APART + P.g_radius * 150.0)
 
 
 def test_what_the_motor_speed_was_before_a_fault_says_nothing() -> None:
-    x, _ = updated(new(), omega_1=300.0, strict=True)
-    assert (x.least, x.largest, x.contradicting) == (300.0, 300.0, T_S)
+    x, _, contradicts = updated(new(), omega_1=300.0, strict=True)
+    assert (x.least, x.largest, contradicts) == (300.0, 300.0, True)
 
 
 @each_side
@@ -106,14 +112,27 @@ def test_a_message_that_leaps_while_the_motor_speed_does_not_is_not_taken(side: 
     wide = LEAP + P.g_radius * (150.0 + side * 40.0)
     for distance, taken in ((wide - 1e-6, True), (wide + 1e-6, False)):
         u = new(150.0 + side * 40.0)
-        x, found = updated(u, omega_1=150.0 + side * 40.0 - side * distance, strict=True)
+        x, found, _ = updated(u, omega_1=150.0 + side * 40.0 - side * distance, strict=True)
         assert (found, x.omega_2) == (taken, 150.0 + side * 40.0 if taken else 150.0)
+
+
+@each_side
+def test_a_message_that_has_leapt_is_not_taken_and_contradicts_as_those_before_it(side: float) -> None:
+    """So that single ones neither cost trust nor hide that the others contradict, nor keep a fallback from healing."""
+    x, omega_1 = wheels.start(U, 150.0, P), 150.0 - side * 40.0
+    for counter in range(8, 20):
+        x, _, contradicts = updated(new(counter=counter), x, omega_1, strict=True)
+        assert contradicts
+    for leap, leapt in ((LEAP, False), (LEAP + 1e-9, True), (LEAP + 200.0, True)):
+        for apart in (True, False):
+            y, taken, contradicts = updated(new(150.0 + side * leap), x, omega_1, strict=True, apart=apart)
+            assert (taken, contradicts) == (not leapt, apart or not leapt)
+            assert (y.omega_2, y.silence) == ((150.0, T_S) if leapt else (150.0 + side * leap, 0.0))
 
 
 def test_messages_that_drift_away_are_taken() -> None:
     """Nothing tells which of the two is wrong."""
-    x, taken = updated(new(168.0), omega_1=110.0, strict=True)
-    assert (taken, x.contradicting) == (True, T_S)
+    assert updated(new(168.0), omega_1=110.0, strict=True)[1:] == (True, True)
 
 
 def test_the_first_message_has_not_leapt() -> None:
@@ -123,22 +142,24 @@ def test_the_first_message_has_not_leapt() -> None:
     assert updated(new(250.0, counter=9), updated(new(valid=False))[0])[1], "nor one after an interruption"
 
 
-def test_the_time_of_contradiction_is_counted_no_further_than_needed() -> None:
-    x, times = None, []
-    for k in range(7):
-        x, _ = updated(new(150.0, counter=8 + k), x, omega_1=300.0, strict=True)
-        times.append(x.contradicting)
-    assert times == [0.25, 0.5, 0.75, 1.0, 1.25, 1.25, 1.25]
-    assert updated(new(150.0, counter=20), x, strict=True)[0].contradicting == 0.0
+def test_a_contradiction_lasts_until_the_next_message_or_the_next_motor_speed() -> None:
+    x = wheels.start(U._replace(omega_2_can=200.0), 200.0, P)
+    x, *found = updated(new(200.0), x, omega_1=300.0, strict=True)
+    assert found == [True, True]
+    x, *found = updated(new(200.0), x, omega_1=300.0, strict=True)
+    assert found == [False, True], "no message came"
+    assert updated(new(280.0, counter=9), x, omega_1=300.0, strict=True)[1:] == (True, False)
+    assert updated(new(200.0), x, omega_1=200.0, strict=True)[1:] == (False, False)
 
 
 def test_only_messages_that_keep_coming_contradict() -> None:
     x = wheels.start(U, 150.0, P)._replace(silence=0.75)
-    assert updated(U, x, omega_1=300.0, strict=True)[0].contradicting == 0.0
-    assert updated(U, x._replace(silence=0.5), omega_1=300.0, strict=True)[0].contradicting == T_S
-    assert updated(new(valid=False), omega_1=300.0, strict=True)[0].contradicting == 0.0
+    assert updated(U, x, omega_1=300.0, strict=True)[1:] == (False, False)
+    assert updated(U, x._replace(silence=0.5), omega_1=300.0, strict=True)[1:] == (False, True)
+    assert updated(new(), x, omega_1=300.0, strict=True)[1:] == (True, True)
+    assert updated(new(valid=False), omega_1=300.0, strict=True)[1:] == (False, False)
 
 
 def test_at_the_start_all_that_is_plausible_is_believed() -> None:
-    assert wheels.start(U, 140.0, P) == WheelState(7.0, 150.0, 140.0, 140.0, 0.0, 0.0)
-    assert wheels.start(U._replace(valid=False), 140.0, P) == WheelState(7.0, 0.0, 140.0, 140.0, 1.0, 0.0)
+    assert wheels.start(U, 140.0, P) == WheelState(7.0, 150.0, 140.0, 140.0, 0.0)
+    assert wheels.start(U._replace(valid=False), 140.0, P) == WheelState(7.0, 0.0, 140.0, 140.0, 1.0)

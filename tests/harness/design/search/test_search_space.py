@@ -50,7 +50,7 @@ def test_our_law_is_searched_and_what_is_computed_is_not() -> None:
     found = space(OURS, {})
     assert {each.name for each in found.searched} >= {"k_d", "k_T", "omega_w", "T_gap"}
     assert found.computed.keys() == design().keys() - {each.name for each in found.searched}
-    assert {"lambda_v", "L_phi", "Lw_phi", "L_can_phi"} <= found.computed.keys()
+    assert {"lambda_v", "L_phi", "Ls_phi", "L_can_phi"} <= found.computed.keys()
 
 
 def test_the_start_is_what_the_formulas_make_of_the_car() -> None:

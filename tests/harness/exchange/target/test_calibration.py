@@ -55,6 +55,7 @@ def test_the_words_of_the_status_are_those_of_the_declaration(module: Any) -> No
         "torque_implausible",
         "wheel_contradicts",
         "wrong_direction",
+        "wrong_launch",
         "feeds_oscillation",
     ]
     assert [pair.OutVal.Value for pair in status.InValOutVal] == [

@@ -37,10 +37,13 @@ def test_anything_over_nothing_is_without_bound() -> None:
     assert deviations(FINE, replace(FINE, end_swing=0.0))["end_swing"] == inf
 
 
-ONE_SAMPLE = {("TwoMassDriveline", "launch_brake"): {"end_swing": 0.02}}
-"""Where a decision of the controller falls otherwise with the larger step, and what that may come to: the estimate
-7.848 s after the start is so near a flank that the gain of the gap holds for one sample more. From 0.5 ms on it does
-not."""
+ROUNDED = {
+    ("TwoMassDriveline", "launch_brake"): {"end_swing": 0.04},
+    ("ValidationVehicle", "launch"): {"end_swing": 0.02},
+}
+"""Where the resolver rounds the motor speed otherwise with the larger step, by 0.1 rad/s in single samples from 5.95
+and from 5.10 s on, and what that may make of the swing that is left at the end, 0.9 and 0.13 N.m. From 0.5 ms on it
+rounds the same."""
 
 
 @pytest.mark.parametrize("manoeuvre", ["tipin15", "launch", "launch_brake", "hill_hold"])
@@ -51,7 +54,7 @@ def test_every_metric_is_within_one_percent_of_that_with_half_the_step(
     """The whole of it, at a tenth of the step, is measured by `driveline study coupling`."""
     found = compare(Case(plant, manoeuvre, True), native.parent, (1e-3, 5e-4))
     assert len(found) >= 6
-    allowed = ONE_SAMPLE.get((plant, manoeuvre), {})
+    allowed = ROUNDED.get((plant, manoeuvre), {})
     assert {name: share for name, share in found.items() if share > allowed.get(name, 0.01)} == {}
 
 
