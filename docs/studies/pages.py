@@ -111,6 +111,7 @@ _ROWS = (
     _study("design", files="examples/cars/*.toml"),
     _study("goals"),
     _study("comparison", fmus=COMPARED),
+    _study("roads", "docs.studies.grip_and_frames", fmus=(*COMPARED, "fmus.signal_faults")),
     Page(
         "target",
         ("driveline target record --output OUT --replace --quiet",),
@@ -162,7 +163,7 @@ _ROWS = (
     ),
     Page(
         "tuning",
-        ("driveline design --search OUT/ours --evaluations 200",),
+        ("driveline design --search OUT/ours",),
         {"figures/front.png": "ours/front.png"},
         tuple(f"harness.design.search.{name}" for name in ("tune", "controller_cost")),
         LOOP,

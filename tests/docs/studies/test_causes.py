@@ -14,5 +14,5 @@ def test_a_row_says_after_how_long_it_counts() -> None:
     rows = causes().splitlines()[2:]
     assert len(rows) == len(FAILURES) + 1
     assert "`t_apart` (0.1 s)" in next(row for row in rows if "wheel_contradicts" in row)
-    assert next(row for row in rows if "feeds_oscillation" in row).startswith("| 8 |")
-    assert "at once" in next(row for row in rows if "wrong_direction" in row)
+    assert next(row for row in rows if "feeds_oscillation" in row).startswith("| 9 |")
+    assert "at once" in next(row for row in rows if "wrong_launch" in row)
