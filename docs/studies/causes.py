@@ -17,7 +17,7 @@ PAGE = Path(__file__).resolve().parents[1] / "control.md"
 
 
 def after(row: Cause) -> str:
-    return "at once" if row.after is None else f"`{row.after}` ({getattr(BLOCK.Parameters(), row.after):g} s)"
+    return f"`{row.after}` ({getattr(BLOCK.Parameters(), row.after):g} s)" if row.after else "at once"
 
 
 def causes() -> str:

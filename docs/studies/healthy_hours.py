@@ -145,11 +145,13 @@ def contradiction(rows: np.ndarray) -> float:
     """Longest time in s for which the messages contradict the motor speed (wheel_messages)."""
     columns = (rows[column].tolist() for column in SIGNALS.values())
     inputs = [Input(**dict(zip(SIGNALS, row, strict=True))) for row in zip(*columns, strict=True)]
-    x, most, way = wheel_messages.start(inputs[0], inputs[0].omega_1_meas, P), 0.0, 1.0
+    x, way = wheel_messages.start(inputs[0], inputs[0].omega_1_meas, P), 1.0
+    lasts, most = 0.0, 0.0
     for u in inputs:
         way = copysign(1.0, u.omega_1_meas) if abs(u.omega_1_meas) > P.omega_still else way
-        x, _ = wheel_messages.update(x, u, u.omega_1_meas, False, way, T_S, P)
-        most = max(most, x.contradicting)
+        x, _, contradicts = wheel_messages.update(x, u, u.omega_1_meas, False, lasts > 0.0, way, T_S, P)
+        lasts = lasts + T_S if contradicts else 0.0
+        most = max(most, lasts)
     return most
 
 
