@@ -185,8 +185,11 @@ class RequestRunner:
         return Answer(request, without(), runs)
 
     def gains_of(self, request: Request) -> dict[str, float]:
-        """The gains that our controller has, as they were changed and by the character."""
-        return characterised({knob.name: knob.value for knob in self.gains} | dict(request.gains), request.character)
+        """The gains that our controller has, as they were changed and by the character, as far as sliders go."""
+        gains = {knob.name: knob.value for knob in self.gains} | dict(request.gains)
+        turned = characterised(gains, request.character)
+        ends = {k.name: (min(k.low, gains[k.name]), max(k.high, gains[k.name])) for k in self.gains}
+        return turned | {name: min(max(turned[name], low), high) for name, (low, high) in ends.items()}
 
     def parameters(self, request: Request, controller: str) -> dict[str, float]:
         """Of the loop with a controller.

@@ -208,3 +208,15 @@ def test_two_runs_beside_each_other_are_those_one_after_the_other(runner: Reques
         assert runner.answer(request).without is found.without
     finally:
         runner.beside.close()
+
+
+@pytest.mark.parametrize(
+    ("t_return", "sport", "comfort"), [(0.0035, 0.002, 0.007), (0.012, 0.006, 0.0175), (0.03, 0.015, 0.03)]
+)
+def test_the_character_turns_a_gain_as_far_as_its_slider_goes(
+    runner: RequestRunner, t_return: float, sport: float, comfort: float
+) -> None:
+    """From 2 ms, the least that the FMU takes, to five times the value at the start; what is typed beyond stays."""
+    for character, value in ((0.0, sport), (0.5, t_return), (1.0, comfort)):
+        request = replace(REQUEST, gains={"t_return": t_return}, character=character)
+        assert runner.gains_of(request)["t_return"] == pytest.approx(value)
