@@ -207,16 +207,38 @@ def ratios(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -> Rat
     )
 
 
+def measured(
+    runs: Sequence[Run], controller: str, label: str, folder: Path = BUILD, workers: int | None = None
+) -> list[Ratios]:
+    """The ratios of all runs with a controller, in their order, with the FMUs in `folder`."""
+    injectors = {key: made_if_missing(fmu, folder, NATIVE).absolute() for key, fmu in INJECTORS.items()}
+    settings = built(PLANT, controller=controller, folder=folder, build=NATIVE)
+    return run_many(partial(ratios, settings=settings, injectors=injectors), runs, workers, label)
+
+
+NUMBERS = ("peak, worst", "mean", "rms, worst", "mean", f"over {MOST}", "fallback, s")
+
+
+def numbers(of: Sequence[Ratios]) -> list[str]:
+    """Worst and mean of the peak and of the rms, runs beyond MOST, the longest fallback: a cell for each of NUMBERS."""
+    peak, rms, fallback = (np.array(column) for column in zip(*of, strict=True))
+    over = int(np.count_nonzero(np.maximum(peak, rms) > MOST))
+    return [*(f"{y:.2f}" for y in (peak.max(), peak.mean(), rms.max(), rms.mean())), f"{over}", f"{fallback.max():.2f}"]
+
+
+def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tuple[Run, Ratios]]]:
+    """The runs with their ratios, by their groups, in the order of the first run of each."""
+    groups: dict[str, list[tuple[Run, Ratios]]] = {}
+    for each, y in zip(runs, found, strict=True):
+        groups.setdefault(each.group, []).append((each, y))
+    return groups
+
+
 def show(runs: Sequence[Run], found: Sequence[Ratios], title: str) -> None:
-    heads = ("count", "peak, worst", "mean", "rms, worst", "mean", f"over {MOST}", "fallback, s", "the worst run")
-    table = Table("runs", *heads, title=title, title_justify="left")
-    for group in (*dict.fromkeys(each.group for each in runs), ""):
-        of = [(each, y) for each, y in zip(runs, found, strict=True) if group in ("", each.group)]
-        peak, rms, fallback = (np.array(column) for column in zip(*(y for _, y in of), strict=True))
-        at_worst = of[int(np.argmax(np.maximum(peak, rms)))][0]
-        over = int(np.count_nonzero(np.maximum(peak, rms) > MOST))
-        numbers = (f"{y:.2f}" for y in (peak.max(), peak.mean(), rms.max(), rms.mean()))
-        table.add_row(group or "all", f"{len(of)}", *numbers, f"{over}", f"{fallback.max():.2f}", str(at_worst))
+    table = Table("runs", "count", *NUMBERS, "the worst run", title=title, title_justify="left")
+    for group, of in {**by_group(runs, found), "all": list(zip(runs, found, strict=True))}.items():
+        worst, _ = max(of, key=lambda each: max(each[1].peak, each[1].rms))
+        table.add_row(group, f"{len(of)}", *numbers([y for _, y in of]), str(worst))
     print_table(table)
 
 
@@ -227,11 +249,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--fmus", type=Path, default=BUILD, help="folder of the FMUs")
     parser.add_argument("--workers", type=int, help="processes (default: one a core)")
     options = parser.parse_args(arguments)
-    injectors = {key: made_if_missing(fmu, options.fmus, NATIVE).absolute() for key, fmu in INJECTORS.items()}
     for controller, study in product(options.controller or [OURS], options.study or STUDIES):
-        runs, settings = list(STUDIES[study]()), built(PLANT, controller=controller, folder=options.fmus, build=NATIVE)
-        measure = partial(ratios, settings=settings, injectors=injectors)
-        show(runs, run_many(measure, runs, options.workers, study), f"{controller}: {study}")
+        runs = list(STUDIES[study]())
+        found = measured(runs, controller, study, options.fmus, options.workers)
+        show(runs, found, f"{controller}: {study}")
 
 
 if __name__ == "__main__":
