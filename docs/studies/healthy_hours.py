@@ -26,8 +26,8 @@ from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.terminal import print_table
 from driveline.models.controller import oscillation, torque_loop, wheel_messages
 from driveline.models.controller.supervision import FALLBACK, T_S, Input
-from driveline.models.controller.supervision_interface import added_speed
 from driveline.models.damping_controller import BLOCK
+from driveline.models.physics.vehicle import added_speed
 
 P = BLOCK.Parameters()
 MINUTE = 60.0
@@ -158,7 +158,7 @@ def contradiction(rows: np.ndarray) -> float:
 def half_swings(rows: np.ndarray) -> float:
     """Most half swings of the damping torque that nothing explains (oscillation)."""
     damping, T_driver = rows["controller.T_damp"] - rows["controller.T_landing"], rows["controller.T_driver"]
-    x, most, changes = oscillation.start(), 0.0, np.diff(T_driver, prepend=T_driver[0])
+    x, most, changes = oscillation.SwingState(), 0.0, np.diff(T_driver, prepend=T_driver[0])
     for torque, change in zip(damping.tolist(), changes.tolist(), strict=True):
         x = oscillation.update(x, torque, change, True, T_S, P)
         most = max(most, x.count)
@@ -168,7 +168,7 @@ def half_swings(rows: np.ndarray) -> float:
 def disobeyed(rows: np.ndarray) -> np.ndarray:
     """Whether the torque estimate is far from what the motor should have (torque_loop)."""
     T_ref, T_mot_est = rows["controller.T_ref"].tolist(), rows["motor.T_mot_est"].tolist()
-    x, far = torque_loop.start(T_mot_est[0]), []
+    x, far = torque_loop.LoopState(T_mot_est[0]), []
     for demand, estimate in zip(T_ref, T_mot_est, strict=True):
         far.append(not torque_loop.agrees(x, estimate, P))
         x = torque_loop.update(x, demand, T_S, P)

@@ -12,6 +12,7 @@ from typing import Any
 from ...models.block import explicit, implicit, integrator, runner
 from .. import protocol
 from ..fmu import PACKAGE
+from ..syntax_tree import syntax_tree
 
 HEADER = """/* What Python and C share, written by build_fmus.py from {modules}.
 
@@ -49,14 +50,14 @@ def _definitions(module: ModuleType) -> list[str]:
 
 def _taken(module: ModuleType) -> set[str]:
     """The names that a module takes from others."""
-    imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
+    imports = [node for node in syntax_tree(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
     return {alias.name for node in imports for alias in node.names}
 
 
 def _meanings(module: ModuleType) -> dict[str, str]:
     """What a module says below the assignment of a name."""
     meanings: dict[str, str] = {}
-    for statements in pairwise(ast.parse(inspect.getsource(module)).body):
+    for statements in pairwise(syntax_tree(inspect.getsource(module)).body):
         match statements:
             case ast.Assign([ast.Name(name)]), ast.Expr(ast.Constant(str() as text)):
                 meanings[name] = inspect.cleandoc(text)

@@ -11,6 +11,7 @@ from importlib.util import resolve_name
 from pathlib import Path
 
 from ..fmu import PACKAGE, Fmu
+from ..syntax_tree import syntax_tree
 
 PACKAGE_TEXT = '''"""The FMU {name}: the block run as a slave of PythonFMU."""
 
@@ -91,7 +92,7 @@ def source_path(module: str) -> Path:
 def imported(module: str) -> Iterator[str]:
     """Names of our own modules that a module imports: by relative imports, so that they are found in any package."""
     package = module if source_path(module).name == "__init__.py" else module.rpartition(".")[0]
-    for node in ast.walk(ast.parse(source_path(module).read_bytes())):
+    for node in ast.walk(syntax_tree(source_path(module).read_bytes())):
         if isinstance(node, ast.ImportFrom) and node.level:
             base = resolve_name("." * node.level + (node.module or ""), PACKAGE + package).removeprefix(PACKAGE)
             names = [base, *(f"{base}.{alias.name}" for alias in node.names)]

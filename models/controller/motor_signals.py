@@ -10,9 +10,10 @@ from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import logical_and, logical_not, minimum, where
+from ..physics.vehicle import added_speed
 from . import torque_loop
 from .causes import SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
-from .supervision_interface import Input, Parameters, added_speed
+from .supervision_interface import Input, Parameters
 from .torque_loop import LoopState
 
 
@@ -29,7 +30,7 @@ class MotorState(NamedTuple):
 def start(u: Input, p: Parameters) -> MotorState:
     omega_1 = where(in_range(u.omega_1_meas, p.omega_max), u.omega_1_meas, 0.0)
     T_mot = where(in_range(u.T_mot_est, 2.0 * p.T_max), u.T_mot_est, 0.0)
-    return MotorState(omega_1, omega_1, 0.0, 0.0, torque_loop.start(T_mot))
+    return MotorState(omega_1, omega_1, 0.0, 0.0, LoopState(T_mot))
 
 
 def in_range(signal: float, limit: float) -> bool:
@@ -66,19 +67,13 @@ def update(
         SPEED_FROZEN: logical_and(is_movement(movement, T_s, p), abs(omega_1) > p.omega_still),
         TORQUE_IMPLAUSIBLE: logical_not(torque_loop.agrees(x.loop, u.T_mot_est, p)),
     }
-    waits = logical_and(jumps, trusted)
-    used = where(waits, expected, omega_1)
+    used = where(logical_and(jumps, trusted), expected, omega_1)
     return x._replace(omega_1=used, received=omega_1, change=change, movement=movement), used, found
 
 
 def is_movement(movement: float, T_s: float, p: Parameters) -> bool:
     """Whether a movement (rad/s) is more than the resolution of the speed and an error of the model."""
     return abs(movement) > p.q_omega + p.frozen * added_speed(p, T_s)
-
-
-def predict(x: MotorState, T_ref: float, T_s: float, p: Parameters) -> MotorState:
-    """The state with the torque that the motor should have at the next sample, by its demand T_ref (N.m)."""
-    return x._replace(loop=torque_loop.update(x.loop, T_ref, T_s, p))
 
 
 def moved(x: MotorState, increment: float, T_s: float, p: Parameters) -> MotorState:

@@ -25,13 +25,9 @@ SWINGS, LONGEST = 2.0, 5.5
 class SwingState(NamedTuple):
     """State of the count."""
 
-    peak: Annotated[float, Real("N.m", "largest torque of the present half swing, 0 at first")]
-    enough: Annotated[float, Real("N.m", "torque with which it counts, 0 if it does not or has")]
-    count: Annotated[float, Real("1", "half swings that nothing explains")]  # pyright: ignore[reportIncompatibleMethodOverride]
-
-
-def start() -> SwingState:
-    return SwingState(peak=0.0, enough=0.0, count=0.0)
+    peak: Annotated[float, Real("N.m", "largest torque of the present half swing, 0 at first")] = 0.0
+    enough: Annotated[float, Real("N.m", "torque with which it counts, 0 if it does not or has")] = 0.0
+    count: Annotated[float, Real("1", "half swings that nothing explains")] = 0.0  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 def update(x: SwingState, damping: float, change: float, acting: bool, T_s: float, p: Parameters) -> SwingState:

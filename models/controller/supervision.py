@@ -78,8 +78,7 @@ def demand(u: Input, p: Parameters) -> float:
 
 
 def status(enable: bool, trusted: bool, wheel: bool) -> int:
-    damping = where(wheel, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED)
-    return where(enable, where(trusted, damping, FALLBACK), OFF)
+    return where(enable, where(trusted, where(wheel, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED), FALLBACK), OFF)
 
 
 def limited(torque: float, T_driver: float, p: Parameters) -> float:

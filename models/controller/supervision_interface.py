@@ -1,6 +1,6 @@
 """What every controller is given: its inputs, and the parameters of the supervision."""
 
-from typing import Annotated, NamedTuple, Protocol
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Boolean, Integer, Real
 from ..physics.vehicle import CAR, MotorInertia, MotorLag
@@ -44,27 +44,15 @@ class Parameters(NamedTuple):
     apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
     free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
-    like: Annotated[float, Real("1", "share of that by which a launch against the torque may be off", 0.0, 1.0)] = 0.25
+    like: Annotated[
+        float, Real("1", "share of that by which a motor that turns against its torque may be off", 0.0, 1.0)
+    ] = 0.25
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
     swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 0.0, 1.0)] = 0.03
     grows: Annotated[float, Real("1", "least half swing that counts, over the one before", 0.01, 10.0)] = 0.5
     excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over T_max", 0.01, 10.0)] = 0.1
-
-
-class Motor(Protocol):
-    """The parameters behind the unit of the thresholds of speeds."""
-
-    @property
-    def T_max(self) -> float: ...
-    @property
-    def J_1(self) -> float: ...
-
-
-def added_speed(p: Motor, T_s: float) -> float:
-    """Speed in rad/s that T_max adds to the free motor in a sample, the unit of the thresholds of speeds."""
-    return p.T_max * T_s / p.J_1
 
 
 class Input(NamedTuple):

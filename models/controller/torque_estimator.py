@@ -26,11 +26,10 @@ from typing import Annotated, NamedTuple
 from ..block.declaration import Real
 from ..block.operators import branch, clip, maximum, where
 from ..physics.backlash import dead_zone
-from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia
+from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia, added_speed
 from .fading import faded
 from .gains import GAINS
 from .interfaces import Motion
-from .supervision_interface import added_speed
 
 
 class Parameters(NamedTuple):

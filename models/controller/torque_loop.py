@@ -18,11 +18,7 @@ class LoopState(NamedTuple):
     """State of the torque loop."""
 
     T_mot: Annotated[float, Real("N.m", "torque that the motor should have")]
-    r: Annotated[float, Real("N.m", "its rate times tau")]
-
-
-def start(T_mot: float) -> LoopState:
-    return LoopState(T_mot, 0.0)
+    r: Annotated[float, Real("N.m", "its rate times tau")] = 0.0
 
 
 def update(x: LoopState, T_ref: float, T_s: float, p: Parameters) -> LoopState:

@@ -9,11 +9,11 @@ turns.
 
 from collections.abc import Mapping
 from functools import reduce
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import logical_and, logical_not, logical_or, where
-from .causes import CLOCKS, FAILURES, NONE, first_of
+from .causes import CLOCKS, NONE, first_of
 from .supervision_interface import Input, Parameters
 
 
@@ -55,14 +55,11 @@ def update(
         direction: of the car.
         turned: whether the motor turns the other way.
     """
-    limits: Any = p
     clocks = {"t_bad": x.clock + T_s, "t_apart": x.apart + T_s}
-    firsts = {
-        after: first_of({row.number: found[row.number] for row in FAILURES if row.after == after}) for after in CLOCKS
-    }
+    firsts = {after: first_of({number: found[number] for number in rows}) for after, rows in CLOCKS.items()}
     lost = NONE
     for after, first in reversed(firsts.items()):
-        counts = logical_and(first != NONE, clocks[after] > getattr(limits, after)) if after else first != NONE
+        counts = logical_and(first != NONE, clocks[after] > getattr(p, after)) if after else first != NONE
         lost = where(counts, first, lost)
     trusted, bad, apart = is_trusted(x), firsts["t_bad"] != NONE, firsts["t_apart"] != NONE
     good = reduce(logical_and, (first == NONE for first in firsts.values()), logical_not(trusted))

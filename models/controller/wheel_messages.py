@@ -9,8 +9,9 @@ from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
 from ..block.operators import logical_and, logical_not, maximum, minimum, where
+from ..physics.vehicle import added_speed
 from .motor_signals import in_range
-from .supervision_interface import Input, Parameters, added_speed
+from .supervision_interface import Input, Parameters
 
 
 class WheelState(NamedTuple):

@@ -73,6 +73,20 @@ class LowSpeedParameters(Protocol):
     def v_low(self) -> float: ...
 
 
+class MotorParameters(Protocol):
+    """Those of the motor, whatever else is in the record."""
+
+    @property
+    def T_max(self) -> float: ...
+    @property
+    def J_1(self) -> float: ...
+
+
+def added_speed(p: MotorParameters, T_s: float) -> float:
+    """Speed in rad/s that T_max adds to the free motor in a sample: the unit of a controller's thresholds of speeds."""
+    return p.T_max * T_s / p.J_1
+
+
 def resistance(v: float, slope: float, rolling_load: float, p: ResistanceParameters) -> float:
     """Force in N against the motion: rolling (rolling_load in N), grade and air."""
     return rolling_load * p.c_rr * tanh(1.0 / p.v_rr * v) + p.m * p.g * sin(slope) + p.c_wa * v * abs(v)

@@ -22,7 +22,7 @@ from docs.studies.healthy_hours import (
 )
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.controller.supervision import T_S
-from driveline.models.controller.supervision_interface import added_speed
+from driveline.models.physics.vehicle import added_speed
 
 P = healthy_hours.P
 FAR = P.apart * added_speed(P, T_S) + P.g_radius * 150.0

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import pytest
 
-from driveline.models.controller import causes, motor_signals, torque_loop
+from driveline.models.controller import causes, motor_signals
 from driveline.models.controller.causes import NONE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
 from driveline.models.controller.motor_signals import MotorState
 from driveline.models.controller.supervision import Input, Parameters
@@ -83,12 +83,8 @@ def test_a_motor_torque_is_plausible_as_long_as_it_agrees_with_what_the_motor_sh
         assert motor_signals.torque(x, T_mot_est, P) == T_mot
 
 
-def test_what_the_motor_should_have_follows_the_demand() -> None:
-    x = last(151.0, movement=2.0)
-    expected = torque_loop.update(LoopState(50.0, 0.0), 80.0, T_S, P)
-    assert expected.T_mot > 51.0
-    assert motor_signals.predict(x, 80.0, T_S, P) == x._replace(loop=expected)
-    assert updated(U, x)[0].loop == LoopState(50.0, 0.0), "and what is measured does not change it"
+def test_what_is_measured_does_not_change_what_the_motor_should_have() -> None:
+    assert updated(U, last(151.0, movement=2.0))[0].loop == LoopState(50.0, 0.0)
 
 
 @each_side

@@ -15,7 +15,7 @@ PEAK = 12.0
 
 
 def after(torques: list[float], changes: list[float] | None = None, x: SwingState | None = None) -> SwingState:
-    x = oscillation.start() if x is None else x
+    x = SwingState() if x is None else x
     for torque, change in zip(torques, changes or [0.0] * len(torques), strict=True):
         x = oscillation.update(x, torque, change, True, T_S, P)
     return x
@@ -56,7 +56,7 @@ def test_no_more_are_counted_than_are_forgotten_in_some_seconds() -> None:
 
 
 def test_once_there_is_no_damping_half_swings_are_forgotten_slower() -> None:
-    none, less = (oscillation.start()._replace(count=count) for count in (SWINGS, SWINGS - 2.0**-20))
+    none, less = (SwingState()._replace(count=count) for count in (SWINGS, SWINGS - 2.0**-20))
     assert after([0.0], x=none).count == SWINGS - T_S / P.t_relapse
     assert after([0.0], x=less).count == less.count - T_S / P.t_forget
 
@@ -97,7 +97,7 @@ def test_the_peak_of_a_half_swing_has_its_sign(side: float) -> None:
 
 def test_nothing_is_counted_while_there_is_no_damping() -> None:
     x = oscillation.update(after([20.0]), -20.0, 0.0, False, T_S, P)
-    assert x == oscillation.start() == SwingState(peak=0.0, enough=0.0, count=0.0)
+    assert x == SwingState() == SwingState(peak=0.0, enough=0.0, count=0.0)
 
 
 @pytest.mark.parametrize(("amplitude", "growth"), [(30.0, 1.0), (13.0, 1.1), (30.0, 0.9)])
@@ -106,7 +106,7 @@ def test_an_oscillation_that_stays_takes_the_damping_away_with_its_third_half_sw
 ) -> None:
     """At 8 Hz; `growth`: of a half swing over the one before."""
     half = round(0.0625 / 0.002)
-    x, left = oscillation.start(), []
+    x, left = SwingState(), []
     for k in range(8 * half):
         torque = amplitude * growth ** (k / half) * math.sin(math.pi * k / half)
         x = oscillation.update(x, torque, 0.0, True, 0.002, P)
@@ -117,18 +117,18 @@ def test_an_oscillation_that_stays_takes_the_damping_away_with_its_third_half_sw
 
 def test_an_oscillation_that_is_damped_is_not_found() -> None:
     half = round(0.0625 / 0.002)
-    x = oscillation.start()
+    x = SwingState()
     for k in range(8 * half):
         x = oscillation.update(x, 80.0 * 0.45 ** (k / half) * math.sin(math.pi * k / half), 0.0, True, 0.002, P)
         assert oscillation.share(x) == 1.0
 
 
 def test_there_is_less_damping_from_one_half_swing_on_and_none_from_two() -> None:
-    shares = [oscillation.share(oscillation.start()._replace(count=count)) for count in (-1.0, 1.0, 1.5, 2.0, 5.5)]
+    shares = [oscillation.share(SwingState()._replace(count=count)) for count in (-1.0, 1.0, 1.5, 2.0, 5.5)]
     assert shares == [1.0, 1.0, 0.5, 0.0, 0.0]
 
 
 def test_the_damping_is_less_from_just_above_one_half_swing_on() -> None:
     for count, less in ((-1.0, False), (1.0, False), (math.nextafter(1.0, 2.0), True), (2.0, True), (5.5, True)):
-        x = oscillation.start()._replace(count=count)
+        x = SwingState()._replace(count=count)
         assert (oscillation.is_less(x), oscillation.share(x) < 1.0) == (less, less)

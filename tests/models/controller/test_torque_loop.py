@@ -27,7 +27,7 @@ def test_it_answers_a_step_as_the_motor_does(tau: float) -> None:
 
 
 def test_a_torque_that_is_demanded_stays() -> None:
-    assert torque_loop.update(torque_loop.start(50.0), 50.0, T_S, P) == (50.0, 0.0)
+    assert torque_loop.update(torque_loop.LoopState(50.0), 50.0, T_S, P) == (50.0, 0.0)
 
 
 def test_a_sample_goes_as_the_trapezoidal_rule_has_it() -> None:

@@ -207,7 +207,8 @@ def test_each_cause_is_a_row_with_a_number_a_word_and_a_parameter() -> None:
     rows = (*FAILURES, causes.FEEDING)
     assert [row.number for row in rows] == list(range(2, 2 + len(rows)))
     assert [name for name, _ in causes.OUTPUT.items] == ["none", *(row.word for row in rows)]
-    assert CLOCKS == ("t_bad", "t_apart", "")
+    assert list(CLOCKS) == ["t_bad", "t_apart", ""]
+    assert [number for rows in CLOCKS.values() for number in rows] == [row.number for row in FAILURES]
     assert set(CLOCKS) - {""} <= set(Parameters._fields)
 
 
