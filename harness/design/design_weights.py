@@ -71,7 +71,7 @@ class Weights:
     torque_error: float = 1.0 / 180.0
     load_error: float = 0.3192848
     slow_load_error: float = 0.01 / 180.0
-    slip_load_error: float = 0.3 / 180.0
+    slip_load_error: float = 0.6 / 180.0
     twist_error: float = 6.52222e-4
     message_error: float = 0.4698217
     damping_ratio: float = 0.4978043
