@@ -58,14 +58,14 @@ class Parameters(NamedTuple):
     Ls_omega_1: Annotated[float, Real("1", "gain on omega_1_hat, while the wheels slip", -2.0, 2.0, tunable=True)] = (
         GAINS["Ls_omega_1"]
     )
-    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, while the wheels slip", -2.0, 2.0, tunable=True)] = (
+    Ls_omega_2: Annotated[float, Real("1", "gain on omega_2_hat, while the wheels slip", -20.0, 20.0, tunable=True)] = (
         GAINS["Ls_omega_2"]
     )
     Ls_phi: Annotated[float, Real("s", "gain on phi_hat, while the wheels slip", -0.1, 0.1, tunable=True)] = GAINS[
         "Ls_phi"
     ]
     Ls_T_l: Annotated[
-        float, Real("N.m.s/rad", "gain on the load, while the wheels slip", -10.0, 10.0, tunable=True)
+        float, Real("N.m.s/rad", "gain on the load, while the wheels slip", -100.0, 100.0, tunable=True)
     ] = GAINS["Ls_T_l"]
     slip_drift: Annotated[
         float, Real("1", "mean innovation from which on the wheels slip, over T_max T_s/J_1", 1e-3, 100.0, tunable=True)
