@@ -1,5 +1,4 @@
-"""Syntax trees of sources, one at a time: CPython 3.11 counts the depth of those that threads make at once together,
-and gives up (gh-106905)."""
+"""Syntax trees of sources, one at a time: CPython 3.11 has one count of depth for all threads (gh-106905)."""
 
 import ast
 from threading import Lock

@@ -29,10 +29,10 @@ class Cause(NamedTuple):
 
 FAILURES = (
     Cause(SPEED_RANGE, "speed_range", "the motor speed is no number or beyond omega_max", "t_bad"),
-    Cause(SPEED_JUMP, "speed_jump", "the motor speed is farther than jump from the last and from the model", "t_bad"),
-    Cause(SPEED_FROZEN, "speed_frozen", "the motor speed stays where the model moves by more than frozen", "t_bad"),
-    Cause(TORQUE_IMPLAUSIBLE, "torque_implausible", "the torque is not what it should be, by T_off and g_off", "t_bad"),
-    Cause(WHEEL_CONTRADICTS, "wheel_contradicts", "motor and wheel speed differ, by apart and g_radius", "t_apart"),
+    Cause(SPEED_JUMP, "speed_jump", "the motor speed leaps by more than jump, and no fast change goes on", "t_bad"),
+    Cause(SPEED_FROZEN, "speed_frozen", "the motor speed stays the same while the model moves beyond frozen", "t_bad"),
+    Cause(TORQUE_IMPLAUSIBLE, "torque_implausible", "the torque estimate is off by more than T_off and g_off", "t_bad"),
+    Cause(WHEEL_CONTRADICTS, "wheel_contradicts", "motor and wheels differ by more than apart and g_radius", "t_apart"),
     Cause(WRONG_DIRECTION, "wrong_direction", "the motor turns against the direction on the bus", "t_apart"),
     Cause(
         WRONG_LAUNCH,
@@ -44,7 +44,7 @@ FAILURES = (
 """Lead to fallback. Where several are found, the first is the cause."""
 
 CLOCKS = {row.after: [other.number for other in FAILURES if other.after == row.after] for row in FAILURES}
-"""The rows by the time after which they count; a clock runs for all that have the same."""
+"""The numbers of rows by the time after which these count; a clock runs for all that have the same."""
 
 
 def first_of(found: Mapping[int, bool]) -> int:

@@ -1,15 +1,15 @@
 """A motor that sets off against its torque: its speed has the wrong sign.
 
 It is looked for when a demand ends the rest. The motor meets nothing but its inertia then, until the teeth touch. With
-s the speed that the demanded torque gives a free motor, J_1 ds/dt = T, one that turns against it has the speed -s. It
-is one if its speed is never farther from that than `like` of `free` until s has reached `free`. On the flank of a
-tooth, thrown back by one, or rocking on ice the motor is too fast or too slow for that.
+s the speed that the demanded torque gives a free motor, J_1 ds/dt = T, one that turns against it has the speed -s. How
+far the motor speed is from that is integrated over s up to `free`; the integral of s itself is half the square of
+`free`. On the flank of a tooth, thrown back by one, or rocking on ice the motor is too fast or too slow for that.
 """
 
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, where
+from ..block.operators import logical_and, where
 from ..physics.vehicle import added_speed
 from .supervision_interface import Parameters
 
@@ -17,14 +17,12 @@ from .supervision_interface import Parameters
 class LaunchState(NamedTuple):
     """The launch."""
 
-    free: Annotated[
-        float,
-        Real("rad/s", "speed that the demanded torque has given a free motor since rest; `free` if none is looked at"),
-    ]
+    free: Annotated[float, Real("rad/s", "speed that the demanded torque has given a free motor since rest")]
+    off: Annotated[float, Real("rad2/s2", "how far the motor is from turning against it, integrated over that speed")]
 
 
 def start(T_s: float, p: Parameters) -> LaunchState:
-    return LaunchState(p.free * added_speed(p, T_s))
+    return LaunchState(p.free * added_speed(p, T_s), 0.0)
 
 
 def update(
@@ -40,8 +38,9 @@ def update(
     """
     far = p.free * added_speed(p, T_s)
     counting = logical_and(abs(x.free) < far, T_mot * T_driver > 0.0)
-    gained = where(counting, T_s * T_mot / p.J_1, 0.0)
-    like = abs(omega_1 + x.free + 0.5 * gained) <= p.like * far
-    against = logical_and(logical_and(counting, like), abs(x.free + gained) >= far)
-    ends = logical_or(abs(T_driver) <= p.T_still, logical_and(counting, logical_not(like)))
-    return LaunchState(where(resting, 0.0, where(ends, far, x.free + gained))), against
+    gained = T_s * T_mot / p.J_1
+    free = x.free + where(counting, gained, 0.0)
+    off = x.off + where(counting, abs(gained * (omega_1 + x.free + 0.5 * gained)), 0.0)
+    against = logical_and(logical_and(counting, abs(free) >= far), off <= p.like * 0.5 * free * free)
+    none = abs(T_driver) <= p.T_still
+    return LaunchState(where(resting, 0.0, where(none, far, free)), where(resting, 0.0, off)), against

@@ -8,7 +8,7 @@ from .gains import GAINS
 
 
 def speed(meaning: str) -> Real:
-    """The declaration of a threshold of speeds, in units of added_speed."""
+    """The declaration of a threshold of speeds, in units of vehicle.added_speed."""
     return Real("1", f"{meaning}, over T_max T_s/J_1", 0.0, 1000.0)
 
 
@@ -44,9 +44,7 @@ class Parameters(NamedTuple):
     apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
     free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
-    like: Annotated[
-        float, Real("1", "share of that by which a motor that turns against its torque may be off", 0.0, 1.0)
-    ] = 0.25
+    like: Annotated[float, Real("1", "share of that by which a launch against the torque may be off", 0.0, 1.0)] = 0.25
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
