@@ -134,6 +134,24 @@ def test_trust_is_lost_at_once(side: float) -> None:
     assert (states[-1].trust.clock, states[-1].trust.direction) == (0.0, side)
 
 
+def pulled_away(lost: int, T_mot_share: float = 1.0) -> list[State]:
+    """States in a launch within 0.1 s, whose motor speed has the wrong sign and is lost in one sample."""
+    states, omega_1 = [OURS.start(Input(), CAR)], 0.0
+    for k in range(40):
+        T_mot = states[-1].motor.loop.T_mot
+        measured = math.nan if k == lost else -omega_1
+        u = Input(T_driver=min(2.4 * k, 120.0), omega_1_meas=measured, T_mot_est=T_mot_share * T_mot)
+        states.append(OURS.update(states[-1], u, CAR))
+        omega_1 += supervision.T_S * T_mot / CAR.J_1
+    return states
+
+
+def test_a_sample_without_a_motor_speed_and_a_wrong_estimate_of_the_torque_hide_nothing() -> None:
+    """Unless it is one of the last before the speed is looked at, by which it would be off by too much."""
+    for states in (pulled_away(lost=-1, T_mot_share=0.8), *(pulled_away(lost=k) for k in range(12))):
+        assert [x.trust.cause == WRONG_LAUNCH for x in states[13:17]] == [False, False, True, True]
+
+
 @each_side
 def test_trust_is_back_once_the_motor_turns_the_other_way_or_rests_and_not_before(side: float) -> None:
     """Other wrong directions heal in t_turn."""
