@@ -56,7 +56,7 @@ def test_no_more_are_counted_than_are_forgotten_in_some_seconds() -> None:
 
 
 def test_once_there_is_no_damping_half_swings_are_forgotten_slower() -> None:
-    none, less = (SwingState()._replace(count=count) for count in (SWINGS, SWINGS - 2.0**-20))
+    none, less = (SwingState(count=count) for count in (SWINGS, SWINGS - 2.0**-20))
     assert after([0.0], x=none).count == SWINGS - T_S / P.t_relapse
     assert after([0.0], x=less).count == less.count - T_S / P.t_forget
 
@@ -124,11 +124,11 @@ def test_an_oscillation_that_is_damped_is_not_found() -> None:
 
 
 def test_there_is_less_damping_from_one_half_swing_on_and_none_from_two() -> None:
-    shares = [oscillation.share(SwingState()._replace(count=count)) for count in (-1.0, 1.0, 1.5, 2.0, 5.5)]
+    shares = [oscillation.share(SwingState(count=count)) for count in (-1.0, 1.0, 1.5, 2.0, 5.5)]
     assert shares == [1.0, 1.0, 0.5, 0.0, 0.0]
 
 
 def test_the_damping_is_less_from_just_above_one_half_swing_on() -> None:
     for count, less in ((-1.0, False), (1.0, False), (math.nextafter(1.0, 2.0), True), (2.0, True), (5.5, True)):
-        x = SwingState()._replace(count=count)
+        x = SwingState(count=count)
         assert (oscillation.is_less(x), oscillation.share(x) < 1.0) == (less, less)

@@ -55,6 +55,15 @@ def test_whatever_a_law_says_its_damping_is_at_most_t_add_max(side: float) -> No
     assert y.T_damp == -side * 60.0
 
 
+def test_what_the_motor_should_have_follows_the_torque_demanded_last() -> None:
+    p = OURS.Parameters()
+    x = OURS.start(ROLLING, p)
+    x = x._replace(T_ref=x.motor.loop.T_mot + 30.0)
+    expected = torque_loop.update(x.motor.loop, x.T_ref, T_S, p)
+    assert expected.T_mot > x.motor.loop.T_mot + 1.0
+    assert OURS.update(x, ROLLING, p).motor.loop == expected
+
+
 class Ahead(NamedTuple):
     """State of a law that adds nothing."""
 
