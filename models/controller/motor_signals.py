@@ -76,6 +76,11 @@ def is_movement(movement: float, T_s: float, p: Parameters) -> bool:
     return abs(movement) > p.q_omega + p.frozen * added_speed(p, T_s)
 
 
+def predict(x: MotorState, T_ref: float, T_s: float, p: Parameters) -> MotorState:
+    """The state with the torque that the motor should have at the next sample, by its demand T_ref (N.m)."""
+    return x._replace(loop=torque_loop.update(x.loop, T_ref, T_s, p))
+
+
 def moved(x: MotorState, increment: float, T_s: float, p: Parameters) -> MotorState:
     """The state with the movement (rad/s) that the model expects until the next sample.
 

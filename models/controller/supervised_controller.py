@@ -6,7 +6,7 @@ from typing import Any, Generic
 from ..block.declaration import merged
 from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, where
 from ..block.types import SampledBlock
-from . import causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
+from . import causes, launch, motor_signals, oscillation, standstill, trust, wheel_messages
 from .fading import faded
 from .interfaces import Estimator, Law
 from .supervision import T_S, E, L, Output, State, demand, limited, status
@@ -63,7 +63,7 @@ class Supervised(Generic[E, L]):
         trusted = trust.is_trusted(x.trust)
 
         wheel = logical_and(wheel_messages.is_reference(x.wheel, u, p), trusted)
-        motor = x.motor._replace(loop=torque_loop.update(x.motor.loop, x.T_ref, T_S, p))
+        motor = motor_signals.predict(x.motor, x.T_ref, T_S, p)
         e = self.estimator.predict(x.estimator, T_mot + 0.5 * (motor.loop.T_mot - x.motor.loop.T_mot), wheel, T_S, p)
         motion, expected = self.estimator.motion(x.estimator, p), self.estimator.motion(e, p)
 

@@ -51,9 +51,10 @@ def _costs(axes: Axes, visited: Sequence[Evaluated], character: float) -> None:
     axes.scatter(comfort, response, c=CHOICES, cmap=COLORS, s=16, zorder=3)
     axes.plot(start.comfort, start.response, "x", color=BLACK, ms=7, mew=1.5, zorder=4)
     axes.plot(marked.comfort, marked.response, "o", mfc="none", mec=BLACK, ms=9, zorder=4)
-    for text, k, at in (("sport", 0, (8, 4)), ("comfort", -1, (8, 4))):
-        axes.annotate(text, (comfort[k], response[k]), at, textcoords="offset points", color=COLORS(CHOICES[k]))
-    axes.annotate("start", (start.comfort, start.response), (7, -10), textcoords="offset points")
+    beside = {"xytext": (-5, -4), "textcoords": "offset points", "ha": "right", "va": "top"}  # there are no candidates
+    for text, k in (("sport", 0), ("comfort", -1)):
+        axes.annotate(text, (comfort[k], response[k]), color=COLORS(CHOICES[k]), **beside)
+    axes.annotate("start", (start.comfort, start.response), **beside)
     axes.set(
         xlabel="comfort: overshoot and jerk, over those\nof the computed gains",
         ylabel="response: 90 % time and withheld torque",
