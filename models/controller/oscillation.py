@@ -4,7 +4,7 @@ Behind a signal that is late, or wrong in a way that no comparison shows, dampin
 shows in the damping torque: in a damped drive train it dies away after a change of the demand, each half swing far
 smaller than the one before. Half swings are counted that reach `swing` on both sides and `grows` of the one before.
 From SWINGS on there is no damping, and less in the one before. They are forgotten at one a t_forget, once there is
-none at one a t_relapse, and at one for each `excuse` by which the demand changes. Whatever shakes the drive train from
+none at one a t_relapse, and at one where the demand changes by `excuse` times its torque. Whatever shakes the drive train from
 outside (ABS, a road without grip) is counted too, and the damping can do little against it: it only becomes less, and
 there is no fallback.
 """
@@ -45,7 +45,7 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
     counts = logical_and(enough > 0.0, abs(peak) >= enough)
     least = T_s / where(x.count < SWINGS, p.t_forget, p.t_relapse)
     forgotten = x.count - clip(x.count, -least, least)
-    explained = abs(change) / (p.excuse * p.T_max)
+    explained = abs(change) / (p.excuse * maximum(abs(peak), p.swing * p.T_max))
     count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
     return SwingState(
         peak=where(acting, peak, 0.0),

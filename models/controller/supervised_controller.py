@@ -102,7 +102,8 @@ class Supervised(Generic[E, L]):
         bad = causes.first_of(found) != causes.NONE
         rested = standstill.is_complete(x.quiet, p)
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
-        way = where(against, trust.way(T_driver), trust.direction(x.trust, u, omega_1, logical_not(bad), p))
+        direction = trust.direction(x.trust, u, T_driver, rested, omega_1, logical_not(bad), T_S, p)
+        way = trust.way(direction)
         turned = way * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, way, T_S, p)
         found |= {
@@ -110,7 +111,7 @@ class Supervised(Generic[E, L]):
             causes.WRONG_DIRECTION: logical_and(turned, u.direction != 0),
             causes.WRONG_LAUNCH: logical_or(against, logical_and(turned, x.trust.cause == causes.WRONG_LAUNCH)),
         }
-        trusting = trust.update(x.trust, found, way, turned, T_S, p)
+        trusting = trust.update(x.trust, found, direction, turned, T_S, p)
         quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, omega_1, p), T_S, p)
 
         rests = standstill.is_complete(quiet, p)

@@ -48,9 +48,9 @@ class Parameters(NamedTuple):
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
-    swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 0.0, 1.0)] = 0.03
+    swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 1e-3, 1.0)] = 0.03
     grows: Annotated[float, Real("1", "least half swing that counts, over the one before", 0.01, 10.0)] = 0.5
-    excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over T_max", 0.01, 10.0)] = 0.1
+    excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over its torque", 0.01, 10.0)] = 1.5
 
 
 class Input(NamedTuple):

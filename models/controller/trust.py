@@ -3,8 +3,8 @@
 While there is trust, a clock runs for each time after which causes count (t_bad, t_apart), as long as one of these is
 found. Without trust, the first of them runs as long as nothing is found, until trust is back.
 
-A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which a trusted motor
-turns.
+A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which it is driven out of
+rest, and in which a trusted motor has turned for t_apart: wheels that lock throw the motor back for less.
 """
 
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from functools import reduce
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, where
+from ..block.operators import clip, logical_and, logical_not, logical_or, where
 from .causes import CLOCKS, NONE, first_of
 from .supervision_interface import Input, Parameters
 
@@ -23,7 +23,7 @@ class TrustState(NamedTuple):
     cause: Annotated[int, Real("1", "number of the cause, that of none while the motor signals are trusted")]
     clock: Annotated[float, Real("s", "time for which motor signals have been bad, or good where there is a cause")]
     apart: Annotated[float, Real("s", "time for which the motor speed has been contradicted")]
-    direction: Annotated[float, Real("1", "of the car, 1 forwards, -1 backwards")]
+    direction: Annotated[float, Real("1", "of the car, 1 forwards, -1 backwards, between them as it turns round")]
 
 
 def start(omega_1: float, p: Parameters) -> TrustState:
@@ -34,10 +34,14 @@ def is_trusted(x: TrustState) -> bool:
     return x.cause == NONE
 
 
-def direction(x: TrustState, u: Input, omega_1: float, good: bool, p: Parameters) -> float:
-    """Of the car in this sample, by the motor speed (rad/s) where it is good."""
+def direction(
+    x: TrustState, u: Input, T_driver: float, rested: bool, omega_1: float, good: bool, T_s: float, p: Parameters
+) -> float:
+    """Of the car in this sample, by the demand (N.m) that ends its rest, later by the motor speed (rad/s) if good."""
     turning = logical_and(logical_and(is_trusted(x), good), abs(omega_1) > p.omega_still)
-    return where(u.direction == 0, where(turning, way(omega_1), x.direction), way(1.0 * u.direction))
+    seen = clip(x.direction + where(turning, T_s / p.t_apart * way(omega_1), 0.0), -1.0, 1.0)
+    set_off = logical_and(rested, abs(T_driver) > p.T_still)
+    return where(u.direction == 0, where(set_off, way(T_driver), seen), way(1.0 * u.direction))
 
 
 def way(value: float) -> float:

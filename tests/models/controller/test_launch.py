@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from driveline.models.controller import launch, supervision
+from driveline.models.controller import launch, supervision, trust
 from driveline.models.controller.causes import NONE, WRONG_LAUNCH
 from driveline.models.controller.launch import LaunchState
 from driveline.models.controller.supervision import Input, Parameters, State
@@ -131,7 +131,7 @@ def driven(x: State, side: float, speeds: list[float]) -> list[State]:
 def test_trust_is_lost_at_once(side: float) -> None:
     states = set_off(side)
     assert [x.trust.cause for x in states] == [NONE] * (len(states) - 1) + [WRONG_LAUNCH]
-    assert (states[-1].trust.clock, states[-1].trust.direction) == (0.0, side)
+    assert (states[-1].trust.clock, trust.way(states[-1].trust.direction)) == (0.0, side)
 
 
 def pulled_away(lost: int, T_mot_share: float = 1.0) -> list[State]:
@@ -177,4 +177,4 @@ def test_the_direction_is_that_of_the_demand_even_if_it_ends_in_that_sample(side
     u = Input(T_driver=side * 1.0, omega_1_meas=found.motor.omega_1, T_mot_est=before.motor.loop.T_mot)
     x = OURS.update(before, u, CAR)
     assert abs(u.T_driver) < CAR.T_still
-    assert (x.trust.cause, x.trust.direction, x.launch.free > 0.0) == (WRONG_LAUNCH, side, True)
+    assert (x.trust.cause, trust.way(x.trust.direction)) == (WRONG_LAUNCH, side)

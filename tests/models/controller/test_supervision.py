@@ -415,7 +415,7 @@ def test_in_fallback_the_wheel_speed_is_not_in_use() -> None:
 def test_the_state_moves_by_one_sample_a_sample() -> None:
     """Nothing of it is left behind."""
     states = run(
-        OTHER, [u._replace(T_driver=50.0 + 0.01 * k**2) for k, u in enumerate(shaken(0.1))], swing=0.0, excuse=5.0
+        OTHER, [u._replace(T_driver=50.0 + 0.01 * k**2) for k, u in enumerate(shaken(0.1))], swing=1e-3, excuse=10.0
     )
     for a, b in pairwise(states[1:]):
         for name in ("estimator", "law", "motor", "wheel", "swings", "T_ref", "T_damp"):

@@ -174,20 +174,43 @@ def test_the_first_of_those_that_count_is_the_cause_and_stays_it() -> None:
     assert after(9, lost(WHEEL_CONTRADICTS), found=every).cause == WHEEL_CONTRADICTS
 
 
+def turning(samples: int, x: TrustState, omega_1: float, good: bool = True, u: Input = U) -> float:
+    """The direction after samples with this motor speed (rad/s)."""
+    for _ in range(samples):
+        x = x._replace(direction=trust.direction(x, u, 50.0, False, omega_1, good, T_S, P))
+    return x.direction
+
+
 @each_side
-def test_the_direction_is_that_of_a_trusted_motor(side: float) -> None:
-    """Which is beyond its noise; a fault takes nothing away."""
-    x = TRUSTED._replace(direction=-side)
-    for omega_1, good, way in ((3.0, True, -side), (math.nextafter(3.0, 9.0), True, side), (99.0, False, -side)):
-        assert trust.direction(x, U, side * omega_1, good, P) == way
-        assert trust.direction(x._replace(cause=SPEED_JUMP), U, side * omega_1, good, P) == -side
+def test_the_direction_is_that_in_which_a_trusted_motor_has_turned_for_t_apart(side: float) -> None:
+    """Beyond its noise; a fault takes nothing away, and wheels that lock throw the motor back for less."""
+    x, samples, beyond = TRUSTED._replace(direction=-side), round(P.t_apart / T_S), math.nextafter(3.0, 9.0)
+    assert [trust.way(turning(n, x, side * beyond)) for n in (samples - 1, samples + 1)] == [-side, side]
+    assert turning(9 * samples, x, side * beyond) == side
+    for omega_1, good in ((3.0, True), (99.0, False)):
+        assert turning(9 * samples, x, side * omega_1, good) == -side
+    assert turning(9 * samples, x._replace(cause=SPEED_JUMP), side * 99.0) == -side
+    assert turning(samples, x._replace(direction=turning(samples - 1, x, side * 99.0)), -side * 99.0) == -side
+
+
+@each_side
+def test_a_car_at_rest_sets_off_where_it_is_driven(side: float) -> None:
+    for T_driver, rested, way in (
+        (P.T_still, True, -side),
+        (math.nextafter(P.T_still, math.inf), True, side),
+        (99.0, False, -side),
+    ):
+        for x in (TRUSTED, lost(SPEED_JUMP)):
+            x = x._replace(direction=-side)
+            assert trust.direction(x, U, side * T_driver, rested, 0.0, True, T_S, P) == way
 
 
 @each_side
 def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
     told = U._replace(direction=int(side))
     for x in (TRUSTED, lost(SPEED_JUMP)):
-        assert trust.direction(x._replace(direction=-side), told, -side * 99.0, True, P) == side
+        for rested in (False, True):
+            assert trust.direction(x._replace(direction=-side), told, -side * 9.0, rested, -side * 99.0, True, T_S, P) == side
 
 
 @each_side
