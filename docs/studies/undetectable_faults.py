@@ -46,6 +46,8 @@ CASES = (
     *((slow, "wrong sign") for slow in SLOW),
     ("launch", "late"),
     ("tipin15", "late"),
+    ("prbs", "late"),
+    ("throttle", "late"),
 )
 
 

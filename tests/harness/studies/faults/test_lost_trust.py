@@ -1,0 +1,71 @@
+"""Trust that is lost in the loop comes back, and damping on a late motor speed does not last, however the foot moves."""
+
+import numpy as np
+import pytest
+
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.loop.places import T_S
+from driveline.harness.loop.settings import loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.manoeuvres.signals import lines
+from driveline.harness.metrics.evaluate import at_samples
+from driveline.harness.metrics.spectrum import band_rms
+from driveline.harness.simulation.simulate import signals, start
+from driveline.harness.studies.faults.fault_injection import with_faults
+from driveline.models.controller import causes, supervision
+from driveline.models.signal_faults import LATE, MOTOR_SPEED, MOTOR_TORQUE, NO_NUMBER
+
+PLANTS = ("TwoMassDriveline", "ValidationVehicle")
+LOCKED = Manoeuvre(
+    "wheels lock on snow", "", 4.0, 15.0, lines((0.0, 0.0)), lines((1.0, 0.0), (1.0, 2500.0), (2.0, 2500.0), (2.0, 0.0))
+)
+BACKWARDS = Manoeuvre("pulls away backwards", "", 4.0, 0.0, lines((1.0, 0.0), (1.2, -80.0)))
+
+
+def faulty(injector, settings, manoeuvre, fault, *, control=True, plant=None):
+    """The samples of a run with a fault: its kind, signal, begin, end and size."""
+    given = dict(zip(("kind_1", "signal_1", "begin_1", "end_1", "size_1"), fault, strict=True))
+    parameters = start(manoeuvre, 1) | {f"faults.{name}": value for name, value in given.items()}
+    parameters |= {f"plant.{name}": value for name, value in (plant or {}).items()}
+    inputs = signals(manoeuvre, control)
+    experiment = Experiment(manoeuvre.duration, inputs=inputs, parameters=parameters)
+    return at_samples(run(with_faults(loop(settings), injector), experiment))
+
+
+@pytest.mark.parametrize("signal", [MOTOR_SPEED, MOTOR_TORQUE])
+@pytest.mark.parametrize(
+    ("plant", "manoeuvre", "road", "begin"),
+    [
+        ("ValidationVehicle", LOCKED, {"mu": 0.2}, 1.8),
+        ("ValidationVehicle", LOCKED, {"mu": 0.2}, 2.017),
+        *((plant, BACKWARDS, {}, 1.02) for plant in PLANTS),
+    ],
+)
+def test_a_signal_that_was_lost_while_the_direction_is_new_heals(
+    injector, settings, plant, manoeuvre, road, begin, signal
+):
+    """Wheels that lock throw the motor back, and a motor that has hardly moved has not told where it goes."""
+    for lasting in (0.05, 0.1, 0.3):
+        fault = (NO_NUMBER, signal, begin, begin + lasting, 1.0)
+        y = faulty(injector, settings[plant], manoeuvre, fault, plant=road)
+        late = y["time"] > begin + lasting + 0.25
+        assert [supervision.FALLBACK in y["controller.status"][k] for k in (~late, late)] == [True, False]
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize("late", [0.03, 0.062])
+def test_a_late_motor_speed_is_not_excused_by_every_change_of_the_demand(injector, settings, plant, late):
+    fault = (LATE, MOTOR_SPEED, 1.0, 99.0, late)
+    on, off = (
+        band_rms(faulty(injector, settings[plant], MANOEUVRES["prbs"], fault, control=control)["plant.T_gear"], T_S)
+        for control in (True, False)
+    )
+    assert on < 1.3 * off
+
+
+def test_a_healthy_drive_with_many_steps_keeps_its_damping(injector, settings):
+    for plant in PLANTS:
+        y = faulty(injector, settings[plant], MANOEUVRES["prbs"], (LATE, MOTOR_SPEED, 99.0, 99.0, 0.0))
+        assert np.mean(y["controller.cause"] != causes.NONE) < 0.005
