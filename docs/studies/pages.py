@@ -110,6 +110,7 @@ _ROWS = (
     ),
     _study("design", files="examples/cars/*.toml"),
     _study("goals"),
+    _study("vehicle_model"),
     _study("comparison", fmus=COMPARED),
     _study("roads", "docs.studies.grip_and_frames", fmus=(*COMPARED, "fmus.signal_faults")),
     Page(
