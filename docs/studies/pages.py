@@ -2,7 +2,10 @@
 
 import re
 from collections.abc import Mapping
+from itertools import product
 from typing import NamedTuple
+
+from driveline.harness.loop.places import PLACES, PLANTS
 
 
 class Page(NamedTuple):
@@ -66,6 +69,15 @@ def _identification(table: str) -> Page:
     """A table of docs/identification.md."""
     module = "docs.studies.identification_page"
     return Page(f"identification_{table}", (f"{module} {table}",), _same("identification.md"), (module,), LOOP)
+
+
+def _replay(trip: str, plant: str) -> str:
+    """A recorded drive, with every controller that damps."""
+    controllers = " ".join(f"--controller {name}" for name in PLACES["controller"] if name != "NoDamping")
+    return (
+        f"driveline replay ../shared/data/bmw_i3_trip_{trip}.csv --plant {plant} {controllers} "
+        f"--output OUT/{trip}_{plant} --replace --quiet"
+    )
 
 
 def _fuzz(target: str, *more: str) -> Page:
@@ -168,6 +180,13 @@ _ROWS = (
         {"figures/front.png": "ours/front.png"},
         tuple(f"harness.design.search.{name}" for name in ("tune", "controller_cost")),
         LOOP,
+    ),
+    Page(
+        "replay",
+        (*(_replay(trip, plant) for trip, plant in product(("a01", "a11"), PLANTS)), "docs.studies.replay_page"),
+        _same("replay.md"),
+        ("harness.studies.drives.replay", "harness.recordings.drive"),
+        COMPARED,
     ),
     Page("mutation", made_by="make mutation", scores="tests/mutation/score.json"),
     Page("speed", made_by="make bench", own_modules=("benchmarks.speed_page",), fmus=LOOP),
