@@ -18,7 +18,7 @@ from unicodedata import category
 from ..base.errors import DrivelineError
 from ..base.interruption import forget_stdout, reopen_closed_streams, stoppable
 from ..base.known_names import nearest
-from ..base.plain_text import plain, reason
+from ..base.plain_text import plain, quoted, reason
 from ..base.progress import hidden
 from ..base.status_line import waiting
 from .course import command, run
@@ -113,11 +113,21 @@ class Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, args=None, namespace=None):  # type: ignore[override]
         self.add_command()
+        self._values: dict[argparse.Action, str] = {}
         known, unknown = super().parse_known_args(args, namespace)
         options = [word.partition("=")[0] for word in unknown if word.startswith("--")]
         if options:
             self.error(f"unknown option {plain(options[0], 60)}; {nearest(options[0], self._option_string_actions)}")
         return known, unknown
+
+    def _get_values(self, action: argparse.Action, arg_strings: list[str]) -> Any:
+        """As argparse does, which of an option with one value takes the last, whatever was given before."""
+        if isinstance(action, argparse._StoreAction) and action.option_strings:
+            value = " ".join(arg_strings)
+            if (before := self._values.setdefault(action, value)) != value:
+                both = f"{quoted(before)} and {quoted(value)}"
+                self.error(f"{action.option_strings[0]} is given twice, {both}; it takes one value")
+        return super()._get_values(action, arg_strings)
 
     def _check_value(self, action: argparse.Action, value: str) -> None:
         if action.choices is not None and value not in action.choices:

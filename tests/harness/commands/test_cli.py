@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 from fmpy.util import read_csv
 
-from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS, main
+from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS, main, parser
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.declaration import declared
@@ -143,6 +143,34 @@ def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
     assert code == 2
     assert hint in err
     assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "values"),
+    [
+        ("compare", "--controller", ("SpeedWashout", "PaperObserver")),
+        ("simulate", "--manoeuvre", ("tipin15", "drive")),
+        ("simulate", "--seed", ("1", "2")),
+        ("robustness", "--cases", ("10", "20")),
+        ("target export", "--precision", ("float", "double")),
+    ],
+)
+def test_an_option_with_one_value_is_not_given_two(capsys, command, option, values):
+    first, second = values
+    code, out, err = answer(capsys, *command.split(), option, first, f"{option}={second}")
+    assert (code, out) == (2, "")
+    assert err.splitlines()[0] == (
+        f"driveline {command}: {option} is given twice, {first!r} and {second!r}; it takes one value"
+    )
+
+
+def test_options_that_are_repeatable_keep_all_values_and_the_same_value_twice_is_one():
+    given = ["--controller", "SpeedWashout", "--controller", "PaperObserver", "--seed", "1", "--seed", "1"]
+    assignments = ["--set", "can.tau=0.1", "--set", "plant.J_1=0.06"]
+    args = parser().parse_args(["replay", "trip.csv", *given, *assignments])
+    assert args.controller == ["SpeedWashout", "PaperObserver"]
+    assert args.assignments == [("can.tau", 0.1), ("plant.J_1", 0.06)]
+    assert args.seed == 1
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["simulate", "--help"], ["simulate", "--manoeuvre", "tipn15"]])
