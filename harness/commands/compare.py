@@ -25,12 +25,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..loop.places import PLACES
 from ..loop.settings import Settings
 from ..manoeuvres.catalogue import COMPARED
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.run_metrics import Metrics
 from ..views.html.report_page import require_report
-from ..views.metrics_table import legend
+from ..views.metrics_table import DAMPINGS, legend
 from .course import RunJob, job
 from .manoeuvres import OWN, add_manoeuvre, chosen
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, figure_options
@@ -74,22 +75,31 @@ def run(args: argparse.Namespace) -> int:
         requested.require_drivable(made.fits, by_name)
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
-        made.wrote(*write_tables(outcomes, args.output), *write_figures(outcomes, args.output, options, manoeuvres))
+        title = _title(list(given.values()))
+        made.wrote(*write_tables(outcomes, args.output, title), *write_figures(outcomes, args.output, options, manoeuvres))
         for case, path in signals.items():
             _record(made, case, path, given[case.plant], manoeuvres[case.manoeuvre], read)
         for provenance, path in made.reports():
             _report(outcomes, manoeuvres, given, provenance, path)
-        _tell(made, outcomes, given, args.output / "runs")
+        _tell(made, outcomes, given, args.output / "runs", title)
     return 0
 
 
-def _tell(made: RunJob, outcomes: "Sequence[Outcome]", given: Mapping[str, Settings], folder: Path) -> None:
+def _title(given: Sequence[Settings]) -> str:
+    """Of the tables: what the rows are, and with which controller if it is not the usual one."""
+    controller = Path(given[0].controller).stem
+    return DAMPINGS if controller == PLACES["controller"][0] else f"{DAMPINGS} by {controller}"
+
+
+def _tell(
+    made: RunJob, outcomes: "Sequence[Outcome]", given: Mapping[str, Settings], folder: Path, title: str
+) -> None:
     """The metrics of the runs, whose signals are in a folder."""
     from ..views.terminal import print_runs
 
     builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
     made.out.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {folder}")
-    made.tell(print_runs, [each.row for each in outcomes], runs=[each.record for each in outcomes])
+    made.tell(print_runs, [each.row for each in outcomes], title, runs=[each.record for each in outcomes])
 
 
 def _record(

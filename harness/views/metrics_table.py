@@ -23,6 +23,9 @@ class Row(NamedTuple):
     metrics: Metrics
 
 
+DAMPINGS = "without (off) and with (on) active damping"
+"""What the two rows of a manoeuvre are."""
+
 SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column]
 """The metrics that the table has, and how."""
 
@@ -74,7 +77,7 @@ def _named(some: Sequence[Row], rows: Sequence[Row]) -> str:
     return ", ".join(dict.fromkeys(names))
 
 
-def write_markdown(rows: Sequence[Row], path: Path) -> None:
+def write_markdown(rows: Sequence[Row], path: Path, title: str = DAMPINGS) -> None:
     """Writes the table, with the plant as first column, and what every metric means."""
     headings = ["plant", "manoeuvre", "damping", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
     table = markdown_table(headings, ([row.plant, *cells(row)] for row in rows), labels=3)
@@ -85,7 +88,8 @@ def write_markdown(rows: Sequence[Row], path: Path) -> None:
     explained = markdown_table(("column", "in `metrics.csv`", "meaning"), meanings, labels=3)
     dashes = "\n".join(reasons(rows))
     table += f"\n\n{dashes}" if dashes else ""
-    write_text(f"{table}\n\n{cleandoc(Metrics.__doc__ or '')}\n\n{explained}\n", path)
+    above = "" if title == DAMPINGS else f"{title}\n\n"  # pages with the table have headings of their own
+    write_text(f"{above}{table}\n\n{cleandoc(Metrics.__doc__ or '')}\n\n{explained}\n", path)
 
 
 def ride_rows(rides: Mapping[str, RideMetrics]) -> Iterator[list[str]]:

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from ..metrics.declaration import declared
 from ..metrics.run_metrics import Metrics, RideMetrics
-from .metrics_table import RIDES_SHOWN, SHOWN, Row, cells, legend, reasons, ride_rows
+from .metrics_table import DAMPINGS, RIDES_SHOWN, SHOWN, Row, cells, legend, reasons, ride_rows
 
 NUMBER_WIDTH = 5
 """Columns of the terminal that a number may need."""
@@ -47,9 +47,9 @@ def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str,
         console.print(Text(f"        - {problem}"))
 
 
-def runs_table(rows: Sequence[Row]) -> Table:
+def runs_table(rows: Sequence[Row], title: str = DAMPINGS) -> Table:
     """Each plant is a section, each manoeuvre a pair of rows."""
-    table = Table(title="without (off) and with (on) active damping", title_justify="left", box=SIMPLE_HEAD, padding=0)
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=0)
     table.add_column("manoeuvre", no_wrap=True)
     table.add_column("", min_width=3)
     for _, column in SHOWN:
@@ -62,9 +62,9 @@ def runs_table(rows: Sequence[Row]) -> Table:
     return table
 
 
-def print_runs(rows: Sequence[Row]) -> None:
+def print_runs(rows: Sequence[Row], title: str = DAMPINGS) -> None:
     """Prints the table of the runs, why it has dashes, and what its columns are."""
-    print_table(runs_table(rows))
+    print_table(runs_table(rows, title))
     print("\n".join([*reasons(rows), legend(Metrics), ""]))
 
 

@@ -19,7 +19,7 @@ from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
 from ...views.figure_options import PLAIN, FigureOptions
-from ...views.metrics_table import Row, values, write_markdown, write_metrics
+from ...views.metrics_table import DAMPINGS, Row, values, write_markdown, write_metrics
 from ...views.signals_file import write_signals
 
 DRAWN = ("tipin15", "tipin50", "tipout", "launch", "drive")
@@ -114,10 +114,10 @@ def run_cases(
     return run_many(one, todo)
 
 
-def write_tables(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
+def write_tables(outcomes: Sequence[Outcome], folder: Path, title: str = DAMPINGS) -> list[Path]:
     """Writes the table as Markdown and all metrics as CSV; returns the files."""
     table, metrics = folder / "table.md", folder / "metrics.csv"
-    write_markdown([outcome.row for outcome in outcomes], table)
+    write_markdown([outcome.row for outcome in outcomes], table, title)
     write_metrics([outcome.record for outcome in outcomes], metrics)
     return [table, metrics]
 

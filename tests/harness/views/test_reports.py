@@ -12,6 +12,8 @@ from rich.console import Console
 
 from driveline.harness.base.atomic_files import complete, remove, write_text
 from driveline.harness.base.plain_text import reason
+from driveline.harness.commands.compare import _title
+from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics, RideMetrics
 from driveline.harness.views.metrics_table import (
@@ -87,6 +89,15 @@ def test_a_ride_without_damage_has_a_dash_and_no_ratio():
 def test_the_terminal_table_names_plant_units_and_runs():
     text = printed(runs_table([OFF, ON]))
     assert all(part in text for part in ("Plant", "tipin15", "ms", "N.m", "1758", "114"))
+
+
+def test_the_title_names_a_controller_that_is_not_the_usual_one(tmp_path):
+    title = _title([Settings("Plant", "fmus/SpeedWashout.fmu")])
+    assert title.endswith(" by SpeedWashout")
+    assert printed(runs_table([OFF, ON], title)).splitlines()[0].strip() == title
+    write_markdown([OFF, ON], tmp_path / "table.md", title)
+    assert (tmp_path / "table.md").read_text(encoding="utf-8").splitlines()[0] == title
+    assert " by " not in _title([Settings("Plant", "fmus/DampingController.fmu")])
 
 
 def test_rides_stand_one_below_the_other_with_their_ratio_to_the_first():
