@@ -56,9 +56,9 @@ def run(args: argparse.Namespace) -> int:
         return run_search(args)
     require_search(args)
     text, out = designed(args.vehicle, limits=args.parameters), Printer(args)
-    if args.output is None:
-        out.say(text.rstrip())
-    else:
+    if args.output is None and not out.silent:
+        print(text.rstrip())
+    elif args.output is not None:
         write_toml(text, args.output, args.replace)
         out.say(f"gains: {args.output}")
     return 0

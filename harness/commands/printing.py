@@ -3,6 +3,7 @@
 import argparse
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,10 @@ class Printer:
         self.silent = args.quiet or self.json
 
     def say(self, text: str) -> None:
-        """A line for people."""
+        """A line for people. Where nobody reads it any more, what runs goes on all the same."""
         if not self.silent:
-            print(text)
+            with suppress(BrokenPipeError):
+                print(text)
 
     def files(self, paths: Iterable[Path]) -> None:
         """A line for each file that was written, one for all kinds of a figure."""

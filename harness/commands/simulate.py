@@ -94,10 +94,10 @@ def run(args: argparse.Namespace) -> int:
         made.out.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
         results = simulate(manoeuvre, given)
         made.begin()
-        _tell(made, given, manoeuvre, results)
-        write_run(args, made, given, manoeuvre, results, results)  # its libraries are large, and so are the metrics
+        write_run(args, made, given, manoeuvre, results, results)
         if args.plot:
             _draw(args, made, given, manoeuvre, results, options)
+        _tell(made, given, manoeuvre, results)
     return 0
 
 

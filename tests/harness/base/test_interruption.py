@@ -183,6 +183,19 @@ def test_a_reader_that_has_gone_is_no_traceback(arguments: list[str], code: int)
     assert "BrokenPipe" not in done.stderr
 
 
+def test_a_reader_that_goes_after_the_first_line_leaves_the_run_to_end(native: Path, tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    given = ["--manoeuvre", "prbs15", "--fmus", str(native.parent), "--output", str(tmp_path)]
+    command = [sys.executable, "-m", "driveline", "simulate", *given]
+    with subprocess.Popen(command, cwd=ROOT, stdout=writer, stderr=subprocess.PIPE, text=True) as run:
+        os.close(writer)
+        assert os.read(reader, 1) == b"p"
+        os.close(reader)
+        _, err = run.communicate()
+    assert err == ""
+    assert {path.suffix for path in tmp_path.iterdir()} == {".csv", ".json"}
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
 @pytest.mark.parametrize(("words", "name"), [(["design"], "driveline design"), (["--help"], "driveline")])
 def test_a_full_device_is_named_in_one_line(words: list[str], name: str) -> None:
