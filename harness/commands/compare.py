@@ -76,7 +76,9 @@ def run(args: argparse.Namespace) -> int:
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
         title = _title(list(given.values()))
-        made.wrote(*write_tables(outcomes, args.output, title), *write_figures(outcomes, args.output, options, manoeuvres))
+        made.wrote(
+            *write_tables(outcomes, args.output, title), *write_figures(outcomes, args.output, options, manoeuvres)
+        )
         for case, path in signals.items():
             _record(made, case, path, given[case.plant], manoeuvres[case.manoeuvre], read)
         for provenance, path in made.reports():
@@ -91,9 +93,7 @@ def _title(given: Sequence[Settings]) -> str:
     return DAMPINGS if controller == PLACES["controller"][0] else f"{DAMPINGS} by {controller}"
 
 
-def _tell(
-    made: RunJob, outcomes: "Sequence[Outcome]", given: Mapping[str, Settings], folder: Path, title: str
-) -> None:
+def _tell(made: RunJob, outcomes: "Sequence[Outcome]", given: Mapping[str, Settings], folder: Path, title: str) -> None:
     """The metrics of the runs, whose signals are in a folder."""
     from ..views.terminal import print_runs
 

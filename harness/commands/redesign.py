@@ -55,7 +55,8 @@ def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace:
     write_toml(designed(car, weights), gains, replace)
     yield gains
     yield from build_fmus([PLACES["controller"][0]], car.parent / f"{car.stem}_fmus", None, "host", car, gains)
-    out.say(f"to drive with them: driveline simulate --vehicle {quote(str(car))} --parameters {quote(str(gains))}")
+    files = f"--vehicle {quote(str(car))} --parameters {quote(str(gains))}"
+    out.say(f"to drive with them: driveline simulate {files} --output {quote(f'results/{car.stem}')}")
     if not out.silent:
         from ..views.terminal import print_table
 

@@ -145,7 +145,7 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
         if changed is None:
             return
         reason = f"is of another run ({changed})"
-    raise DrivelineError(f"{there} {reason}; choose another --output, or --replace it")
+    raise DrivelineError(f"{there} {reason}; give another folder as --output, or --replace to overwrite it")
 
 
 def require_same_text(text: str, path: Path) -> None:
@@ -155,7 +155,9 @@ def require_same_text(text: str, path: Path) -> None:
         DrivelineError: the file at `path` has.
     """
     if replaceable(path) and path.read_bytes() != text.encode():
-        raise DrivelineError(f"{path} is there with another content; choose another --output, or --replace it")
+        raise DrivelineError(
+            f"{path} is there with another content; give another place as --output, or --replace to overwrite it"
+        )
 
 
 def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
@@ -166,9 +168,9 @@ def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
     elif before in ({}, None) and now in ({}, None):
         return  # nothing is set in either
     elif isinstance(before, dict) and now is None:
-        yield f"{name} there, not here"
+        yield f"{name} is in that run, not in this one"
     elif before is None and isinstance(now, dict):
-        yield f"{name} here, not there"
+        yield f"{name} is in this run, not in that one"
     elif before != now:
         yield f"{name}: {'not set' if before is None else before} there, {'not set' if now is None else now} here"
 

@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,38 @@ def test_commands_are_understood(page: Path, checkout: Path) -> None:
         for arguments in commands(script):
             if "--print-completion" not in arguments:
                 parser().parse_args(arguments)
+
+
+WRITING = ("replace", "plot", "figures", "window", "report", "json", "quiet", "frames", "look", "fmus")
+"""Options that do not make a run another one."""
+
+PARTS = {
+    "simulate": ("plant", "manoeuvre", "control"),
+    "record": ("plant", "control"),
+    "replay": ("recording",),
+    "faults": ("case",),
+    "robustness": ("case",),
+}
+"""What the names of the files of a run have in them; others have one name for all."""
+
+DEMO = "\n".join(re.findall(r"driveline (?:compare|replay) .*", (ROOT / "Makefile").read_text(encoding="utf-8")))
+
+
+def test_a_command_finds_no_other_run_where_it_writes(checkout: Path) -> None:
+    """All that pages show, typed one after the other in a checkout in which `make demo` was made."""
+    there: dict[tuple[str, ...], tuple[str, dict[str, str]]] = {}
+    others = []
+    for page in (ROOT / "Makefile", ROOT / "README.md", *(page for page in PAGES if "\nMade by " not in text_of(page))):
+        for words in commands(DEMO) if page.name == "Makefile" else chain(*map(commands, blocks(page, "sh"))):
+            args = vars(parser().parse_args(words)) if "--print-completion" not in words else {}
+            if args.get("output") and "replace" in args and not args.get("look"):
+                run = {name: str(value) for name, value in args.items() if name not in WRITING}
+                place = (args["program"], str(args["output"]), *(run[part] for part in PARTS.get(words[0], ())))
+                _, before = there.setdefault(place, (page.name, run))
+                if before != run and not args["replace"]:
+                    others.append(f"{named(page)}: {' '.join(words)}; as of {there[place][0]}")
+                there[place] = page.name, run
+    assert not others, "\n".join(others)
 
 
 @EVERY_PAGE

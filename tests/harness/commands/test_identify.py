@@ -194,6 +194,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
     files = json.loads((folder / "car.json").read_text(encoding="utf-8"))["files"]
     assert files.count("DampingController.fmu") == 2
     lines = capsys.readouterr().out.splitlines()
+    assert next(line for line in lines if "to drive with them" in line).endswith(" --output results/car")
     message = "\n".join(line for line in lines if any(f" {name} " in line for name in redesign.REDESIGN_MANOEUVRES))
     assert message.count("234") == message.count("123") == message.count("5.6") == message.count("4.5") == 8
     assert all(of == car and settings is kept for of, settings in calls)

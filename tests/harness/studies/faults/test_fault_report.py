@@ -144,7 +144,10 @@ def test_results_tell_what_made_them_and_nothing_else_is_written(native, tmp_pat
     assert (record["run"]["case"], record["run"]["TwoMassDriveline"]["seed"]) == (2, 1)
     assert record["fmus"]["TwoMassDriveline"]["faults"]["digest"].startswith("sha256:")
     assert main([*given, "--seed", "2"]) == 2
-    assert "seed: 1 there, 2 here); choose another --output, or --replace it" in capsys.readouterr().err
+    assert (
+        "seed: 1 there, 2 here); give another folder as --output, or --replace to overwrite it"
+        in capsys.readouterr().err
+    )
 
 
 def test_so_many_cases_are_run_from_the_first_on(native, tmp_path, monkeypatch):
