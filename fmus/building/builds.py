@@ -57,6 +57,7 @@ def build_fmus(
         fmi: one of FMIS.
 
     Raises:
+        NotPossible: there is no compiler where one is needed, or it compiles nothing.
         BuildError: a name is unknown, a build is not possible here, a file is refused, or a block of the user's own
             cannot be built.
     """
@@ -250,7 +251,28 @@ def _native_builder(platform: str, fmi: int, own_folder: str, database: bytes = 
     except compiler.CompilerError as reason:
         raise NotPossible(str(reason)) from reason
     binaries = compiler.all_binaries if platform == "all" else compiler.host_binaries
-    return lambda fmu, folder: build_native(fmu, folder / own_folder, binaries, fmi, database)
+
+    def build(fmu: Fmu, folder: Path) -> Path:
+        try:
+            return build_native(fmu, folder / own_folder, binaries, fmi, database)
+        except compiler.CompilerError as refusal:
+            raise NotPossible(_refused(fmu, str(refusal))) from refusal
+
+    return build
+
+
+def _refused(fmu: Fmu, refusal: str) -> str:
+    """That a compiler makes no FMU, in one line.
+
+    Args:
+        refusal: its command, and in the lines below what it says.
+    """
+    command, *lines = refusal.splitlines()
+    said = next((line for line in lines if "error" in line.lower()), next(filter(None, lines), "nothing"))
+    return (
+        f"the C compiler {command.partition(' ')[0]} does not compile {fmu.name}; it says: {said[:200]} "
+        "(the environment variable CC can name another, `--build python` makes FMUs of the project without one)"
+    )
 
 
 def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
@@ -259,7 +281,7 @@ def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
     def build(fmu: Fmu, folder: Path) -> Path:
         try:
             return builder(fmu, folder)
-        except OSError:
+        except (OSError, NotPossible):
             raise
         except Exception as error:
             where = f"{place(error, files)}: " if files else ""

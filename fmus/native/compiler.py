@@ -149,11 +149,13 @@ def compile_in(command: Sequence[str], binary: str, sources: Mapping[str, bytes]
     """What a command makes of sources.
 
     Raises:
-        CompilerError: it complains.
+        CompilerError: it complains, or makes nothing.
     """
     with _folder_of(sources) as folder:
         run_compiler(command, folder)
-        return (folder / binary).read_bytes()
+        if not (made := folder / binary).is_file():
+            raise CompilerError(f"{' '.join(command)}\nit ended well and made no {binary}")
+        return made.read_bytes()
 
 
 def _compiled_for_windows(zig: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:

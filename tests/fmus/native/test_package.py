@@ -12,7 +12,7 @@ import fmpy
 import pytest
 from fmpy.build import build_platform_binary
 
-from driveline.fmus.building.builds import NotPossible, builders
+from driveline.fmus.building.builds import NotPossible, build_fmus, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native import compiler
 from tests import ROOT
@@ -104,6 +104,33 @@ def test_without_a_compiler_it_is_said_and_the_other_build_is_made(monkeypatch):
     with pytest.raises(NotPossible, match="there is no C compiler"):
         builders("native")
     assert len(builders(None)) == 1
+
+
+@pytest.mark.parametrize(
+    ("said", "code", "shown"),
+    [
+        ("", 1, "nothing"),
+        (
+            "In file included from all.c:\nall.c:2:1: error: no such thing\n1 error",
+            1,
+            "all.c:2:1: error: no such thing",
+        ),
+        ("", 0, "it ended well and made no MotorTorqueLoop.so"),
+    ],
+)
+@pytest.mark.skipif(sys.platform != "linux", reason="a shell and the name of the library")
+def test_a_compiler_that_refuses_is_named_in_one_line_with_what_it_says(monkeypatch, tmp_path, said, code, shown):
+    broken = tmp_path / "broken"
+    broken.write_text(f"#!/bin/sh\ncat >&2 <<'END'\n{said}\nEND\nexit {code}\n", encoding="utf-8")
+    broken.chmod(0o755)
+    monkeypatch.setenv("CC", str(broken))
+    with pytest.raises(NotPossible) as refused:
+        list(build_fmus(["MotorTorqueLoop"], tmp_path / "built", "native"))
+    assert str(refused.value) == (
+        f"the C compiler {broken} does not compile MotorTorqueLoop; it says: {shown} "
+        "(the environment variable CC can name another, `--build python` makes FMUs of the project without one)"
+    )
+    assert not list(tmp_path.rglob("*.fmu"))
 
 
 def test_where_there_is_no_compiler_that_of_zig_is_taken(monkeypatch):
