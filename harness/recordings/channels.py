@@ -18,6 +18,9 @@ from .source import RecordingError, Samples
 LEAST = 2
 """Samples that every recording has."""
 
+INTERVALS = (1e-6, 1e6)
+"""In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
+
 
 @dataclass(frozen=True, eq=False)
 class Channel:
@@ -86,7 +89,8 @@ class Channels:
 
         Raises:
             RecordingError: a column is missing, doubled or of an unknown unit; a value is not a finite number, or
-                larger than any car has; time does not increase or has a gap; there are less than two samples.
+                larger than any car has; time does not increase, has a gap or steps that no recording has; there are
+                less than two samples.
         """
         clock = [] if self._source.own_time else [self._chooser.needed("time")]
         choices = [*clock, *(self._chooser.needed(quantity) for quantity in quantities)]
@@ -154,7 +158,7 @@ def check_time(path: Path, time: np.ndarray, where: Callable[[int], str], gap: f
         jumps: whether two samples may have one time.
 
     Raises:
-        RecordingError: it does not increase, or has a gap.
+        RecordingError: it does not increase, has a gap, or steps that no recording has.
     """
     steps = np.diff(time)
     backward = np.flatnonzero((steps < 0.0) | ((steps == 0.0) & (not jumps)))
@@ -162,6 +166,11 @@ def check_time(path: Path, time: np.ndarray, where: Callable[[int], str], gap: f
         k = int(backward[0])
         raise RecordingError(f"{path}, {where(k + 1)}: time {time[k + 1]:g} s does not come after {time[k]:g} s")
     median = float(np.median(steps))
+    least, most = INTERVALS
+    if not jumps and not least <= median <= most:
+        raise RecordingError(
+            f"{path}, {where(1)}: the sample interval is {median:g} s; {least:g} to {most:g} s are allowed"
+        )
     gaps = np.flatnonzero(steps > gap * median) if isfinite(gap) else []
     if len(gaps):
         k = int(gaps[0])
