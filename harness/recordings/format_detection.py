@@ -41,7 +41,8 @@ def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
         MissingExtra: the package that reads this kind is not installed.
     """
     if not path.is_file():
-        raise RecordingError(f"there is no recording {path}")
+        what = "a folder" if path.is_dir() else "no file" if path.exists() else ""
+        raise RecordingError(f"{path} is {what}; a file is needed" if what else f"there is no recording {path}")
     begin = _begin(path)
     kind = _kind(begin)
     if kind is BusLog:

@@ -247,19 +247,29 @@ def _is_clock(dialect: Dialect, place: int) -> bool:
     return place < len(dialect.clocks) and dialect.clocks[place]
 
 
-MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+MARKS = (
+    # that of UTF-16 is the beginning of one of UTF-32
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
 
 LOOKED_AT = 1000
-"""Bytes at the beginning that tell UTF-16 without a mark from the others: every other one of them is zero."""
+"""Bytes at the beginning that tell UTF-16 and UTF-32 without a mark from the others: every other one of them is zero,
+or three of four."""
 
 
 def encoding_of(path: Path) -> str:
-    """UTF-8 or UTF-16, with or without the mark of either; Latin-1, in which every byte is a character, if neither."""
+    """UTF-8, UTF-16 or UTF-32, with or without their mark; Latin-1, in which every byte is a character, if none."""
     with path.open("rb") as file:
         head = file.read(LOOKED_AT)
         for mark, name in MARKS:
             if head.startswith(mark):
                 return name
+        if len(head) > 3 and head.count(0) > 2 * len(head) // 3:
+            return "utf-32-be" if head[0] == 0 else "utf-32-le"
         if len(head) > 1 and head.count(0) > len(head) // 3:
             return "utf-16-le" if head[1::2].count(0) > head[::2].count(0) else "utf-16-be"
         decoder, piece = codecs.getincrementaldecoder("utf-8")(), head

@@ -71,4 +71,4 @@ def test_what_is_no_file_is_refused_before_it_is_read(
 ) -> None:
     """A pipe that nobody writes to, or a device that gives without end, as a folder here."""
     assert main([command, str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"driveline {command}: there is no recording {tmp_path}\n"
+    assert capsys.readouterr().err == f"driveline {command}: {tmp_path} is a folder; a file is needed\n"

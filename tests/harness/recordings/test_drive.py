@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import shlex
 from dataclasses import replace
 
@@ -163,6 +164,16 @@ def test_time_that_does_not_increase_is_refused_with_its_line(write, time):
         read_drive(write(*rows(2), f"{time},36,500,3,1"))
 
 
+@pytest.mark.parametrize(("interval", "shown"), [("1e300", "1e+300"), ("1e-320", "9.99989e-321"), ("9e-7", "9e-07")])
+def test_a_sample_interval_that_no_recording_has_is_refused(write, interval, shown):
+    lines = (f"{k * float(interval)!r},10,10" for k in range(40))
+    path = write(*lines, header="time [s],v [m/s],T_mot [N.m]")
+    with pytest.raises(
+        RecordingError, match=rf"sample interval is {re.escape(shown)} s; 1e-06 to 1e\+06 s are allowed"
+    ):
+        read_drive(path)
+
+
 def test_a_gap_is_refused_with_its_line(write):
     with pytest.raises(RecordingError, match=r"line 12: gap of 0\.4 s"):
         read_drive(write(*rows(10), "1.3,36,500,3,1"))
@@ -226,6 +237,11 @@ def test_a_real_drive_gives_a_drivable_road():
 def test_what_is_no_file_is_no_recording(tmp_path):
     pipe = tmp_path / "trip.csv"
     os.mkfifo(pipe)
-    for path in (pipe, tmp_path, tmp_path / "nothing.csv"):
-        with pytest.raises(RecordingError, match="there is no recording"):
+    absent = tmp_path / "nothing.csv"
+    for path, message in (
+        (pipe, f"{pipe} is no file; a file is needed"),
+        (tmp_path, f"{tmp_path} is a folder; a file is needed"),
+        (absent, f"there is no recording {absent}"),
+    ):
+        with pytest.raises(RecordingError, match=re.escape(message)):
             read_drive(path)

@@ -41,7 +41,8 @@ def test_the_same_drive_is_read_from_every_text(tmp_path: Path, variant: str) ->
 def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant: str, cell: str) -> None:
     path = tmp_path / "drive.csv"
     text = TEXTS[variant](DRIVE)
-    encoding = "utf-16" if text.startswith(b"\xff\xfe") else "utf-16-le" if b"\0" in text[:9] else "latin-1"
+    encodings = {"UTF-32 without": "utf-32-be", "UTF-32": "utf-32", "UTF-16 without": "utf-16-le", "UTF-16": "utf-16"}
+    encoding = next((encoding for name, encoding in encodings.items() if name in variant), "latin-1")
     lines = text.decode(encoding).split("\n")
     separator = next(s for s in "\t;," if s in lines[-2])
     quote = '"' if lines[-2].startswith('"') else ""

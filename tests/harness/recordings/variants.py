@@ -56,6 +56,8 @@ TEXTS: dict[str, Callable[[Columns], bytes]] = {
     "spreadsheet, UTF-8 with BOM, sep= line": lambda drive: table(drive, ";", above="sep=;\n").encode("utf-8-sig"),
     "spreadsheet as Unicode text: tab, UTF-16": lambda drive: table(drive, "\t", ",", end="\r\n").encode("utf-16"),
     "UTF-16 without BOM": lambda drive: table(drive).encode("utf-16-le"),
+    "UTF-32": lambda drive: table(drive).encode("utf-32"),
+    "UTF-32 without BOM": lambda drive: table(drive).encode("utf-32-be"),
     "units in parentheses": lambda drive: table(drive, heading=lambda name, unit: f"{name} ({unit})").encode(),
     "units after an underscore": lambda drive: (
         table(drive, heading=lambda name, unit: f"{name}_{unit}".replace("/", "").replace(" ", "_").lower())
