@@ -14,6 +14,7 @@ from collections.abc import Callable
 from functools import wraps
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, TypeVar, cast
 
 from ...fmus.child_process import run
@@ -63,10 +64,12 @@ def _asked(path: Path, question: Any) -> Any:
     patience = PATIENCE if resource else SECONDS
     start = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import main; main({os.getpid()})"
     command, asked = [sys.executable, "-c", start], pickle.dumps(question)
-    try:
-        done = run(command, environment=FEW_THREADS, timeout=patience, text=False, question=asked)
-    except subprocess.TimeoutExpired as late:
-        raise _late(path, patience) from late
+    with TemporaryDirectory() as temporary:  # packages leave copies of damaged files, and processes that are killed all
+        environment = FEW_THREADS | dict.fromkeys(("TMPDIR", "TEMP", "TMP"), temporary)
+        try:
+            done = run(command, environment=environment, timeout=patience, text=False, question=asked)
+        except subprocess.TimeoutExpired as late:
+            raise _late(path, patience) from late
     if done.returncode == OUT_OF_TIME:
         raise _late(path, SECONDS)
     if done.returncode:

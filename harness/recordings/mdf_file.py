@@ -1,6 +1,7 @@
 """ASAM MDF files (versions 3 and 4), read by asammdf: groups of channels, each group with its own times."""
 
 import gc
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -19,6 +20,9 @@ MARKS = (b"MDF     ", b"UnFinMF ")
 
 MASTER, TIME = (2, 3), 1
 """Types of channels that hold what the others of their group are sampled over, and the kind of those that hold time."""
+
+MAPPED = re.compile("<mmap[^>]*>")
+"""What asammdf says in the place of the name of a file."""
 
 
 class MdfFile:
@@ -75,7 +79,7 @@ def _opened(path: Path) -> Iterator[Any]:
     except (RecordingError, MemoryError):
         raise
     except Exception as error:
-        damage = plain(error, 200) or type(error).__name__
+        damage = plain(MAPPED.sub(path.name, str(error)), 200) or type(error).__name__
     finally:
         if damage:
             gc.collect()

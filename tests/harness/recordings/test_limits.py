@@ -163,6 +163,24 @@ def test_without_limits_of_the_system_a_file_is_read_too(tmp_path: Path, monkeyp
     np.testing.assert_array_equal(read(path).v, read_drive(path).v)
 
 
+def test_a_damaged_file_is_named_and_no_copy_of_it_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, temporary = tmp_path / "drive.mf4", tmp_path / "temporary"
+    write_mdf(recording(), path)
+    whole = path.read_bytes()
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    # the flags of what the logger did not finish: asammdf mends a copy
+    unfinished = b"UnFinMF " + whole[8:60] + b"\x01\x00\x00\x00" + whole[64 : len(whole) // 2]
+    path.write_bytes(unfinished)
+    with pytest.raises(RecordingError, match=r"drive\.mf4 is a damaged MDF file"):
+        read_drive(path)
+    assert list(temporary.iterdir()) == []
+    path.write_bytes(whole[:64])
+    with pytest.raises(RecordingError, match=r"damaged MDF file: 'drive\.mf4' is not a valid MDF file"):
+        read_drive(path)
+
+
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_a_crash_of_a_package_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "drive.mf4"
