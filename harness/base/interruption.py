@@ -189,6 +189,34 @@ def reopen_closed_streams() -> None:
             setattr(sys, name, stream)
 
 
+STDOUT = "standard output"
+
+
+@contextmanager
+def named_stdout() -> Iterator[None]:
+    """Within it an error of the system that writing to stdout raises, as that of a full disk, names it."""
+    stream = sys.stdout
+
+    def naming(method: Callable[..., object]) -> Callable[..., object]:
+        def named(*text: str) -> object:
+            try:
+                return method(*text)
+            except OSError as error:
+                error.filename = STDOUT
+                raise
+
+        return named
+
+    methods = {name: getattr(stream, name) for name in ("write", "flush")}
+    for name, method in methods.items():
+        setattr(stream, name, naming(method))
+    try:
+        yield
+    finally:
+        for name, method in methods.items():
+            setattr(stream, name, method)
+
+
 def forget_stdout() -> None:
     """Whatever is still to be printed goes nowhere, since what it was for does not take it."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

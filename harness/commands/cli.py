@@ -12,11 +12,12 @@ from contextlib import suppress
 from errno import ENOSPC
 from functools import partial
 from io import TextIOWrapper
+from tempfile import gettempdir
 from typing import Any, NoReturn
 from unicodedata import category
 
 from ..base.errors import DrivelineError
-from ..base.interruption import forget_stdout, reopen_closed_streams, stoppable
+from ..base.interruption import STDOUT, forget_stdout, named_stdout, reopen_closed_streams, stoppable
 from ..base.known_names import nearest
 from ..base.plain_text import plain, quoted, reason
 from ..base.progress import hidden
@@ -229,7 +230,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # who reads a pipe need not wait for the end either
     try:
-        with stoppable():
+        with stoppable(), named_stdout():
             try:
                 _require_printable(words)
                 args = parser().parse_args(words)
@@ -246,9 +247,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{name}: {error}", file=sys.stderr)
         return error.exit_code
     except OSError as error:
-        if error.errno == ENOSPC and error.filename is None:  # whoever writes files names them
-            error.filename = "standard output"
+        if error.filename == STDOUT:
             forget_stdout()
+        elif error.errno == ENOSPC and error.filename is None:  # whoever writes results names them
+            error.filename = f"temporary files in {gettempdir()}"
         print(f"{name}: {reason(error)}", file=sys.stderr)
         return 1
     except MemoryError as error:

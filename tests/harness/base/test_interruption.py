@@ -4,15 +4,18 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from dataclasses import replace
+from errno import ENOSPC
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children
+from driveline.harness.commands import design
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.provenance import BEGINS_ANEW
@@ -205,11 +208,24 @@ def test_a_full_device_is_named_in_one_line(words: list[str], name: str) -> None
     assert (done.returncode, done.stderr) == (1, f"{name}: standard output: No space left on device\n")
 
 
+def test_a_full_disk_of_temporary_files_is_not_taken_for_stdout(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(ENOSPC, os.strerror(ENOSPC))
+
+    monkeypatch.setattr(design, "designed", full)
+    assert main(["design"]) == 1
+    message = f"driveline design: temporary files in {tempfile.gettempdir()}: No space left on device\n"
+    assert capsys.readouterr().err == message
+
+
 @pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")
 @pytest.mark.parametrize("closed", slow([">&-", "<&- >&- 2>&-"], but=["<&- >&- 2>&-"]))
 @pytest.mark.slow
 def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
     program = """
+from driveline.harness.commands import design
 from driveline.harness.commands.cli import main
 from driveline.harness.simulation.many_runs import run_many
 main(["design", "--quiet", "--output", "gains.toml"])
