@@ -13,6 +13,7 @@ examples:
 """
 
 import argparse
+from contextlib import ExitStack
 
 from ..base.errors import DrivelineError
 from .options import add_controller, add_output, add_printing
@@ -30,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..base.atomic_files import write_text
+    from ..base.atomic_files import complete
     from ..exchange.target.c_export import values_of, with_values
     from ..simulation.provenance import require_same_text
 
@@ -42,7 +43,8 @@ def run(args: argparse.Namespace) -> int:
     if not args.replace:
         for path, text in files.items():
             require_same_text(text, path)
-    for path, text in files.items():
-        write_text(text, path)
+    with ExitStack() as all_or_none:
+        for path, text in files.items():
+            all_or_none.enter_context(complete(path)).write_text(text, encoding="utf-8")
     Printer(args).files(files)
     return 0

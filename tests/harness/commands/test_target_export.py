@@ -1,5 +1,6 @@
 """`driveline target export`: the C of a controller for a car, complete, and never over that of another."""
 
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,23 @@ def test_it_writes_headers_and_source(tmp_path: Path) -> None:
     files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "c").iterdir()}
     assert sorted(files) == ["controller.h", "damping_controller.c", "damping_controller.h"]
     assert not any("double" in text for text in files.values())
+
+
+def test_on_a_full_disk_it_writes_all_files_or_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_text = Path.write_text
+
+    def full(path: Path, text: str, **given: str) -> int:
+        if ".c." in path.name:
+            raise OSError(ENOSPC, "No space left on device")
+        return write_text(path, text, **given)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert exported(tmp_path) == 1
+    source = tmp_path / "damping_controller.c"
+    assert capsys.readouterr().err == f"driveline target export: {source}: No space left on device\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_it_takes_the_car_and_its_gains(tmp_path: Path) -> None:
