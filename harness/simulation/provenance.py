@@ -6,7 +6,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -46,6 +46,7 @@ class Made:
         self._require = require
         self._kept = kept
         self.begun = False
+        self._new_folders: set[Path] = set()
 
     @cached_property
     def fits(self) -> dict[str, Fit]:
@@ -64,11 +65,19 @@ class Made:
             DrivelineError: another run has written its results in the meantime.
         """
         if not self.begun:
+            places = {folder for path in (self._record, *others) for folder in path.absolute().parents}
+            self._new_folders = {folder for folder in places if not folder.exists()}
             self._kept.enter_context(alone(self._record.parent))
             self._require()
             self.begun = True
         for path in (self._record, *others):
             remove(path)
+
+    def remove_empty_folders(self) -> None:
+        """Of those that were not there before: a run that came to nothing leaves none."""
+        for folder in sorted(self._new_folders, reverse=True):
+            with suppress(OSError):  # it was never made, or there is something in it
+                folder.rmdir()
 
 
 @contextmanager
@@ -107,8 +116,10 @@ def recorded(
             with as_before_if_stopped():
                 yield made
                 write_record(record, run, made.fits, made.files, inputs)
-        except KeyboardInterrupt as stop:
-            stop.add_note(BEGINS_ANEW)
+        except BaseException as stop:
+            made.remove_empty_folders()
+            if isinstance(stop, KeyboardInterrupt):
+                stop.add_note(BEGINS_ANEW)
             raise
 
 

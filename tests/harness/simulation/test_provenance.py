@@ -5,6 +5,7 @@ import json
 import os
 import threading
 import time
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from shutil import copytree
@@ -233,6 +234,25 @@ def test_there_are_no_digests_of_fmus_of_ones_own_where_there_are_none(both_buil
         (tmp_path / "compare.json").write_text(json.dumps({"run": before}), encoding="utf-8")
         with pytest.raises(DrivelineError, match="digests") if refused else nullcontext():
             require_same_run(tmp_path / "compare.json", same, [tmp_path / "table.md"])
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, DrivelineError])
+def test_a_run_that_comes_to_nothing_leaves_no_folder_of_its_own(error: type[BaseException], tmp_path: Path) -> None:
+    here, new = tmp_path / "here", tmp_path / "here" / "new"
+    here.mkdir()
+
+    def fail(also: Callable[[], object]) -> None:
+        with provenance.recorded(new / "compare.json", {}, {}, []) as made:
+            made.begin(new / "runs" / "a.csv")
+            also()
+            raise error
+
+    with pytest.raises(error):
+        fail((new / "runs").mkdir)
+    assert list(here.iterdir()) == []
+    with pytest.raises(error):
+        fail((new / "notes.txt").touch)
+    assert [path.name for path in new.iterdir()] == ["notes.txt"]
 
 
 def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:
