@@ -43,8 +43,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    given = {each.plant_name: each for each in settings_of_plants(args).values()}
     # here and not above: mistakes and help are answered without them
+    from ..cosimulation.parameter_changes import require_constant
+
+    require_constant(dict(args.assignments), "an SSP")
+    given = {each.plant_name: each for each in settings_of_plants(args).values()}
     from ...fmus.archive import write_archive
     from ...fmus.manoeuvre import FMU
     from ..exchange.ssp.loop_with_source import with_source
@@ -70,10 +73,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _variant(fitted: "Fit", manoeuvre: Manoeuvre, given: Settings) -> "Variant":
-    from ..cosimulation.parameter_changes import require_constant
     from ..exchange.ssp.loop_with_source import points
     from ..exchange.ssp.package import Variant
     from ..simulation.simulate import start
 
-    require_constant(given.parameters, "an SSP")
     return Variant(fitted, {**start(manoeuvre, given.seed), **points(manoeuvre, fitted), **given.parameters})

@@ -267,6 +267,12 @@ def test_more_points_than_the_source_has_are_refused(fmus, tmp_path, capsys, cou
         assert "zigzag: its lines have 65 points; other tools are given at most 64" in message
 
 
+def test_a_change_in_a_run_is_refused_before_fmus_are_looked_for(tmp_path, capsys) -> None:
+    assert main(["ssp", "--fmus", str(tmp_path), "--set", "controller.k_d@2=1"]) == 2
+    message = "driveline ssp: controller.k_d@2: the parameters of an SSP have one value from the start on\n"
+    assert capsys.readouterr().err == message
+
+
 def test_a_package_of_another_loop_stays_without_replace(fmus, tmp_path, capsys) -> None:
     options = ["ssp", "--fmus", str(fmus), "--output", str(tmp_path), "--quiet"]
     assert main(options) == 0
