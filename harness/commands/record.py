@@ -27,6 +27,7 @@ orders: {orders}; the demand repeats after 2^order - 1 clocks
 import argparse
 from dataclasses import asdict
 
+from ..base.plain_text import quoted
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
 from .frames import add_frames
 from .options import add_format, add_loop, add_output, add_plant, add_printing, amount, count, finite, seconds
@@ -54,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     wheels = parser.add_argument_group("measurement wheels, both together")
     wheels.add_argument("--noise", type=amount, default=10.0, metavar="N.m", help="rms (default: %(default)g)")
     wheels.add_argument("--offset", type=finite, default=8.0, metavar="N.m", help="(default: %(default)g)")
-    wheels.add_argument("--gain-error", type=finite, default=0.01, metavar="SHARE", help="(default: %(default)g)")
+    wheels.add_argument("--gain-error", type=_gain_error, default=0.01, metavar="SHARE", help="(default: %(default)g)")
     add_loop(parser)
     add_output(parser, "results/record", "the recording", of_a_run=True)
     add_format(parser)
@@ -64,6 +65,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _order(text: str) -> int:
     return count(text, min(FEEDBACK), max(FEEDBACK))
+
+
+def _gain_error(text: str) -> float:
+    """As the estimate of the motor torque can have it, see `g_T`."""
+    number = finite(text)
+    if not -0.5 <= number <= 1.0:
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a share from -0.5 to 1")
+    return number
 
 
 def run(args: argparse.Namespace) -> int:
