@@ -31,6 +31,16 @@ def experts(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     return next(there, None) or parser.add_argument_group(EXPERTS)
 
 
+class Assigned(argparse._AppendAction):
+    """Appends a parameter with its value, of which there is one."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> None:
+        name, value = values  # type: ignore[misc]
+        if (before := dict(getattr(namespace, self.dest)).get(name, value)) != value:
+            raise argparse.ArgumentError(self, f"{name} is given twice, {before!r} and {value!r}; it takes one value")
+        super().__call__(parser, namespace, values, option_string)
+
+
 def add_plant(
     parser: argparse.ArgumentParser, several: bool = False, default: str = PLANTS[0], because: str = ""
 ) -> None:
@@ -98,7 +108,7 @@ def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None 
     several = several or {}
     parser.add_argument(
         "--set",
-        action="append",
+        action=Assigned,
         default=[],
         type=assignment,
         dest="assignments",

@@ -116,6 +116,11 @@ def test_the_version_is_that_of_the_package(capsys):
         (["simulate", "--plnt", "x"], "did you mean --plant"),
         (["simulate", "--set", "plant.J_1"], "plant.J_1=0.06"),
         (["simulate", "--scheme", "gaus"], "gauss-seidel"),
+        (
+            ["simulate", "--set", "controller.k_d@1=1", "--set", "controller.k_d@1=2"],
+            "argument --set: controller.k_d@1 is given twice, 1.0 and 2.0; it takes one value",
+        ),
+        (["record", "--gain-error", "-5"], "argument --gain-error: '-5' is not a share from -0.5 to 1"),
         (["simulate", "--seed", "1.5"], "'1.5' is not a whole number"),
         *(
             ([*command, "--seed", "1000001"], "argument --seed: '1000001' is not a whole number from 0 to 1000000")

@@ -62,23 +62,22 @@ def test_every_real_column_has_its_unit(made: Path, both_built: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "named"),
+    ("word", "others", "named"),
     [
-        (["--seed", "6"], "seed: 5 there, 6 here"),
-        (["--set", "plant.J_1=0.08"], "parameters plant.J_1: 0.07 there, 0.08 here"),
-        (["--set", "plant.J_2=0.08"], "parameters plant.J_2: not set there, 0.08 here"),
-        (["--step", "0.001"], "step_size: 0.002 there, 0.001 here"),
-        (["--build", "python"], "fmus"),
+        ("5", ["6"], "seed: 5 there, 6 here"),
+        ("plant.J_1=0.07", ["plant.J_1=0.08"], "parameters plant.J_1: 0.07 there, 0.08 here"),
+        ("--set", ["--set", "plant.J_2=0.08", "--set"], "parameters plant.J_2: not set there, 0.08 here"),
+        ("0.002", ["0.001"], "step_size: 0.002 there, 0.001 here"),
+        ("--set", ["--build", "python", "--set"], "fmus"),
     ],
 )
 def test_another_run_does_not_replace_it(
-    made: Path, both_built: Path, capsys: pytest.CaptureFixture[str], options: list[str], named: str
+    made: Path, both_built: Path, capsys: pytest.CaptureFixture[str], word: str, others: list[str], named: str
 ) -> None:
     before = {path: path.read_bytes() for path in made.iterdir()}
-    given = ["--parameters", str(made / "gains.toml"), "--set", "plant.J_1=0.07"]
-    usual = [*RUN, *given, "--seed", "5"]
-    at = usual.index(options[0]) if options[0] in ("--seed", "--step") else len(usual)
-    assert main([*usual[:at], *options, *usual[at + 2 :], "--fmus", str(both_built), "--output", str(made)]) == 2
+    words = [*RUN, "--parameters", str(made / "gains.toml"), "--set", "plant.J_1=0.07", "--seed", "5"]
+    words[words.index(word) : words.index(word) + 1] = others
+    assert main([*words, "--fmus", str(both_built), "--output", str(made)]) == 2
     message = capsys.readouterr().err
     assert f"{made / NAME}.csv is of another run (" in message
     assert named in message
