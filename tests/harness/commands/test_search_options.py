@@ -88,9 +88,9 @@ def test_an_option_of_a_search_needs_one(option: str, value: str, capsys: pytest
     ],
 )
 def test_what_no_search_can_use_is_refused(
-    search: Callable[..., int], option: str, value: str, message: str, capsys: pytest.CaptureFixture[str]
+    option: str, value: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as end:
-        search(f"--{option}={value}")
+        main(["design", "--search", "search", f"--{option}={value}"])
     assert end.value.code == 2
     assert message in capsys.readouterr().err
