@@ -210,7 +210,8 @@ def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
     told = U._replace(direction=int(side))
     for x in (TRUSTED, lost(SPEED_JUMP)):
         for rested in (False, True):
-            assert trust.direction(x._replace(direction=-side), told, -side * 9.0, rested, -side * 99.0, True, T_S, P) == side
+            x = x._replace(direction=-side)
+            assert trust.direction(x, told, -side * 9.0, rested, -side * 99.0, True, T_S, P) == side
 
 
 @each_side

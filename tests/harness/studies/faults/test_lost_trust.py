@@ -1,4 +1,4 @@
-"""Trust that is lost in the loop comes back, and damping on a late motor speed does not last, however the foot moves."""
+"""Lost trust comes back in the loop, and damping on a late motor speed does not last, however the foot moves."""
 
 import numpy as np
 import pytest
