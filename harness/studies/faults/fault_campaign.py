@@ -11,6 +11,7 @@ from ...simulation.case_archive import Table
 from ...simulation.many_runs import run_many
 from .evidence import Evidence
 from .fault_cases import PLANS, Case, Plan, case
+from .fault_catalogue import NOTHING
 from .fault_injection import FaultRunner, Limits, Runs
 from .judges import JUDGES
 
@@ -63,6 +64,16 @@ def count(outcomes: Iterable[Outcome], kind: str, judge: str | None = None) -> t
 def plan_of(outcomes: Sequence[Outcome]) -> Plan:
     """What these cases of one campaign were drawn from."""
     return outcomes[0].case.plan if outcomes else PLANS["dry"]
+
+
+def coverage(outcomes: Sequence[Outcome]) -> str:
+    """Which kinds of the campaign are no single fault of a case, in words; "" where all are."""
+    kinds = [kind for kind in plan_of(outcomes).kinds if kind != NOTHING.name]
+    alone = {outcome.kinds for outcome in outcomes}
+    missing = [kind for kind in kinds if (kind,) not in alone]
+    if not missing:
+        return ""
+    return f"Single faults are of {len(kinds) - len(missing)} of {len(kinds)} kinds; without {', '.join(missing)}."
 
 
 def campaign(

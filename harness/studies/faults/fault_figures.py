@@ -5,7 +5,9 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
 
 from ....models.controller.causes import OUTPUT
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
@@ -36,7 +38,7 @@ def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Pat
     panels = [("all judges", [judge.name for judge in JUDGES], _by_judge(singles, plan))]
     panels += [(plant, situations, _by_situation([o for o in singles if o.plant == plant], plan)) for plant in plants]
     with sheet(
-        (2.5 + 0.32 * sum(len(columns) for _, columns, _ in panels), 0.235 * len(kinds) + 1.7),
+        (2.5 + 0.32 * sum(len(columns) for _, columns, _ in panels), 0.235 * len(kinds) + 2.2),
         title,
         stem,
         pads=(0.04, 0.04),
@@ -45,6 +47,7 @@ def plot_matrix(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Pat
         row = figure.subplots(1, len(panels), sharey=True, squeeze=False, width_ratios=widths)[0]
         for axes, (heading, columns, cells) in zip(row, panels, strict=True):
             _draw_cells(axes, heading, columns, kinds, cells)
+        _legend(figure, row)
     return files
 
 
@@ -71,8 +74,10 @@ def plot_pairs(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Path
         if len(outcome.kinds) == 2:
             first, second = sorted(kinds.index(kind) for kind in outcome.kinds)
             cells[second, first] += (bool(outcome.failed), 1)
-    with sheet((9.6, 9.2), title, stem, pads=(0.04, 0.04)) as (figure, files):
-        _draw_cells(figure.subplots(), "", kinds, kinds, cells)
+    with sheet((9.6, 9.7), title, stem, pads=(0.04, 0.04)) as (figure, files):
+        axes = figure.subplots()
+        _draw_cells(axes, "", kinds, kinds, cells)
+        _legend(figure, [axes])
     return files
 
 
@@ -83,6 +88,14 @@ def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence
     for row, column in zip(*np.nonzero(failed), strict=True):
         axes.text(column + 0.5, row + 0.5, f"{failed[row, column]:.0f}", ha="center", va="center", fontsize=6.5)
     matrix_axes(axes, columns, rows, heading)
+
+
+def _legend(figure: Figure, row: Sequence[Axes]) -> None:
+    """What the colours mean, below."""
+    colours = ScalarMappable(Normalize(0.0, 100.0), SHARES)
+    label = "share of the runs of a cell that are not clean in %; numbers count these runs; white: no run"
+    made = figure.colorbar(colours, ax=list(row), location="bottom", label=label, shrink=0.5, aspect=40.0)
+    made.outline.set_visible(False)
 
 
 def case_panels(case: Case, runs: Runs) -> list[Panel]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from textwrap import fill
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -11,7 +12,7 @@ from ...base.csv_file import write_csv
 from ...views.markdown import markdown_table
 from ...views.terminal import print_table
 from .evidence import REFERENCE_AFTER, SHARE, WRONG_SPEED
-from .fault_campaign import Outcome, count, judged, plan_of
+from .fault_campaign import Outcome, count, coverage, judged, plan_of
 from .fault_cases import PLANS, Plan, case
 from .fault_catalogue import NOTHING
 from .fault_figures import plot_case, plot_matrix, plot_pairs
@@ -20,8 +21,8 @@ from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
 
 
 def announce(outcomes: Sequence[Outcome]) -> None:
-    """Prints the rows of the matrix that are not clean, if there are any, and a summary; of a single case, what each
-    judge measured."""
+    """Prints the rows of the matrix that are not clean, if there are any, and a summary, with the kinds that are no single
+    fault; of a single case, what each judge measured."""
     if len(outcomes) == 1:
         print_table(_verdicts(outcomes[0]))
         return
@@ -35,6 +36,8 @@ def announce(outcomes: Sequence[Outcome]) -> None:
     if failed:
         print_table(table)
     print(f"{len(outcomes)} cases, {len(outcomes) - failed} clean, {failed} not clean")
+    if not_all := coverage(outcomes):
+        print(fill(not_all, 78))
 
 
 def _verdicts(outcome: Outcome) -> Table:
@@ -92,7 +95,7 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
     pairs = [outcome for outcome in outcomes if len(outcome.kinds) == 2]
     nothing = sum(NOTHING.name in outcome.kinds for outcome in singles)
     failed = sum(bool(outcome.failed) for outcome in outcomes)
-    plan = plan_of(outcomes)
+    plan, not_all = plan_of(outcomes), coverage(outcomes)
     durations = sorted({situation.duration for situation in plan.situations.values()})
     return PAGE.format(
         arguments=arguments,
@@ -104,6 +107,7 @@ def page(outcomes: Sequence[Outcome], arguments: str) -> str:
         nothing=f"{nothing} have no fault, " if nothing else "",
         singles=len(singles) - nothing,
         pairs=len(pairs),
+        coverage=not_all and f"\n{not_all}",
         kinds=markdown_table(["kind", "what"], ((kind.name, kind.meaning) for kind in plan.kinds.values()), labels=2),
         situations=markdown_table(
             ["situation", "where", "between, s"],

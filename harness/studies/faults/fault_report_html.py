@@ -12,7 +12,7 @@ from ...views.html.linked_figures import axes, linked, shown, stacked, tables
 from ...views.html.report_page import Heading, Row, Section, Table, write_report
 from ...views.html.thinning import thinned
 from ...views.panels import Axis, Curve, Panel
-from .fault_campaign import Outcome, count, plan_of
+from .fault_campaign import Outcome, count, coverage, plan_of
 from .fault_figures import case_panels
 from .fault_injection import FaultRunner
 from .fault_report import HEADINGS, NOT_CLEAN, matrix_rows
@@ -38,7 +38,9 @@ def report(outcomes: Sequence[Outcome], runner: FaultRunner, provenance: Mapping
     worst = sorted(outcomes, key=lambda outcome: -_over(outcome))[:WORST]
     sections = [
         Section(
-            "Cases that are not clean", "Of each kind of fault how many each judge found not clean.", _table(outcomes)
+            "Cases that are not clean",
+            f"Of each kind of fault how many each judge found not clean. {coverage(outcomes)}".strip(),
+            _table(outcomes),
         ),
         Section(
             "Kinds of faults and judges", "The share of the cases that are not clean.", figures=[_matrix(outcomes)]

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import shlex
 from argparse import ArgumentParser
 from dataclasses import replace
@@ -80,11 +81,11 @@ def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
         for value in (-1e6, 1e6)
     )
     announce(clean)
-    assert capsys.readouterr().out == f"{len(clean)} cases, {len(clean)} clean, 0 not clean\n"
+    assert capsys.readouterr().out.startswith(f"{len(clean)} cases, {len(clean)} clean, 0 not clean\n")
     announce([bad[0], *clean[1:]])
     message = capsys.readouterr().out
     assert f"{len(clean)} cases, {len(clean) - 1} clean, 1 not clean\n" in message
-    assert [kind for kind in IN_SITUATIONS if f" {kind} " in message] == [
+    assert [kind for kind in IN_SITUATIONS if f" {kind} " in message.partition(" cases, ")[0]] == [
         kind for kind in IN_SITUATIONS if kind in bad[0].kinds
     ]
 
@@ -95,6 +96,31 @@ def test_cases_without_a_fault_are_not_counted_as_single_faults():
     none = sum(outcome.kinds == ("nothing",) for outcome in on_roads)
     assert 0 < none < 50
     assert f"{none} have no fault, {50 - none} have one fault, 50 a pair." in page(on_roads, "")
+
+
+def _clean(numbers, plan, plants=PLANTS):
+    return [Outcome(case(k, 1, plants, plan), {judge.name: -1e6 for judge in JUDGES}) for k in numbers]
+
+
+def test_a_few_cases_say_which_kinds_no_case_has_alone(capsys):
+    few = _clean(range(1, 51), PLANS["dry"])
+    announce(few)
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Single faults are of 3 of 35 kinds; without motor speed zero, motor speed offset," in said
+    assert said.endswith("wheel lock on ice, wheel spin on ice.")
+    assert "Single faults are of 3 of 35 kinds; without motor speed zero" in page(few, "")
+
+
+@pytest.mark.parametrize("plants", [PLANTS, PLANTS[:1]])
+@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+def test_the_help_tells_how_many_cases_have_every_kind_in_every_situation(plan, plants, capsys):
+    enough = 2 * len(plan.kinds) * len(plan.situations) * len(plants)
+    assert re.search(rf"\b{enough}\b", faults.__doc__ or "")
+    outcomes = _clean(range(1, enough + 1), plan, plants)
+    alone = {(o.case.faults[0].name, o.case.situation, o.plant) for o in outcomes if len(o.case.faults) == 1}
+    assert len(alone) == len(plan.kinds) * len(plan.situations) * len(plants)
+    announce(outcomes)
+    assert capsys.readouterr().out == f"{enough} cases, {enough} clean, 0 not clean\n"
 
 
 @pytest.mark.parametrize(
