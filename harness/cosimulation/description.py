@@ -53,7 +53,7 @@ def read(path: Path, limits: Limits = USUAL_LIMITS, kinds: Sequence[str] = STEPP
             is no number.
     """
     if not path.is_file():
-        raise WiringError(f"there is no FMU {path} (`driveline build` makes those of the project)")
+        raise WiringError(f"there is no FMU {path}")
     return _parsed(described(path, limits), path, tuple(kinds))
 
 

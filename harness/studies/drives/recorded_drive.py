@@ -30,6 +30,7 @@ def replay(
     `driveline replay`.
 
         drive = driveline.read_drive(Path("my_trip.csv"))
+        driveline.build_missing("ValidationVehicle", controller="SpeedWashout")  # not among those of `driveline build`
         rides = driveline.replay(drive, controllers=["DampingController", "SpeedWashout"])
         driveline.frame({ride.controller: ride.metrics for ride in rides})
 
@@ -61,7 +62,8 @@ def replay(
     named = by_name([str(controller) for controller in controllers])
     common = Settings(plant).replace(**changes)
     given = {name: common.replace(controller=controller) for name, controller in named.items()}
-    load, T_max = car_of(next(iter(given.values())))
+    cars = [car_of(each) for each in given.values()]  # of all: what is missing is found before the rides
+    load, T_max = cars[0]
     tell(of_drive(drive, load, T_max), drive.name)
     found = rides(Track.of(drive, T_max), load, given, held)
     tell(followed_speed(drive, found), drive.name)

@@ -21,8 +21,8 @@ from .judges import BACK, JUDGES, LEAST_RMS, LEAST_SWING, Judge
 
 
 def announce(outcomes: Sequence[Outcome]) -> None:
-    """Prints the rows of the matrix that are not clean, if there are any, and a summary, with the kinds that are no single
-    fault; of a single case, what each judge measured."""
+    """Prints the rows of the matrix that are not clean, if there are any, a summary, and the kinds that no case has
+    alone; of a single case, what each judge measured."""
     if len(outcomes) == 1:
         print_table(_verdicts(outcomes[0]))
         return
