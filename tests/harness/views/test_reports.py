@@ -4,11 +4,13 @@ import csv
 import io
 import math
 import os
+import re
 from errno import ENOSPC
 from pathlib import Path
 
 import pytest
 from rich.console import Console
+from rich.table import Table
 
 from driveline.harness.base.atomic_files import complete, remove, write_text
 from driveline.harness.base.plain_text import reason
@@ -26,7 +28,7 @@ from driveline.harness.views.metrics_table import (
     write_markdown,
     write_metrics,
 )
-from driveline.harness.views.terminal import rides_reasons, rides_table, runs_table
+from driveline.harness.views.terminal import print_table, rides_reasons, rides_table, runs_table
 
 
 def metrics(absent=None, **values):
@@ -221,3 +223,40 @@ def test_a_folder_is_not_written_to_as_a_file(tmp_path):
     for folder in (tmp_path, Path()):
         with pytest.raises(IsADirectoryError, match="is a folder"):
             write_text("k_d = 1\n", folder)
+
+
+def _on_a_terminal(width, table, monkeypatch, capsys):
+    for name, value in {"COLUMNS": str(width), "TTY_COMPATIBLE": "1", "TERM": "xterm"}.items():
+        monkeypatch.setenv(name, value)
+    print_table(table)
+    return re.sub(r"\x1b\[[0-9;]*m", "", capsys.readouterr().out).splitlines()
+
+
+def _words(lines):
+    return {word for line in lines for word in line.split() if "─" not in word}
+
+
+def test_a_narrow_terminal_shows_a_wide_table_in_parts_with_whole_words(monkeypatch, capsys):
+    whole = printed(runs_table([OFF, ON])).splitlines()
+    lines = _on_a_terminal(60, runs_table([OFF, ON]), monkeypatch, capsys)
+    assert max(map(len, lines)) <= 60 < max(map(len, whole))
+    assert _words(lines) == _words(whole)
+    parts = [line.split() for line in lines if " on " in line and "tipin" in line]
+    assert len(parts) > 1
+    assert all(part[:2] == cells(ON)[:2] for part in parts)
+    assert [word for part in parts for word in part[2:]] == cells(ON)[2:]
+
+
+def test_a_terminal_that_is_wide_enough_shows_a_table_whole(monkeypatch, capsys):
+    whole = printed(runs_table([OFF, ON])).splitlines()
+    assert _on_a_terminal(max(map(len, whole)), runs_table([OFF, ON]), monkeypatch, capsys) == whole
+
+
+def test_a_text_is_broken_between_words_before_a_table_is_parted(monkeypatch, capsys):
+    table = Table()
+    for heading, justify in (("judge", "left"), ("measured", "right"), ("what it measures", "left")):
+        table.add_column(heading, justify=justify)
+    table.add_row("limited", "-72", "torque demanded beyond the largest of the motor, whatever its sign")
+    lines = _on_a_terminal(60, table, monkeypatch, capsys)
+    assert sum("limited" in line for line in lines) == 1
+    assert max(map(len, lines)) <= 60
