@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..base.plain_text import plain
+from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -42,7 +43,8 @@ def print_manoeuvres(as_json: bool) -> None:
         return
     width = max(map(len, MANOEUVRES))
     for each in MANOEUVRES.values():
-        print(f"{each.name:{width}}  {each.description} ({each.duration:g} s)")
+        road = f"; for a plant with {', '.join(each.road)}: {PLANTS[1]}" if each.road else ""
+        print(f"{each.name:{width}}  {each.description} ({each.duration:g} s{road})")
 
 
 def name_or_file(text: str) -> str:

@@ -2,7 +2,7 @@
 
 import argparse
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from shlex import quote
 from typing import Any
 
@@ -41,11 +41,23 @@ def settings(args: argparse.Namespace, plant: str) -> Settings:
     from ..cosimulation.mapping import parsed
     from ..cosimulation.wiring import fit, out_of_bounds, require
 
+    require(_of_another_plant(dict(args.assignments), plant))
     made = made.replace(mapping=parsed(args.map))
     system = loop(made)
     parameters = _from_files(args, system) | dict(args.assignments)
     require(out_of_bounds(fit(system, parameters=parameters), parameters))
     return made.replace(parameters=parameters)
+
+
+def _of_another_plant(names: Iterable[str], plant: str) -> Iterator[str]:
+    """What to say of parameters that a plant of the project lacks and another one has."""
+    from ...fmus.catalogue import FMUS
+
+    for name in names if plant in PLANTS else ():
+        place, _, parameter = name.partition("@")[0].partition(".")
+        having = [other for other in PLANTS if parameter in FMUS[other].block.Parameters._fields]
+        if place == "plant" and having and plant not in having:
+            yield f"{name}: {plant} has no parameter {parameter}; --plant {' or '.join(having)} has it"
 
 
 def settings_of_ours(args: argparse.Namespace, plants: Iterable[str]) -> dict[str, Settings]:

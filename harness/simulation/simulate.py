@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..base.collected_warnings import warn_once
-from ..base.errors import WiringError
+from ..base.errors import SimulationError, WiringError
 from ..cosimulation.experiment import Experiment, Source, require_steps
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
@@ -19,6 +19,7 @@ from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
 from ..loop.settings import Changes, Settings, loop
 from ..loop.settings import settings as settings_of
 from ..loop.stale_fmus import warn_of_stale
+from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
 
@@ -57,17 +58,23 @@ def simulate(
     _warn(manoeuvre, given, made.step_size)
     system = loop(made)
     warn_of_stale(system)
-    return run(
-        system,
-        Experiment(
-            duration=manoeuvre.duration,
-            step_size=made.step_size,
-            inputs=signals(manoeuvre, made.control, made.step_size),
-            parameters=given,
-            scheme=made.scheme,
-            label=manoeuvre.name,
-        ),
+    experiment = Experiment(
+        duration=manoeuvre.duration,
+        step_size=made.step_size,
+        inputs=signals(manoeuvre, made.control, made.step_size),
+        parameters=given,
+        scheme=made.scheme,
+        label=manoeuvre.name,
     )
+    try:
+        return run(system, experiment)
+    except SimulationError as refusal:
+        if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
+            raise
+        easing = ", ".join(each.name for each in MANOEUVRES.values() if each.road)
+        raise SimulationError(
+            f"{refusal}; the wheels spin, as {manoeuvre.name} demands more than the road holds; {easing} ease off"
+        ) from None
 
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:

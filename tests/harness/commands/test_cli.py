@@ -66,6 +66,8 @@ def test_the_manoeuvres_are_listed_a_line_each(capsys, command):
     assert (code, err) == (0, "")
     assert [line.split()[0] for line in out.splitlines()] == list(MANOEUVRES)
     assert out.splitlines()[0] == "tipin15         tip-in through the backlash at 15 km/h (6 s)"
+    slippery = [line.split()[0] for line in out.splitlines() if line.endswith(": ValidationVehicle)")]
+    assert slippery == [name for name, manoeuvre in MANOEUVRES.items() if manoeuvre.road]
 
 
 @pytest.mark.parametrize("words", [["--list", "--json"], ["--json", "--list"]])

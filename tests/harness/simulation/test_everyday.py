@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.harness.base.errors import SimulationError
 from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.results import Results
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -86,3 +87,20 @@ def test_a_plant_without_grip_is_refused_before_anything_runs(native, tmp_path, 
     message = capsys.readouterr().err
     assert "launch_ice is for plants with a parameter mu (0.12 there); TwoMassDriveline.fmu has none" in message
     assert not (tmp_path / "out").exists()
+
+
+def test_wheels_that_spin_beyond_the_bus_are_named_and_what_eases_off(native: Path) -> None:
+    spins = (
+        r"omega_wheel_L = 500\..*; the wheels spin, as launch demands .*; launch_ice, launch_split, ice_hill ease off"
+    )
+    with pytest.raises(SimulationError, match=spins):
+        simulate(MANOEUVRES["launch"], VEHICLE, folder=native.parent, parameters={"plant.mu": 0.1})
+
+
+def test_a_parameter_of_the_other_plant_names_that_plant(native, capsys):
+    given = ["--fmus", str(native.parent), "--set", "plant.mu=0.1"]
+    assert main(["simulate", *given]) == 2
+    named = "plant.mu: TwoMassDriveline has no parameter mu; --plant ValidationVehicle has it"
+    assert named in capsys.readouterr().err
+    assert main(["simulate", "--fmus", str(native.parent), "--set", "plant.J_3=0.1"]) == 2
+    assert "TwoMassDriveline.fmu has no parameter J_3; did you mean" in capsys.readouterr().err
