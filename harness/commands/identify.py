@@ -1,7 +1,13 @@
-"""Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and
-half the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded,
-and structural damping where the data ask for it. Two results have different names, as they mean different
-things:
+"""Identifies the drive train from a recording of a test drive, a file with the columns
+
+  {columns}
+
+under any name that docs/recordings.md lists (the wheel speed tells wrong units and signs; the fit does not
+use it). It finds more with {more}.
+
+Found are the inertia of the wheels J_2, the stiffness C and half the gap phi_B, each with its 95 % interval,
+the lag of motor control where the torque demand was recorded, and structural damping where the data ask for
+it. Two results have different names, as they mean different things:
 
   with load torque                  measurement wheels were recorded: J_2 is that of the wheels
   effective, without load torque    J_2 carries the vehicle
@@ -38,6 +44,7 @@ from typing import TYPE_CHECKING, Any
 from ...fmus.building.options import file
 from ..base.errors import DrivelineError
 from ..base.optional_packages import required
+from ..recordings.quantities import aliases, example
 from ..views.html.report_page import require_report
 from .course import job
 from .options import add_figures, add_printing, add_replace, add_report, figure_options
@@ -51,6 +58,12 @@ if TYPE_CHECKING:
     from ..views.figure_options import FigureOptions
 
 FREE = ("J_1", "d", "g_T")
+
+NAMES = aliases()
+IN_HELP = {
+    "columns": ", ".join(example(quantity, NAMES) for quantity in ("time", "T_mot", "omega_1", "omega_wheel")),
+    "more": " and ".join(example(quantity, NAMES) for quantity in ("T_wheel", "T_ref")),
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -80,6 +80,14 @@ class Channels:
         """Whether there is a column for it."""
         return self._chooser.found(quantity) is not None
 
+    def missing(self, *quantities: str) -> list[str]:
+        """Those that have no column, time among them; errors as of `read`."""
+        return self._chooser.missing([*([] if self._source.own_time else ["time"]), *quantities])
+
+    def absence(self, missing: Sequence[str]) -> str:
+        """What to say of them."""
+        return self._chooser.absence(missing)
+
     def read(self, *quantities: str, drawn: bool = False) -> dict[str, Channel]:
         """The channels of these quantities.
 
@@ -92,6 +100,8 @@ class Channels:
                 larger than any car has; time does not increase, has a gap or steps that no recording has; there are
                 less than two samples.
         """
+        if missing := self.missing(*quantities):
+            raise RecordingError(self.absence(missing))
         clock = [] if self._source.own_time else [self._chooser.needed("time")]
         choices = [*clock, *(self._chooser.needed(quantity) for quantity in quantities)]
         samples = self._source.read([choice.place for choice in choices])

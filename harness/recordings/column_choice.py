@@ -1,6 +1,6 @@
 """Which column of a file holds which quantity."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
 
@@ -59,11 +59,27 @@ class Chooser:
         choice = self.found(quantity)
         if choice:
             return choice
-        others = " or ".join(self.names[quantity][1 : 1 + NAMES_SHOWN])
+        raise RecordingError(self.absence([quantity]))
+
+    def missing(self, quantities: Iterable[str]) -> list[str]:
+        """Those that no column holds; else as `needed`."""
+        return [quantity for quantity in quantities if self.found(quantity) is None]
+
+    def absence(self, missing: Sequence[str]) -> str:
+        """What to say of quantities that no column holds."""
+        examples = ", ".join(example(quantity, self.names) for quantity in missing)
+        if missing[1:]:
+            names = plain(", ".join(column.name for column in self.source.columns))
+            which = " or ".join(missing)
+            return (
+                f"{self.source.headings}: no column {examples}; the file has: {names}; "
+                f"--column QUANTITY=HEADING says which one is {which}"
+            )
+        others = " or ".join(self.names[missing[0]][1 : 1 + NAMES_SHOWN])
         known = f" (other names are {others})" if others else ""
-        raise RecordingError(
-            f"{self.source.headings}: no column {example(quantity, self.names)}{known}; "
-            f"{self._nearest(self.names[quantity][0])}; --column {quantity}=HEADING says which one it is"
+        return (
+            f"{self.source.headings}: no column {examples}{known}; {self._nearest(self.names[missing[0]][0])}; "
+            f"--column {missing[0]}=HEADING says which one it is"
         )
 
     def _nearest(self, name: str) -> str:

@@ -12,9 +12,8 @@ from .channels import Channel, Channels
 from .delays import Delay, estimated
 from .file_units import FileUnit
 from .plausibility import of_channels
-from .quantities import example
 from .relations import check_relations
-from .signal_checks import check_signal
+from .signal_checks import check_signal, too_slow
 from .source import RecordingError
 
 BASE = "omega_1"
@@ -93,12 +92,8 @@ def read_measurement(
         MissingExtra: a package that reads such files is not installed.
     """
     recording = Channels(path, columns, names, databases)
-    wheels, loads = _present(recording, WHEEL_SPEEDS), _present(recording, LOADS)
-    if not wheels:
-        raise RecordingError(
-            f"{path}: no wheel speed, such as {example('omega_wheel', recording.names)}; "
-            "--column omega_wheel=HEADING says which one it is"
-        )
+    wheels, loads = _present(recording, WHEEL_SPEEDS) or ("omega_wheel",), _present(recording, LOADS)
+    _require_columns(recording, BASE, "T_mot", *wheels)
     held = [quantity for quantity in HELD if recording.has(quantity)]
     channels = recording.read(BASE, "T_mot", *wheels, *loads, *held)
     judged = [channel for quantity, channel in channels.items() if quantity not in MESSAGE]
@@ -135,6 +130,14 @@ def read_measurement(
         [f"{path}, {finding}" for finding in of_channels(judged)],
         _written(channels, wheels, loads, i, r),
     )
+
+
+def _require_columns(recording: Channels, *needed: str) -> None:
+    """Refuses a recording with columns that are missing, and says too which samples are too far apart."""
+    if missing := recording.missing(*needed):
+        there = [] if "time" in missing else [quantity for quantity in needed if quantity not in missing]
+        slow = filter(None, map(too_slow, recording.read(*there).values() if there else ()))
+        raise RecordingError("; ".join([recording.absence(missing), *slow]))
 
 
 def _present(recording: Channels, forms: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

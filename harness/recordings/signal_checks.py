@@ -17,21 +17,27 @@ def check_signal(path: Path, channel: Channel) -> None:
     Raises:
         RecordingError: it is too short, too slow, or does not vary enough to tell anything.
     """
-    declared, time = QUANTITIES[channel.quantity], channel.time
-    length, interval = time[-1] - time[0], float(np.median(np.diff(time)))
+    declared, length = QUANTITIES[channel.quantity], channel.time[-1] - channel.time[0]
     if length < SHORTEST:
         raise RecordingError(
             f"{path}: {channel.heading} is {length:g} s long; {SHORTEST:g} s or more are needed to identify anything"
         )
-    # the last digits of written times must not decide
-    if interval > declared.slowest * (1.0 + 1e-6):
-        raise RecordingError(
-            f"{path}: {channel.heading} has a sample every {1e3 * interval:g} ms; "
-            f"{1e3 * declared.slowest:g} ms or less are needed to identify anything"
-        )
+    if problem := too_slow(channel):
+        raise RecordingError(f"{path}: {problem}")
     swing = float(np.ptp(channel.values))
     if not swing > declared.least_swing:
         raise RecordingError(
             f"{path}: {channel.heading} varies by {swing:g} {channel.unit}; "
             f"more than {declared.least_swing:g} {channel.unit} are needed to identify anything"
         )
+
+
+def too_slow(channel: Channel) -> str:
+    """What to say of a channel with too few samples; "" of one with enough."""
+    slowest, interval = QUANTITIES[channel.quantity].slowest, float(np.median(np.diff(channel.time)))
+    if interval <= slowest * (1.0 + 1e-6):  # the last digits of written times must not decide
+        return ""
+    return (
+        f"{channel.heading} has a sample every {1e3 * interval:g} ms; "
+        f"{1e3 * slowest:g} ms or less are needed to identify anything"
+    )

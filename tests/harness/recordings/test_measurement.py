@@ -114,7 +114,7 @@ def test_the_torque_demand_under_its_names(write: Write, heading: str) -> None:
 
 
 def test_without_a_wheel_speed_it_is_refused(write: Write) -> None:
-    with pytest.raises(RecordingError, match=r"no wheel speed, such as Wheel Speed \[km/h\]"):
+    with pytest.raises(RecordingError, match=r"no column Wheel Speed \[km/h\] .*--column omega_wheel=HEADING"):
         read_measurement(write(MOTOR), RATIO, RADIUS)
 
 
@@ -145,11 +145,20 @@ def test_results_of_ours_have_their_units_in_the_file_beside_them(write: Write) 
     require_same(read_measurement(path, RATIO, RADIUS), "time", "T_mot", "omega_1", "omega_2", "T_load")
 
 
+def test_all_that_is_missing_is_named_at_once_and_samples_that_are_too_far_apart(write: Write) -> None:
+    slow = {"Time [s]": drive()["time"][::50], "Motor Speed [rpm]": drive()["omega_1"][::50] / RPM}
+    columns = r"no column Motor Torque \[Nm\], Wheel Speed \[km/h\]; the file has: Time, Motor Speed; "
+    which = r"--column QUANTITY=HEADING says which one is T_mot or omega_wheel; "
+    every = r"Motor Speed \[rpm\] has a sample every 100 ms; 10 ms or less are needed to identify anything$"
+    with pytest.raises(RecordingError, match=columns + which + every):
+        read_measurement(write(slow), RATIO, RADIUS)
+
+
 def test_a_record_of_other_files_says_nothing_of_this_one(write: Write) -> None:
     path = write({"time": drive()["time"], "motor.omega_1_meas": drive()["omega_1"]})
     record = {"files": ["other.csv"], "units": {"time": "s", "motor.omega_1_meas": "rad/s"}}
     path.with_suffix(".json").write_text(json.dumps(record), encoding="utf-8")
-    with pytest.raises(RecordingError, match="no wheel speed"):
+    with pytest.raises(RecordingError, match="time has no unit"):
         read_measurement(path, RATIO, RADIUS)
 
 
