@@ -47,8 +47,8 @@ QUIET_PEAK, QUIET_RMS = 20.0, 1.0
 AFTER = 0.15
 """Time in s after the beginning of an error from which on the torque counts."""
 
-MOST = 1.1
-"""Ratio of peak or rms that a run should not exceed."""
+MOST, MOST_LATE = 1.1, 1.2
+"""Ratio of peak or rms that a run should not exceed; of the rms, where the frame is late or wrong."""
 
 EASED = 5.0
 """Demand with which wheels that spin catch the road again, whatever its grip, N.m."""
@@ -217,13 +217,20 @@ def measured(
 
 
 NUMBERS = ("peak, worst", "mean", "rms, worst", "mean", f"over {MOST}", "fallback, s")
+NUMBERS_OF_FRAMES = (*NUMBERS[:4], f"rms over {MOST_LATE}", NUMBERS[5])
 
 
-def numbers(of: Sequence[Ratios]) -> list[str]:
-    """Worst and mean of the peak and of the rms, runs beyond MOST, the longest fallback: a cell for each of NUMBERS."""
+def numbers(of: Sequence[Ratios], of_frames: bool = False) -> list[str]:
+    """Worst and mean of the peak and of the rms, runs beyond the limit, the longest fallback: a cell for each of
+    NUMBERS, or of NUMBERS_OF_FRAMES."""
     peak, rms, fallback = (np.array(column) for column in zip(*of, strict=True))
-    over = int(np.count_nonzero(np.maximum(peak, rms) > MOST))
+    over = late(rms) if of_frames else int(np.count_nonzero(np.maximum(peak, rms) > MOST))
     return [*(f"{y:.2f}" for y in (peak.max(), peak.mean(), rms.max(), rms.mean())), f"{over}", f"{fallback.max():.2f}"]
+
+
+def late(rms: np.ndarray) -> int:
+    """Runs with a frame that is late or wrong which are beyond what they should be."""
+    return int(np.count_nonzero(rms > MOST_LATE))
 
 
 def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tuple[Run, Ratios]]]:
@@ -234,12 +241,22 @@ def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tup
     return groups
 
 
+MEANINGS = """\
+  peak      largest gear torque over that without control
+  rms       gear torque from 5 to 50 Hz over that without control
+  fallback  longest time without damping
+"""
+
+
 def show(runs: Sequence[Run], found: Sequence[Ratios], title: str) -> None:
-    table = Table("runs", "count", *NUMBERS, "the worst run", title=title, title_justify="left")
+    of_frames = runs[0].begin is not None
+    headings = NUMBERS_OF_FRAMES if of_frames else NUMBERS
+    table = Table("runs", "count", *headings, "the worst run", title=title, title_justify="left")
     for group, of in {**by_group(runs, found), "all": list(zip(runs, found, strict=True))}.items():
         worst, _ = max(of, key=lambda each: max(each[1].peak, each[1].rms))
-        table.add_row(group, f"{len(of)}", *numbers([y for _, y in of]), str(worst))
+        table.add_row(group, f"{len(of)}", *numbers([y for _, y in of], of_frames), str(worst))
     print_table(table)
+    print(MEANINGS)
 
 
 def main(arguments: list[str] | None = None) -> None:

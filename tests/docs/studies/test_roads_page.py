@@ -1,6 +1,8 @@
 """The page of roads without grip and of wrong frames: what it counts, and where it puts it."""
 
-from docs.studies.grip_and_frames import OURS, STUDIES, Ratios, Run
+import pytest
+
+from docs.studies.grip_and_frames import OURS, STUDIES, Ratios, Run, show
 from docs.studies.roads_page import CONTROLLERS, Key, page
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 
@@ -37,3 +39,15 @@ def test_a_frame_has_a_cell_for_each_controller() -> None:
     table = rows(found)
     assert ["frames 0", "0.25 / 0.25 / 0", "1.75 / 1.48 / 1", *others] in table
     assert ["frames 1", *["0.25 / 0.25 / 0"] * len(CONTROLLERS)] in table
+
+
+@pytest.mark.parametrize(("begin", "heading", "beyond"), [(None, "over 1.1", "2"), (1.1, "rms over 1.2", "1")])
+def test_the_command_counts_what_the_page_counts(
+    begin: float | None, heading: str, beyond: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    show([Run("all of them", MANOEUVRES["launch"], begin=begin)] * 3, [GOOD, AT_MOST, BAD], "a study")
+    printed = capsys.readouterr().out
+    assert heading in printed
+    (line,) = [line for line in printed.splitlines() if "all of them" in line]
+    assert [cell.strip() for cell in line.split("│")[1:-1]][6] == beyond
