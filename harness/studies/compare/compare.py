@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...base.known_names import require_different
+from ...base.progress import progress
 from ...cosimulation.results import Results
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
@@ -129,13 +130,16 @@ def write_figures(
     from ...views.drive_figure import plot_drive  # not for the workers, which draw nothing
     from ...views.step_figure import plot_step
 
-    files = []
-    for off, on in zip(outcomes[::2], outcomes[1::2], strict=True):
-        name = off.case.manoeuvre
+    def is_drawn(name: str) -> bool:
         usual = manoeuvres[name] is MANOEUVRES.get(name) and name in COMPARED
-        if name in DRAWN or not usual:
-            plot = plot_drive if manoeuvres[name].dT is None else plot_step
-            runs = (off.results, on.results)
-            stem = folder / f"{off.case.plant_name}_{name}"
-            files += plot(runs, manoeuvres[name], off.case.plant_name, stem, options)
+        return name in DRAWN or not usual
+
+    pairs = zip(outcomes[::2], outcomes[1::2], strict=True)
+    drawn, files = [(off, on) for off, on in pairs if is_drawn(off.case.manoeuvre)], list[Path]()
+    with progress(len(drawn), "drawing") as done:
+        for k, (off, on) in enumerate(drawn):
+            done(k)
+            manoeuvre, plant = manoeuvres[off.case.manoeuvre], off.case.plant_name
+            plot = plot_drive if manoeuvre.dT is None else plot_step
+            files += plot((off.results, on.results), manoeuvre, plant, folder / f"{plant}_{manoeuvre.name}", options)
     return files

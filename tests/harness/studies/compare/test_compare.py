@@ -7,6 +7,7 @@ import pytest
 
 import driveline
 from driveline.harness.base.errors import DrivelineError
+from driveline.harness.base.progress import part
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
@@ -29,8 +30,11 @@ def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten(monkeypatch, tmp_
     metrics: Any = None
     results: Any = None
     names = ["tipin15", "tipin15r", "creep", "drive", "prbs", "hill_start", "regen"]
-    write_figures([Outcome(each, metrics, results) for each in cases(["A"], names)], tmp_path)
+    shares: list[float] = []
+    with part(shares.append, 0.0):
+        write_figures([Outcome(each, metrics, results) for each in cases(["A"], names)], tmp_path)
     assert drawn == [("step", "A_tipin15"), ("drive", "A_drive"), ("drive", "A_hill_start"), ("step", "A_regen")]
+    assert shares == [0.0, 0.25, 0.5, 0.75]
 
 
 def test_plants_of_the_same_name_are_refused():
