@@ -46,9 +46,14 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_cases(parser, 1000, 1_000_000, "only the case of this number, with a figure")
-    parser.add_argument("--campaign", choices=("dry", "roads"), help="which cases (default: dry)")
+    parser.add_argument(
+        "--campaign",
+        choices=("dry", "roads"),
+        help="which cases (default: dry); dry: on a dry road, where ice that makes wheels lock or spin is a fault too; "
+        "roads: on roads that are slippery themselves, on hills, under ABS, with frames that are late",
+    )
     add_plant(parser, several=True)
-    add_loop(parser)
+    add_loop(parser, drawn="the faults and the sensor noise")
     add_output(parser, "results/faults", "the cases, the page and the figures", of_a_run=True)
     add_report(parser)
     add_printing(parser, table=True)

@@ -99,11 +99,14 @@ def _names_or_fmus(names: Sequence[str]) -> dict[str, Any]:
     return names_or_files(names, ("fmu",), "block")
 
 
-def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None = None) -> None:
+def add_loop(
+    parser: argparse.ArgumentParser, several: Mapping[str, str] | None = None, drawn: str = "the sensor noise"
+) -> None:
     """What every run of the loop can be given beside the plant; `harness.commands.settings` reads it.
 
     Args:
         several: the places for which several blocks can be given, and what stands there if none is, in words.
+        drawn: what the seed is of.
     """
     several = several or {}
     parser.add_argument(
@@ -135,7 +138,7 @@ def add_loop(parser: argparse.ArgumentParser, several: Mapping[str, str] | None 
         metavar="INSTANCE.NAME=THEIRS",
         help="what an FMU calls a variable of the loop, as in plant.T_gear=Shaft.tau; units are converted (repeatable)",
     )
-    parser.add_argument("--seed", type=seed, default=1, help="of the sensor noise (default: %(default)s)")
+    parser.add_argument("--seed", type=seed, default=1, help=f"of {drawn} (default: %(default)s)")
     experts(parser).add_argument("--build", choices=BUILDS, help=BUILD_HELP)
     add_fmus(parser)
     add_limits(parser)

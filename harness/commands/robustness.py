@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_cases(parser, 300, 100_000, "only the draw of this number, with figures")
     add_plant(parser, several=True)
-    add_loop(parser, several={"controller": "all of these"})
+    add_loop(parser, several={"controller": "all of these"}, drawn="the cars and the sensor noise")
     add_output(parser, "results/robustness", "the runs, the page and the figures", of_a_run=True)
     add_report(parser)
     add_printing(parser, table=True)

@@ -150,7 +150,8 @@ class Fault:
 
     def __str__(self) -> str:
         share = f", share {self.share:.3g}" if self.share != 1.0 else ""
-        return f"{self.name} (size {self.size:.4g}{share}) from {self.begin:.3f} to {self.end:.3f} s"
+        size = f"{self.size:.4g} {self.kind.unit}".rstrip()
+        return f"{self.name} (size {size}{share}) from {self.begin:.3f} to {self.end:.3f} s"
 
 
 @dataclass(frozen=True)

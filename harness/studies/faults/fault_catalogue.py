@@ -48,6 +48,7 @@ class Kind:
             signal.
         size, share: of the fault, drawn anew for each case.
         meaning: of the size, with its unit.
+        unit: of the size where it has one.
         lasts: how long in s; None: to the end of the run.
         tolerable: the damping has to go on.
     """
@@ -60,29 +61,32 @@ class Kind:
     share: Draw = ONE
     lasts: Draw | None = LASTS
     tolerable: bool = False
+    unit: str = ""
 
 
 def _of_each(signal: int, called: str, unit: str, largest: float, noise: float) -> tuple[Kind, ...]:
     """What can happen to every signal."""
 
-    def kind(name: str, number: int, meaning: str, size: Draw = ONE, share: Draw = ONE) -> Kind:
-        return Kind(f"{called} {name}", signal, number, meaning, size, share, tolerable=signal == WHEEL_SPEED)
+    def kind(name: str, number: int, meaning: str, size: Draw = ONE, share: Draw = ONE, unit: str = "") -> Kind:
+        tolerable = signal == WHEEL_SPEED
+        return Kind(f"{called} {name}", signal, number, meaning, size, share, tolerable=tolerable, unit=unit)
 
     return (
         kind("lost", LOST, "a share of 0 to 100 % does not arrive", share=uniform(0.0, 1.0)),
-        kind("late", LATE, "4 ms to 0.5 s", by_ratio(0.004, 0.5)),
+        kind("late", LATE, "4 ms to 0.5 s", by_ratio(0.004, 0.5), unit="s"),
         kind("frozen", FROZEN, "the last value stays"),
         kind("zero", GAIN, "reads 0", fixed(0.0)),
-        kind("offset", OFFSET, f"±5 to ±{largest:g} {unit}", either_sign(by_ratio(5.0, largest))),
+        kind("offset", OFFSET, f"±5 to ±{largest:g} {unit}", either_sign(by_ratio(5.0, largest)), unit=unit),
         kind("wrong sign", GAIN, "times -1", fixed(-1.0)),
         kind("NaN", NO_NUMBER, "no number"),
-        kind("noise", NOISE, f"ten times the usual, {noise:g} {unit}", fixed(noise)),
+        kind("noise", NOISE, f"ten times the usual, {noise:g} {unit}", fixed(noise), unit=unit),
         kind(
             "spikes",
             SPIKES,
             f"±10 to ±{3 * largest:g} {unit} in 0.5 to 20 % of the samples",
             by_ratio(10.0, 3 * largest),
             by_ratio(0.005, 0.2),
+            unit,
         ),
     )
 
@@ -118,6 +122,7 @@ _KINDS = (
         "turned over and back every 2 to 200 ms",
         by_ratio(0.002, 0.2),
         tolerable=True,
+        unit="s",
     ),
     Kind(
         "counter jumps",
@@ -127,14 +132,32 @@ _KINDS = (
         share=uniform(0.05, 1.0),
         tolerable=True,
     ),
-    Kind("wheel lock on ice", 0, 0, "brakes of 4000 N.m", fixed(4000.0), lasts=uniform(0.2, 0.8), tolerable=True),
-    Kind("wheel spin on ice", 0, 0, "80 N.m more than before", fixed(80.0), lasts=uniform(0.2, 0.8), tolerable=True),
+    Kind(
+        "wheel lock on ice",
+        0,
+        0,
+        "brakes of 4000 N.m",
+        fixed(4000.0),
+        lasts=uniform(0.2, 0.8),
+        tolerable=True,
+        unit="N.m",
+    ),
+    Kind(
+        "wheel spin on ice",
+        0,
+        0,
+        "80 N.m more than before",
+        fixed(80.0),
+        lasts=uniform(0.2, 0.8),
+        tolerable=True,
+        unit="N.m",
+    ),
 )
 
 LOCK, SPIN = "wheel lock on ice", "wheel spin on ice"
 
 _OF_FRAMES = (
-    Kind("frame late", FRAME, LATE, "motor speed and torque 10 to 100 ms late", by_ratio(0.01, 0.1)),
+    Kind("frame late", FRAME, LATE, "motor speed and torque 10 to 100 ms late", by_ratio(0.01, 0.1), unit="s"),
     Kind("frame lost", FRAME, LOST, "a share of 0 to 100 % of motor speed and torque", share=uniform(0.0, 1.0)),
     Kind("frame frozen", FRAME, FROZEN, "the last values stay"),
 )

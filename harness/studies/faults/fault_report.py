@@ -25,6 +25,7 @@ def announce(outcomes: Sequence[Outcome]) -> None:
     alone; of a single case, what each judge measured."""
     if len(outcomes) == 1:
         print_table(_verdicts(outcomes[0]))
+        print("not clean is what is above its limit; what is below 0 stays within by so much")
         return
     table = Table(title="cases that are not clean", title_justify="left", box=SIMPLE_HEAD, padding=0)
     for heading in HEADINGS:

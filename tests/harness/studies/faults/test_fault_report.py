@@ -19,8 +19,8 @@ from driveline.harness.cosimulation.runs import run
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
 from driveline.harness.studies.faults.fault_campaign import Outcome, campaign, table
-from driveline.harness.studies.faults.fault_cases import PLANS, case
-from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS
+from driveline.harness.studies.faults.fault_cases import PLANS, Fault, case
+from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS, KINDS
 from driveline.harness.studies.faults.fault_figures import case_panels
 from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
 from driveline.harness.studies.faults.judges import JUDGES
@@ -88,6 +88,29 @@ def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
     assert [kind for kind in IN_SITUATIONS if f" {kind} " in message.partition(" cases, ")[0]] == [
         kind for kind in IN_SITUATIONS if kind in bad[0].kinds
     ]
+
+
+def test_a_single_case_says_what_a_negative_measure_means(outcomes, capsys):
+    announce([replace(outcomes[0], measured=dict.fromkeys(outcomes[0].measured, -72.0))])
+    assert "not clean is what is above its limit; what is below 0 stays within by so much" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [
+        ("motor speed spikes", "2 rad/s"),
+        ("frame late", "2 s"),
+        ("wheel lock on ice", "2 N.m"),
+        ("wheel speed gain", "2"),
+    ],
+)
+def test_a_size_has_its_unit(name, size):
+    assert str(Fault(name, 1.0, 2.0, 2.0, 1.0)) == f"{name} (size {size}) from 1.000 to 2.000 s"
+
+
+def test_sizes_have_the_units_of_their_meanings():
+    for kind in KINDS.values():
+        assert kind.unit in kind.meaning.replace("ms", "s"), kind.name
 
 
 def test_cases_without_a_fault_are_not_counted_as_single_faults():
