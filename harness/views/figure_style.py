@@ -132,7 +132,8 @@ def plot(
                     axes.tick_params(labelleft=False)
                     axes.set_ylabel("")
                 if len(row) > 1 and (panel.x or x).scale == "linear":
-                    axes.xaxis.set_major_locator(MaxNLocator(5))
+                    # the label at the end of an axis would touch the first one of its neighbour
+                    axes.xaxis.set_major_locator(MaxNLocator(5, prune="upper" if panel is not row[-1] else None))
                 if len(below) == len(row) and (below[j].x or x) == (panel.x or x):
                     axes.tick_params(labelbottom=False)
                 else:

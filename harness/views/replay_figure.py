@@ -38,6 +38,9 @@ OTHERS: tuple[How, ...] = (
 PIECE, PIECES = 6.0, 5
 """Length in s of the roughest pieces, and how many there are."""
 
+LEAD = 1.0
+"""Time in s before the roughest piece from which on a close-up shows it."""
+
 
 def plot_replay(
     runs: Mapping[str, np.ndarray],
@@ -65,10 +68,12 @@ def plot_replay(
     v, torque = (file_units or SI)["v"], (file_units or SI)["T_mot"]
     window = options.clipped(float(t[0]), float(t[-1]))
     ((start, _), *_) = roughest(runs[undamped])
-    closer = window if options.window else (start, min(start + PIECE, float(t[-1])))
+    before = max(start - LEAD, float(t[0]))
+    closer = window if options.window else (before, min(start + PIECE, float(t[-1])))
+    pairs = [others[k : k + 2] for k in range(0, len(others), 2)]
     panels = [
         speeds(runs[others[0]], recorded, f"simulated, {others[0]}", v),
-        swings(runs, looks, torque),
+        *(swings({each: runs[each] for each in (undamped, *pair)}, looks, torque) for pair in pairs),
         *(torques({each: runs[each] for each in (undamped, name)}, looks, torque, closer) for name in others),
     ]
     return plot([[panel] for panel in panels], Axis("time in s", window), title, stem, options, size=(7.2, 2.3))

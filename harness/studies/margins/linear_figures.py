@@ -31,6 +31,7 @@ DAMPING_RATIOS = (0.1, 0.3, 0.5)
 def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path) -> list[Path]:
     """Magnitude and phase of the loop gain, with the crossings at which the margins are; returns the files."""
     f = FREQUENCIES[(FREQUENCIES >= SHOWN[0]) & (FREQUENCIES <= SHOWN[1])]
+    named: set[str] = set()
     magnitude: list[Part] = [Level(0.0)]
     phase: list[Part] = [Level(-180.0)]
     for (name, (loop, margin)), color in zip(loops.items(), COLOURS, strict=False):
@@ -40,10 +41,14 @@ def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem:
         with np.errstate(divide="ignore"):
             magnitude.append(Curve(f, decibels(L), name, color))
         phase.append(Curve(f, degrees, name, color))
-        for at, marker in ((margin.gain_frequency, "square"), (margin.delay_frequency, "circle")):
+        for at, marker, what in (
+            (margin.gain_frequency, "square", "gain margin"),
+            (margin.delay_frequency, "circle", "delay margin"),
+        ):
             if np.isfinite(at):
-                x = np.array([at])
-                magnitude.append(Points(x, decibels(loop.gain(x)), color=color, marker=marker))
+                x, label = np.array([at]), "" if what in named else what
+                named.add(what)
+                magnitude.append(Points(x, decibels(loop.gain(x)), label, color, marker=marker))
                 phase.append(Points(x, np.interp(np.log(x), np.log(f), degrees), color=color, marker=marker))
     panels = [
         Panel("loop gain |L| in dB", magnitude, bounds=(-60.0, 30.0)),

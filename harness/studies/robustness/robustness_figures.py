@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...manoeuvres.catalogue import MANOEUVRES
+from ...views.annotations import PRINTED
 from ...views.colours import COLOURS, GREY
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import plot
@@ -15,6 +16,9 @@ from .case_runs import CaseRunner
 from .draws import draw
 from .outcome import SHOWN, Case
 from .summary import Summary
+
+TICKS = {share: str(share) for share in (0, 25, 50, 75, 95)}
+"""Of the shares in %, with the line that the goals are read at."""
 
 DRAWN = {
     "settling_time": (0.05, 5.0),
@@ -36,13 +40,13 @@ def distributions(summaries: Sequence[Summary], heading: str = "") -> list[Panel
     for metric, bounds in DRAWN.items():
         column = SHOWN[metric]
         window = bounds[0] * column.factor, bounds[1] * column.factor
-        x = Axis(f"{column.plain_heading} in {column.unit}", window, "log")
+        x = Axis(f"{column.plain_heading} in {PRINTED.get(column.unit, column.unit)}", window, "log")
         curves = [
             _distribution(summary, metric, window[0], COLOURS[k % len(COLOURS)], 0.9 if k else 1.6)
             for k, summary in enumerate(summaries)
         ]
         parts = [*curves, Level(95.0, GREY, DASHED)]
-        panels.append(Panel("share of the draws in %", parts, heading, bounds=(0.0, 101.0), x=x))
+        panels.append(Panel("share of the draws in %", parts, heading, bounds=(0.0, 101.0), ticks=TICKS, x=x))
         heading = ""
     return panels
 

@@ -23,6 +23,7 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.step_response import SETTLED, response
 from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.views import replay_figure
 from driveline.harness.views.annotations import BAND, GAP, gap
 from driveline.harness.views.drive_figure import AROUND, plot_drive, reversal
 from driveline.harness.views.figure_options import KINDS, FigureOptions
@@ -244,6 +245,18 @@ def test_a_recorded_drive_is_in_the_units_of_its_file(drawn: Drawn) -> None:
     assert max(float(np.max(line.get_ydata())) for axes in close for line in axes.lines) < 0.3
     rms = [float(str(line.get_label()).split()[-2]) for line in swing.lines]
     assert rms[0] == pytest.approx(1e-3 * evaluate(DRIVES[0], DRIVE).gear_torque_rms, rel=0.01)
+
+
+def test_many_controllers_are_shown_two_at_a_time_from_before_the_roughest_piece(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rides = {"off": DRIVES[0]} | {f"controller {k}": DRIVES[1] for k in range(5)}
+    shown: list[Any] = []
+    monkeypatch.setattr(replay_figure, "plot", lambda rows, *_, **__: shown.extend(panel for (panel,) in rows) or [])
+    plot_replay(rides, RECORDED, "drive", tmp_path / "run")
+    assert [len(panel.parts) for panel in shown if "envelope" in panel.label] == [3, 3, 2]
+    start = roughest(DRIVES[0])[0][0]
+    assert {panel.x.window[0] for panel in shown if panel.x} == {max(start - replay_figure.LEAD, 0.0)}
 
 
 def test_without_units_of_a_file_a_replay_is_in_those_of_the_si(tmp_path: Path) -> None:

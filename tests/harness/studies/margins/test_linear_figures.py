@@ -11,6 +11,8 @@ import pytest
 from driveline.harness.studies.margins import linear_figures
 from driveline.harness.views.panels import Curve, Panel, Points
 
+MARKED = "delay margin"
+
 
 @pytest.mark.parametrize("count", [1, 3])
 def test_each_loop_has_its_magnitude_and_phase(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
@@ -25,6 +27,7 @@ def test_each_loop_has_its_magnitude_and_phase(monkeypatch: pytest.MonkeyPatch, 
         curves = [part for part in panel.parts if isinstance(part, Curve)]
         points = [part for part in panel.parts if isinstance(part, Points)]
         assert [curve.label for curve in curves] == list(loops)
+        assert [point.label for point in points] == [MARKED if panel is drawn[0] else "", *[""] * (count - 1)]
         assert len({curve.color for curve in curves}) == len(points) == count
         for curve, point in zip(curves, points, strict=True):
             assert (curve.y[0], curve.y[-1]) == pytest.approx(ends, abs=0.2)
