@@ -17,7 +17,7 @@ from .draws import draw
 from .outcome import SHOWN, Case
 from .summary import Summary
 
-TICKS = {share: str(share) for share in (0, 25, 50, 75, 95)}
+TICKS = {float(share): str(share) for share in (0, 25, 50, 75, 95)}
 """Of the shares in %, with the line that the goals are read at."""
 
 DRAWN = {

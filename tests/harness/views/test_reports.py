@@ -253,9 +253,9 @@ def test_a_terminal_that_is_wide_enough_shows_a_table_whole(monkeypatch, capsys)
 
 
 def test_a_text_is_broken_between_words_before_a_table_is_parted(monkeypatch, capsys):
-    table = Table()
-    for heading, justify in (("judge", "left"), ("measured", "right"), ("what it measures", "left")):
-        table.add_column(heading, justify=justify)
+    table = Table("judge")
+    table.add_column("measured", justify="right")
+    table.add_column("what it measures")
     table.add_row("limited", "-72", "torque demanded beyond the largest of the motor, whatever its sign")
     lines = _on_a_terminal(60, table, monkeypatch, capsys)
     assert sum("limited" in line for line in lines) == 1
