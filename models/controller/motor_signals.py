@@ -76,15 +76,10 @@ def is_movement(movement: float, T_s: float, p: Parameters) -> bool:
     return abs(movement) > p.q_omega + p.frozen * added_speed(p, T_s)
 
 
-def predict(x: MotorState, T_ref: float, T_s: float, p: Parameters) -> MotorState:
-    """The state with the torque that the motor should have at the next sample, by its demand T_ref (N.m)."""
-    return x._replace(loop=torque_loop.update(x.loop, T_ref, T_s, p))
-
-
-def moved(x: MotorState, increment: float, T_s: float, p: Parameters) -> MotorState:
-    """The state with the movement (rad/s) that the model expects until the next sample.
+def predict(x: MotorState, loop: LoopState, increment: float, T_s: float, p: Parameters) -> MotorState:
+    """The state with the torque that the motor should have next, and the movement (rad/s) expected until then.
 
     What is a movement stays one until the speed changes.
     """
     movement = x.movement + increment - T_s / p.t_move * x.movement
-    return x._replace(movement=where(is_movement(x.movement, T_s, p), x.movement, movement))
+    return x._replace(movement=where(is_movement(x.movement, T_s, p), x.movement, movement), loop=loop)

@@ -6,7 +6,7 @@ from typing import Any, Generic
 from ..block.declaration import merged
 from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, where
 from ..block.types import SampledBlock
-from . import causes, launch, motor_signals, oscillation, standstill, trust, wheel_messages
+from . import causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
 from .fading import faded
 from .interfaces import Estimator, Law
 from .supervision import T_S, E, L, Output, State, demand, limited, status
@@ -63,8 +63,8 @@ class Supervised(Generic[E, L]):
         trusted = trust.is_trusted(x.trust)
 
         wheel = logical_and(wheel_messages.is_reference(x.wheel, u, p), trusted)
-        motor = motor_signals.predict(x.motor, x.T_ref, T_S, p)
-        e = self.estimator.predict(x.estimator, T_mot + 0.5 * (motor.loop.T_mot - x.motor.loop.T_mot), wheel, T_S, p)
+        loop = torque_loop.update(x.motor.loop, x.T_ref, T_S, p)
+        e = self.estimator.predict(x.estimator, T_mot + 0.5 * (loop.T_mot - x.motor.loop.T_mot), wheel, T_S, p)
         motion, expected = self.estimator.motion(x.estimator, p), self.estimator.motion(e, p)
 
         law, adding = self.law.update(x.law, motion, expected, T_driver, T_S, p)
@@ -72,8 +72,7 @@ class Supervised(Generic[E, L]):
 
         level = faded(x.level, logical_and(u.enable, trusted), T_S, p.t_fade)
         share = level * standstill.left(x.quiet, p)
-        change = T_driver - (x.T_ref - x.T_damp)
-        swings = oscillation.update(x.swings, share * damping, change, trusted, T_S, p)
+        swings = oscillation.update(x.swings, share * damping, T_driver - (x.T_ref - x.T_damp), trusted, T_S, p)
         share = share * oscillation.share(swings)
         fading = level / maximum(x.level, T_S / p.t_fade) * x.T_damp
         added = limited(where(trusted, share * (damping + adding.landing), fading), T_driver, p)
@@ -82,7 +81,7 @@ class Supervised(Generic[E, L]):
         return x._replace(
             estimator=e,
             law=law,
-            motor=motor_signals.moved(motor, expected.omega_1 - motion.omega_1, T_S, p),
+            motor=motor_signals.predict(x.motor, loop, expected.omega_1 - motion.omega_1, T_S, p),
             swings=swings,
             level=level,
             T_ref=T_ref,
@@ -102,7 +101,7 @@ class Supervised(Generic[E, L]):
         bad = causes.first_of(found) != causes.NONE
         rested = standstill.is_complete(x.quiet, p)
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
-        direction = trust.direction(x.trust, u, T_driver, rested, omega_1, logical_not(bad), T_S, p)
+        direction = trust.direction(x.trust, u, rested, motor.received, logical_not(bad), T_S, p)
         way = trust.way(direction)
         turned = way * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, way, T_S, p)

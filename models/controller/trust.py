@@ -34,14 +34,13 @@ def is_trusted(x: TrustState) -> bool:
     return x.cause == NONE
 
 
-def direction(
-    x: TrustState, u: Input, T_driver: float, rested: bool, omega_1: float, good: bool, T_s: float, p: Parameters
-) -> float:
-    """Of the car in this sample, by the demand (N.m) that ends its rest, later by the motor speed (rad/s) if good."""
-    turning = logical_and(logical_and(is_trusted(x), good), abs(omega_1) > p.omega_still)
-    seen = clip(x.direction + where(turning, T_s / p.t_apart * way(omega_1), 0.0), -1.0, 1.0)
-    set_off = logical_and(rested, abs(T_driver) > p.T_still)
-    return where(u.direction == 0, where(set_off, way(T_driver), seen), way(1.0 * u.direction))
+def direction(x: TrustState, u: Input, rested: bool, omega_1: float, good: bool, T_s: float, p: Parameters) -> float:
+    """Of the car in this sample, by the received speed (rad/s) or the demand that ends its rest, then by good ones."""
+    moves = abs(omega_1) > p.omega_still
+    begins = logical_and(rested, logical_or(moves, abs(u.T_driver) > p.T_still))
+    turning = logical_and(logical_and(is_trusted(x), good), moves)
+    gained = where(begins, 2.0, where(turning, T_s / p.t_apart, 0.0)) * way(where(moves, omega_1, u.T_driver))
+    return where(u.direction == 0, clip(x.direction + gained, -1.0, 1.0), way(1.0 * u.direction))
 
 
 def way(value: float) -> float:

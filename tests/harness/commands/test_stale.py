@@ -1,5 +1,6 @@
 """Neither commands nor functions run a stale build silently."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
@@ -119,7 +120,9 @@ def test_loops_run_native_fmus_only_if_all_have_them(both_built: Path, tmp_path:
 
 
 def test_no_command_but_build_writes_into_the_folder_of_fmus() -> None:
-    asking = [path.stem for path in (ROOT / "harness").rglob("*.py") if "build_missing(" in path.read_text()]
+    """A docstring may call it as a user does, from outside."""
+    asked = re.compile(r"(?<!driveline\.)build_missing\(")
+    asking = [path.stem for path in (ROOT / "harness").rglob("*.py") if asked.search(path.read_text())]
     assert asking == ["built_fmus"]
 
 

@@ -15,6 +15,9 @@ P = Parameters(T_max=100.0, J_1=0.25, omega_max=500.0, t_move=2.0, jump=0.4, q_o
 T_S = 0.25
 UNIT = 100.0
 """Speed in rad/s that T_max adds to the free motor in such a sample."""
+LOOP = LoopState(7.0, 3.0)
+"""What the motor should have next."""
+
 U = Input(T_driver=50.0, omega_1_meas=150.0, T_mot_est=50.0)
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
 
@@ -192,8 +195,8 @@ def test_a_motor_that_hardly_turns_is_not_frozen(side: float) -> None:
 @each_side
 def test_a_movement_that_the_model_expects_is_forgotten_in_t_move(side: float) -> None:
     """Or when the speed changes."""
-    x = motor_signals.moved(last(150.0, movement=side), side * 0.25, T_S, P)
-    assert x == last(150.0, movement=side * (0.875 + 0.25))
+    x = motor_signals.predict(last(150.0, movement=side), LOOP, side * 0.25, T_S, P)
+    assert x == last(150.0, movement=side * (0.875 + 0.25))._replace(loop=LOOP)
     assert updated(U, x)[0].movement == side * 1.125
     assert updated(with_speed(151.0), x)[0].movement == 0.0
 
@@ -204,7 +207,7 @@ def test_a_movement_that_is_one_stays_one(side: float) -> None:
     most = P.q_omega + P.frozen * UNIT
     for movement, later in ((most, 0.875 * most - 1.0), (above(most), above(most))):
         x = last(150.0, movement=side * movement)
-        assert motor_signals.moved(x, -side, T_S, P).movement == side * later
+        assert motor_signals.predict(x, LOOP, -side, T_S, P).movement == side * later
 
 
 def test_a_frozen_motor_speed_stays_so_until_it_changes() -> None:
@@ -212,7 +215,7 @@ def test_a_frozen_motor_speed_stays_so_until_it_changes() -> None:
     for _ in range(9):
         x, _, found = updated(U, x, trusted=False)
         assert (found, x.movement) == ([SPEED_FROZEN], 9.0)
-        x = motor_signals.moved(x, 0.0, T_S, P)
+        x = motor_signals.predict(x, x.loop, 0.0, T_S, P)
     x, _, found = updated(with_speed(151.0), x, trusted=False)
     assert (found, x.movement) == ([], 0.0)
     assert updated(with_speed(151.0), x, trusted=False)[2] == [], "two samples alike are no fault"
@@ -222,7 +225,7 @@ def test_a_speed_that_jumps_again_and_again_to_the_same_is_frozen_too() -> None:
     """It is what was received that stays the same, not what is used."""
     x, _, found = updated(with_speed(300.0), last(150.0))
     assert found == [SPEED_JUMP]
-    x = motor_signals.moved(x, 10.0, T_S, P)
+    x = motor_signals.predict(x, x.loop, 10.0, T_S, P)
     assert updated(with_speed(300.0), x)[2] == [SPEED_JUMP, SPEED_FROZEN]
 
 

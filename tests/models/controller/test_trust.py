@@ -177,7 +177,7 @@ def test_the_first_of_those_that_count_is_the_cause_and_stays_it() -> None:
 def turning(samples: int, x: TrustState, omega_1: float, good: bool = True, u: Input = U) -> float:
     """The direction after samples with this motor speed (rad/s)."""
     for _ in range(samples):
-        x = x._replace(direction=trust.direction(x, u, 50.0, False, omega_1, good, T_S, P))
+        x = x._replace(direction=trust.direction(x, u, False, omega_1, good, T_S, P))
     return x.direction
 
 
@@ -202,7 +202,16 @@ def test_a_car_at_rest_sets_off_where_it_is_driven(side: float) -> None:
     ):
         for x in (TRUSTED, lost(SPEED_JUMP)):
             x = x._replace(direction=-side)
-            assert trust.direction(x, U, side * T_driver, rested, 0.0, True, T_S, P) == way
+            assert trust.direction(x, U._replace(T_driver=side * T_driver), rested, 0.0, True, T_S, P) == way
+
+
+@each_side
+def test_a_car_at_rest_whose_motor_turns_goes_where_that_turns(side: float) -> None:
+    """So it is where a master has no signals in its first step."""
+    x, beyond = TRUSTED._replace(direction=-side), math.nextafter(P.omega_still, math.inf)
+    for omega_1, good, way in ((P.omega_still, True, -side), (beyond, True, side), (99.0, False, side)):
+        assert trust.direction(x, U._replace(T_driver=-side * 99.0), True, side * omega_1, good, T_S, P) == way
+    assert trust.direction(x, U, True, side * beyond, True, T_S, P) == side
 
 
 @each_side
@@ -211,7 +220,7 @@ def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
     for x in (TRUSTED, lost(SPEED_JUMP)):
         for rested in (False, True):
             x = x._replace(direction=-side)
-            assert trust.direction(x, told, -side * 9.0, rested, -side * 99.0, True, T_S, P) == side
+            assert trust.direction(x, told, rested, -side * 99.0, True, T_S, P) == side
 
 
 @each_side
