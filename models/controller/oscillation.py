@@ -4,9 +4,9 @@ Behind a signal that is late, or wrong in a way that no comparison shows, dampin
 shows in the damping torque: in a damped drive train it dies away after a change of the demand, each half swing far
 smaller than the one before. Half swings are counted that reach `swing` on both sides and `grows` of the one before.
 From SWINGS on there is no damping, and less in the one before. They are forgotten at one a t_forget, once there is
-none at one a t_relapse, and at one where the demand changes by `excuse` times its torque. Whatever shakes the drive
-train from outside (ABS, a road without grip) is counted too, and the damping can do little against it: it only becomes
-less, and there is no fallback.
+none at one a t_relapse, and at one where the demand changes by `excuse` times the largest torque of the present half
+swing, or `swing` if that is more. Whatever shakes the drive train from outside (ABS, a road without grip) is counted
+too, and the damping can do little against it: it only becomes less, and there is no fallback.
 """
 
 from typing import Annotated, NamedTuple

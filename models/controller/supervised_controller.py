@@ -99,9 +99,10 @@ class Supervised(Generic[E, L]):
         expected = self.estimator.motion(x.estimator, p).omega_1
         motor, omega_1, found = motor_signals.update(x.motor, u, expected, trust.is_trusted(x.trust), T_S, p)
         bad = causes.first_of(found) != causes.NONE
-        rested = standstill.is_complete(x.quiet, p)
+        rested = logical_and(standstill.is_complete(x.quiet, p), logical_not(wheel_messages.tells_a_speed(u, p)))
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
         direction = trust.direction(x.trust, u, rested, motor.received, logical_not(bad), T_S, p)
+        direction = where(against, trust.way(T_driver), direction)
         way = trust.way(direction)
         turned = way * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, way, T_S, p)

@@ -26,7 +26,7 @@ class Parameters(NamedTuple):
     ] = GAINS["T_add_max"]
     t_fade: Annotated[float, Real("s", "time to fade between modes", 0.002, 5.0)] = 0.1
     t_bad: Annotated[float, Real("s", "bad motor signals for so long lead to fallback", 0.0, 1.0)] = 0.02
-    t_apart: Annotated[float, Real("s", "contradiction by the wheel speed for so long leads to it", 0.0, 1.0)] = 0.1
+    t_apart: Annotated[float, Real("s", "contradiction by wheels, or a reversal, takes so long", 0.002, 1.0)] = 0.1
     t_proof: Annotated[float, Real("s", "good motor signals for so long end the fallback", 0.01, 1.0)] = 0.15
     t_turn: Annotated[float, Real("s", "the same after the motor speed has changed its sign", 0.01, 10.0)] = 1.0
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1

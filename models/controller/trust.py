@@ -4,7 +4,8 @@ While there is trust, a clock runs for each time after which causes count (t_bad
 found. Without trust, the first of them runs as long as nothing is found, until trust is back.
 
 A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which it is driven out of
-rest, and in which a trusted motor has turned for t_apart: wheels that lock throw the motor back for less.
+rest. A motor turns it round within t_apart, and goes on to where trust is lost meanwhile: at once would be too soon, as
+wheels that lock throw the motor back for about as long.
 """
 
 from collections.abc import Mapping
@@ -38,7 +39,7 @@ def direction(x: TrustState, u: Input, rested: bool, omega_1: float, good: bool,
     """Of the car in this sample, by the received speed (rad/s) or the demand that ends its rest, then by good ones."""
     moves = abs(omega_1) > p.omega_still
     begins = logical_and(rested, logical_or(moves, abs(u.T_driver) > p.T_still))
-    turning = logical_and(logical_and(is_trusted(x), good), moves)
+    turning = logical_and(logical_and(good, moves), logical_or(is_trusted(x), abs(x.direction) < 1.0))
     gained = where(begins, 2.0, where(turning, T_s / p.t_apart, 0.0)) * way(where(moves, omega_1, u.T_driver))
     return where(u.direction == 0, clip(x.direction + gained, -1.0, 1.0), way(1.0 * u.direction))
 
@@ -68,10 +69,9 @@ def update(
     good = reduce(logical_and, (first == NONE for first in firsts.values()), logical_not(trusted))
     healed = logical_and(good, clocks["t_bad"] >= where(turned, p.t_turn, p.t_proof) - 0.5 * T_s)
     cause = where(trusted, lost, where(healed, NONE, x.cause))
-    runs = logical_or(good, logical_and(trusted, bad))
     return TrustState(
         cause=cause,
-        clock=where(logical_and(runs, cause == x.cause), clocks["t_bad"], 0.0),
+        clock=where(logical_and(logical_or(good, logical_and(trusted, bad)), cause == x.cause), clocks["t_bad"], 0.0),
         apart=where(logical_and(cause == NONE, apart), clocks["t_apart"], 0.0),
         direction=direction,
     )

@@ -69,6 +69,11 @@ def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
         assert after([torque, -torque, 0.0, 0.0], changes).count == pytest.approx(1.0 - 0.25 - 2.0 / 8.0)
 
 
+def test_the_largest_torque_of_a_half_swing_is_that_of_the_sample_too() -> None:
+    x = SwingState(peak=20.0, count=1.0)
+    assert after([80.0], [0.5 * P.excuse * 80.0], x).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
+
+
 def test_what_is_no_half_swing_is_taken_for_a_small_one() -> None:
     assert after([0.0], [-0.5 * P.excuse * PEAK], SwingState(count=1.0)).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
 

@@ -190,6 +190,8 @@ def test_the_direction_is_that_in_which_a_trusted_motor_has_turned_for_t_apart(s
     for omega_1, good in ((3.0, True), (99.0, False)):
         assert turning(9 * samples, x, side * omega_1, good) == -side
     assert turning(9 * samples, x._replace(cause=SPEED_JUMP), side * 99.0) == -side
+    begun = x._replace(cause=SPEED_JUMP, direction=turning(1, x, side * 99.0))
+    assert turning(9 * samples, begun, side * 99.0) == side, "what has begun goes on where trust is lost"
     assert turning(samples, x._replace(direction=turning(samples - 1, x, side * 99.0)), -side * 99.0) == -side
 
 

@@ -15,13 +15,16 @@ from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults.fault_injection import with_faults
 from driveline.models.controller import causes, supervision
-from driveline.models.signal_faults import LATE, MOTOR_SPEED, MOTOR_TORQUE, NO_NUMBER
+from driveline.models.signal_faults import GAIN, LATE, MOTOR_SPEED, MOTOR_TORQUE, NO_NUMBER
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 LOCKED = Manoeuvre(
     "wheels lock on snow", "", 4.0, 15.0, lines((0.0, 0.0)), lines((1.0, 0.0), (1.0, 2500.0), (2.0, 2500.0), (2.0, 0.0))
 )
 BACKWARDS = Manoeuvre("pulls away backwards", "", 4.0, 0.0, lines((1.0, 0.0), (1.2, -80.0)))
+REVERSAL = Manoeuvre("turns round without a rest", "", 4.0, 1.0, lines((0.5, 0.0), (0.5, -150.0)))
+COASTING = Manoeuvre("brakes out of coasting", "", 6.0, 12.0, lines((2.0, 0.0), (2.0, -40.0)))
+CREEPING = Manoeuvre("creeps, then backwards", "", 4.0, 0.0, lines((1.0, 0.0), (1.0, 5.0), (1.03, 5.0), (1.03, -80.0)))
 
 
 def faulty(injector, settings, manoeuvre, fault, *, control=True, plant=None):
@@ -52,6 +55,36 @@ def test_a_signal_that_was_lost_while_the_direction_is_new_heals(
         y = faulty(injector, settings[plant], manoeuvre, fault, plant=road)
         late = y["time"] > begin + lasting + 0.25
         assert [supervision.FALLBACK in y["controller.status"][k] for k in (~late, late)] == [True, False]
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_a_car_that_turns_round_without_a_rest_is_trusted_and_a_fault_meanwhile_heals(injector, settings, plant):
+    healthy = faulty(injector, settings[plant], REVERSAL, (NO_NUMBER, MOTOR_SPEED, 9.0, 9.1, 1.0))
+    assert supervision.FALLBACK not in healthy["controller.status"]
+    turned = float(healthy["time"][np.argmax(healthy["plant.omega_1"] < -3.0)])
+    for after in (0.02, 0.06, 0.09, 0.15):
+        fault = (NO_NUMBER, MOTOR_SPEED, turned + after, turned + after + 0.05, 1.0)
+        y = faulty(injector, settings[plant], REVERSAL, fault)
+        fallback = y["time"][y["controller.status"] == supervision.FALLBACK]
+        assert 0.0 < fallback.max() - turned - after < 0.3
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_a_car_that_coasts_under_a_motor_speed_of_zero_is_not_at_rest(injector, settings, plant):
+    """A demand does not say where it goes: trust is back after the fault."""
+    y = faulty(injector, settings[plant], COASTING, (GAIN, MOTOR_SPEED, 1.0, 3.0, 0.0))
+    fallback = y["time"][y["controller.status"] == supervision.FALLBACK]
+    assert 3.0 <= fallback.max() < 3.3
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_a_wrong_sign_is_found_where_the_demand_has_changed_its_sign_since_rest(injector, settings, plant):
+    y, off = (
+        faulty(injector, settings[plant], CREEPING, (GAIN, MOTOR_SPEED, 0.0, 9.0, -1.0), control=control)
+        for control in (True, False)
+    )
+    assert y["controller.status"][-1] == supervision.FALLBACK
+    assert band_rms(y["plant.T_gear"], T_S) < 0.6 * band_rms(off["plant.T_gear"], T_S)
 
 
 @pytest.mark.parametrize("plant", PLANTS)
