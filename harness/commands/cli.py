@@ -114,7 +114,7 @@ class Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, args=None, namespace=None):  # type: ignore[override]
         self.add_command()
-        self._values: dict[argparse.Action, str] = {}
+        self._values: dict[argparse.Action, tuple[object, str]] = {}
         known, unknown = super().parse_known_args(args, namespace)
         options = [word.partition("=")[0] for word in unknown if word.startswith("--")]
         if options:
@@ -123,12 +123,13 @@ class Parser(argparse.ArgumentParser):
 
     def _get_values(self, action: argparse.Action, arg_strings: list[str]) -> Any:
         """As argparse does, which of an option with one value takes the last, whatever was given before."""
+        value, words = super()._get_values(action, arg_strings), " ".join(arg_strings)
         if isinstance(action, argparse._StoreAction) and action.option_strings:
-            value = " ".join(arg_strings)
-            if (before := self._values.setdefault(action, value)) != value:
-                both = f"{quoted(before)} and {quoted(value)}"
+            first, before = self._values.setdefault(action, (value, words))
+            if first != value:
+                both = f"{quoted(before)} and {quoted(words)}"
                 self.error(f"{action.option_strings[0]} is given twice, {both}; it takes one value")
-        return super()._get_values(action, arg_strings)
+        return value
 
     def _check_value(self, action: argparse.Action, value: str) -> None:
         if action.choices is not None and value not in action.choices:

@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from math import inf
-from pathlib import Path
 from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
@@ -53,7 +52,6 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     Raises:
         WiringError: lists everything that is missing, misnamed or of another type or unit.
     """
-    _require_built(path for name, path in system.instances.items() if name in system.own)
     interfaces = {name: Interface(path, system.limits) for name, path in system.instances.items()}
     for name in system.any_value:
         interfaces[name].any_value = True
@@ -63,13 +61,6 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     problems += _duplicates(interfaces)
     require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
     return found
-
-
-def _require_built(own: Iterable[Path]) -> None:
-    if missing := [path for path in own if not path.is_file()]:
-        names = " ".join(path.stem for path in missing)
-        files = ", ".join(map(str, missing))
-        raise WiringError(f"there is no FMU {files}; `driveline build {names}` makes {'them' if missing[1:] else 'it'}")
 
 
 def require(problems: Iterable[str]) -> None:

@@ -42,11 +42,16 @@ def _checked(loops: list[Settings], build_in: "Place") -> list[Settings]:
     common = NATIVE if all(chosen_build(made) == NATIVE for made in loops) else BUILDS[0]
     loops = [made.replace(build=made.build or common) for made in loops]
     for made in loops:
-        _require_there(made)
+        require_there(made)
     return loops
 
 
-def _require_there(made: Settings) -> None:
+def require_there(made: Settings) -> None:
+    """Warns of what is stale.
+
+    Raises:
+        DrivelineError: an FMU of the project is not in the folder; says what makes it there.
+    """
     system = loop(made)
     missing = [path for name, path in system.instances.items() if name in system.own and not path.is_file()]
     if missing:

@@ -15,10 +15,10 @@ from ..cosimulation.experiment import Experiment, Source, require_steps
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
 from ..cosimulation.system import Port
+from ..loop.built_fmus import require_there
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
 from ..loop.settings import Changes, Settings, loop
 from ..loop.settings import settings as settings_of
-from ..loop.stale_fmus import warn_of_stale
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
@@ -56,8 +56,7 @@ def simulate(
     given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)
-    system = loop(made)
-    warn_of_stale(system)
+    require_there(made)
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
@@ -67,11 +66,11 @@ def simulate(
         label=manoeuvre.name,
     )
     try:
-        return run(system, experiment)
+        return run(loop(made), experiment)
     except SimulationError as refusal:
         if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
             raise
-        easing = ", ".join(each.name for each in MANOEUVRES.values() if each.road)
+        easing = ", ".join(each.name for each in MANOEUVRES.values() if each.road and each is not manoeuvre)
         raise SimulationError(
             f"{refusal}; the wheels spin, as {manoeuvre.name} demands more than the road holds; {easing} ease off"
         ) from None

@@ -6,6 +6,7 @@ from typing import Unpack
 
 from ...base.argument_kinds import BLOCKS, require_each, require_kind
 from ...base.errors import DrivelineError
+from ...loop.built_fmus import require_there
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.road_load import Track
@@ -62,8 +63,9 @@ def replay(
     named = by_name([str(controller) for controller in controllers])
     common = Settings(plant).replace(**changes)
     given = {name: common.replace(controller=controller) for name, controller in named.items()}
-    cars = [car_of(each) for each in given.values()]  # of all: what is missing is found before the rides
-    load, T_max = cars[0]
+    for each in given.values():
+        require_there(each)
+    load, T_max = car_of(next(iter(given.values())))
     tell(of_drive(drive, load, T_max), drive.name)
     found = rides(Track.of(drive, T_max), load, given, held)
     tell(followed_speed(drive, found), drive.name)
