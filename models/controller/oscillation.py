@@ -5,7 +5,7 @@ shows in the damping torque: in a damped drive train it dies away after a change
 smaller than the one before. Half swings are counted that reach `swing` on both sides and `grows` of the one before.
 From SWINGS on there is no damping, and less in the one before. They are forgotten at one a t_forget, once there is
 none at one a t_relapse, and at one where the demand changes by `excuse` times the largest torque of the present half
-swing, or `swing` if that is more. Whatever shakes the drive train from outside (ABS, a road without grip) is counted
+swing and `swing` together. Whatever shakes the drive train from outside (ABS, a road without grip) is counted
 too, and the damping can do little against it: it only becomes less, and there is no fallback.
 """
 
@@ -45,7 +45,7 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
     counts = logical_and(enough > 0.0, abs(peak) >= enough)
     least = T_s / where(x.count < SWINGS, p.t_forget, p.t_relapse)
     forgotten = x.count - clip(x.count, -least, least)
-    explained = abs(change) / (p.excuse * maximum(abs(peak), p.swing * p.T_max))
+    explained = abs(change) / (p.excuse * (abs(peak) + p.swing * p.T_max))
     count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
     return SwingState(
         peak=where(acting, peak, 0.0),

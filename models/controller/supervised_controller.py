@@ -99,10 +99,11 @@ class Supervised(Generic[E, L]):
         expected = self.estimator.motion(x.estimator, p).omega_1
         motor, omega_1, found = motor_signals.update(x.motor, u, expected, trust.is_trusted(x.trust), T_S, p)
         bad = causes.first_of(found) != causes.NONE
-        rested = logical_and(standstill.is_complete(x.quiet, p), logical_not(wheel_messages.tells_a_speed(u, p)))
+        unclear = logical_or(wheel_messages.tells_a_speed(u, p), bad)
+        rested = logical_and(standstill.is_complete(x.quiet, p), logical_not(unclear))
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
-        direction = trust.direction(x.trust, u, rested, motor.received, logical_not(bad), T_S, p)
-        direction = where(against, trust.way(T_driver), direction)
+        pushed = logical_or(against, logical_and(rested, abs(T_driver) > p.T_still))
+        direction = trust.direction(x.trust, u, pushed, omega_1, logical_not(bad), T_S, p)
         way = trust.way(direction)
         turned = way * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, way, T_S, p)
@@ -111,7 +112,7 @@ class Supervised(Generic[E, L]):
             causes.WRONG_DIRECTION: logical_and(turned, u.direction != 0),
             causes.WRONG_LAUNCH: logical_or(against, logical_and(turned, x.trust.cause == causes.WRONG_LAUNCH)),
         }
-        trusting = trust.update(x.trust, found, direction, turned, T_S, p)
+        trusting = trust.update(x.trust._replace(direction=direction), found, turned, T_S, p)
         quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, omega_1, p), T_S, p)
 
         rests = standstill.is_complete(quiet, p)

@@ -13,7 +13,7 @@ from functools import reduce
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import clip, logical_and, logical_not, logical_or, where
+from ..block.operators import logical_and, logical_not, logical_or, where
 from .causes import CLOCKS, NONE, first_of
 from .supervision_interface import Input, Parameters
 
@@ -35,13 +35,14 @@ def is_trusted(x: TrustState) -> bool:
     return x.cause == NONE
 
 
-def direction(x: TrustState, u: Input, rested: bool, omega_1: float, good: bool, T_s: float, p: Parameters) -> float:
-    """Of the car in this sample, by the received speed (rad/s) or the demand that ends its rest, then by good ones."""
-    moves = abs(omega_1) > p.omega_still
-    begins = logical_and(rested, logical_or(moves, abs(u.T_driver) > p.T_still))
-    turning = logical_and(logical_and(good, moves), logical_or(is_trusted(x), abs(x.direction) < 1.0))
-    gained = where(begins, 2.0, where(turning, T_s / p.t_apart, 0.0)) * way(where(moves, omega_1, u.T_driver))
-    return where(u.direction == 0, clip(x.direction + gained, -1.0, 1.0), way(1.0 * u.direction))
+def direction(x: TrustState, u: Input, pushed: bool, omega_1: float, good: bool, T_s: float, p: Parameters) -> float:
+    """Of the car in this sample: of the demand where that has `pushed` it, else of the motor speed (rad/s) if good."""
+    turning = logical_and(good, abs(omega_1) > p.omega_still)
+    turning = logical_and(turning, logical_or(is_trusted(x), abs(x.direction) < 1.0))
+    towards = way(where(pushed, u.T_driver, omega_1))
+    later = x.direction + T_s / p.t_apart * towards
+    later = where(logical_or(pushed, later * towards >= 0.0), towards, later)
+    return where(u.direction == 0, where(logical_or(pushed, turning), later, x.direction), 1.0 * u.direction)
 
 
 def way(value: float) -> float:
@@ -49,14 +50,11 @@ def way(value: float) -> float:
     return where(value > 0.0, 1.0, -1.0)
 
 
-def update(
-    x: TrustState, found: Mapping[int, bool], direction: float, turned: bool, T_s: float, p: Parameters
-) -> TrustState:
-    """The state after one sample.
+def update(x: TrustState, found: Mapping[int, bool], turned: bool, T_s: float, p: Parameters) -> TrustState:
+    """The state after one sample, whose direction it has already.
 
     Args:
         found: whether what a row of FAILURES is about was found, by its number.
-        direction: of the car.
         turned: whether the motor turns the other way.
     """
     clocks = {"t_bad": x.clock + T_s, "t_apart": x.apart + T_s}
@@ -69,11 +67,10 @@ def update(
     good = reduce(logical_and, (first == NONE for first in firsts.values()), logical_not(trusted))
     healed = logical_and(good, clocks["t_bad"] >= where(turned, p.t_turn, p.t_proof) - 0.5 * T_s)
     cause = where(trusted, lost, where(healed, NONE, x.cause))
-    return TrustState(
+    return x._replace(
         cause=cause,
         clock=where(logical_and(logical_or(good, logical_and(trusted, bad)), cause == x.cause), clocks["t_bad"], 0.0),
         apart=where(logical_and(cause == NONE, apart), clocks["t_apart"], 0.0),
-        direction=direction,
     )
 
 

@@ -65,13 +65,13 @@ def test_once_there_is_no_damping_half_swings_are_forgotten_slower() -> None:
 def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
     """By how large it is beside them: one of the torque of a small half swing explains little of a large one."""
     for torque in (20.0, 80.0):
-        changes = [0.0, 0.0, side * 0.25 * P.excuse * torque, 0.0]
+        changes = [0.0, 0.0, side * 0.25 * P.excuse * (torque + PEAK), 0.0]
         assert after([torque, -torque, 0.0, 0.0], changes).count == pytest.approx(1.0 - 0.25 - 2.0 / 8.0)
 
 
 def test_the_largest_torque_of_a_half_swing_is_that_of_the_sample_too() -> None:
     x = SwingState(peak=20.0, count=1.0)
-    assert after([80.0], [0.5 * P.excuse * 80.0], x).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
+    assert after([80.0], [0.5 * P.excuse * (80.0 + PEAK)], x).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
 
 
 def test_what_is_no_half_swing_is_taken_for_a_small_one() -> None:

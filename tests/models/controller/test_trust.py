@@ -39,7 +39,7 @@ def after(
 ) -> TrustState:
     """The state after samples in which these causes were found."""
     for _ in range(samples):
-        x = trust.update(x, {row.number: row.number in found for row in FAILURES}, x.direction, turned, T_S, p)
+        x = trust.update(x, {row.number: row.number in found for row in FAILURES}, turned, T_S, p)
     return x
 
 
@@ -185,7 +185,7 @@ def turning(samples: int, x: TrustState, omega_1: float, good: bool = True, u: I
 def test_the_direction_is_that_in_which_a_trusted_motor_has_turned_for_t_apart(side: float) -> None:
     """Beyond its noise; a fault takes nothing away, and wheels that lock throw the motor back for less."""
     x, samples, beyond = TRUSTED._replace(direction=-side), round(P.t_apart / T_S), math.nextafter(3.0, 9.0)
-    assert [trust.way(turning(n, x, side * beyond)) for n in (samples - 1, samples + 1)] == [-side, side]
+    assert [trust.way(turning(n, x, side * beyond)) for n in (samples - 1, samples)] == [-side, side]
     assert turning(9 * samples, x, side * beyond) == side
     for omega_1, good in ((3.0, True), (99.0, False)):
         assert turning(9 * samples, x, side * omega_1, good) == -side
@@ -196,40 +196,28 @@ def test_the_direction_is_that_in_which_a_trusted_motor_has_turned_for_t_apart(s
 
 
 @each_side
-def test_a_car_at_rest_sets_off_where_it_is_driven(side: float) -> None:
-    for T_driver, rested, way in (
-        (P.T_still, True, -side),
-        (math.nextafter(P.T_still, math.inf), True, side),
-        (99.0, False, -side),
-    ):
-        for x in (TRUSTED, lost(SPEED_JUMP)):
-            x = x._replace(direction=-side)
-            assert trust.direction(x, U._replace(T_driver=side * T_driver), rested, 0.0, True, T_S, P) == way
-
-
-@each_side
-def test_a_car_at_rest_whose_motor_turns_goes_where_that_turns(side: float) -> None:
-    """So it is where a master has no signals in its first step."""
-    x, beyond = TRUSTED._replace(direction=-side), math.nextafter(P.omega_still, math.inf)
-    for omega_1, good, way in ((P.omega_still, True, -side), (beyond, True, side), (99.0, False, side)):
-        assert trust.direction(x, U._replace(T_driver=-side * 99.0), True, side * omega_1, good, T_S, P) == way
-    assert trust.direction(x, U, True, side * beyond, True, T_S, P) == side
+def test_a_demand_that_pushes_the_car_tells_its_direction(side: float) -> None:
+    """At once, whatever the motor does."""
+    for x in (TRUSTED, lost(SPEED_JUMP)):
+        for pushed, way in ((True, side), (False, -side)):
+            u = U._replace(T_driver=side * 50.0)
+            assert trust.direction(x._replace(direction=-side), u, pushed, -side * 99.0, True, T_S, P) == way
 
 
 @each_side
 def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
     told = U._replace(direction=int(side))
     for x in (TRUSTED, lost(SPEED_JUMP)):
-        for rested in (False, True):
+        for pushed in (False, True):
             x = x._replace(direction=-side)
-            assert trust.direction(x, told, rested, -side * 99.0, True, T_S, P) == side
+            assert trust.direction(x, told, pushed, -side * 99.0, True, T_S, P) == side
 
 
 @each_side
 def test_the_direction_of_the_sample_is_kept(side: float) -> None:
     for x in (TRUSTED, lost(SPEED_JUMP)):
         nothing = dict.fromkeys([row.number for row in FAILURES], False)
-        assert trust.update(x, nothing, side, False, T_S, P).direction == side
+        assert trust.update(x._replace(direction=side), nothing, False, T_S, P).direction == side
 
 
 def test_it_starts_with_the_direction_of_the_motor() -> None:
