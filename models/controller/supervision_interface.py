@@ -50,7 +50,7 @@ class Parameters(NamedTuple):
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
     swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 1e-3, 1.0)] = 0.03
     grows: Annotated[float, Real("1", "least half swing that counts, over the one before", 0.01, 10.0)] = 0.5
-    excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over it", 0.01, 10.0)] = 1.3
+    excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over it", 0.01, 10.0)] = 0.9
 
 
 class Input(NamedTuple):

@@ -95,10 +95,10 @@ def test_a_late_motor_speed_is_not_excused_by_every_change_of_the_demand(injecto
         band_rms(faulty(injector, settings[plant], MANOEUVRES["prbs"], fault, control=control)["plant.T_gear"], T_S)
         for control in (True, False)
     )
-    assert on < 1.5 * off
+    assert on < 2.0 * off
 
 
 def test_a_healthy_drive_with_many_steps_keeps_its_damping(injector, settings):
     for plant in PLANTS:
         y = faulty(injector, settings[plant], MANOEUVRES["prbs"], (LATE, MOTOR_SPEED, 99.0, 99.0, 0.0))
-        assert np.mean(y["controller.cause"] != causes.NONE) < 0.01
+        assert np.mean(y["controller.cause"] != causes.NONE) == 0.0
