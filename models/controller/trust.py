@@ -42,7 +42,8 @@ def direction(x: TrustState, u: Input, pushed: bool, omega_1: float, good: bool,
     towards = way(where(pushed, u.T_driver, omega_1))
     later = x.direction + T_s / p.t_apart * towards
     later = where(logical_or(pushed, later * towards >= 0.0), towards, later)
-    return where(u.direction == 0, where(logical_or(pushed, turning), later, x.direction), 1.0 * u.direction)
+    seen = where(logical_or(pushed, turning), later, x.direction)
+    return where(u.direction > 0, 1.0, where(u.direction < 0, -1.0, seen))
 
 
 def way(value: float) -> float:

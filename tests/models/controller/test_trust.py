@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection
+from itertools import product
 
 import pytest
 
@@ -206,8 +207,9 @@ def test_a_demand_that_pushes_the_car_tells_its_direction(side: float) -> None:
 
 @each_side
 def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
-    told = U._replace(direction=int(side))
-    for x in (TRUSTED, lost(SPEED_JUMP)):
+    """By its sign, whatever number it has."""
+    for x, number in product((TRUSTED, lost(SPEED_JUMP)), (1, 4)):
+        told = U._replace(direction=number * int(side))
         for pushed in (False, True):
             x = x._replace(direction=-side)
             assert trust.direction(x, told, pushed, -side * 99.0, True, T_S, P) == side
