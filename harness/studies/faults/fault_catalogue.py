@@ -91,6 +91,11 @@ def _of_each(signal: int, called: str, unit: str, largest: float, noise: float) 
     )
 
 
+def _on_ice(name: str, meaning: str, torque: float) -> Kind:
+    """A torque in N.m that the road does not hold."""
+    return Kind(name, 0, 0, meaning, fixed(torque), lasts=uniform(0.2, 0.8), tolerable=True, unit="N.m")
+
+
 _KINDS = (
     *_of_each(MOTOR_SPEED, "motor speed", "rad/s", 300.0, 1.5),
     Kind("motor speed gain", MOTOR_SPEED, GAIN, "times 0.3 to 2", by_ratio(0.3, 2.0)),
@@ -132,26 +137,8 @@ _KINDS = (
         share=uniform(0.05, 1.0),
         tolerable=True,
     ),
-    Kind(
-        "wheel lock on ice",
-        0,
-        0,
-        "brakes of 4000 N.m",
-        fixed(4000.0),
-        lasts=uniform(0.2, 0.8),
-        tolerable=True,
-        unit="N.m",
-    ),
-    Kind(
-        "wheel spin on ice",
-        0,
-        0,
-        "80 N.m more than before",
-        fixed(80.0),
-        lasts=uniform(0.2, 0.8),
-        tolerable=True,
-        unit="N.m",
-    ),
+    _on_ice("wheel lock on ice", "brakes of 4000 N.m", 4000.0),
+    _on_ice("wheel spin on ice", "80 N.m more than before", 80.0),
 )
 
 LOCK, SPIN = "wheel lock on ice", "wheel spin on ice"
