@@ -37,7 +37,6 @@ class Supervised(Generic[E, L]):
             quiet=where(standstill.is_still(T_driver, motor.omega_1, p), standstill.longest(p), 0.0),
             T_ref=T_driver,
             T_damp=0.0,
-            T_landing=0.0,
             status=status(u.enable, True, wheel),
         )
 
@@ -52,7 +51,6 @@ class Supervised(Generic[E, L]):
             phi_hat=motion.phi,
             omega_2_hat=motion.omega_2,
             status=x.status,
-            T_landing=x.T_landing,
             cause=where(trust.is_trusted(x.trust), feeding, x.trust.cause),
         )
 
@@ -86,7 +84,6 @@ class Supervised(Generic[E, L]):
             level=level,
             T_ref=T_ref,
             T_damp=T_ref - T_driver,
-            T_landing=where(trusted, limited(share * adding.landing, T_driver, p), 0.0),
             status=status(u.enable, trusted, wheel),
         )
 

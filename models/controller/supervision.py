@@ -45,7 +45,6 @@ class State(NamedTuple, Generic[E, L]):
     quiet: Annotated[float, Real("s", "time without demand and motion")]
     T_ref: Annotated[float, Real("N.m", "torque reference")]
     T_damp: Annotated[float, Real("N.m", "torque added to the demand")]
-    T_landing: Annotated[float, Real("N.m", "part of it that lets the teeth land softly")]
     status: Annotated[int, Real("1", "number of the status")]
 
 
@@ -68,7 +67,6 @@ class Output(NamedTuple):
             ),
         ),
     ]
-    T_landing: Annotated[float, Real("N.m", "part of T_damp that lets the teeth land softly")]
     cause: Annotated[int, causes.OUTPUT]
 
 

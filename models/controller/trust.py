@@ -4,8 +4,8 @@ While there is trust, a clock runs for each time after which causes count (t_bad
 found. Without trust, the first of them runs as long as nothing is found, until trust is back.
 
 A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which it is driven out of
-rest. A motor turns it round within t_apart, and goes on to where trust is lost meanwhile: at once would be too soon, as
-wheels that lock throw the motor back for about as long.
+rest. A motor that turns the other way turns it round within t_apart, which goes on if trust is lost meanwhile: at once
+would be too soon, as wheels that lock throw the motor back for about as long.
 """
 
 from collections.abc import Mapping

@@ -237,7 +237,7 @@ def test_a_message_is_taken_once() -> None:
 def test_what_the_law_says_is_added_to_the_demand() -> None:
     x, p = started()
     x = OTHER.update(x, ROLLING._replace(omega_1_meas=153.0), p)
-    assert (x.T_ref, x.T_damp, x.T_landing) == (50.0 - p.k_v * 3.0, -p.k_v * 3.0, 0.0)
+    assert (x.T_ref, x.T_damp) == (50.0 - p.k_v * 3.0, -p.k_v * 3.0)
     assert x.law.slow == 150.0 + p.omega_v * T_S * 3.0
 
 
@@ -387,23 +387,20 @@ def test_no_more_is_taken_and_added_than_is_said_whatever_comes_in(
         T_driver = supervision.demand(u, p)
         assert x.T_damp == x.T_ref - T_driver
         assert supervision.limited(x.T_damp, T_driver, p) == pytest.approx(x.T_damp, abs=1e-9)
-        assert supervision.limited(x.T_landing, T_driver, p) == x.T_landing
 
 
-def test_the_part_of_the_landing_is_shown() -> None:
-    """And fades as the whole does; `T_max` is so large that the motor need not have what is demanded, and
-    `tau` so long that it need not begin to."""
+def test_a_landing_is_limited_and_fades_as_the_damping_does() -> None:
+    """`T_max` is so large that the motor need not have what is demanded, and `tau` too long for it to begin."""
     afloat = ROLLING._replace(T_driver=120.0, T_mot_est=0.0)
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(40)]
     still = {"frozen": 1000.0, "T_max": 2000.0, "T_pred": 0.0, "tau": 10.0}
     states = run(OURS, inputs, **still, T_take_max=50.0)
-    assert {x.T_landing for x in states[2:30]} == {-50.0}, "no more than may be taken"
-    whole = run(OURS, inputs, **still)[2].T_landing
+    assert {x.T_damp for x in states[2:30]} == {-50.0}, "no more than may be taken"
+    whole = run(OURS, inputs, **still)[2].T_damp
     assert -100.0 < whole < -60.0
     fading = run(OURS, [u._replace(enable=k < 10) for k, u in enumerate(inputs)], **still)
     for x in fading[1:40]:
-        assert x.T_landing == pytest.approx(whole * x.level, abs=1e-3)
-        assert OURS.output(x, afloat, OURS.Parameters()).T_landing == x.T_landing
+        assert x.T_damp == pytest.approx(whole * x.level, abs=1e-3)
 
 
 def test_in_fallback_the_wheel_speed_is_not_in_use() -> None:
