@@ -9,6 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from .errors import BuildError
 from .fmu import Fmu
 
 ENTRY = "extra/driveline.damping/origin.json"
@@ -55,7 +56,15 @@ def tools_of(build: str) -> dict[str, str]:
 
 
 def origin_entry(fmu: Fmu, build: str) -> dict[str, bytes]:
-    """The file that tells it, by its name in the archive."""
+    """The file that tells it, by its name in the archive.
+
+    Raises:
+        BuildError: a block of the user's own has the name of one of the project, for which it would be taken.
+    """
+    from .catalogue import EVERY
+
+    if fmu.name in EVERY and EVERY[fmu.name].block.module != fmu.block.module:
+        raise BuildError(f"{fmu.name} is an FMU of the project, which runs by this name; give the block another name")
     entry = {"sources": sources_digest(), "start_values": dict(fmu.start_values), "tools": tools_of(build)}
     return {ENTRY: json.dumps(entry, indent=2, sort_keys=True).encode() + b"\n"}
 

@@ -186,7 +186,9 @@ def main(arguments: list[str] | None = None) -> None:
         hours = of.samples * T_S / 3600.0
         table.add_row(name, f"{hours:.2f}", f"{of.samples}", *map(str, of[1:3]), *(f"{value:.2f}" for value in of[3:]))
     print_table(table)
-    print("The residuals are the largest, over the thresholds from which on they count as a fault.")
+    print(
+        "The columns from `jump` on are the largest residuals, over the thresholds from which on they count as a fault."
+    )
 
 
 if __name__ == "__main__":

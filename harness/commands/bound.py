@@ -9,7 +9,7 @@ jerk and impact speed. The output folder gets the page bound.md, bound.json (wha
 the torques. Needs the extra `bound`.
 
 examples:
-  driveline study bound                        all manoeuvres; each takes a quarter of an hour on a core
+  driveline study bound                        all manoeuvres; each takes some minutes on a core
   driveline study bound --manoeuvre tipin15 --output results/bound15
   driveline study bound --parameters my_gains.toml --output results/mine
   driveline study bound --controller SpeedWashout --json > bound.json

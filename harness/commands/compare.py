@@ -25,17 +25,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..loop.places import PLACES
 from ..loop.settings import Settings
 from ..manoeuvres.catalogue import COMPARED
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.run_metrics import Metrics
 from ..views.html.report_page import require_report
-from ..views.metrics_table import DAMPINGS, legend
+from ..views.metrics_table import legend
 from .course import RunJob, job
 from .manoeuvres import OWN, add_manoeuvre, chosen
 from .options import add_figures, add_format, add_loop, add_output, add_plant, add_printing, add_report, figure_options
-from .settings import caption, distinguishing, other_format, settings_of_plants
+from .settings import caption, dampings, distinguishing, other_format, settings_of_plants
 
 if TYPE_CHECKING:
     from ..studies.compare.compare import Case, Outcome
@@ -75,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
         requested.require_drivable(made.fits, by_name)
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes = run_cases(list(runs), args.output / "runs", given, manoeuvres, args.format)
-        title = _title(list(given.values()))
+        title = dampings(next(iter(given.values())))
         made.wrote(
             *write_tables(outcomes, args.output, title), *write_figures(outcomes, args.output, options, manoeuvres)
         )
@@ -85,12 +84,6 @@ def run(args: argparse.Namespace) -> int:
             _report(outcomes, manoeuvres, given, provenance, path)
         _tell(made, outcomes, given, args.output / "runs", title)
     return 0
-
-
-def _title(given: Sequence[Settings]) -> str:
-    """Of the tables: what the rows are, and with which controller if it is not the usual one."""
-    controller = Path(given[0].controller).stem
-    return DAMPINGS if controller == PLACES["controller"][0] else f"{DAMPINGS} by {controller}"
 
 
 def _tell(made: RunJob, outcomes: "Sequence[Outcome]", given: Mapping[str, Settings], folder: Path, title: str) -> None:

@@ -3,6 +3,7 @@
 import argparse
 import logging
 from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from shlex import quote
 from typing import Any
 
@@ -15,6 +16,7 @@ from ..loop.fmu_cache import as_built
 from ..loop.places import BUILD, PLACES, PLANTS, STEP_SIZE
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
+from ..views.metrics_table import DAMPINGS
 from ..views.signals_file import require_format
 from .options import OTHERS
 
@@ -159,6 +161,12 @@ def caption(args: argparse.Namespace) -> str:
     """What a figure, whose title names plant and manoeuvre, says of the options: those that are not the usual ones."""
     usual = {"seed": 1, "step": STEP_SIZE, "scheme": Scheme.PROPAGATED.value, "held": None}
     return _joined([*_set(args), *((n, v) for n, v in vars(args).items() if n in usual and v != usual[n])])
+
+
+def dampings(given: Settings) -> str:
+    """Above a table of runs: what its rows are, and with which controller if it is not the usual one."""
+    controller = Path(given.controller).stem
+    return DAMPINGS if controller == PLACES["controller"][0] else f"{DAMPINGS} by {controller}"
 
 
 def _set(args: argparse.Namespace) -> list[tuple[str, Any]]:

@@ -44,7 +44,7 @@ from .options import (
     figure_options,
     seconds,
 )
-from .settings import caption, settings
+from .settings import caption, dampings, settings
 from .signals_run import signals_job, stem_of, write_run
 
 if TYPE_CHECKING:
@@ -143,4 +143,4 @@ def _tell(made: RunJob, given: Settings, manoeuvre: Manoeuvre, results: "Results
         made.tell(print, f"no metrics: {reason}", runs=[])
         return
     outcome = Outcome(Case(str(given.plant), manoeuvre.name, given.control), metrics, results)
-    made.tell(print_runs, [outcome.row], runs=[outcome.record])
+    made.tell(print_runs, [outcome.row], dampings(given), runs=[outcome.record])

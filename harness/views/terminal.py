@@ -56,11 +56,11 @@ def _width(table: Table, console: Console) -> int:
     return Measurement.get(console, console.options.update_width(1000), table).maximum
 
 
-def plain_table(title: str, headings: Iterable[str], rows: Iterable[Sequence[str]]) -> Table:
-    """A table whose first column is words, the others numbers, which stand to the right."""
+def plain_table(title: str, headings: Iterable[str], rows: Iterable[Sequence[str]], labels: int = 1) -> Table:
+    """A table whose first columns, `labels`, tell the rows apart; the others are numbers, which stand to the right."""
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
     for k, heading in enumerate(headings):
-        table.add_column(heading, justify="right" if k else "left", no_wrap=not k)
+        table.add_column(heading, justify="right" if k >= labels else "left", no_wrap=k < labels)
     for row in rows:
         table.add_row(*row)
     return table

@@ -97,12 +97,12 @@ def announce(found: Record) -> None:
     for each in found.comparisons:
         print(
             f"{each.case.name}: {len(each.case.inputs)} samples, {each.differing} with a differing bit, T_ref within "
-            f"{each.T_ref:.1g} N.m of double precision, at most {each.instructions[1]} instructions"
+            f"{each.T_ref:.2g} N.m of double precision, at most {each.instructions[1]} instructions"
         )
     for each in found.loops:
         print(
             f"{each.manoeuvre} in the loop: {each.differing} samples differ from off-line, T_ref within "
-            f"{each.T_ref:.1g} N.m of the loop in double precision"
+            f"{each.T_ref:.2g} N.m of the loop in double precision"
         )
 
 

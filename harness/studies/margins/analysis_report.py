@@ -23,7 +23,7 @@ from .sensitivity import SHOWN, most_important, plot_sensitivity
 
 def announce(found: Analysis) -> None:
     """Prints the margins."""
-    print_table(plain_table(f"the loop with {found.controller}", margin_headings(), margin_rows(found)))
+    print_table(plain_table(f"the loop with {found.controller}", margin_headings(), margin_rows(found), labels=2))
 
 
 def write(found: Analysis, arguments: str, folder: Path) -> list[Path]:

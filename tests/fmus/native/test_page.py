@@ -21,6 +21,9 @@ from tests import ROOT
 EXAMPLE, EXCHANGE, LINEAR = re.findall(
     r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S
 )
+(CONTROLLER,) = re.findall(
+    r"```python\n(\"\"\".*?)```", (ROOT / "docs" / "control.md").read_text(encoding="utf-8"), re.S
+)
 
 
 def build(file: Path, folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
@@ -86,6 +89,32 @@ def test_fmus_of_one_name_do_not_overwrite_each_other(tmp_path: Path) -> None:
         list(build_fmus(["WheelSpeedCan", str(file)], tmp_path))
     del sys.modules["my_bus"]
     assert not list(tmp_path.rglob("*.fmu"))
+
+
+def test_a_block_of_ones_own_with_the_name_of_one_of_the_project_is_refused(tmp_path: Path) -> None:
+    """It would run in the place of that one."""
+    for name in ("DampingController", "SpeedWashout"):
+        file = tmp_path / "my_controller.py"
+        file.write_text(CONTROLLER.replace('"MyController"', f'"{name}"'), encoding="utf-8")
+        done = build(file, tmp_path, "--build", "native")
+        assert done.returncode == 2
+        assert f"{name} is an FMU of the project" in done.stderr
+        assert not list(tmp_path.rglob("*.fmu"))
+
+
+def test_a_controller_of_the_users_own_damps(both_built: Path, tmp_path: Path) -> None:
+    """That of the page on the controller."""
+    file = tmp_path / "my_controller.py"
+    file.write_text(CONTROLLER, encoding="utf-8")
+    done = build(file, tmp_path)
+    assert done.returncode == 0, done.stderr
+    controller = tmp_path / NATIVE / "MyController.fmu"
+    tipin = MANOEUVRES["tipin15"]
+    damped, free = (
+        evaluate(simulate(tipin, controller=str(controller), control=control, folder=both_built), tipin)
+        for control in (True, False)
+    )
+    assert damped.overshoot < 0.7 * free.overshoot
 
 
 def test_a_file_that_ends_the_process_is_refused(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from driveline.harness.base.atomic_files import complete, remove, write_text
 from driveline.harness.base.plain_text import reason
-from driveline.harness.commands.compare import _title
+from driveline.harness.commands.settings import dampings
 from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics, RideMetrics
@@ -28,7 +28,7 @@ from driveline.harness.views.metrics_table import (
     write_markdown,
     write_metrics,
 )
-from driveline.harness.views.terminal import print_table, rides_reasons, rides_table, runs_table
+from driveline.harness.views.terminal import plain_table, print_table, rides_reasons, rides_table, runs_table
 
 
 def metrics(absent=None, **values):
@@ -94,12 +94,12 @@ def test_the_terminal_table_names_plant_units_and_runs():
 
 
 def test_the_title_names_a_controller_that_is_not_the_usual_one(tmp_path):
-    title = _title([Settings("Plant", "fmus/SpeedWashout.fmu")])
+    title = dampings(Settings("Plant", "fmus/SpeedWashout.fmu"))
     assert title.endswith(" by SpeedWashout")
     assert printed(runs_table([OFF, ON], title)).splitlines()[0].strip() == title
     write_markdown([OFF, ON], tmp_path / "table.md", title)
     assert (tmp_path / "table.md").read_text(encoding="utf-8").splitlines()[0] == title
-    assert " by " not in _title([Settings("Plant", "fmus/DampingController.fmu")])
+    assert " by " not in dampings(Settings("Plant", "fmus/DampingController.fmu"))
 
 
 def test_rides_stand_one_below_the_other_with_their_ratio_to_the_first():
@@ -245,6 +245,14 @@ def test_a_narrow_terminal_shows_a_wide_table_in_parts_with_whole_words(monkeypa
     assert len(parts) > 1
     assert all(part[:2] == cells(ON)[:2] for part in parts)
     assert [word for part in parts for word in part[2:]] == cells(ON)[2:]
+
+
+def test_each_part_of_a_table_says_what_its_rows_are(monkeypatch, capsys):
+    rows = [["car", speed, *["1.234567"] * 12] for speed in ("5", "15")]
+    table = plain_table("margins", ["plant", "speed", *(f"value {k}" for k in range(12))], rows, labels=2)
+    lines = [line.split() for line in _on_a_terminal(60, table, monkeypatch, capsys) if "car" in line]
+    assert len(lines) > 2
+    assert [line[1] for line in lines] == ["5", "15"] * (len(lines) // 2)
 
 
 def test_a_terminal_that_is_wide_enough_shows_a_table_whole(monkeypatch, capsys):
