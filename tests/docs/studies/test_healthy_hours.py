@@ -113,7 +113,7 @@ def test_a_healthy_drive_is_without_fallback(short):
     for road in ROADS.values():
         of = found(road, 3)
         assert (of.samples, of.fallback) == (1501, 0)
-        assert all(0.0 <= residual < 1.0 for residual in of[3:])
+        assert all(0.0 <= residual < 1.0 for residual in of[3:]), "of what leads to fallback"
         assert of.jump > 0.0
 
 
