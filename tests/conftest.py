@@ -108,6 +108,14 @@ def both_built(built, native, tmp_path_factory):
 
 
 @pytest.fixture
+def study_folder(both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder in which a study runs, with the FMUs in its folder build."""
+    (tmp_path / "build").symlink_to(both_built)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
 def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Recordings are read by the process of the tests; one of their own imports packages for a second, each time."""
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from mkdocs.structure.files import File, Files  # pyright: ignore[reportMissingImports]
 
-from docs.site import ROOT, commands, equations, gallery, links, reference
+from docs.site import ROOT, commands, declared, equations, gallery, links, numbers, reference
 
-MADE = {gallery.PAGE: gallery.page(), **commands.pages(), **reference.pages()}
+MADE = {gallery.PAGE: gallery.page(), "blocks.md": declared.blocks_page(), **commands.pages(), **reference.pages()}
 """Pages that are made for the site, by their path in it."""
 
 HERE = Path(__file__).parent
@@ -43,6 +43,9 @@ def on_files(files: Files, config) -> Files:
     of_repository = {place: (ROOT / name).read_text(encoding="utf-8") for name, place in links.PAGES.items()}
     for page, text in (MADE | of_repository).items():
         files.append(File.generated(config, page, content=text))
+    pages = [each.content_string for each in files.documentation_pages()]
+    for place, picture in numbers.figures(pages):
+        files.append(File.generated(config, place, content=picture))
     written = {each.src_uri: each.content_string for each in files.documentation_pages() if each.src_uri not in MADE}
     for name in links.files(written):
         files.append(File.generated(config, f"{links.FILES}/{name}", abs_src_path=str(ROOT / name)))
@@ -52,7 +55,8 @@ def on_files(files: Files, config) -> Files:
 
 
 def on_page_markdown(markdown: str, page, config, files) -> str:
-    """Links as they are on the site."""
+    """Numbers of studies, and links as they are on the site."""
+    markdown = numbers.shown(markdown, "../" * page.file.src_uri.count("/"))
     return markdown if page.file.src_uri in MADE else links.fitted(markdown, page.file.src_uri)
 
 

@@ -1,144 +1,130 @@
-"""The pages of the documentation that are computed.
+"""Measures what the documentation says in numbers.
 
-    python -m docs.studies --list           # which are stale, and because of which files
-    python -m docs.studies                  # makes those that are stale
-    python -m docs.studies results goals    # makes these, stale or not
+    python -m docs.studies                    # all studies, those that decide first
+    python -m docs.studies results goals      # these
+    python -m docs.studies --sentinels        # the rows that `make test` computes again, and what has moved
+    python -m docs.studies goals --help       # what a study does with arguments of its own; it keeps nothing then
+    python -m docs.studies --pictures         # the pictures of README and tutorial, drawn from the same numbers
 
-Stopped, it goes on with the next call: pages that are made stay, and commands that can go on do so.
+The numbers go to docs/studies/data; what has moved beyond its tolerance is printed. A study that is stopped keeps what
+it had; those that are done stay.
 """
 
 import argparse
-import json
-import shlex
-import shutil
+import os
 import sys
-from collections.abc import Iterator, Sequence
-from importlib import import_module
-from pathlib import Path
+import time
+from collections.abc import Sequence
 
-from docs.studies.digests import dependencies, reasons, record, why_stale
-from docs.studies.imports import ROOT
-from docs.studies.pages import PAGES, Page
-from driveline.harness.base.atomic_files import complete
+from driveline.harness.base.errors import DrivelineError
 from driveline.harness.base.interruption import script
-from driveline.harness.commands.cli import main as driveline
-from driveline.harness.loop.places import COMPARATORS
+from driveline.harness.loop.built_fmus import build_missing
+from driveline.harness.loop.places import COMPARATORS, PLANTS
 
-DOCS = ROOT / "docs"
-RESULTS = ROOT / "results" / "docs"
-
-STOPPED = 128
-"""Exit codes from here on are those of commands that were stopped."""
-
-SHOWN = 3
-"""Files that are named; more are counted."""
+from . import data_file
+from .pictures import draw_pictures
+from .study import STUDIES, Difference, differences, study
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(
-        prog="python -m docs.studies", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if words[:1] and words[0] in STUDIES and any(word.startswith("-") for word in words[1:]):
+        return explore(words[0], words[1:])
+    listed = (
+        "\n".join(f"  {name:22} {study(name).purpose}" for name in STUDIES)
+        if "-h" in words or "--help" in words
+        else ""
     )
-    parser.add_argument("pages", nargs="*", metavar="PAGE", help="one of those of --list (default: all that are stale)")
-    parser.add_argument("--list", action="store_true", help="makes nothing")
-    args = parser.parse_args(arguments)
-    if unknown := set(args.pages) - PAGES.keys():
-        parser.error(f"there is no page {', '.join(sorted(unknown))}; there are {', '.join(PAGES)}")
-    pages = [PAGES[name] for name in args.pages or PAGES]
-    if args.list:
-        print("\n".join(line for page in pages for line in told(page)))
+    parser = argparse.ArgumentParser(
+        prog="python -m docs.studies",
+        description=__doc__,
+        epilog=f"studies:\n{listed}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("studies", nargs="*", metavar="STUDY", help="default: all")
+    parser.add_argument("--sentinels", action="store_true", help="measures these rows alone, and keeps nothing")
+    parser.add_argument("--pictures", action="store_true", help="measures nothing")
+    args = parser.parse_args(words)
+    if unknown := sorted(set(args.studies) - set(STUDIES)):
+        parser.error(f"there is no study {', '.join(unknown)}; there are {', '.join(STUDIES)}")
+    if args.pictures:
+        print("\n".join(map(str, draw_pictures())))
         return 0
-    return make_all([page for page in pages if page.steps and (args.pages or why_stale(page))])
+    build_all()
+    return (check if args.sentinels else make)(args.studies or STUDIES)
 
 
-def told(page: Page) -> Iterator[str]:
-    """What --list says of a page."""
-    if not (files := why_stale(page)):
-        yield f"{page.name}: up to date"
-        return
-    more = f" and {len(files) - SHOWN} more" if len(files) > SHOWN else ""
-    yield f"{page.name}: stale: {', '.join(files[:SHOWN])}{more}"
-    if page.made_by:
-        yield f"    made by `{page.made_by}`"
-    if reason := reasons().get(page.name):
-        yield f"    {reason}"
+def build_all() -> None:
+    """The FMUs that studies run, where they are missing or stale."""
+    for plant in PLANTS:
+        build_missing(plant)
+    for controller in COMPARATORS:
+        build_missing(controller=controller)
 
 
-class StepError(Exception):
-    """A step has failed; the text says which."""
+def explore(name: str, arguments: Sequence[str]) -> int:
+    """Runs a study with arguments of its own."""
+    own = study(name).explore
+    if own is None:
+        print(f"python -m docs.studies {name}: takes no arguments", file=sys.stderr)
+        return 2
+    build_all()
+    own(arguments)
+    return 0
 
 
-def make_all(pages: Sequence[Page]) -> int:
-    """Makes pages, one after the other; returns 1 if one could not be made, else 0."""
+def make(names: Sequence[str]) -> int:
+    """Measures studies, one after the other; returns 1 if one could not be measured, else 0."""
     code = 0
-    if any(page.fmus for page in pages):
-        run("driveline build", ROOT)
-        run(f"driveline build {shlex.join(COMPARATORS)}", ROOT)
-    for k, page in enumerate(pages, 1):
-        print(f"[{k}/{len(pages)}] {page.name}", flush=True)
+    for k, name in enumerate(names, 1):
+        one = study(name)
+        print(f"[{k}/{len(names)}] {name}: {one.purpose}, about {one.seconds:g} s", flush=True)
+        begin = _cpu_seconds()
         try:
-            how = ", ".join(make(page)) or "came out the same"
-        except StepError as failure:
-            how, code = f"not made: {failure}", 1
-        print(f"[{k}/{len(pages)}] {page.name}: {how}", flush=True)
+            measured = one.measure()
+        except DrivelineError as failure:
+            print(f"[{k}/{len(names)}] {name}: not measured: {failure}", flush=True)
+            code = 1
+            continue
+        was = data_file.read(name).measured.tables if data_file.file_of(name).is_file() else {}
+        data_file.write(name, measured, one.seeds, _cpu_seconds() - begin)
+        moved = [*differences(was, data_file.read(name).measured.tables)] if was else []
+        print("\n".join([f"[{k}/{len(names)}] {name}: {told(moved)}", *map(str, moved)]), flush=True)
     return code
 
 
-def make(page: Page) -> list[str]:
-    """Makes a page; returns the files in docs that have changed."""
-    made_from, folder = dependencies(page), RESULTS / page.name
-    begin(folder, made_from)
-    for step in page.steps:
-        run(step, folder, page.allowed)
-    changed = publish(page, folder)
-    record(page, made_from)
-    shutil.rmtree(folder)
-    return changed
+def check(names: Sequence[str]) -> int:
+    """Measures the sentinels of studies; returns 1 if one has moved, else 0."""
+    moved = False
+    for name in names:
+        begin = time.process_time()
+        found = [*sentinel_differences(name)]
+        print("\n".join([f"{name}: {told(found)}, {time.process_time() - begin:.1f} s", *map(str, found)]), flush=True)
+        moved |= bool(found)
+    return int(moved)
 
 
-def begin(folder: Path, made_from: dict[str, str]) -> None:
-    """The folder as it was left, if that was made from the same; else an empty one."""
-    before, now = folder / "made_from.json", json.dumps(made_from)
-    if not before.exists() or before.read_text(encoding="utf-8") != now:
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        before.write_text(now, encoding="utf-8")
-
-
-def run(step: str, folder: Path, allowed: int = 0) -> None:
-    """Runs a step; one that is stopped ends all with its exit code.
+def sentinel_differences(name: str) -> list[Difference]:
+    """What has moved in the sentinels of a study.
 
     Raises:
-        StepError: it has failed.
+        LookupError: a sentinel is not in its table.
     """
-    program, *arguments = (word.replace("OUT", str(folder)) for word in shlex.split(step))
-    if program != "driveline":
-        import_module(program).make(folder, *arguments)
-    elif (code := driveline(arguments)) not in (0, allowed):
-        if code >= STOPPED:
-            sys.exit(code)
-        raise StepError(f"{step}: exit code {code}")
+    one = study(name)
+    now = one.again()
+    for table, rows in one.sentinels.items():
+        if lacking := set(rows) - now[table].rows.keys():
+            raise LookupError(f"{name}, {table}: no row {', '.join(sorted(lacking))}")
+    return list(differences(data_file.read(name).measured.tables, now))
 
 
-def publish(page: Page, folder: Path) -> list[str]:
-    """Puts what was made into docs, and removes figures that are not made any more; returns what has changed."""
-    changed = []
-    for place, made in page.writes.items():
-        found = {_place(place, path): path for path in folder.glob(made)}
-        if not found:
-            raise StepError(f"no {made}")
-        gone = set(DOCS.glob(place)) - found.keys()
-        for path in gone:
-            path.unlink()
-        new = [path for path, its in found.items() if not path.exists() or path.read_bytes() != its.read_bytes()]
-        for path in new:
-            with complete(path) as unfinished:
-                shutil.copyfile(found[path], unfinished)
-        changed += [path.relative_to(ROOT).as_posix() for path in sorted({*gone, *new})]
-    return changed
+def told(moved: Sequence[Difference]) -> str:
+    return f"{len(moved)} numbers have moved" if moved else "no number has moved beyond its tolerance"
 
 
-def _place(place: str, path: Path) -> Path:
-    return DOCS / Path(place).with_name(path.name if "*" in place else Path(place).name)
+def _cpu_seconds() -> float:
+    """Of this process and of its children that have ended."""
+    return sum(os.times()[:4])
 
 
 if __name__ == "__main__":

@@ -1,21 +1,19 @@
 """What the controller is to reach, beside what it reaches with noise that no tuning has seen.
 
-    python -m docs.studies.goals --parameters my_gains.toml
-    python -m docs.studies.goals --draws 300        # the row of the Monte-Carlo too
+    python -m docs.studies goals --parameters my_gains.toml
+    python -m docs.studies goals --draws 300        # the row of the Monte-Carlo too
 
 Each figure is the mean over the seeds that are held out. Without a file it is that of the gains as they are stored.
 """
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from rich.table import Table
 
 from driveline.fmus.building.parameter_files import read_parameters
-from driveline.harness.base.interruption import script
 from driveline.harness.design.design_trials import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
@@ -29,7 +27,9 @@ from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.robustness import summary
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.robustness_campaign import campaign
-from driveline.harness.views.terminal import print_table
+
+from .study import Cell, Column, Measured, Study, Table
+from .terminal import show
 
 
 class Goal(NamedTuple):
@@ -124,10 +124,10 @@ def measured(run: Run, parameters: Mapping[str, Any], settings: Settings | None 
     return evaluate(results, manoeuvre)
 
 
-def all_measured(parameters: Mapping[str, Any]) -> dict[Run, Metrics]:
+def all_measured(parameters: Mapping[str, Any], goals: tuple[Goal, ...] = GOALS) -> dict[Run, Metrics]:
     """The metrics of all runs with these parameters of the controller, made on all cores."""
-    todo = runs()
-    return dict(zip(todo, run_many(lambda run: measured(run, parameters), todo), strict=True))
+    todo = runs(goals)
+    return dict(zip(todo, run_many(lambda run: measured(run, parameters), todo, label="goals"), strict=True))
 
 
 def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
@@ -141,9 +141,9 @@ def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
     return UNITS[goal.metric][0] * value
 
 
-def all_reached(found: Mapping[Run, Metrics]) -> dict[tuple[Goal, str], float]:
-    """Of all goals on all plants."""
-    return {(goal, plant): reached(goal, plant, found) for goal in GOALS for plant in PLANTS}
+def all_reached(found: Mapping[Run, Metrics], goals: tuple[Goal, ...] = GOALS) -> dict[tuple[Goal, str], float]:
+    """Of the goals on all plants."""
+    return {(goal, plant): reached(goal, plant, found) for goal in goals for plant in PLANTS}
 
 
 def most(goal: Goal, plant: str) -> float:
@@ -180,29 +180,51 @@ def title(goal: Goal) -> str:
     return f"{goal.manoeuvre}{slow}: {goal.metric.replace('_', ' ')}{over}, {UNITS[goal.metric][1]}"
 
 
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+COLUMNS = tuple(Column(name) for plant in PLANTS for name in (plant, f"{plant}: at most"))
+
+
+def reached_table(values: Reached) -> Table:
+    """What is reached, beside what is to be."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for goal in dict.fromkeys(goal for goal, _ in values):
+        pairs = ((values[goal, plant], float(most(goal, plant))) for plant in PLANTS)
+        rows[title(goal)] = tuple(number for pair in pairs for number in pair)
+    return Table("goal", COLUMNS, rows, f"{len(missed(values))} of {len(values)} are not reached.")
+
+
+def measure() -> Measured:
+    values = all_reached(all_measured({}))
+    count = {"goals": (len(values),), "missed": (len(missed(values)),)}
+    return Measured({"reached": reached_table(values), "count": Table("", (Column("count", decimals=0),), count)})
+
+
+SENTINELS = tuple(goal for goal in GOALS if goal.manoeuvre == "tipin15" and goal.deviation == NOMINAL)
+
+
+def again() -> dict[str, Table]:
+    return {"reached": reached_table(all_reached(all_measured({}, SENTINELS), SENTINELS))}
+
+
+def explore(arguments: Sequence[str]) -> None:
+    parser = argparse.ArgumentParser(prog="python -m docs.studies goals", description=__doc__)
     parser.add_argument("--parameters", type=Path, help="of the controller")
     parser.add_argument("--draws", type=int, default=0, help="of the Monte-Carlo (default: none)")
     args = parser.parse_args(arguments)
     parameters = read_parameters(args.parameters) if args.parameters else {}
-    found = all_measured(parameters)
-    table = Table("goal", *(f"{plant}: is" if k == 0 else "at most" for plant in PLANTS for k in range(2)))
-    for goal in GOALS:
-        cells = [
-            f"{value:.3g}"
-            for plant, value in zip(PLANTS, goal.values, strict=True)
-            for value in (reached(goal, plant, found), value)
-        ]
-        table.add_row(title(goal), *cells)
+    show("reached", reached_table(all_reached(all_measured(parameters))))
     if args.draws > 0:
-        pairs = zip(monte_carlo(args.draws, parameters), MONTE_CARLO, strict=True)
-        table.add_row(
-            f"{args.draws} draws: bounded and quiet; 95 % of settling of tip-in / launch",
-            *(cell for pair in pairs for cell in pair),
-        )
-    print_table(table)
+        pairs = zip(PLANTS, monte_carlo(args.draws, parameters), MONTE_CARLO, strict=True)
+        rows = {plant: (found, goal) for plant, found, goal in pairs}
+        what = f"{args.draws} draws: bounded and quiet; 95 % of settling of tip-in / launch"
+        show("Monte-Carlo", Table("plant", (Column(what), Column("goal")), rows))
 
 
-if __name__ == "__main__":
-    script(main)
+STUDY = Study(
+    "what the controller is to reach on both plants, and what it reaches",
+    measure,
+    again,
+    {"reached": [title(goal) for goal in SENTINELS]},
+    HELD_OUT_SEEDS,
+    explore,
+    seconds=30,
+)

@@ -1,13 +1,28 @@
 """What a change of one parameter alone does to the goals: which it reaches, and which are missed for it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from docs.studies.goals import Goal, Reached, Run, all_reached, measured, missed, runs
 from driveline.harness.design.search.search_space import space
-from driveline.harness.loop.places import PLACES
+from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
+from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation.many_runs import run_many
+
+from .goals import (
+    GOALS,
+    Goal,
+    Reached,
+    Run,
+    all_measured,
+    all_reached,
+    measured,
+    missed,
+    most,
+    runs,
+    title,
+)
+from .study import Cell, Column, Measured, Study, Table
 
 FACTORS = (0.67, 0.8, 0.9, 1.1, 1.25, 1.5)
 """By which a parameter is multiplied."""
@@ -18,6 +33,9 @@ class Change(NamedTuple):
 
     parameter: str
     value: float
+
+    def __str__(self) -> str:
+        return f"{self.parameter} = {self.value:g}"
 
 
 class Closest(NamedTuple):
@@ -39,8 +57,10 @@ def changes() -> list[Change]:
     return [Change(each.name, float(f"{each.start * factor:.4g}")) for each in searched for factor in FACTORS]
 
 
-def all_changed(found: Mapping[Run, Metrics]) -> dict[Change, Reached]:
-    """What every change reaches, on all cores.
+def all_changed(
+    found: Mapping[Run, Metrics], todo: Sequence[Change], goals: tuple[Goal, ...] = GOALS
+) -> dict[Change, Reached]:
+    """What changes reach, on all cores.
 
     Args:
         found: the runs without a change, of which those without control are taken.
@@ -48,11 +68,10 @@ def all_changed(found: Mapping[Run, Metrics]) -> dict[Change, Reached]:
     without = {run: metrics for run, metrics in found.items() if not run.control}
 
     def changed(change: Change) -> Reached:
-        made = {run: measured(run, {change.parameter: change.value}) for run in runs() if run.control}
-        return all_reached({**without, **made})
+        made = {run: measured(run, {change.parameter: change.value}) for run in runs(goals) if run.control}
+        return all_reached({**without, **made}, goals)
 
-    todo = changes()
-    return dict(zip(todo, run_many(changed, todo), strict=True))
+    return dict(zip(todo, run_many(changed, todo, label="changes"), strict=True))
 
 
 def closest(key: tuple[Goal, str], values: Reached, changed: Mapping[Change, Reached]) -> Closest:
@@ -81,3 +100,62 @@ def harmless(values: Reached, changed: Mapping[Change, Reached]) -> int:
     before = set(missed(values))
     after = (set(missed(each)) for each in changed.values())
     return max((len(before - each) for each in after if each <= before), default=0)
+
+
+NAMED = 3
+"""Goals that are missed instead and are named; more are counted."""
+
+STEP = tuple(goal for goal in GOALS if title(goal) in ("tipin15: settling time, ms", "tipin15: overshoot, %"))
+"""Of the table that shows what each change does."""
+
+
+def step_table(changed: Mapping[Change, Reached]) -> Table:
+    """What each change does to a tip-in."""
+    columns = tuple(Column(f"{plant}: {title(goal)}") for plant in PLANTS for goal in STEP)
+    rows = {
+        str(change): tuple(values[goal, plant] for plant in PLANTS for goal in STEP)
+        for change, values in changed.items()
+    }
+    return Table("change", columns, rows)
+
+
+def instead_table(values: Reached, changed: Mapping[Change, Reached]) -> Table:
+    """For each goal that is missed the change that reaches it, or comes closest to it."""
+    columns = (Column("change"), Column("missed instead"), Column("is"), Column("with it"), Column("at most"))
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for key in missed(values):
+        change, value, others = closest(key, values, changed)
+        named = [f"{title(goal)} ({plant}): {changed[change][goal, plant]:.3g}" for goal, plant in others]
+        told = f"{len(named)} goals" if len(named) > NAMED else "; ".join(named)
+        row = (str(change), told, values[key], value, float(most(*key)))
+        rows[f"{title(key[0])}, {key[1]}"] = row
+    return Table("goal", columns, rows)
+
+
+def measure() -> Measured:
+    found = all_measured({})
+    values, changed = all_reached(found), all_changed(found, changes())
+    count = {"reached by one change without missing another": (harmless(values, changed),)}
+    return Measured(
+        {
+            "instead": instead_table(values, changed),
+            "tipin15": step_table(changed),
+            "count": Table("", (Column("count", decimals=0),), count),
+        }
+    )
+
+
+def again() -> dict[str, Table]:
+    return {"tipin15": step_table(all_changed({}, SENTINELS, STEP))}
+
+
+SENTINELS = changes()[2:4]
+
+STUDY = Study(
+    "what a change of one parameter alone does to the goals",
+    measure,
+    again,
+    {"tipin15": list(map(str, SENTINELS))},
+    HELD_OUT_SEEDS,
+    seconds=300,
+)

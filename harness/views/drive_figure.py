@@ -10,8 +10,8 @@ from ..metrics.band_filter import envelope
 from .annotations import GAP, gap, in_words, metrics_of
 from .colours import BLUE, ORANGE, VERMILION
 from .figure_options import PLAIN, FigureOptions
-from .figure_style import plot
-from .panels import DASHED, Axis, Panel, Part, Spans
+from .figure_style import draw
+from .panels import DASHED, Axis, Drawing, Panel, Part, Spans
 from .signal_lines import DEMAND, T_GEAR, T_RIM, WHEEL, Line, Row, column, envelope_of, interval
 from .step_figure import TITLES
 
@@ -29,16 +29,19 @@ AROUND = (-0.3, 0.9)
 def plot_drive(
     runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path, options: FigureOptions = PLAIN
 ) -> list[Path]:
-    """Speeds and torques, a close-up of one reversal of the torque, and the envelope of the gear torque.
+    """Writes the figure of `drive_drawing`; arguments and result are those of `harness.views.step_figure.plot_step`."""
+    return draw(drive_drawing(runs, manoeuvre, plant, options), stem, options)
 
-    Arguments and result are those of `harness.views.step_figure.plot_step`.
-    """
+
+def drive_drawing(
+    runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, options: FigureOptions = PLAIN
+) -> Drawing:
+    """Speeds and torques, a close-up of one reversal of the torque, and the envelope of the gear torque."""
     window = options.clipped(0.0, manoeuvre.duration)
     closer = reversal(runs[0], window)
     columns = [_panels(run, title, closer) for run, title in zip(runs, TITLES, strict=True)]
     rows = [*zip(*columns, strict=True), [_envelopes(runs, manoeuvre)]]
-    title = f"{plant}, {manoeuvre.description}"
-    return plot(rows, Axis("time in s", window), title, stem, options, size=(7.2, 1.57))
+    return Drawing(rows, Axis("time in s", window), f"{plant}, {manoeuvre.description}", (7.2, 1.57))
 
 
 def _panels(run: np.ndarray, heading: str, closer: tuple[float, float] | None) -> list[Panel]:

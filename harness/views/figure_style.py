@@ -16,7 +16,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ..base.atomic_files import complete
 from .figure_options import PLAIN, USUAL_KINDS, FigureOptions
-from .panels import MARKERS, Arrow, Axis, Band, Bars, Curve, Dashes, Level, Panel, Part, Points, Spans, within
+from .panels import MARKERS, Arrow, Axis, Band, Bars, Curve, Dashes, Drawing, Level, Panel, Part, Points, Spans, within
 
 STYLE = {
     "font.size": 9.0,
@@ -152,6 +152,12 @@ def plot(
                 _lines(figure, options.caption, CAPTION_SIZE), FontProperties(size=CAPTION_SIZE)
             )  # as both are below
     return files
+
+
+def draw(drawing: Drawing, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
+    """Writes a figure that is data; returns the files."""
+    rows, x, title, size, key, same_y = drawing
+    return plot(rows, x, title, stem, options, size=size, key=key, same_y=same_y)
 
 
 def _draw(axes: Axes, panel: Panel, x: Axis) -> None:

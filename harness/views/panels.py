@@ -158,6 +158,17 @@ class Panel:
     x: Axis | None = None
 
 
+class Drawing(NamedTuple):
+    """A whole figure, see `harness.views.figure_style.plot`."""
+
+    rows: Sequence[Sequence[Panel]]
+    x: Axis
+    title: str
+    size: tuple[float, float] = (7.2, 1.5)
+    key: int = 0
+    same_y: bool = True
+
+
 DRAWN = 30_000
 """Values of a part up to which all are drawn."""
 

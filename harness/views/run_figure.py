@@ -8,8 +8,8 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from .annotations import GAP, gap, in_words, marks_of_step, metrics_of
 from .colours import GREEN, GREY
 from .figure_options import PLAIN, FigureOptions
-from .figure_style import plot
-from .panels import DASH_DOT, Axis, seen
+from .figure_style import draw
+from .panels import DASH_DOT, Axis, Drawing, seen
 from .signal_lines import (
     ACCELERATION,
     GEAR_TORQUE,
@@ -40,7 +40,7 @@ VEHICLE = Row("speed of the\nvehicle in km/h", (Line(column("plant.v", KMH)),))
 def plot_run(
     results: np.ndarray, manoeuvre: Manoeuvre, title: str, stem: Path, options: FigureOptions = PLAIN
 ) -> list[Path]:
-    """Draws one run of the loop.
+    """Writes the figure of `run_drawing`.
 
     Args:
         results: of `driveline.simulate`.
@@ -50,6 +50,11 @@ def plot_run(
     Returns:
         The files written.
     """
+    return draw(run_drawing(results, manoeuvre, title, options), stem, options)
+
+
+def run_drawing(results: np.ndarray, manoeuvre: Manoeuvre, title: str, options: FigureOptions = PLAIN) -> Drawing:
+    """One run of the loop."""
     window = options.clipped(*map(float, results[[0, -1]]["time"]))
     metrics, apart = metrics_of(results, manoeuvre), seen(gap(results), *window)
     marks = [seen(mark, *window) for mark in marks_of_step(results, manoeuvre, metrics, window)]
@@ -63,4 +68,4 @@ def plot_run(
         JERK_UP_TO_50_HZ.of(results, apart, window=window, note=in_words(metrics, "jerk_rms")),
         VEHICLE.of(results, apart, window=window),
     ]
-    return plot([[panel] for panel in panels], Axis("time in s", window), title, stem, options, size=(7.2, 1.35))
+    return Drawing([[panel] for panel in panels], Axis("time in s", window), title, (7.2, 1.35))

@@ -8,8 +8,8 @@ import numpy as np
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .annotations import GAP, gap, in_words, marks_of_step, metrics_of
 from .figure_options import PLAIN, FigureOptions
-from .figure_style import plot
-from .panels import Axis, Panel
+from .figure_style import draw
+from .panels import Axis, Drawing, Panel
 from .signal_lines import ACCELERATION, GEAR_TORQUE, JERK_UP_TO_50_HZ, MOTOR_TORQUE, SPEED_LABEL, SPEEDS, Row
 
 TITLES = ("without damping", "with damping")
@@ -23,7 +23,7 @@ AROUND = (-0.1, 1.4)
 def plot_step(
     runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path, options: FigureOptions = PLAIN
 ) -> list[Path]:
-    """Gear torque with its estimate, band and overshoot, damping torque, speeds, motion of the body.
+    """Writes the figure of `step_drawing`.
 
     Args:
         runs: results without and with damping.
@@ -34,10 +34,17 @@ def plot_step(
     Returns:
         The files written.
     """
+    return draw(step_drawing(runs, manoeuvre, plant, options), stem, options)
+
+
+def step_drawing(
+    runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, options: FigureOptions = PLAIN
+) -> Drawing:
+    """Gear torque with its estimate, band and overshoot, damping torque, speeds, motion of the body."""
     window = options.window or (manoeuvre.t_0 + AROUND[0], manoeuvre.t_0 + AROUND[1])
     columns = [_panels(run, manoeuvre, window, title) for run, title in zip(runs, TITLES, strict=True)]
-    title = f"{plant}, {manoeuvre.description}"
-    return plot(list(zip(*columns, strict=True)), Axis("time in s", window), title, stem, options, size=(7.2, 1.57))
+    rows = list(zip(*columns, strict=True))
+    return Drawing(rows, Axis("time in s", window), f"{plant}, {manoeuvre.description}", (7.2, 1.57))
 
 
 def _panels(run: np.ndarray, manoeuvre: Manoeuvre, window: tuple[float, float], heading: str) -> list[Panel]:

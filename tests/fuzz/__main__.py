@@ -12,8 +12,6 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
-from docs.studies.digests import dependencies, record
-from docs.studies.pages import PAGES
 from driveline.harness.base.interruption import script
 from driveline.harness.base.progress import progress
 from tests.fuzz import page
@@ -45,12 +43,10 @@ def main() -> int:
         parser.error(f"there is no target {', '.join(sorted(unknown))}; there are {', '.join(TARGETS)}")
     faults = 0
     for name in args.targets or TARGETS:
-        made_from = dependencies(PAGES[f"reliability_{name}"])
         answers = run(name, TARGETS[name], args.seed, args.tries or TARGETS[name].long)
         faults += answers[page.FAULT]
         print(f"{name}: {', '.join(f'{n} {answer}' for answer, n in sorted(answers.items()))}")
         page.record(name, args.seed, answers)
-        record(PAGES[f"reliability_{name}"], made_from)
     return 1 if faults else 0
 
 

@@ -9,8 +9,6 @@ from zipfile import ZipFile
 
 import pytest
 
-from docs.studies.check_rules import PAGE, rules
-from docs.studies.generated_sections import filled
 from driveline.fmus.building.builds import sender_builder
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.base.errors import DrivelineError
@@ -349,11 +347,6 @@ def test_an_ignored_rule_is_not_tried(tmp_path):
     severities = {rule: severity for rule, (severity, _) in broken(path).items()}
     assert severities == {"archive-pages": "note", "dependencies": "note", "origin": "note", "runs": "error"}
     assert "runs" not in broken(path, ignored=["runs"])
-
-
-def test_the_page_lists_the_rules():
-    page = PAGE.read_text(encoding="utf-8")
-    assert filled(page, {"rules": rules()}) == page, "python -m docs.studies.check_rules"
 
 
 def test_what_cannot_run_here_is_a_note_and_not_tried(tmp_path):

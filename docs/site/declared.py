@@ -1,0 +1,100 @@
+"""Tables that the declarations in the code make, for the pages of the site; nobody writes them."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.documentation import tables, timing
+from driveline.fmus.fmu import Fmu
+from driveline.harness.exchange.compliance import check
+from driveline.harness.recordings import plausibility, relations, signal_checks
+from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
+from driveline.harness.views.markdown import markdown_table
+from driveline.models.controller.causes import FAILURES, FEEDING, Cause
+from driveline.models.damping_controller import BLOCK
+
+CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")
+
+
+def blocks_page() -> str:
+    """All blocks with their equations and variables, as Markdown."""
+    return "\n".join(["# The blocks\n", *map(_block, FMUS.values())])
+
+
+def _block(fmu: Fmu) -> str:
+    parts = [f"## {fmu.name}", fmu.equations.strip(), timing(fmu.block)]
+    for title, rows in tables(fmu.block):
+        cells = [[cell.replace("|", r"\|") for cell in row] for row in rows[1:]]
+        named = [[f"`{name}`", *others] for name, *others in cells]
+        parts += [f"### {title}", markdown_table(rows[0], named, labels=len(rows[0]))]
+    return "\n\n".join(parts) + "\n"
+
+
+def causes() -> str:
+    """Why the controller does not damp: the rows that it runs."""
+    rows = [(str(row.number), f"`{row.word}`", row.finding, _after(row), row.heals) for row in (*FAILURES, FEEDING)]
+    return markdown_table(("number", "cause", "found", "counts after", "heals by"), rows, labels=5)
+
+
+def _after(row: Cause) -> str:
+    return f"`{row.after}` ({getattr(BLOCK.Parameters(), row.after):g} s)" if row.after else "at once"
+
+
+def check_rules() -> str:
+    """What `driveline check` looks at."""
+    rows = [
+        (f"`{rule.name}`", rule.severity.value, rule.clause.fmi2 or "", rule.clause.fmi3 or "", rule.title)
+        for rule in check.RULES
+    ]
+    headings = ("rule", "severity", "FMI 2.0", "FMI 3.0", "what an FMU does that keeps it")
+    return markdown_table(headings, rows, labels=5)
+
+
+def recording_columns() -> str:
+    """What the columns of a recording may be called."""
+    names = aliases()
+    rows = (
+        (f"`{name}`", q.meaning, q.unit, q.file_unit, ", ".join(f"`{each}`" for each in names[name]) + _by_unit(name))
+        for name, q in QUANTITIES.items()
+    )
+    return markdown_table(("quantity", "what it is", "SI", "for example in", "names"), rows, labels=5)
+
+
+def _by_unit(quantity: str) -> str:
+    names = ", ".join(f"`{name}`" for name in BY_UNIT.get(quantity, ()))
+    return names and f"; with such a unit {names}"
+
+
+def recording_plausibility() -> str:
+    """What of a recording is named as odd."""
+    rows = ((rule.name, rule.looks_for, rule.threshold, rule.reason) for rule in plausibility.RULES)
+    return markdown_table(("rule", "what it looks for", "from when on", "why there"), rows, labels=4)
+
+
+def recording_checks() -> str:
+    """What of a recording is refused."""
+    gaps = sorted({q.gap for q in QUANTITIES.values()})
+    limits = ((name, QUANTITIES[name]) for name in ("v", "elevation", "omega_1", "T_mot", "T_wheel"))
+    return CHECKS.format(
+        limits="; ".join(f"`{name}` {q.limit:g} {q.unit}" for name, q in limits),
+        gaps=(gaps[0], gaps[-1]),
+        slowest=_each("more than {q.slowest:g} s between samples"),
+        least_swing=_each("{q.least_swing:g} {q.unit} or less"),
+        signals=signal_checks,
+        relations=relations,
+    ).strip()
+
+
+def _each(value: str) -> str:
+    """A threshold of several quantities, those that have the same together."""
+    by_value: dict[str, list[str]] = {}
+    for name in ("T_mot", "T_ref", "omega_1", "T_load", "T_wheel", "omega_wheel"):
+        by_value.setdefault(value.format(q=QUANTITIES[name]), []).append(f"`{name}`")
+    return "; ".join(f"{text} ({', '.join(of)})" for text, of in by_value.items())
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    function.__name__: function
+    for function in (causes, check_rules, recording_columns, recording_plausibility, recording_checks)
+}
+"""By the names that pages call them."""

@@ -1,0 +1,16 @@
+"""Tables of studies on the terminal."""
+
+from rich.table import Table as Printed
+
+from driveline.harness.views.terminal import print_table
+
+from .study import Table, number
+
+
+def show(name: str, table: Table) -> None:
+    """Prints a table."""
+    headings = (f"{each.name}, {each.unit}" if each.unit else each.name for each in table.columns)
+    printed = Printed(table.label, *headings, title=name, title_justify="left")
+    for row, cells in table.rows.items():
+        printed.add_row(row, *(number(cell, column) for cell, column in zip(cells, table.columns, strict=True)))
+    print_table(printed)
