@@ -28,7 +28,7 @@ def _public() -> dict[str, tuple[str, str]]:
     """Module and name there of each public name, as `__init__.pyi` declares them."""
     import ast  # not above: `driveline` asks for no name
 
-    from .fmus.syntax_tree import syntax_tree
+    from .fmus.source_code import syntax_tree
 
     declared = syntax_tree(Path(__file__).with_suffix(".pyi").read_bytes())
     return {

@@ -2,8 +2,10 @@
 
 import hashlib
 import json
+import os
 import zipfile
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -11,12 +13,19 @@ from typing import Any, NamedTuple
 
 from .errors import BuildError
 from .fmu import Fmu
+from .user_cache import user_cache
 
 ENTRY = "extra/driveline.damping/origin.json"
 """Where it stands in the archive."""
 
 PACKAGES, KINDS = ("models", "fmus"), (".py", ".c", ".h", ".toml")
 """What the sources of every FMU of the project are."""
+
+BUILDING = ("building",)
+"""Folders of what chooses the FMUs and their start values, which the origin has; it makes none of their content."""
+
+MOST_KEPT = 50
+"""States of the sources whose digest is kept."""
 
 TOOLS = {"python": ("pythonfmu",), "native": ("fmpy",)}
 """Packages that each build is made with."""
@@ -26,7 +35,7 @@ class Origin(NamedTuple):
     """What an FMU tells of itself.
 
     Attributes:
-        sources: digest of the sources that made it.
+        sources: digest of the code that made it, as of `sources_digest`.
         start_values: of the parameters that a vehicle file or gains have set, by name.
         platforms: for which it has binaries.
         tools: versions of the packages that it was made with.
@@ -40,13 +49,42 @@ class Origin(NamedTuple):
 
 @cache
 def sources_digest() -> str:
-    """SHA-256 of the sources of the FMUs, as they were when this was asked first."""
+    """SHA-256 of the code of the sources of the FMUs (`code_of`), as they were when this was asked first.
+
+    It is kept in the user's cache by the bytes of the sources, as to parse them takes longer than to start.
+    """
     root = Path(__file__).parents[1]
+    found = (
+        os.path.join(folder, name)
+        for package in PACKAGES
+        for folder, _, names in os.walk(root / package)
+        for name in names
+        if name.endswith(KINDS) and os.path.basename(folder) not in BUILDING
+    )
+    files = {path.relative_to(root).as_posix(): path for path in map(Path, sorted(found))}
+    kept = user_cache() / "sources" / _digest({name: path.read_bytes() for name, path in files.items()})
+    with suppress(OSError, ValueError):
+        digest, check = kept.read_text(encoding="ascii").split()
+        if check == _digest({digest: b""}):
+            return digest
+    from .source_code import code_of  # only sources that have changed are parsed
+
+    digest = _digest({name: code_of(path).encode() for name, path in files.items()})
+    with suppress(OSError):
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = kept.with_suffix(f".{os.getpid()}.part")
+        unfinished.write_text(f"{digest} {_digest({digest: b''})}", encoding="ascii")
+        os.replace(unfinished, kept)
+        for old in sorted(kept.parent.iterdir(), key=lambda path: path.stat().st_mtime)[:-MOST_KEPT]:
+            old.unlink(missing_ok=True)
+    return digest
+
+
+def _digest(contents: Mapping[str, bytes]) -> str:
+    """SHA-256 of names and contents."""
     digest = hashlib.sha256()
-    files = (path for package in PACKAGES for path in (root / package).rglob("*") if path.suffix in KINDS)
-    for path in sorted(files):
-        content = path.read_bytes()
-        digest.update(f"{path.relative_to(root).as_posix()}\0{len(content)}\0".encode() + content)
+    for name, content in contents.items():
+        digest.update(f"{name}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()
 
 

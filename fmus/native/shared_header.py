@@ -12,7 +12,7 @@ from typing import Any
 from ...models.block import explicit, implicit, integrator, runner
 from .. import protocol
 from ..fmu import PACKAGE
-from ..syntax_tree import syntax_tree
+from ..source_code import syntax_tree
 
 HEADER = """/* What Python and C share, written by build_fmus.py from {modules}.
 

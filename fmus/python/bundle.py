@@ -11,7 +11,7 @@ from importlib.util import resolve_name
 from pathlib import Path
 
 from ..fmu import PACKAGE, Fmu
-from ..syntax_tree import syntax_tree
+from ..source_code import syntax_tree
 
 PACKAGE_TEXT = '''"""The FMU {name}: the block run as a slave of PythonFMU."""
 

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from shutil import rmtree
 
+from ...fmus.user_cache import user_cache as user_cache
 from .errors import DrivelineError
 from .plain_text import plain
 
@@ -14,13 +15,6 @@ MOST_KEPT = 20
 
 MOVED_BY = "LOCALAPPDATA" if sys.platform == "win32" else "XDG_CACHE_HOME"
 """The environment variable that names another place for it."""
-
-
-def user_cache() -> Path:
-    """`$XDG_CACHE_HOME/driveline-damping` or `~/.cache/driveline-damping`, or what other systems have for it."""
-    import platformdirs  # only what makes something asks for it
-
-    return platformdirs.user_cache_path("driveline-damping")
 
 
 @contextmanager
