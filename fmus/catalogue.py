@@ -1,20 +1,40 @@
-"""The FMUs of the project, and with them those of the comparators."""
+"""The FMUs of the project."""
 
-from . import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
-from .comparators import COMPARATORS
+from ..models import (
+    damping_controller,
+    manoeuvre,
+    motor_torque_loop,
+    signal_faults,
+    two_mass_driveline,
+    validation_vehicle,
+    wheel_speed_can,
+)
+from ..models.comparators import (
+    linear_observer,
+    no_damping,
+    paper_observer,
+    perfect_state,
+    speed_difference,
+    speed_washout,
+)
 from .fmu import Fmu
+from .names import COMPARATORS
 
-FMUS: dict[str, Fmu] = {
-    module.FMU.name: module.FMU
-    for module in (
-        two_mass_driveline,
-        validation_vehicle,
-        motor_torque_loop,
-        wheel_speed_can,
-        damping_controller,
-    )
+_MODULES = (
+    *(two_mass_driveline, validation_vehicle, motor_torque_loop, wheel_speed_can, damping_controller),
+    *(no_damping, speed_washout, speed_difference, paper_observer, linear_observer, perfect_state),
+)
+
+EVERY: dict[str, Fmu] = {
+    module.BLOCK.name: Fmu(module.BLOCK, stop_time=2.0 if module is motor_torque_loop else 10.0) for module in _MODULES
 }
-"""By name, in the order in which they are built."""
+"""By name, in the order in which they are built; the comparators, which are no part of the product, come last."""
 
-EVERY: dict[str, Fmu] = FMUS | COMPARATORS
-"""Those too that are built only when they are asked for by name."""
+FMUS: dict[str, Fmu] = {name: fmu for name, fmu in EVERY.items() if name not in COMPARATORS}
+"""Those that are built when none is asked for by name."""
+
+MANOEUVRE = Fmu(manoeuvre.BLOCK, stop_time=10.0)
+"""What `driveline ssp` drives the loop with in other tools."""
+
+SIGNAL_FAULTS = Fmu(signal_faults.BLOCK, stop_time=10.0)
+"""What `driveline faults` puts between the sensors and the controller."""

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from rich.table import Table
 
-from driveline.fmus import signal_faults
+from driveline.fmus.catalogue import SIGNAL_FAULTS
 from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
@@ -181,7 +181,7 @@ def with_wrong_frames() -> Iterator[Run]:
 STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
 
 
-INJECTORS = {False: signal_faults.FMU, True: periodic_errors.FMU}
+INJECTORS = {False: SIGNAL_FAULTS, True: periodic_errors.FMU}
 """What makes the errors of the frame: by whether they are periodic."""
 
 

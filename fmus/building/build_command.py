@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from ..catalogue import FMUS
-from ..comparators import COMPARATORS
+from ..names import COMPARATORS
 from .builds import BUILDS, FMIS, PLATFORMS, build_fmus
 from .options import add_parameter_files, output_folder
 

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from ...models.block.declaration import Integer, Real
-from .. import two_mass_driveline
 from ..catalogue import EVERY, FMUS
 from ..description.variables import LARGEST, Variable, interface
 from ..errors import ParameterFileError
@@ -157,7 +156,7 @@ def seeds() -> tuple[int, int]:
 
 def of_plants() -> set[str]:
     """Names of the parameters of a car that the design model has."""
-    return {quantity for quantity in two_mass_driveline.FMU.block.Parameters._fields if quantity not in OF_A_RUN}
+    return {quantity for quantity in FMUS["TwoMassDriveline"].block.Parameters._fields if quantity not in OF_A_RUN}
 
 
 def car_names(own: Iterable[Fmu] = ()) -> list[str]:

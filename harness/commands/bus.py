@@ -38,15 +38,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from ...fmus import wheel_speed_can
     from ...fmus.building.builds import sender_builder
     from ...fmus.building.parameter_files import read_vehicle
+    from ...fmus.catalogue import FMUS
     from ..exchange.bus.database import dbc, telegrams, write_dbc
 
     car, path = read_vehicle(args.vehicle) if args.vehicle else {}, args.output / "driveline.dbc"
     sent, made = telegrams(dict.fromkeys(PLACES, car)), [path]
     if args.fmu:
-        made.append(sender_builder(dbc(sent), args.fmu)(wheel_speed_can.FMU.started_with(car), args.output))
+        made.append(sender_builder(dbc(sent), args.fmu)(FMUS["WheelSpeedCan"].started_with(car), args.output))
     write_dbc(sent, path)
     Printer(args).files(made)
     return 0

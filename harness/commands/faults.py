@@ -63,10 +63,10 @@ def run(args: argparse.Namespace) -> int:
     require_report(args.report)
     given = settings_of_plants(args)
     # here and not above: mistakes and help are answered without them
-    from ...fmus.signal_faults import FMU
+    from ...fmus.catalogue import SIGNAL_FAULTS
     from ..studies.faults.fault_injection import FaultRunner, with_faults
 
-    injector = made_if_missing(FMU, args.fmus, NATIVE)
+    injector = made_if_missing(SIGNAL_FAULTS, args.fmus, NATIVE)
     runner = FaultRunner(injector, given)
     same: dict[str, Any] = {each.plant_name: distinguishing(each) for each in given.values()}
     tried = {each.plant_name: with_faults(loop(each), injector) for each in given.values()}

@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     require_constant(dict(args.assignments), "an SSP")
     given = {each.plant_name: each for each in settings_of_plants(args).values()}
     from ...fmus.archive import write_archive
-    from ...fmus.manoeuvre import FMU
+    from ...fmus.catalogue import MANOEUVRE
     from ..exchange.ssp.loop_with_source import with_source
     from ..exchange.ssp.package import package
 
@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     same: dict[str, Any] = {name: distinguishing(each, manoeuvre) for name, each in given.items()}
     same |= {"plants": list(dict.fromkeys(args.plant or PLANTS)), "manoeuvre": manoeuvre.name} | asked.digests
     build = next(iter(given.values())).build or BUILDS[0]
-    source = made_if_missing(FMU, args.fmus, build)
+    source = made_if_missing(MANOEUVRE, args.fmus, build)
     sourced = {name: with_source(loop(each), source) for name, each in given.items()}
     with job(args, args.output / "driveline.json", same, sourced, [ssp], list(asked.files.values())) as made:
         asked.require_drivable(made.fits, given)

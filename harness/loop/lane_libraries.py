@@ -35,10 +35,9 @@ def lane_libraries(system: System) -> dict[str, CDLL] | None:
 @cache
 def _blocks() -> "dict[str, Fmu]":
     """All that can stand in a loop, by name."""
-    from ...fmus import signal_faults
-    from ...fmus.catalogue import EVERY
+    from ...fmus.catalogue import EVERY, SIGNAL_FAULTS
 
-    return {**EVERY, signal_faults.FMU.name: signal_faults.FMU}
+    return {**EVERY, SIGNAL_FAULTS.name: SIGNAL_FAULTS}
 
 
 def _is_ours(path: Path) -> bool:

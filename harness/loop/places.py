@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from ...fmus.names import COMPARATORS as COMPARATORS
+from ...fmus.names import PLACES as PLACES
 from ..cosimulation.system import Connection, Port
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -17,19 +19,6 @@ BUILDS = ("python", NATIVE)
 
 BUILD_HELP = "native FMUs or those that run Python (default: native where all FMUs of the loop have that build)"
 """Of the option --build."""
-
-COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "PerfectState")
-"""Controllers that ours is compared with."""
-
-# the torque of the motor does not depend on its speed, so it is stepped first and then known over the step
-PLACES = {
-    "motor": ("MotorTorqueLoop",),
-    "controller": ("DampingController", *COMPARATORS),
-    "can": ("WheelSpeedCan",),
-    "plant": ("TwoMassDriveline", "ValidationVehicle"),
-}
-"""The places of the loop in the order in which they step, and the project's FMUs for each, the
-first by default."""
 
 PLANTS = PLACES["plant"]
 

@@ -13,10 +13,10 @@ from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 
 from driveline.fmus.building.builds import NotPossible, builders
-from driveline.fmus.catalogue import FMUS
-from driveline.fmus.comparators import COMPARATORS
+from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.description.units import base_exponents, rate_unit
 from driveline.fmus.description.variables import interface
+from driveline.fmus.names import COMPARATORS
 from driveline.fmus.native.packaging import FMI_HEADERS
 from tests.fmus.host import in_words_of_fmi2, opened
 from tests.fmus.native.any_build import *  # noqa: F403
@@ -53,7 +53,7 @@ def native(fmi3):
 @pytest.mark.parametrize("name", COMPARATORS)
 def test_the_comparators_are_built_too(fmi3, tmp_path, name):
     (build,) = builders("native", fmi=3)
-    assert validate_fmu(str(build(COMPARATORS[name], tmp_path))) == []
+    assert validate_fmu(str(build(EVERY[name], tmp_path))) == []
 
 
 def test_there_is_no_such_build_in_python():

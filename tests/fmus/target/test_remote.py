@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from driveline.fmus.damping_controller import FMU
+from driveline.fmus.catalogue import FMUS
 from driveline.fmus.target import remote
 from driveline.fmus.target.link import Answer
 from driveline.fmus.target.remote import Remote
 
-BLOCK = FMU.block
+BLOCK = FMUS["DampingController"].block
 P, U = BLOCK.Parameters(), BLOCK.Input()
 
 

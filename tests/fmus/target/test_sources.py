@@ -11,12 +11,12 @@ from platform import machine
 import numpy as np
 import pytest
 
+from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import host_compiler
 from driveline.fmus.native.statements import SINGLE
 from driveline.fmus.target.image import FLAGS, host_program
 from driveline.fmus.target.link import Link
 from driveline.fmus.target.sources import CONTROLLERS, PRECISIONS, target_sources
-from driveline.fmus.two_mass_driveline import FMU as CONTINUOUS
 from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.offline_cases import Case, recorded
 from driveline.harness.loop.settings import Settings, loop
@@ -152,4 +152,4 @@ int main(void)
 
 def test_only_sampled_blocks_run_on_a_target() -> None:
     with pytest.raises(ValueError, match="TwoMassDriveline is a continuous block"):
-        target_sources(CONTINUOUS, SINGLE)
+        target_sources(FMUS["TwoMassDriveline"], SINGLE)

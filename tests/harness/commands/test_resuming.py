@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from driveline.fmus.signal_faults import FMU
+from driveline.fmus.catalogue import SIGNAL_FAULTS as FMU
 from driveline.harness.commands.cli import main
 from driveline.harness.design.search import cost_evaluation, pareto_figure
 from driveline.harness.design.search.tuning_runs import Run

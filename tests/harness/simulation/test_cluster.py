@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus.signal_faults import FMU
+from driveline.fmus.catalogue import SIGNAL_FAULTS as FMU
 from driveline.harness.base.errors import DrivelineError, MissingExtra, SimulationError
 from driveline.harness.cosimulation.runs import KeptLoops
 from driveline.harness.design.search.cost_evaluation import CostEvaluation

@@ -12,7 +12,7 @@ import pytest
 from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.parameter_files import read_parameters
 from driveline.fmus.catalogue import EVERY, FMUS
-from driveline.fmus.comparators import COMPARATORS
+from driveline.fmus.names import COMPARATORS
 from driveline.fmus.python.packaging import build
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
@@ -44,17 +44,16 @@ def folder(both_built: Path, tmp_path: Path) -> Path:
 
 
 def test_they_are_no_part_of_the_product() -> None:
-    assert tuple(COMPARATORS) == places.COMPARATORS
-    assert not COMPARATORS.keys() & FMUS.keys()
-    assert EVERY.keys() == {*FMUS, *COMPARATORS}
+    assert tuple(EVERY) == (*FMUS, *COMPARATORS)
+    assert EVERY.keys() == {name for names in places.PLACES.values() for name in names}
 
 
 @pytest.mark.parametrize("name", slow(COMPARATORS, but=["NoDamping", "PerfectState"]))
 def test_both_builds_are_alike_and_damp(name: str, folder: Path, native_builder: Any) -> None:
     """One test, since each native build takes a while."""
-    native_builder(COMPARATORS[name], folder)
-    build(COMPARATORS[name], folder)
-    assert max(compare_block(name, random_inputs(COMPARATORS[name].block, 1000), folder)) <= 1e-12
+    native_builder(EVERY[name], folder)
+    build(EVERY[name], folder)
+    assert max(compare_block(name, random_inputs(EVERY[name].block, 1000), folder)) <= 1e-12
     on, off = (simulate(TIPIN, controller=name, folder=folder, control=control) for control in (True, False))
     assert set(on["controller.status"][10:]) <= {supervision.WITH_WHEEL_SPEED, supervision.WITHOUT_WHEEL_SPEED}
     if name == "NoDamping":
@@ -68,9 +67,7 @@ def test_both_builds_are_alike_and_damp(name: str, folder: Path, native_builder:
 def test_only_perfect_signals_come_from_the_plant() -> None:
     for name in COMPARATORS:
         fed = {c.target for c in loop(controller=name).connections} - {c.target for c in loop().connections}
-        inputs = {v.name for v in variables(COMPARATORS[name].block.Input)} - {
-            v.name for v in variables(supervision.Input)
-        }
+        inputs = {v.name for v in variables(EVERY[name].block.Input)} - {v.name for v in variables(supervision.Input)}
         assert fed == {f"controller.{variable}" for variable in inputs}
         assert bool(fed) == (name == "PerfectState")
     by_path = loop(controller=Path("elsewhere") / "PerfectState.fmu")
@@ -78,7 +75,7 @@ def test_only_perfect_signals_come_from_the_plant() -> None:
 
 
 def test_what_is_told_is_the_plant_s_motion(folder: Path) -> None:
-    build(COMPARATORS["PerfectState"], folder)
+    build(EVERY["PerfectState"], folder)
     short = replace(TIPIN, duration=0.1)
     results = simulate(short, controller="PerfectState", folder=folder, build="python")
     assert results["controller.T_gear_hat"][50:] == pytest.approx(results["plant.T_gear"][50:], abs=1.0)
@@ -126,7 +123,7 @@ def test_the_page_shows_each_with_its_parameters() -> None:
     documented = dict(re.findall(r"^\| `(\w+)` \| .* \| (.*) \|$", table, re.MULTILINE))
     assert list(documented) == list(COMPARATORS)
     for name, cell in documented.items():
-        declared = {v.name: v.start for v in variables(COMPARATORS[name].block.Parameters)}
+        declared = {v.name: v.start for v in variables(EVERY[name].block.Parameters)}
         given = {k: float(v) for k, v in re.findall(r"`(\w+)` ([\d.]+)", cell)}
         assert given == {parameter: declared[parameter] for parameter in given}
         of_all = {v.name for v in variables(supervision.Parameters)} | {"J_1", "J_2", "C", "phi_B", "T_age"}

@@ -5,7 +5,7 @@ from shutil import copytree
 
 import pytest
 
-from driveline.fmus.manoeuvre import FMU
+from driveline.fmus.catalogue import MANOEUVRE as FMU
 from driveline.harness.commands.cli import main
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from driveline.fmus.signal_faults import FMU
+from driveline.fmus.catalogue import SIGNAL_FAULTS as FMU
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
 

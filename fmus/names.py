@@ -1,0 +1,13 @@
+"""Names of the project's FMUs by their places in the loop, for those who need not import what these compute."""
+
+COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "PerfectState")
+"""Controllers that ours is compared with, in the order of the tables."""
+
+# the torque of the motor does not depend on its speed, so it is stepped first and then known over the step
+PLACES: dict[str, tuple[str, ...]] = {
+    "motor": ("MotorTorqueLoop",),
+    "controller": ("DampingController", *COMPARATORS),
+    "can": ("WheelSpeedCan",),
+    "plant": ("TwoMassDriveline", "ValidationVehicle"),
+}
+"""The places of the loop in the order in which they step, and the FMUs for each, the first by default."""
