@@ -13,6 +13,7 @@ from pathlib import Path
 import fmpy
 
 from ..child_process import run
+from ..errors import BuildError
 
 FLAGS = (
     # the header of FMI 3.0 declares callbacks without prototypes
@@ -54,7 +55,7 @@ WHERE_HEADER = 0x3C
 UNIVERSAL_MAGIC, PAGE_BITS = 0xCAFEBABE, 14
 
 
-class CompilerError(Exception):
+class CompilerError(BuildError):
     """There is no compiler, or it refuses the source; the text says why."""
 
 

@@ -1,12 +1,20 @@
-"""The program with the controller behind a link, compiled for the target and, to compare, for this machine."""
+"""The program with the controller behind a link, compiled for the target and, to compare, for this machine; the FMU
+with that image in it, and the A2L description of the image."""
 
 import shutil
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from ..child_process import output_of
+from ..description import a2l
+from ..fmu import Fmu
 from ..native.compiler import CompilerError, host_compiler, run_compiler
+from ..native.statements import SINGLE
+from ..python.packaging import build
 from .link import EMULATOR
+from .sources import target_sources
 
 C_FILES = Path(__file__).parent / "c"
 
@@ -36,6 +44,9 @@ LINK, SCHEDULER = "link.c", "scheduler.c"
 """Programs with the controller: behind a link, and at every interrupt of a timer."""
 
 BOARD, HOST = ("board.h", "board_mps2.c", "mps2_an386.ld"), ("board.h", "board_host.c")
+
+A2L_RECORDS = {"parameter": "calibration", "input": "u", "output": "y"}
+"""By causality the record of link.c that holds such variables, all of single precision, one after the other."""
 
 
 def target_image(sources: Mapping[str, str], folder: Path, program: str = LINK) -> Path:
@@ -88,3 +99,34 @@ def written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -
     for name, text in {**sources, **{name: (C_FILES / name).read_text(encoding="utf-8") for name in others}}.items():
         (folder / name).write_text(text, encoding="utf-8")
     return [name for name in (*sources, *others) if name.endswith(".c")]
+
+
+def build_on_target(fmu: Fmu, folder: Path) -> Path:
+    """Builds `folder/<name>.fmu` with the image in it, replacing one that is there, and returns its path.
+
+    The host needs the emulator and, as for every FMU that runs Python, Python 3.11 or later in its process.
+
+    Raises:
+        CompilerError: the compiler or the emulator is missing.
+    """
+    with TemporaryDirectory(prefix="driveline-") as temporary:
+        image = target_image(target_sources(fmu, SINGLE), Path(temporary)).read_bytes()
+    return build(replace(fmu, image=image), folder)
+
+
+def a2l_description(fmu: Fmu, image: Path) -> str:
+    """The A2L file for the controller in a linked image of `target_image`.
+
+    Args:
+        fmu: of that controller.
+    """
+    addresses = symbols(image)
+    first = {causality: addresses[record] for causality, record in A2L_RECORDS.items()}
+    return a2l.description(fmu, a2l.in_order(fmu.block, first, a2l.SINGLE), a2l.SINGLE)
+
+
+def symbols(image: Path) -> Mapping[str, int]:
+    """The addresses of what an image holds by name."""
+    listing = output_of("arm-none-eabi-nm", image)
+    rows = [line.split() for line in listing.splitlines()]
+    return {row[2]: int(row[0], 16) for row in rows if len(row) == 3}

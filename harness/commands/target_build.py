@@ -29,8 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..exchange.target.target_build import built_on_target
+    from ...fmus.target.image import build_on_target
+    from ..exchange.target.controllers import for_car
 
-    path = built_on_target(args.controller, args.output, args.vehicle, args.parameters)
+    path = build_on_target(for_car(args.controller, args.vehicle, args.parameters), args.output)
     Printer(args).say(f"{path}  {path.stat().st_size / 1024:.0f} kB")
     return 0

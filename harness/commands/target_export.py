@@ -31,12 +31,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
+    from ...fmus.target.sources import PRECISIONS, target_sources
     from ..base.atomic_files import complete
-    from ..exchange.target.c_export import values_of, with_values
+    from ..exchange.target.controllers import for_car
     from ..simulation.provenance import require_same_text
 
-    values = values_of(args.controller, args.vehicle, args.parameters)
-    sources = with_values(args.controller, args.precision, values)
+    fmu = for_car(args.controller, args.vehicle, args.parameters)
+    sources = target_sources(fmu, PRECISIONS[args.precision])
     files = {args.output / name: text for name, text in sources.items()}
     if folder := next((path for path in files if path.is_dir()), None):
         raise DrivelineError(f"{folder} is a folder; a file is needed")

@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..exchange.target.target_build import write_image
+    from ..exchange.target.controllers import for_car, write_image
 
-    Printer(args).files(write_image(args.controller, args.output, args.vehicle, args.parameters))
+    Printer(args).files(write_image(for_car(args.controller, args.vehicle, args.parameters), args.output))
     return 0

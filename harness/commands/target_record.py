@@ -4,7 +4,7 @@ controller gets in the loop in every manoeuvre and on a recorded drive, with ran
 infinities, denormal numbers) and random states. Instructions are counted by the emulator. Then it drives every
 manoeuvre in the loop, see `driveline target build`.
 
-The output folder gets the page target.md, the figure and, for every case, inputs and torques as CSV. It needs
+The output folder gets numbers.json and, for every case, inputs and torques as CSV. It needs
 `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
 
 examples:
@@ -29,7 +29,7 @@ from .settings import distinguishing, settings
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_plant(parser)
     add_loop(parser)
-    add_output(parser, "results/target", "the page, the figure and the recorded cases", of_a_run=True)
+    add_output(parser, "results/target", "the numbers and the recorded cases", of_a_run=True)
     add_printing(parser)
 
 
@@ -38,12 +38,12 @@ def run(args: argparse.Namespace) -> int:
         raise DrivelineError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
     given = settings(args, args.plant)
     # here and not above: mistakes and help are answered without them
-    from ..exchange.target.offline_test import announce, record, write
+    from ..exchange.target.record import NUMBERS, announce, record, write
 
-    plant, page = given.plant_name, args.output / "target.md"
-    with job(args, args.output / "target.json", distinguishing(given), {plant: given}, [page]) as made:
+    plant = given.plant_name
+    with job(args, args.output / "target.json", distinguishing(given), {plant: given}, [args.output / NUMBERS]) as made:
         found = record(given)
         made.begin()
-        made.wrote(*write(found, args.controller, plant, args.output))
+        made.wrote(*write(found, args.output))
         made.tell(announce, found)
     return int(not found.passed)

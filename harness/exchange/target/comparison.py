@@ -1,13 +1,22 @@
-"""The controller on the target beside the same C on this machine, sample by sample."""
+"""The controller on the target beside the same C on this machine: sample by sample off-line, and in the loop."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
 
+from ....fmus.target.image import build_on_target
 from ....fmus.target.link import Answer, Link
-from .offline_cases import Case
-from .programs import Programs
+from ....fmus.target.sources import CONTROLLERS
+from ...cosimulation.system import System
+from ...loop.settings import Settings
+from ...manoeuvres.catalogue import USUAL_MANOEUVRES
+from ...metrics.evaluate import at_samples
+from ...simulation.simulate import simulate
+from .controllers import Programs
+from .offline_cases import Case, fed
 
 ABSOLUTE, RELATIVE = 1e-3, 1e-4
 """How far T_ref in single precision may be from that in double: in N.m, and over the torque."""
@@ -17,7 +26,8 @@ class Comparison(NamedTuple):
     """A case on the target and on this machine.
 
     Attributes:
-        differing: samples in which a bit of the outputs or of the state differs from the same C in single precision.
+        samples: of the case.
+        differing: those in which a bit of the outputs or of the state differs from the same C in single precision.
         T_ref, T_gear_hat: in N.m, largest distance from double precision.
         margin: of T_ref, over what it may be.
         largest: in N.m, of T_ref.
@@ -29,6 +39,7 @@ class Comparison(NamedTuple):
     """
 
     case: Case
+    samples: int
     differing: int
     T_ref: float
     T_gear_hat: float
@@ -54,10 +65,7 @@ def responses(link: Link, case: Case) -> list[Answer]:
 
 
 def compare(programs: Programs, case: Case, outputs: Sequence[str]) -> Comparison:
-    """Runs a case on all three.
-
-    Args:
-        outputs: names of the outputs in their order.
+    """Runs a case on all three; `outputs` are the names of the outputs in their order.
 
     Raises:
         TargetError: a program was lost, hung or crashed.
@@ -70,6 +78,7 @@ def compare(programs: Programs, case: Case, outputs: Sequence[str]) -> Compariso
     counts = [answer.count for answer in target[1:]]
     return Comparison(
         case=case,
+        samples=len(there),
         differing=sum(one.bytes != other.bytes for one, other in zip(target, single, strict=True)),
         T_ref=float(distance[:, T_ref].max()),
         T_gear_hat=float(distance[:, T_gear_hat].max()),
@@ -81,3 +90,44 @@ def compare(programs: Programs, case: Case, outputs: Sequence[str]) -> Compariso
         traces=(there[:, T_ref], here[:, T_ref]),
         states=np.array([answer.state for answer in target]),
     )
+
+
+class InLoop(NamedTuple):
+    """A manoeuvre with the controller on the target.
+
+    Attributes:
+        differing: samples in which T_ref is not, bit by bit, what the C makes of the same inputs off-line.
+        T_ref, T_gear: in N.m, largest distance from the loop with the model in double precision.
+        rms: of that of T_ref.
+    """
+
+    manoeuvre: str
+    differing: int
+    T_ref: float
+    T_gear: float
+    rms: float
+
+
+def in_loop(
+    programs: Programs, controller: str, system: System, names: Sequence[str], settings: Settings
+) -> Iterator[InLoop]:
+    """Drives every manoeuvre; `names` are those of the controller's inputs.
+
+    Raises:
+        SimulationError: the target was lost, hung or crashed.
+    """
+    with TemporaryDirectory(prefix="driveline-") as temporary:
+        path = build_on_target(CONTROLLERS[controller], Path(temporary))
+        for manoeuvre in USUAL_MANOEUVRES:
+            there = at_samples(simulate(manoeuvre, settings, controller=path))
+            here = at_samples(simulate(manoeuvre, settings))
+            off_line = responses(programs.single(), fed(manoeuvre, there, system, names))
+            T_ref = np.array([answer.outputs[0] for answer in off_line])
+            distance, twist = (np.abs(there[name] - here[name]) for name in ("controller.T_ref", "plant.T_gear"))
+            yield InLoop(
+                manoeuvre.name,
+                differing=int(np.count_nonzero(T_ref != there["controller.T_ref"])),
+                T_ref=float(np.max(distance)),
+                T_gear=float(np.max(twist)),
+                rms=float(np.sqrt(np.mean(distance**2))),
+            )

@@ -19,14 +19,10 @@ from ...recordings.drive import read_drive
 from ...simulation.simulate import signals, simulate
 from ...studies.drives.replay import followed
 
-SAMPLES = 5000
-"""Of each random case."""
-
+SAMPLES = 5000  # of each random case
 LARGEST, SMALLEST = float(np.finfo(np.float32).max), float(np.finfo(np.float32).smallest_subnormal)
-"""Numbers of single precision."""
-
 ABSURD = (nan, inf, -inf, LARGEST, -LARGEST, SMALLEST, -SMALLEST, 1e-40, 1e10, -1e10, 0.0, -0.0)
-"""1e-40 is a denormal number too."""
+"""Of single precision; 1e-40 is a denormal number too."""
 
 OFTEN = 0.1
 """Share of the absurd ones among the inputs."""
@@ -53,12 +49,7 @@ class Case(NamedTuple):
 
 
 def recorded(manoeuvre: Manoeuvre, system: System, names: Sequence[str], settings: Settings) -> Case:
-    """What the controller of a loop got in a manoeuvre.
-
-    Args:
-        names: of its inputs.
-        settings: of the loop.
-    """
+    """What the controller of a loop, which has inputs of these names, got in a manoeuvre."""
     return fed(manoeuvre, at_samples(simulate(manoeuvre, settings)), system, names)
 
 

@@ -8,7 +8,7 @@ import pytest
 from driveline.fmus.catalogue import EVERY
 from driveline.fmus.description.a2l import DOUBLE, SINGLE, Item, _described
 from driveline.fmus.description.variables import interface
-from driveline.fmus.target import a2l
+from driveline.fmus.target import image
 from driveline.models.damping_controller import BLOCK
 
 
@@ -30,8 +30,8 @@ def test_what_has_no_bounds_is_bounded_by_the_largest_numbers_and_the_others_kee
 
 
 def test_a_group_has_what_can_be_turned_and_another_one_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(a2l, "symbols", lambda _: dict.fromkeys(a2l.RECORDS.values(), 0x20000000))
-    text = a2l.description(EVERY["DampingController"], Path())
+    monkeypatch.setattr(image, "symbols", lambda _: dict.fromkeys(image.A2L_RECORDS.values(), 0x20000000))
+    text = image.a2l_description(EVERY["DampingController"], Path())
     for group, variability in (("Calibration", "tunable"), ("Fixed", "fixed")):
         listed = text.partition(f"/begin GROUP {group} ")[2].partition("REF_CHARACTERISTIC\n")[2].splitlines()[0]
         assert set(listed.split()) == {v.name for v in interface(BLOCK) if v.variability == variability}

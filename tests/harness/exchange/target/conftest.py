@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import pytest
 
 from driveline.fmus.target.image import require_packages
-from driveline.harness.exchange.target.programs import Programs, programs
+from driveline.fmus.target.sources import CONTROLLERS
+from driveline.harness.exchange.target.controllers import Programs, programs
 from tests.skipping import skipped_if_impossible
 
 
@@ -14,5 +15,5 @@ def target() -> Iterator[Programs]:
     """Our controller on the emulated target and on this machine."""
     with skipped_if_impossible():
         require_packages()
-    with programs("DampingController", {}) as made:
+    with programs(CONTROLLERS["DampingController"]) as made:
         yield made

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from driveline.fmus.description.variables import interface
-from driveline.fmus.target.a2l import description, symbols
+from driveline.fmus.target.image import a2l_description, symbols
 from driveline.fmus.target.link import Link
 from driveline.fmus.target.remote import Remote
 from driveline.fmus.target.sources import CONTROLLERS
 from driveline.harness.commands.cli import main
-from driveline.harness.exchange.target.programs import Programs
+from driveline.harness.exchange.target.controllers import Programs
 from driveline.models import motor_torque_loop, two_mass_driveline, wheel_speed_can
 from driveline.models.block.runner import runner
 from driveline.models.controller.supervision import T_S
@@ -28,7 +28,7 @@ def module(target: Programs) -> Any:
     """What a public parser makes of the file."""
     pya2l = pytest.importorskip("pya2l.parser", reason="pya2l is not installed")
     with pya2l.A2lParser() as parser:
-        (found,) = parser.tree_from_a2l(description(FMU, target.image).encode()).PROJECT.MODULE
+        (found,) = parser.tree_from_a2l(a2l_description(FMU, target.image).encode()).PROJECT.MODULE
         return found
 
 
@@ -141,4 +141,4 @@ def test_a_value_that_is_changed_by_its_address_acts_in_the_loop_as_one_that_is_
 def test_the_command_writes_image_and_description(target: Programs, tmp_path: Path) -> None:
     assert main(["target", "image", "--output", str(tmp_path), "--quiet"]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["controller.a2l", "controller.elf"]
-    assert (tmp_path / "controller.a2l").read_text(encoding="utf-8") == description(FMU, target.image)
+    assert (tmp_path / "controller.a2l").read_text(encoding="utf-8") == a2l_description(FMU, target.image)

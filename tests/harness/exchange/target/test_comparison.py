@@ -8,8 +8,8 @@ import pytest
 
 from driveline.fmus.target.link import Answer
 from driveline.harness.exchange.target.comparison import compare
+from driveline.harness.exchange.target.controllers import Programs
 from driveline.harness.exchange.target.offline_cases import Case
-from driveline.harness.exchange.target.programs import Programs
 
 CASE = Case("two samples", ("T_driver",), np.zeros((2, 1)), None, False)
 
@@ -44,4 +44,4 @@ def test_torques_may_differ_by_a_millinewton_metre_and_a_ten_thousandth(
     found = compare(programs, CASE, ("T_ref", "T_gear_hat"))
     assert found.margin == pytest.approx(margin)
     assert found.T_ref == pytest.approx(distance)
-    assert (found.differing, found.instructions, found.stack) == (0, (1.0, 1), 2)
+    assert (found.samples, found.differing, found.instructions, found.stack) == (2, 0, (1.0, 1), 2)

@@ -10,15 +10,15 @@ from threading import Thread
 import numpy as np
 import pytest
 
-from driveline.fmus.target.image import target_image
+from driveline.fmus.native.statements import SINGLE
+from driveline.fmus.target.image import build_on_target, target_image
 from driveline.fmus.target.link import Link, TargetError, emulated
+from driveline.fmus.target.sources import CONTROLLERS, target_sources
 from driveline.harness.base.errors import SimulationError
 from driveline.harness.cosimulation.system import Scheme
-from driveline.harness.exchange.target.c_export import with_values
 from driveline.harness.exchange.target.comparison import responses
+from driveline.harness.exchange.target.controllers import Programs
 from driveline.harness.exchange.target.offline_cases import Case
-from driveline.harness.exchange.target.programs import Programs
-from driveline.harness.exchange.target.target_build import built_on_target
 from driveline.harness.loop.places import CONNECTIONS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples
@@ -31,7 +31,7 @@ TIPIN, LONG = MANOEUVRES["tipin15"], MANOEUVRES["drive"]
 @pytest.fixture(scope="module")
 def on_target(target: Programs, tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert target
-    return built_on_target("DampingController", tmp_path_factory.mktemp("on_target"))
+    return build_on_target(CONTROLLERS["DampingController"], tmp_path_factory.mktemp("on_target"))
 
 
 def simulated(controller: Path | None, fmus: Path, manoeuvre: object = TIPIN, **settings: object) -> np.ndarray:
@@ -118,7 +118,7 @@ def test_a_target_that_is_lost_or_hangs_is_named_and_nothing_is_left(
 
 def test_a_fault_of_the_processor_is_named(target: Programs, tmp_path: Path) -> None:
     """An instruction that does not exist, where the controller computes."""
-    sources = with_values("DampingController", "float", {})
+    sources = target_sources(CONTROLLERS["DampingController"], SINGLE)
     first = "const float a1 ="
     broken = {name: text.replace(first, f"__builtin_trap(); {first}", 1) for name, text in sources.items()}
     assert target

@@ -1,5 +1,6 @@
 """The controller on the emulated target, off-line: bit by bit that of this machine, and within its means."""
 
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -8,15 +9,12 @@ import numpy as np
 import pytest
 
 from driveline.fmus.target.deviations import Finding
-from driveline.harness.exchange.target.comparison import Comparison, compare, responses
-from driveline.harness.exchange.target.in_loop import InLoop
+from driveline.fmus.target.sources import CONTROLLERS
+from driveline.harness.exchange.target.comparison import Comparison, InLoop, compare, responses
+from driveline.harness.exchange.target.controllers import Programs, programs
+from driveline.harness.exchange.target.costs import Schedule, Size, size_of
 from driveline.harness.exchange.target.offline_cases import SAMPLES, Case, random_inputs, random_states, recorded
-from driveline.harness.exchange.target.offline_results import Part, Record
-from driveline.harness.exchange.target.offline_test import signals
-from driveline.harness.exchange.target.programs import Programs, programs
-from driveline.harness.exchange.target.sample_timing import Schedule
-from driveline.harness.exchange.target.size import Size, size_of
-from driveline.harness.exchange.target.target_page import page
+from driveline.harness.exchange.target.record import NUMBERS, Part, Record, numbers, signals, write
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.models.damping_controller import BLOCK
@@ -41,8 +39,7 @@ def braked(target: Programs, launch_brake: Case) -> Comparison:
 
 @pytest.fixture(scope="module")
 def size(target: Programs) -> Size:
-    with target.target() as link:
-        return size_of(target.image, target.name, link)
+    return size_of(target)
 
 
 def test_in_a_manoeuvre_no_bit_differs_and_the_torque_is_that_of_the_model(braked: Comparison, size: Size) -> None:
@@ -124,21 +121,24 @@ def test_no_arithmetic_is_in_double_precision(target: Programs) -> None:
     assert not re.search(r"\.f64|__aeabi_[df]", listing)
 
 
-def test_the_page_tells_what_was_found(braked: Comparison, size: Size) -> None:
+def test_the_numbers_are_those_that_were_found(braked: Comparison, size: Size, tmp_path: Path) -> None:
     loops = [InLoop("launch_brake", 0, T_ref=0.01, T_gear=0.02, rms=0.001)]
     findings = [Finding("11.4", "scheduler.c", f"scheduler.c:{line}") for line in (1, 2)]
     drawn = braked._replace(case=braked.case._replace(name="random states", drawn=True), instructions=(600.0, 950))
     found = Record([braked, drawn], loops, KEPT, size, findings, [Part("NoDamping", 700, 5000)])
-    text = page(found, "DampingController", PLANT)
-    assert "| launch_brake | 0 | 0.01 | 0.001 | 0.02 |" in text
-    assert f"all {2 * len(braked.case.inputs)} samples" in text
-    assert f"the most in manoeuvres and drives | {braked.instructions[1]} |" in text
-    assert "drawn at random | 950 |" in text
-    assert f"| flash of the controller | {size.flash} B |" in text
-    assert "| NoDamping | 700 | 5000 B |" in text
-    assert "| 11.4 | 2 | scheduler.c | registers have addresses" in text
-    worse = found._replace(comparisons=[braked._replace(differing=3), drawn])
-    assert "a bit of outputs or state differs" in page(worse, "DampingController", PLANT)
+    given = numbers(found)
+    assert given["loops"] == {"launch_brake": {"differing": 0, "T_ref": 0.01, "T_gear": 0.02, "rms": 0.001}}
+    assert given["cases"]["launch_brake"]["samples"] == len(braked.case.inputs)
+    assert given["cases"]["random states"]["instructions"] == (600.0, 950)
+    assert (given["costs"]["driven"], given["costs"]["drawn"]) == (braked.instructions[1], 950)
+    assert given["costs"]["flash"] == size.flash
+    assert given["parts"] == {"NoDamping": {"instructions": 700, "flash": 5000}}
+    (deviation,) = given["deviations"].items()
+    assert (deviation[0], deviation[1]["found"]) == ("11.4 scheduler.c", 2)
+    assert deviation[1]["why"].startswith("registers have addresses")
+    files = write(found, tmp_path)
+    assert [path.name for path in files] == [NUMBERS, "launch_brake.csv", "random_states.csv"]
+    assert json.loads(files[0].read_text()) == json.loads(json.dumps(given))
 
 
 def test_a_recorded_case_has_inputs_and_both_torques(braked: Comparison) -> None:
@@ -150,7 +150,7 @@ def test_a_recorded_case_has_inputs_and_both_torques(braked: Comparison) -> None
 
 @pytest.mark.usefixtures("target")
 def test_another_controller_runs_as_well(launch_brake: Case) -> None:
-    with programs("SpeedWashout", {"k_d": 1.0}) as washout:
+    with programs(CONTROLLERS["SpeedWashout"].started_with({"k_d": 1.0})) as washout:
         found = compare(washout, launch_brake, OUTPUTS)
     assert found.differing == 0
     assert found.finite

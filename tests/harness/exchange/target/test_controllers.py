@@ -7,11 +7,10 @@ from typing import Any
 import pytest
 
 from driveline.fmus.catalogue import FMUS
+from driveline.fmus.fmu import Fmu
 from driveline.fmus.native.compiler import CompilerError
-from driveline.fmus.target import a2l, image
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.exchange.target import offline_test
-from driveline.harness.exchange.target.target_build import write_image
+from driveline.harness.exchange.target import controllers, record
+from driveline.harness.exchange.target.controllers import for_car, write_image
 from driveline.harness.loop.settings import Settings
 from driveline.models.block.declaration import variables
 
@@ -23,9 +22,12 @@ def test_the_image_and_its_description_are_written_into_the_folder(
         (folder / "controller.elf").write_bytes(b"an image")
         return folder / "controller.elf"
 
-    monkeypatch.setattr(image, "target_image", made)
-    monkeypatch.setattr(a2l, "description", lambda fmu, path: f"{fmu.name} in {path.name}\n")
-    assert write_image("DampingController", tmp_path) == [tmp_path / "controller.elf", tmp_path / "controller.a2l"]
+    monkeypatch.setattr(controllers, "target_image", made)
+    monkeypatch.setattr(controllers, "a2l_description", lambda fmu, path: f"{fmu.name} in {path.name}\n")
+    assert write_image(for_car("DampingController"), tmp_path) == [
+        tmp_path / "controller.elf",
+        tmp_path / "controller.a2l",
+    ]
     assert (tmp_path / "controller.elf").read_bytes() == b"an image"
     assert (tmp_path / "controller.a2l").read_text() == "DampingController in controller.elf\n"
 
@@ -35,14 +37,13 @@ def test_a_controller_is_compiled_with_its_start_values_but_for_what_was_set(
 ) -> None:
     given: dict[str, float] = {}
 
-    def refused(controller: str, precision: str, values: Mapping[str, float]) -> Any:
-        given.update(values)
+    def refused(fmu: Fmu, precision: object) -> Any:
+        given.update(fmu.start_values)
         raise CompilerError("no compiler")
 
-    monkeypatch.setattr(offline_test, "with_values", refused)
-    monkeypatch.setattr(offline_test, "findings", lambda _: None)
+    monkeypatch.setattr(record, "target_sources", refused)
     settings = Settings(folder=native.parent, build="native", parameters={"controller.k_d": 2.5})
-    with pytest.raises((CompilerError, DrivelineError)):
-        offline_test.record(settings)
+    with pytest.raises(CompilerError):
+        record.record(settings)
     parameters = FMUS["DampingController"].block.Parameters
     assert given == {v.name: v.start for v in variables(parameters)} | {"k_d": 2.5}

@@ -1,0 +1,177 @@
+"""The test of the controller on the target: off-line, in the loop and under a timer; its numbers and files."""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ....fmus.native.statements import SINGLE
+from ....fmus.target.deviations import Finding, findings, reason
+from ....fmus.target.sources import CONTROLLERS, target_sources
+from ...base.atomic_files import write_text
+from ...base.csv_file import write_csv
+from ...base.progress import progress
+from ...cosimulation.parameter_changes import require_constant
+from ...cosimulation.wiring import fit
+from ...loop.places import T_S
+from ...loop.settings import Settings, loop
+from ...manoeuvres.catalogue import USUAL_MANOEUVRES
+from .comparison import Comparison, InLoop, compare, in_loop, responses
+from .controllers import programs
+from .costs import Schedule, Size, schedule, size_of
+from .offline_cases import Case, cases_in_loop, random_inputs, random_states
+
+NUMBERS = "numbers.json"
+
+TYPICAL = "prbs"
+"""The manoeuvre in which controllers are compared."""
+
+
+class Part(NamedTuple):
+    """What a controller takes: most instructions in a sample of one manoeuvre, and flash in bytes."""
+
+    controller: str
+    instructions: int
+    flash: int
+
+
+class Record(NamedTuple):
+    """What the target was found to do: off-line, in the loop, under a timer, and what it takes."""
+
+    comparisons: Sequence[Comparison]
+    loops: Sequence[InLoop]
+    schedule: Schedule
+    size: Size
+    findings: Sequence[Finding] = ()
+    parts: Sequence[Part] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether no bit differs, the torque of every case that the loop gave is as near to double precision as it
+        must, and every deviation from the rules has its reason."""
+        near = all(each.margin <= 1.0 or each.case.drawn for each in self.comparisons)
+        same = not any(each.differing for each in (*self.comparisons, *self.loops))
+        explained = all(reason(each) for each in self.findings)
+        kept = self.schedule.missed == 0 and all(each.finite for each in self.comparisons)
+        return near and same and explained and kept
+
+
+STEPS = 1 + (len(USUAL_MANOEUVRES) + 1) + (len(USUAL_MANOEUVRES) + 4) + len(USUAL_MANOEUVRES)
+"""For the progress: the checks; what the loop gives; these cases and those that are drawn; the target in the loop."""
+
+PARTS = ("NoDamping", "LinearObserver", "PaperObserver")
+"""Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
+
+
+def record(settings: Settings) -> Record:
+    """Runs all cases on the target and on this machine, and every manoeuvre with the target in the loop.
+
+    Args:
+        settings: of the loop with the controller, which is one of the project.
+
+    Raises:
+        CompilerError: a compiler, the emulator or the checker is missing.
+        SimulationError: the target was lost, hung or crashed.
+    """
+    require_constant(settings.parameters, "the C on the target")
+    controller, system = str(settings.controller), loop(settings)
+    interfaces = fit(system).interfaces
+    own = interfaces["controller"]
+    inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
+    values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
+    values |= {name: settings.parameters.get(f"controller.{name}", value) for name, value in values.items()}
+    fmu = CONTROLLERS[controller].started_with(values)
+    sources = target_sources(fmu, SINGLE)
+    with progress(STEPS, "target") as done:
+        found = findings(sources)
+        with programs(fmu) as made:
+            cases = _counted(cases_in_loop(system, interfaces, inputs, settings), done, 1)
+            first = 1 + len(cases)
+            cases += random_inputs(cases, settings.seed)
+            comparisons = _counted((compare(made, case, outputs) for case in cases), done, first)
+            states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
+            comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
+            loops = _counted(in_loop(made, controller, system, inputs, settings), done, first + len(comparisons))
+            size = size_of(made)
+            typical = next(each for each in comparisons if each.case.name == TYPICAL)
+            parts = [_part(name, typical.case) for name in PARTS if name != controller]
+            parts.append(Part(controller, typical.instructions[1], size.flash))
+            return Record(comparisons, loops, schedule(sources), size, found, parts)
+
+
+def _counted(pieces: Iterable[Any], done: Callable[[float], None], first: int) -> list[Any]:
+    """All of them; the progress shows each, from so many on."""
+    found: list[Any] = []
+    for count, piece in enumerate(pieces, first):
+        done(count)
+        found.append(piece)
+    return found
+
+
+def _part(controller: str, case: Case) -> Part:
+    with programs(CONTROLLERS[controller]) as made:
+        most = max(answer.count for answer in responses(made.target(), case)[1:])
+        return Part(controller, most, size_of(made).flash)
+
+
+def announce(found: Record) -> None:
+    """Prints a line for each case, off-line and in the loop."""
+    for each in found.comparisons:
+        print(
+            f"{each.case.name}: {each.samples} samples, {each.differing} with a differing bit, T_ref within "
+            f"{each.T_ref:.2g} N.m of double precision, at most {each.instructions[1]} instructions"
+        )
+    for each in found.loops:
+        print(
+            f"{each.manoeuvre} in the loop: {each.differing} samples differ from off-line, T_ref within "
+            f"{each.T_ref:.2g} N.m of the loop in double precision"
+        )
+
+
+def numbers(found: Record) -> dict[str, dict[str, Any]]:
+    """What was found as tables: rows by name, each with a value by column.
+
+    Torques are in N.m, memory in bytes, costs `driven` and `drawn` the most instructions of a sample, deviations the
+    rules that are not kept, by rule and file. For the rest see `Comparison`, `InLoop`, `Part`, `Size` and `Schedule`.
+    """
+    counts = Counter((each.rule, each.file, reason(each)) for each in found.findings)
+    most = {each.case.name: each.instructions[1] for each in found.comparisons}
+    drawn = {each.case.name for each in found.comparisons if each.case.drawn}
+    return {
+        "cases": {each.case.name: _columns(each, *Comparison._fields[1:8]) for each in found.comparisons},
+        "loops": {each.manoeuvre: _columns(each, *InLoop._fields[1:]) for each in found.loops},
+        "parts": {each.controller: _columns(each, *Part._fields[1:]) for each in found.parts},
+        "deviations": {f"{rule} {file}": {"found": n, "why": why} for (rule, file, why), n in sorted(counts.items())},
+        "costs": {
+            "driven": max(count for name, count in most.items() if name not in drawn),
+            "drawn": max((most[name] for name in drawn), default=0),
+            "stack_used": max(each.stack for each in found.comparisons),
+            **found.size._asdict(),
+        },
+        "schedule": found.schedule._asdict(),
+    }
+
+
+def _columns(row: Any, *names: str) -> dict[str, Any]:
+    return {name: getattr(row, name) for name in names}
+
+
+def write(found: Record, folder: Path) -> list[Path]:
+    """Writes the numbers and the cases; returns the files."""
+    files = [folder / NUMBERS]
+    write_text(json.dumps(numbers(found), indent=2) + "\n", files[0])
+    for each in found.comparisons:
+        files.append(folder / f"{each.case.name.replace(' ', '_')}.csv")
+        write_csv(signals(each), files[-1])
+    return files
+
+
+def signals(comparison: Comparison) -> np.ndarray:
+    """Time, inputs, and the torque on the target and in double precision, as columns of a file."""
+    case, (target, model) = comparison.case, comparison.traces
+    columns = {"time": T_S * np.arange(len(target)), **dict(zip(case.names, case.inputs.T, strict=True))}
+    columns |= {"target.T_ref": target, "model.T_ref": model}
+    return np.rec.fromarrays(list(columns.values()), [(name, float) for name in columns])
