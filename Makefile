@@ -57,10 +57,11 @@ mutation: $(READY) ## small faults put into all rooms, one by one: do the tests 
 fuzz: $(READY) ## odd calls, files and options by the thousand
 	$(BIN)/python -m tests.fuzz
 
-lint: $(READY) ## format, lint and types
+lint: $(READY) ## format, lint, the order of the rooms, and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	@for package in $(PACKAGES); do ln -sfn ../$$package driveline/$$package; done # type checkers see the package as it is installed
+	@for package in $(PACKAGES); do ln -sfn ../$$package driveline/$$package; done # they see the package as it is installed
+	$(BIN)/lint-imports --no-cache --no-logo
 	$(BIN)/basedpyright
 
 check: $(READY) ## build the FMUs and run every compliance check on them
