@@ -1,28 +1,23 @@
 """Healthy drives that come nearest to a fault, and are taken for one or nearly: the share of them in fallback.
 
-    python -m docs.studies.false_alarms
-
 The car rolls back on a grade of 20 % until the driver pushes, too little or late, or though he does; or it cruises
 at 15 m/s with the torque that keeps this speed, or speeds up from there, and the speed of the motor is measured with
 little noise or coarsely.
 """
 
-import argparse
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from rich.table import Table
 
-from driveline.harness.base.interruption import script
-from driveline.harness.loop.places import BUILD, PLANTS
+from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.views.terminal import print_table
 from driveline.models.controller.supervision import FALLBACK
+
+from .study import Column, Measured, Study, Table
 
 GRADE = 0.2
 HOLDING = 2400.0
@@ -83,21 +78,24 @@ DRIVES = (
 )
 
 
-def share_in_fallback(plant: str, drive: Drive, folder: Path = BUILD) -> float:
-    results = simulate(drive.manoeuvre, plant, parameters=drive.parameters, folder=folder)
-    return float(np.mean(results["controller.status"] == FALLBACK))
+def share_in_fallback(plant: str, drive: Drive) -> float:
+    """In %."""
+    results = simulate(drive.manoeuvre, plant, parameters=drive.parameters)
+    return 100.0 * float(np.mean(results["controller.status"] == FALLBACK))
 
 
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.parse_args(arguments)
-    cases = [(plant, drive) for drive in DRIVES for plant in PLANTS]
-    shares = run_many(lambda case: share_in_fallback(*case), cases, label="healthy drives")
-    table = Table("drive", *PLANTS, title="in fallback", title_justify="left")
-    for drive, *both in zip(DRIVES, shares[::2], shares[1::2], strict=True):
-        table.add_row(drive.manoeuvre.name, *(f"{share:.0%}" for share in both))
-    print_table(table)
+def shares(drives: Sequence[Drive]) -> Table:
+    """A row for each drive."""
+    cases = [(plant, drive) for drive in drives for plant in PLANTS]
+    found = iter(run_many(lambda case: share_in_fallback(*case), cases, label="healthy drives"))
+    rows = {drive.manoeuvre.name: tuple(next(found) for _ in PLANTS) for drive in drives}
+    return Table("drive", tuple(Column(f"{plant}, in fallback", "%", 0) for plant in PLANTS), rows)
 
 
-if __name__ == "__main__":
-    script(main)
+STUDY = Study(
+    "healthy drives that come nearest to a fault",
+    lambda: Measured({"shares": shares(DRIVES)}),
+    lambda: {"shares": shares([DRIVES[6], DRIVES[12]])},
+    {"shares": [DRIVES[6].manoeuvre.name, DRIVES[12].manoeuvre.name]},
+    seconds=10,
+)

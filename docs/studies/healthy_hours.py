@@ -1,6 +1,6 @@
 """Hours of healthy driving: is any sample of them in fallback, and how near did the monitors come to it?
 
-    python -m docs.studies.healthy_hours --hours 24
+    python -m docs.studies healthy_hours --hours 24
 
 Drives of a minute each, at random but reproducible: pedal, brake and slope, from parking to motorway, with
 the sensor errors of the specification (noise, tolerances of torque and wheel radius, lost messages), on both
@@ -8,26 +8,26 @@ plants and on ice, where wheels spin and lock. The residuals of the monitors are
 """
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import partial
 from math import copysign
 from typing import NamedTuple
 
 import numpy as np
-from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.base.longest_interval import longest_run
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.views.terminal import print_table
 from driveline.models.controller import causes, torque_loop, wheel_messages
 from driveline.models.controller.supervision import FALLBACK, T_S, Input
 from driveline.models.damping_controller import BLOCK
 from driveline.models.physics.vehicle import added_speed
+
+from .study import Column, Measured, Study, Table
+from .terminal import show
 
 P = BLOCK.Parameters()
 MINUTE = 60.0
@@ -172,24 +172,55 @@ def worst(drives: Iterable[Found]) -> Found:
     return Found(*map(sum, columns[:3]), *map(max, columns[3:]))
 
 
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+HOURS = 24.0
+"""Shared by the roads."""
+
+COLUMNS = (
+    *(Column(name, decimals=0) for name in ("samples", "in fallback", "less damping")),
+    *map(Column, ("jump", "contradiction", "torque", "frozen")),
+)
+
+
+def roads_table(hours: float) -> Table:
+    """The largest residuals on each road, over the thresholds from which on they count as a fault."""
+    drives = max(1, round(hours * 3600.0 / MINUTE / len(ROADS)))
+    rows = {
+        name: tuple(worst(run_many(partial(found, road), range(1, drives + 1), label=name)))
+        for name, road in ROADS.items()
+    }
+    return Table("road", COLUMNS, rows, "From `jump` on: the largest residuals over their thresholds.")
+
+
+def first_table() -> Table:
+    """The first drive on each road."""
+    return Table("road", COLUMNS, {name: tuple(found(road, 1)) for name, road in ROADS.items()})
+
+
+def measure() -> Measured:
+    return Measured({"roads": roads_table(HOURS), "first": first_table()})
+
+
+def again() -> dict[str, Table]:
+    return {"first": Table("road", COLUMNS, {name: tuple(found(ROADS[name], 1)) for name in SENTINELS})}
+
+
+def explore(arguments: Sequence[str]) -> None:
+    parser = argparse.ArgumentParser(
+        prog="python -m docs.studies healthy_hours",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--hours", type=float, default=24.0, help="simulated, shared by the roads (default: 24)")
-    parser.add_argument("--workers", type=int, help="processes (default: one a core)")
-    options = parser.parse_args(arguments)
-    drives = max(1, round(options.hours * 3600.0 / MINUTE / len(ROADS)))
-    table = Table(
-        "road", "hours", "samples", "in fallback", "less damping", "jump", "contradiction", "torque", "frozen"
-    )
-    for name, road in ROADS.items():
-        of = worst(run_many(partial(found, road), range(1, drives + 1), options.workers, label=name))
-        hours = of.samples * T_S / 3600.0
-        table.add_row(name, f"{hours:.2f}", f"{of.samples}", *map(str, of[1:3]), *(f"{value:.2f}" for value in of[3:]))
-    print_table(table)
-    print(
-        "The columns from `jump` on are the largest residuals, over the thresholds from which on they count as a fault."
-    )
+    show("healthy driving", roads_table(parser.parse_args(arguments).hours))
 
 
-if __name__ == "__main__":
-    script(main)
+SENTINELS = ("vehicle on ice",)
+
+STUDY = Study(
+    "hours of healthy driving, and how near the monitors came to a fallback",
+    measure,
+    again,
+    {"first": SENTINELS},
+    explore=explore,
+    seconds=300,
+)

@@ -1,23 +1,18 @@
 """Drives of our own that are what they say: what `driveline replay` finds odd in them, which should be nothing.
 
-    python -m docs.studies.plausible_drives [--cases N]
-
 Plants, manoeuvres and damping in turn, each with a car, sensors and noise that are drawn at random (the box of
 docs/robustness.md). What its sensors record is judged as the recording of a drive at 500 Hz and at 10 Hz, and followed
 by the same plant with the car as it is declared, which nobody knows better.
 """
 
-import argparse
+from collections.abc import Sequence
 from itertools import product
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.built_fmus import built
-from driveline.harness.loop.places import BUILD, PLACES, PLANTS, T_S
+from driveline.harness.loop.places import PLACES, PLANTS, T_S
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.road_load import Track
@@ -31,7 +26,8 @@ from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.drives.replay import car_of, followed, speed_error
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.outcome import Case
-from driveline.harness.views.terminal import print_table
+
+from .study import Cell, Column, Measured, Study, Table
 
 CASES, SEED = 200, 1
 STRIDES = (1, 50)
@@ -94,34 +90,51 @@ def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) ->
     return Judged(case, findings, balance(forces(drives[0].time, drives[0].v, drives[0].T_mot, load)), error)
 
 
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=CASES, help="default: %(default)s")
-    parser.add_argument("--fmus", type=Path, default=BUILD, help="default: %(default)s")
-    args = parser.parse_args(arguments)
-    settings = {plant: built(plant, folder=args.fmus) for plant in PLANTS}
-    found = run_many(lambda one: judged(*one, settings[one[0].plant]), cases(args.cases), label="drives")
-    table = Table(
-        "plant", "drives", "findings", "balanced", "correlation", "ratio", "speed error, m/s", title_justify="left"
-    )
+def all_judged(drives: Sequence[tuple[Case, bool]]) -> list[Judged]:
+    """What is found odd in drives."""
+    settings = {plant: built(plant) for plant in PLANTS}
+    return run_many(lambda one: judged(*one, settings[one[0].plant]), drives, label="drives")
+
+
+def plants_table(found: Sequence[Judged]) -> Table:
+    """A row for each plant."""
+    rows: dict[str, tuple[Cell, ...]] = {}
     for plant in PLANTS:
-        of_plant = [one for one in found if one.case.plant == plant]
-        balanced = [one.balance for one in of_plant if one.balance.fits]
-        signs = [one.balance.correlation for one in of_plant if one.balance.correlation]
-        table.add_row(
-            plant,
-            str(len(of_plant)),
-            str(sum(len(one.findings) for one in of_plant)),
-            str(len(balanced)),
-            f"{min(signs):.2f} to {max(signs):.2f}",
-            f"{min(b.ratio for b in balanced):.2f} to {max(b.ratio for b in balanced):.2f}",
-            f"to {max(one.speed_error for one in of_plant):.2f}",
-        )
-    print_table(table)
-    for one in found:
-        for finding in one.findings:
-            print(f"{one.case}: {finding}")
+        its = [one for one in found if one.case.plant == plant]
+        balanced = [one.balance for one in its if one.balance.fits]
+        signs = [one.balance.correlation for one in its if one.balance.correlation]
+        ratios = [each.ratio for each in balanced]
+        counts = (len(its), sum(len(one.findings) for one in its), len(balanced))
+        limits = (min(signs), min(ratios), max(ratios), max(one.speed_error for one in its))
+        rows[plant] = (*counts, *limits)
+    columns = (
+        *(Column(name, decimals=0) for name in ("drives", "findings", "balanced")),
+        *map(Column, ("least correlation", "least ratio", "largest ratio")),
+        Column("speed error", "m/s"),
+    )
+    return Table("plant", columns, rows)
 
 
-if __name__ == "__main__":
-    script(main)
+def findings_table(found: Sequence[Judged]) -> Table:
+    """How many findings single drives have, and how far the plant that follows is off."""
+    rows = {str(one.case): (len(one.findings), one.speed_error) for one in found}
+    return Table("drive", (Column("findings", decimals=0), Column("speed error", "m/s", 3)), rows)
+
+
+def measure() -> Measured:
+    found = all_judged(cases(CASES))
+    return Measured({"plants": plants_table(found), "drives": findings_table(found)})
+
+
+def again() -> dict[str, Table]:
+    return {"drives": findings_table(all_judged(cases(1)))}
+
+
+STUDY = Study(
+    "drives of our own in which nothing should be found odd",
+    measure,
+    again,
+    {"drives": [str(cases(1)[0][0])]},
+    (SEED,),
+    seconds=120,
+)

@@ -95,6 +95,16 @@ STUDIES = (
     "goals",
     "one_at_a_time",
     "tutorial",
+    "comparison",
+    "roads",
+    "faults",
+    "robustness",
+    "healthy_hours",
+    "false_alarms",
+    "undetectable_faults",
+    "plausible_drives",
+    "replay",
+    "identification",
 )
 """Modules of this folder that have a STUDY; those that decide come first."""
 

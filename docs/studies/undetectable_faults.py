@@ -1,25 +1,21 @@
 """Undetectable faults of the motor speed: how much does the gear swing with them, over that without control?
 
-    python -m docs.studies.undetectable_faults
-
 Each is there from the first sample to the last of a manoeuvre of 6 s. The table has the gear torque (rms of 5 to
 50 Hz) with the fault over that without control, and the share of the samples in fallback.
 """
 
-import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import numpy as np
-from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, step
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.coupling import monolithic
-from driveline.harness.views.terminal import print_table
 from driveline.models.controller.supervision import FALLBACK
+
+from .study import Cell, Column, Measured, Study, Table
 
 LATE = 0.062
 """Delay in s: half a period of the swing."""
@@ -81,18 +77,26 @@ def swing(plant: str, manoeuvre: str, fault: str | None) -> tuple[float, float]:
     return rms, float(np.mean(y["controller.status"] == FALLBACK))
 
 
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.parse_args(arguments)
-    alone = dict.fromkeys((plant, manoeuvre, None) for plant in monolithic.PLANTS for manoeuvre, _ in CASES)
-    cases = [*alone, *((plant, *case) for plant in monolithic.PLANTS for case in CASES)]
-    answers = dict(zip(cases, run_many(lambda case: swing(*case), cases, label="faults"), strict=True))
-    table = Table("manoeuvre", "motor speed", "plant", "over without control", "in fallback")
-    for plant, manoeuvre, fault in cases[len(alone) :]:
+def faults_table(cases: Sequence[tuple[str, str]], plants: Collection[str] = tuple(monolithic.PLANTS)) -> Table:
+    """A row for each manoeuvre with a fault on a plant."""
+    alone = dict.fromkeys((plant, manoeuvre, None) for plant in plants for manoeuvre, _ in cases)
+    todo = [*alone, *((plant, *case) for plant in plants for case in cases)]
+    answers = dict(zip(todo, run_many(lambda case: swing(*case), todo, label="faults"), strict=True))
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for plant, manoeuvre, fault in todo[len(alone) :]:
         rms, share = answers[plant, manoeuvre, fault]
-        table.add_row(manoeuvre, fault, plant, f"{rms / answers[plant, manoeuvre, None][0]:.2f}", f"{share:.0%}")
-    print_table(table)
+        rows[f"{manoeuvre}, {fault}, {plant}"] = (rms / answers[plant, manoeuvre, None][0], 100.0 * share)
+    columns = (Column("over without control"), Column("in fallback", "%", 0))
+    return Table("manoeuvre, motor speed, plant", columns, rows)
 
 
-if __name__ == "__main__":
-    script(main)
+SENTINEL = ("tipin15", "late")
+PLANT = next(iter(monolithic.PLANTS))
+
+STUDY = Study(
+    "faults of the motor speed that no other signal contradicts",
+    lambda: Measured({"faults": faults_table(CASES)}),
+    lambda: {"faults": faults_table([SENTINEL], [PLANT])},
+    {"faults": [f"tipin15, late, {PLANT}"]},
+    seconds=60,
+)

@@ -1,6 +1,5 @@
 """Healthy hours: what they drive, and that they would tell of a false alarm and of how near one was."""
 
-import math
 from functools import partial
 
 import numpy as np
@@ -139,15 +138,3 @@ def test_a_drive_whose_half_swings_all_count_has_samples_with_less_damping(short
     monkeypatch.setattr(healthy_hours, "drive", with_a_low_count)
     of = found(ROADS["design model"], 7)
     assert 0 < of.feeding < of.samples
-
-
-def test_the_table_has_the_hours_and_the_fallback_of_every_road_wherever_it_is_printed(monkeypatch, capsys):
-    monkeypatch.setenv("COLUMNS", "80")
-    monkeypatch.setattr(
-        healthy_hours, "found", lambda road, seed: Found(1_800_000, seed, 2 * seed, 0.1, math.pi, 0.5, 0.4)
-    )
-    healthy_hours.main(["--hours", "0.1", "--workers", "1"])
-    lines = (line.strip("│").split("│") for line in capsys.readouterr().out.splitlines() if line.startswith("│"))
-    assert [[cell.strip() for cell in line] for line in lines] == [
-        [road, "2.00", "3600000", "3", "6", "0.10", "3.14", "0.50", "0.40"] for road in ROADS
-    ]

@@ -1,7 +1,6 @@
 """Roads without grip, and frames of motor control that are late or wrong: gear torque over that without control.
 
-    python -m docs.studies.grip_and_frames
-    python -m docs.studies.grip_and_frames --controller LinearObserver --controller SpeedWashout
+    python -m docs.studies roads --controller LinearObserver --controller SpeedWashout
 
 On the validation vehicle. A row of the tables is a group of runs: largest gear torque and its rms from 5 to 50 Hz
 over those of the same run without control (the worst run, and the mean of all), and the longest time in fallback.
@@ -17,10 +16,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from rich.table import Table
 
 from driveline.fmus.catalogue import SIGNAL_FAULTS
-from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.loop.built_fmus import built, made_if_missing
@@ -34,11 +31,12 @@ from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults.fault_injection import with_faults
-from driveline.harness.views.terminal import print_table
 from driveline.models.controller.supervision import FALLBACK
 from driveline.models.signal_faults import FRAME, LATE, MOTOR_SPEED, MOTOR_TORQUE
 
 from . import periodic_errors
+from .study import Cell, Column, Measured, Study, Table
+from .terminal import show
 
 PLANT, OURS = "ValidationVehicle", "DampingController"
 QUIET_PEAK, QUIET_RMS = 20.0, 1.0
@@ -216,16 +214,15 @@ def measured(
     return run_many(partial(ratios, settings=settings, injectors=injectors), runs, workers, label)
 
 
-NUMBERS = ("peak, worst", "mean", "rms, worst", "mean", f"over {MOST}", "fallback, s")
-NUMBERS_OF_FRAMES = (*NUMBERS[:4], f"rms over {MOST_LATE}", NUMBERS[5])
+NUMBERS = (Column("peak, worst"), Column("peak, mean"), Column("rms, worst"), Column("rms, mean"))
+OVER = Column(f"over {MOST}", decimals=0), Column("fallback", "s")
 
 
-def numbers(of: Sequence[Ratios], of_frames: bool = False) -> list[str]:
-    """Worst and mean of the peak and of the rms, runs beyond the limit, the longest fallback: a cell for each of
-    NUMBERS, or of NUMBERS_OF_FRAMES."""
+def numbers(of: Sequence[Ratios]) -> tuple[Cell, ...]:
+    """Worst and mean of the peak and of the rms, the runs beyond MOST, the longest fallback."""
     peak, rms, fallback = (np.array(column) for column in zip(*of, strict=True))
-    over = late(rms) if of_frames else int(np.count_nonzero(np.maximum(peak, rms) > MOST))
-    return [*(f"{y:.2f}" for y in (peak.max(), peak.mean(), rms.max(), rms.mean())), f"{over}", f"{fallback.max():.2f}"]
+    over = int(np.count_nonzero(np.maximum(peak, rms) > MOST))
+    return (*map(float, (peak.max(), peak.mean(), rms.max(), rms.mean())), over, float(fallback.max()))
 
 
 def late(rms: np.ndarray) -> int:
@@ -241,36 +238,90 @@ def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tup
     return groups
 
 
-MEANINGS = """\
-  peak      largest gear torque over that without control
-  rms       gear torque from 5 to 50 Hz over that without control
-  fallback  longest time without damping
-"""
+CONTROLLERS = (OURS, *(name for name in COMPARATORS if name != "NoDamping"))
 
 
-def show(runs: Sequence[Run], found: Sequence[Ratios], title: str) -> None:
-    of_frames = runs[0].begin is not None
-    headings = NUMBERS_OF_FRAMES if of_frames else NUMBERS
-    table = Table("runs", "count", *headings, "the worst run", title=title, title_justify="left")
-    for group, of in {**by_group(runs, found), "all": list(zip(runs, found, strict=True))}.items():
-        worst, _ = max(of, key=lambda each: max(each[1].peak, each[1].rms))
-        table.add_row(group, f"{len(of)}", *numbers([y for _, y in of], of_frames), str(worst))
-    print_table(table)
-    print(MEANINGS)
+def controllers_table(found: Mapping[tuple[str, str], Sequence[Ratios]]) -> Table:
+    """Every controller on roads without grip and under ABS."""
+    rows = {f"{study}, {name}": numbers(of) for (study, name), of in found.items() if study != "frames"}
+    return Table("runs, controller", (*NUMBERS, *OVER), rows)
 
 
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def groups_table(runs: Sequence[Run], found: Sequence[Ratios]) -> Table:
+    """A row for each group of runs with ours."""
+    rows = {group: (len(of), *numbers([y for _, y in of])) for group, of in by_group(runs, found).items()}
+    return Table("runs", (Column("count", decimals=0), *NUMBERS, *OVER), rows)
+
+
+def frames_table(runs: Sequence[Run], found: Mapping[str, Sequence[Ratios]]) -> Table:
+    """For frames that are late or wrong the rms of each controller: worst, mean, and how many are beyond MOST_LATE."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    grouped = [by_group(runs, of) for of in found.values()]
+    for group in grouped[0]:
+        each = (np.array([y.rms for _, y in of[group]]) for of in grouped)
+        rows[group] = tuple(f"{rms.max():.2f} / {rms.mean():.2f} / {late(rms)}" for rms in each)
+    return Table("frame", tuple(map(Column, found)), rows)
+
+
+def runs_table(runs: Sequence[Run], found: Sequence[Ratios]) -> Table:
+    """Single runs with ours."""
+    rows = {f"{each.group}: {each}": tuple(map(float, y)) for each, y in zip(runs, found, strict=True)}
+    return Table("run", (Column("peak"), Column("rms"), Column("fallback", "s")), rows)
+
+
+def sentinels() -> list[Run]:
+    """One run of each kind."""
+    return [next(iter(made())) for made in STUDIES.values()]
+
+
+def measure() -> Measured:
+    runs = {study: list(made()) for study, made in STUDIES.items()}
+    found = {
+        (study, controller): measured(runs[study], controller, f"{controller}, {study}")
+        for study, controller in product(STUDIES, CONTROLLERS)
+    }
+    slippery = [*runs["grip"], *runs["abs"]]
+    return Measured(
+        {
+            "controllers": controllers_table(found),
+            "groups": groups_table(slippery, [*found["grip", OURS], *found["abs", OURS]]),
+            "frames": frames_table(runs["frames"], {name: found["frames", name] for name in CONTROLLERS}),
+            "runs": runs_table(slippery, [*found["grip", OURS], *found["abs", OURS]])._replace(note="With ours."),
+            "late": runs_table(sentinels()[2:], measured(sentinels()[2:], OURS, "frames")),
+        }
+    )
+
+
+def again() -> dict[str, Table]:
+    runs = sentinels()
+    found = measured(runs, OURS, "roads")
+    return {"runs": runs_table(runs[:2], found[:2]), "late": runs_table(runs[2:], found[2:])}
+
+
+def explore(arguments: Sequence[str]) -> None:
+    parser = argparse.ArgumentParser(
+        prog="python -m docs.studies roads",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--controller", action="append", choices=(OURS, *COMPARATORS), help="default: ours")
     parser.add_argument("--study", action="append", choices=tuple(STUDIES), help="default: all")
-    parser.add_argument("--fmus", type=Path, default=BUILD, help="folder of the FMUs")
-    parser.add_argument("--workers", type=int, help="processes (default: one a core)")
     options = parser.parse_args(arguments)
     for controller, study in product(options.controller or [OURS], options.study or STUDIES):
         runs = list(STUDIES[study]())
-        found = measured(runs, controller, study, options.fmus, options.workers)
-        show(runs, found, f"{controller}: {study}")
+        show(f"{controller}: {study}", groups_table(runs, measured(runs, controller, study)))
 
 
-if __name__ == "__main__":
-    script(main)
+NAMES = [f"{each.group}: {each}" for each in sentinels()]
+
+STUDY = Study(
+    "roads without grip, ABS, and frames that are late or wrong",
+    measure,
+    again,
+    {
+        "runs": [f"{each.group}: {each}" for each in sentinels()[:2]],
+        "late": [f"{r.group}: {r}" for r in sentinels()[2:]],
+    },
+    explore=explore,
+    seconds=120,
+)

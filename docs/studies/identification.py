@@ -1,12 +1,10 @@
-"""The tables of docs/identification.md, between their marks."""
+"""What an identification is worth: accuracy, intervals, the detailed vehicle, bad data, foreign loops, redesign."""
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
 from docs.studies.foreign_loop import CARS, Loop
-from docs.studies.generated_sections import filled
 from docs.studies.identification_accuracy import (
     DESIGN_MODEL,
     KNOWN,
@@ -24,14 +22,12 @@ from docs.studies.identification_accuracy import (
     redesigned,
     trapped,
 )
-from docs.studies.imports import ROOT
 from driveline.harness.design.design_weights import MOTOR
 from driveline.harness.identification.quality import Z_95
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.robustness.draws import draw
-from driveline.harness.views.markdown import markdown_table
 
-PAGE = ROOT / "docs" / "identification.md"
+from .study import Column, Measured, Study, Table
 
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
@@ -72,65 +68,86 @@ WORSE = 0.05
 """By which a redesigned controller may be worse at most."""
 
 
-def make(folder: Path, table: str) -> None:
-    made = {table: TABLES[table]()}
-    (folder / PAGE.name).write_text(filled(PAGE.read_text(encoding="utf-8"), made), encoding="utf-8")
-
-
-def accuracy_table() -> str:
+def accuracy_tables() -> dict[str, Table]:
     seeds = range(FIRST, FIRST + KNOWN_J_1)
     known = run_many(accuracy, [(seed, ()) for seed in seeds], label="accuracy")
     free = run_many(accuracy, [(seed, ("J_1",)) for seed in seeds[:FREE_J_1]], label="accuracy with J_1 free")
     starts = run_many(from_random_starts, range(FIRST, FIRST + STARTS), label="wide starts")
     right = sum(all(abs(_off(found, name)) < limit for name, limit in RIGHT.items()) for found in starts)
-    median = float(np.median([found.seconds for found in known]))
-    return (
-        f"{_accuracy(known, free)}\n\n"
-        f"{len(known)} recordings, {len(free)} with J_1 free; {median:.1f} s each (median, two at a time). From "
-        f"{len(starts)} wide starts the right optimum was found {right} times."
-    )
+    count = {
+        "recordings": (len(known),),
+        "with J_1 free": (len(free),),
+        "wide starts": (len(starts),),
+        "wide starts that find the right optimum": (right,),
+    }
+    return {
+        "accuracy": _accuracy(known, free),
+        "count": Table("", (Column("count", decimals=0),), count),
+        "recordings": recordings_table(dict(zip(seeds[:5], known[:5], strict=True))),
+    }
 
 
-def vehicle_table() -> str:
+def recordings_table(found: Mapping[int, Found]) -> Table:
+    """What single recordings of the design model gave, by their seeds."""
+    names = {"J_2": "kg.m2", "C": "N.m/rad", "phi_B": "rad", "tau": "s"}
+    columns = tuple(Column(name, unit, tolerance=0.005) for name, unit in names.items())
+    return Table("seed", columns, {str(seed): tuple(of.values[name] for name in names) for seed, of in found.items()})
+
+
+def vehicle_table() -> Table:
     cases = [(FIRST + n, load) for load in (True, False) for n in range(VEHICLES)]
     found = run_many(judged, cases, label="vehicle")
-    return f"{_vehicle(found[:VEHICLES], found[VEHICLES:])}\n\n{VEHICLES} recordings each."
+    return _vehicle(found[:VEHICLES], found[VEHICLES:])._replace(note=f"{VEHICLES} recordings each.")
 
 
-def traps_table() -> str:
+def traps_table() -> Table:
     cases = [(k, FIRST + n) for k in range(len(TRAPS)) for n in range(OF_A_TRAP)]
     found = run_many(trapped, cases, label="bad data")
-    return _traps([found[k : k + OF_A_TRAP] for k in range(0, len(found), OF_A_TRAP)]) + f"\n\n{OF_A_TRAP} each."
+    traps = _traps([found[k : k + OF_A_TRAP] for k in range(0, len(found), OF_A_TRAP)])
+    return traps._replace(note=f"{OF_A_TRAP} recordings each.")
 
 
-def foreign_table() -> str:
+def foreign_table() -> Table:
     cases = [(k, loop, FIRST + n) for loop in LOOPS.values() for k in range(len(CARS)) for n in range(OF_A_LOOP)]
     found = run_many(foreign, cases, label="foreign loops")
     size = len(CARS) * OF_A_LOOP
     return _foreign([list(zip(cases, found, strict=True))[k : k + size] for k in range(0, len(found), size)])
 
 
-def methods_table() -> str:
+def methods_table() -> Table:
     cases = {plant: [(plant, FIRST + n) for n in range(METHODS)] for plant in DRAWS}
     found = {plant: run_many(both_methods, of, label=plant) for plant, of in cases.items()}
-    return f"{_methods(found)}\n\n{METHODS} recordings each."
+    return _methods(found)._replace(note=f"{METHODS} recordings each.")
 
 
-def redesigned_table() -> str:
+def redesigned_table() -> Table:
     draws = [(plant, draw(n, DRAWN)) for plant, count in DRAWS.items() for n in range(1, count + 1)]
     cases = [(plant, drawn.number, drawn.deviation, drawn.noise) for plant, drawn in draws]
     return _redesigned(run_many(redesigned, cases, label="redesigned"))
 
 
-TABLES = {
-    "accuracy": accuracy_table,
-    "vehicle": vehicle_table,
-    "traps": traps_table,
-    "foreign": foreign_table,
-    "methods": methods_table,
-    "redesigned": redesigned_table,
-}
-"""By their names in the page."""
+def measure() -> Measured:
+    return Measured(
+        {
+            **accuracy_tables(),
+            "vehicle": vehicle_table(),
+            "traps": traps_table(),
+            "foreign": foreign_table(),
+            "methods": methods_table(),
+            "redesigned": redesigned_table(),
+        }
+    )
+
+
+def again() -> dict[str, Table]:
+    return {"recordings": recordings_table({FIRST: accuracy((FIRST, ()))})}
+
+
+def _in_words(headings: Sequence[str], rows: Sequence[Sequence[str]], labels: int) -> Table:
+    """A table of words, the first of which name a row."""
+    label, named = ", ".join(filter(None, headings[:labels])), {", ".join(row[:labels]): row for row in rows}
+    columns = tuple(map(Column, headings[labels:]))
+    return Table(label, columns, {name: tuple(row[labels:]) for name, row in named.items()})
 
 
 def _off(found: Found, name: str) -> float:
@@ -138,7 +155,7 @@ def _off(found: Found, name: str) -> float:
     return found.values[name] / TRUE[name] - 1.0
 
 
-def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> str:
+def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> Table:
     bound = {"J_2": ".084", "C": ".016", "phi_B": ".066"}
     goal = {"J_2": ".12 / .4", "C": ".025 / .1", "phi_B": ".09 / .35", "J_1": "- / .1", "tau": "- / .4"}
     rows = []
@@ -157,10 +174,10 @@ def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> str:
                 ]
             )
     headings = ["", "bound (sd)", "rms error", "worst", "goal (rms / worst)", "in the 95 % interval, %"]
-    return markdown_table(headings, rows, labels=1)
+    return _in_words(headings, rows, labels=1)
 
 
-def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> str:
+def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> Table:
     def mean(values: Sequence[float], decimals: int = 1) -> str:
         return "-" if np.isnan(values).any() else f"{np.mean(values):.{decimals}f}"
 
@@ -188,14 +205,14 @@ def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> str:
         ),
         row("time, s", "30", lambda one: one.found.seconds, 0),
     ]
-    return markdown_table(["", "goal", "with load torque", "without"], rows, labels=1)
+    return _in_words(["", "goal", "with load torque", "without"], rows, labels=1)
 
 
 SPREAD_GOALS = {"J_2": "2.5 %", "C": "1 %", "phi_B": "0.6 %", "d": ""}
 """Standard deviation of repeated recordings, with load torque."""
 
 
-def _methods(every: Mapping[str, Sequence[tuple[Method, Method]]]) -> str:
+def _methods(every: Mapping[str, Sequence[tuple[Method, Method]]]) -> Table:
     rows = []
     for plant, pairs in every.items():
         for k, name in enumerate(("prediction error", "output error")):
@@ -210,10 +227,10 @@ def _methods(every: Mapping[str, Sequence[tuple[Method, Method]]]) -> str:
         *("plant", "method", "J_2, kg.m2", "C, N.m/rad", "phi_B, rad", "d, N.m.s/rad"),
         *("simulated 0.5 s: omega_1, %", "time, s"),
     ]
-    return markdown_table(headings, rows, labels=2)
+    return _in_words(headings, rows, labels=2)
 
 
-def _traps(every: Sequence[Sequence[Found]]) -> str:
+def _traps(every: Sequence[Sequence[Found]]) -> Table:
     rows = []
     for trap, found in zip(TRAPS, every, strict=True):
         true = TRUE | {name.partition(".")[2]: value for name, value in trap.parameters.items() if name == "motor.tau"}
@@ -227,7 +244,7 @@ def _traps(every: Sequence[Sequence[Found]]) -> str:
         J_2 = _rms_and_worst([100.0 * _off(one, "J_2") for one in found])
         rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2], J_2])
     headings = ["", "right within 3 sd, %", "cause named, %", "either, %", "J_2 off by, % (rms / worst)"]
-    return markdown_table(headings, rows, labels=1)
+    return _in_words(headings, rows, labels=1)
 
 
 def _rms_and_worst(errors: Sequence[float]) -> str:
@@ -238,7 +255,7 @@ Drives = Sequence[tuple[tuple[int, Loop, int], tuple[Found, tuple[float, float]]
 """Number of the car, loop, seed; what was found, and the shifts of motor and load torque in s."""
 
 
-def _foreign(every: Sequence[Drives]) -> str:
+def _foreign(every: Sequence[Drives]) -> Table:
     """A row for each loop and kind of tyre, and for all loops."""
     rows = []
     together = [drive for drives in every for drive in drives]
@@ -250,7 +267,7 @@ def _foreign(every: Sequence[Drives]) -> str:
         *("loop and logger", "tyre", "J_2, %", "C, %", "phi_B, %", "95 % interval of J_2, +- %"),
         *("in the intervals, %", "motor / load torque late, ms", "found, off by at most, ms"),
     ]
-    return markdown_table(headings, rows, labels=2)
+    return _in_words(headings, rows, labels=2)
 
 
 def _of_drives(drives: Drives, true: str) -> list[str]:
@@ -268,7 +285,7 @@ def _of_drives(drives: Drives, true: str) -> list[str]:
     return [*errors, f"{np.mean(half):.2f}", f"{100.0 * np.mean(inside):.0f}", true, worst]
 
 
-def _redesigned(every: Sequence[Redesigned]) -> str:
+def _redesigned(every: Sequence[Redesigned]) -> Table:
     rows = []
     for plant in DRAWS:
         cars = [car for car in every if car.plant == plant]
@@ -293,8 +310,18 @@ def _redesigned(every: Sequence[Redesigned]) -> str:
         *("settling not worse, %", "overshoot not worse, %", "neither worse, %", "settling at most 5 % worse, %"),
         "overshoot at most more, points of %",
     ]
-    return markdown_table(headings, rows, labels=1)
+    return _in_words(headings, rows, labels=1)
 
 
 def _means(of: Mapping[str, tuple[float, float]]) -> np.ndarray:
     return np.mean(list(of.values()), axis=0)
+
+
+STUDY = Study(
+    "what an identification is worth",
+    measure,
+    again,
+    {"recordings": [str(FIRST)]},
+    range(FIRST, FIRST + KNOWN_J_1),
+    seconds=3000,
+)
