@@ -11,6 +11,7 @@ from driveline.fmus import release
 from driveline.fmus.archive import write_archive
 from driveline.harness.base.atomic_files import write_text
 from driveline.harness.commands.cli import main
+from tests.together import together
 
 FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}
 
@@ -39,7 +40,7 @@ def test_links_that_lead_round_in_a_circle_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a limit on the size of files")
-@pytest.mark.parametrize("write", [write_archive, lambda _, path: write_text("text" * 100, path)])
+@together("write", [write_archive, lambda _, path: write_text("text" * 100, path)])
 def test_what_does_not_fit_is_told_with_its_file_and_leaves_nothing(
     tmp_path: Path, write: Callable[[dict[str, bytes], Path], None]
 ) -> None:

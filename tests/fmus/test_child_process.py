@@ -80,7 +80,7 @@ def gone(number: int) -> bool:
         return True
 
 
-@pytest.mark.parametrize("code", [CHECK, COMPILE], ids=["checker", "compiler"])
+@pytest.mark.parametrize("code", [CHECK, COMPILE])
 def test_a_program_ends_with_a_process_that_is_killed(begun, code: str) -> None:
     process, (program, _) = begun(code)
     process.kill()

@@ -3,15 +3,14 @@
 import platform
 from pathlib import Path
 
-import pytest
-
 from driveline.fmus.lanes_here import lanes_here
+from tests.together import together
 
 AVX2, AVX512 = "avx avx2 fma", "avx512f avx512dq avx512vl"
 
 
-@pytest.mark.parametrize(
-    ("system", "machine", "flags", "lanes"),
+@together(
+    "system, machine, flags, lanes",
     [
         ("Linux", "x86_64", f"{AVX2} {AVX512}", 8),
         ("Linux", "x86_64", f"{AVX2} avx512f avx512dq", 4),

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.fmus.host import opened
+from tests.together import together
 
 START = 0.3
 """Time in s; there is no power of two or ten near it."""
@@ -31,7 +32,7 @@ def written(host, number):
     return message.removeprefix("currentCommunicationPoint = ").partition(" s ")[0]
 
 
-@pytest.mark.parametrize("number", BORDERS)
+@together("number", BORDERS)
 def test_a_number_at_a_border_is_written_as_in_python(host, number):
     assert written(host, number) == repr(number)
 
@@ -41,7 +42,7 @@ def test_any_number_is_written_as_in_python(host, number):
     assert written(host, number) == repr(number)
 
 
-@pytest.mark.parametrize("base", [2.0, 10.0])
+@together("base", [2.0, 10.0])
 def test_every_power_is_written_as_in_python(host, base):
     """About a power of two the distance to the next number is not the same on both sides."""
     exponents = range(-1074, 1024) if base == 2.0 else range(-323, 309)

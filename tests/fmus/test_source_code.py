@@ -6,6 +6,7 @@ import pytest
 
 from driveline.fmus import origin
 from driveline.fmus.source_code import code_of
+from tests.together import together
 
 PYTHON = '''
 """Text."""
@@ -39,7 +40,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "source", "changes"), [(name, source, changes) for name, source, *changes in CASES])
+@together("name, source, changes", [(name, source, changes) for name, source, *changes in CASES])
 def test_words_and_names_of_local_variables_do_not_count(tmp_path: Path, name, source, changes) -> None:
     assert changed(tmp_path / name, source, changes) == [False]
 
@@ -67,7 +68,7 @@ REAL = [
 ]
 
 
-@pytest.mark.parametrize(("name", "source", "changes"), REAL)
+@together("name, source, changes", REAL)
 def test_whatever_else_changes_counts(tmp_path: Path, name, source, changes) -> None:
     found = [changed(tmp_path / name, source, [change]) for change in changes]
     assert found == [[True]] * len(changes), list(zip(changes, found, strict=True))

@@ -21,6 +21,7 @@ from driveline.models.block.declaration import variables
 from driveline.models.block.types import with_start_values
 from tests import ROOT
 from tests.fmus.host import opened
+from tests.together import together
 
 CAR = ROOT / "examples" / "cars" / "mid_size.toml"
 GAINS = "k_d = 4.0\nT_gap = 70.0\n"
@@ -126,7 +127,7 @@ def test_a_block_with_other_start_values_declares_the_same() -> None:
     assert changed.Parameters() == block.Parameters()._replace(k_d=4.0)
 
 
-@pytest.mark.parametrize("option", ["vehicle", "parameters"])
+@together("option", ["vehicle", "parameters"])
 def test_a_refused_file_builds_nothing(option: str, tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("mass = 3\n", encoding="utf-8")

@@ -3,13 +3,12 @@
 import math
 import re
 
-import pytest
-
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.python import snapshot
 from tests.fmus.host import opened
+from tests.together import together
 
-every_fmu = pytest.mark.parametrize("name", FMUS)
+every_fmu = together("name", FMUS)
 
 
 def drive(host, first, last):
@@ -79,7 +78,7 @@ def with_a_wrong_bit(place):
     return lambda saved: saved[:place] + bytes([saved[place] ^ 1]) + saved[place:][1:]
 
 
-@pytest.mark.parametrize(
+@together(
     "damage",
     [
         *map(with_a_wrong_bit, (0, 9, 100, -20)),
@@ -114,7 +113,7 @@ def test_a_state_of_another_fmu_is_refused_and_both_are_named(built, tmp_path):
         assert to_motor[1] != to_motor[2]
 
 
-@pytest.mark.parametrize("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, math.inf, 3, True])
+@together("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, math.inf, 3, True])
 def test_numbers_keep_type_and_bits(value):
     (restored,) = snapshot.unpack("build", snapshot.pack("build", (value,)))
     assert type(restored) is type(value)

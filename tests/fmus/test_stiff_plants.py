@@ -9,6 +9,7 @@ import pytest
 
 from driveline.models.physics.plant import Output
 from tests.fmus.host import Host, opened
+from tests.together import together
 
 DURATION, STEP = 0.2, 1e-3
 
@@ -34,9 +35,7 @@ STOPS = [
     Stop(DESIGN, {"i": 1.5}, 8000.0, slope=0.2),
 ]
 
-every_stop = pytest.mark.parametrize(
-    "stop", STOPS, ids=lambda stop: f"{stop.plant}-{stop.T_brake:g}-{'-'.join(map(str, stop.parameters.values()))}"
-)
+every_stop = together("stop", STOPS)
 
 
 def simulated(host: Host, stop: Stop, step_size: float) -> np.ndarray:

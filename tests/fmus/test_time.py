@@ -13,6 +13,7 @@ from driveline.fmus.python.slave import BlockSlave
 from driveline.models.block.declaration import Real
 from driveline.models.block.types import SampledBlock
 from tests.fmus.host import opened
+from tests.together import together
 
 SAMPLED = [name for name, fmu in FMUS.items() if isinstance(fmu.block, SampledBlock)]
 T_S = 0.002
@@ -103,8 +104,8 @@ def test_a_host_that_adds_up_its_time_gets_every_tick_once(counter, step_size):
         assert counter.get_real([1]) == [math.floor(k * step_size / T_S + 1e-3)]
 
 
-@pytest.mark.parametrize("name", SAMPLED)
-@pytest.mark.parametrize("sizes", COMMUNICATION_STEPS.values(), ids=COMMUNICATION_STEPS)
+@together("name", SAMPLED)
+@together("sizes", COMMUNICATION_STEPS.values())
 def test_a_sampled_block_does_not_depend_on_the_communication_step(built, tmp_path, name, sizes):
     block = FMUS[name].block
     assert isinstance(block, SampledBlock)
@@ -123,7 +124,7 @@ def test_a_sampled_block_does_not_depend_on_the_communication_step(built, tmp_pa
             assert tuple(host.outputs().values()) == tuple(block.output(x, u, p))
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_outputs_are_right_at_the_start_and_parameters_in_effect(built, tmp_path, name):
     block = FMUS[name].block
     u, p = block.Input(), block.Parameters()
@@ -162,11 +163,7 @@ def test_time_counts_from_the_start_time(built, tmp_path):
         assert tuple(host.outputs().values()) == tuple(block.output(x, u, p))
 
 
-@pytest.mark.parametrize(
-    ("samples", "shown", "made"),
-    [(0.9989, 0, 1), (0.9991, 1, 1), (1.0009, 1, 1), (1.0011, 1, 2)],
-    ids=["just before", "as good as there", "as good as not over", "just over"],
-)
+@together("samples, shown, made", [(0.9989, 0, 1), (0.9991, 1, 1), (1.0009, 1, 1), (1.0011, 1, 2)])
 def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built, tmp_path, samples, shown, made):
     """After a step of so many samples: ticks whose result shows, ticks that took the inputs of that step."""
     block = FMUS["DampingController"].block
@@ -186,7 +183,7 @@ def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built,
         assert tuple(host.outputs().values()) == tuple(block.output(states[2], then, p))
 
 
-@pytest.mark.parametrize("step_size", [0.0, -0.001, math.nextafter(1000.0, math.inf), 1e300, math.nan, math.inf])
+@together("step_size", [0.0, -0.001, math.nextafter(1000.0, math.inf), 1e300, math.nan, math.inf])
 def test_a_step_that_is_not_positive_or_too_long_is_refused(built, tmp_path, step_size):
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize(T_ref=50.0)
@@ -197,7 +194,7 @@ def test_a_step_that_is_not_positive_or_too_long_is_refused(built, tmp_path, ste
         host.step(0.0, 0.001)
 
 
-@pytest.mark.parametrize("step_size", [5e-324, 1000.0])
+@together("step_size", [5e-324, 1000.0])
 def test_the_shortest_and_the_longest_step_are_allowed(built, tmp_path, step_size):
     """Shown by a step that is refused for its time, which is looked at after its size."""
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
@@ -216,7 +213,7 @@ def test_a_step_that_does_not_move_time_is_refused(built, tmp_path):
         host.step(1.0, math.ulp(1.0))
 
 
-@pytest.mark.parametrize("time", [0.0, 0.0011, 0.001 - 1.01e-6, 0.001 + 1.01e-6, math.nan])
+@together("time", [0.0, 0.0011, 0.001 - 1.01e-6, 0.001 + 1.01e-6, math.nan])
 def test_a_step_from_another_time_is_refused(built, tmp_path, time):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         host.initialize()
@@ -227,7 +224,7 @@ def test_a_step_from_another_time_is_refused(built, tmp_path, time):
         host.step(0.001, 0.001)
 
 
-@pytest.mark.parametrize("difference", [-0.99e-6, 0.99e-6])
+@together("difference", [-0.99e-6, 0.99e-6])
 def test_the_time_of_a_host_may_be_a_microsecond_off(built, tmp_path, difference):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         host.initialize()
@@ -269,7 +266,7 @@ def test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset(built, 
         assert "stop at 0.01 s" in host.refuses(host.step, 0.0, 0.02)
 
 
-@pytest.mark.parametrize("stop_time", [math.nextafter(5.0, 0.0), -math.inf, math.nan])
+@together("stop_time", [math.nextafter(5.0, 0.0), -math.inf, math.nan])
 def test_a_run_does_not_stop_before_its_start(built, tmp_path, stop_time):
     with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
         message = host.refuses(host.initialize, start_time=5.0, stop_time=stop_time)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from driveline.fmus.toml_file import DEEPEST, LARGEST, MOST_DIGITS, toml_entries
+from tests.together import together
 
 
 def read(folder: Path, text: str) -> dict:
@@ -14,7 +15,7 @@ def read(folder: Path, text: str) -> dict:
     return toml_entries(path)
 
 
-@pytest.mark.parametrize("part", ["a", "1", '"a b"', "'='", r'"\""', "a "])
+@together("part", ["a", "1", '"a b"', "'='", r'"\""', "a "])
 def test_a_key_has_ten_parts_at_the_most(tmp_path: Path, part: str) -> None:
     assert read(tmp_path, f"{'.'.join([part] * DEEPEST)} = 1")
     assert read(tmp_path, f"[{'.'.join([part] * DEEPEST)}]")
@@ -23,7 +24,7 @@ def test_a_key_has_ten_parts_at_the_most(tmp_path: Path, part: str) -> None:
             read(tmp_path, text)
 
 
-@pytest.mark.parametrize("number", ["9{}", "0x{}", "-1{}", "0.{}", "1e{}"])
+@together("number", ["9{}", "0x{}", "-1{}", "0.{}", "1e{}"])
 def test_a_number_has_three_hundred_digits_at_the_most(tmp_path: Path, number: str) -> None:
     assert read(tmp_path, f"x = {number.format('1' * (MOST_DIGITS - 2))}")
     for digits in ("1" * 100_000, "1_" * 50_000 + "1"):
@@ -42,14 +43,14 @@ def test_a_file_has_a_megabyte_at_the_most(tmp_path: Path) -> None:
         read(tmp_path, "x = 1".ljust(LARGEST + 1))
 
 
-@pytest.mark.parametrize("text", ["x", "x = [", "x = '[", "\ud800"])
+@together("text", ["x", "x = [", "x = '[", "\ud800"])
 def test_what_is_no_toml_is_said(tmp_path: Path, text: str) -> None:
     (tmp_path / "file.toml").write_bytes(text.encode("utf-8", "surrogatepass"))
     with pytest.raises(ValueError, match=r"^not TOML: "):
         toml_entries(tmp_path / "file.toml")
 
 
-@pytest.mark.parametrize(("opens", "closes"), [("[", "]"), ("{a = ", "}"), ("[{a = ", "}]")])
+@together("opens, closes", [("[", "]"), ("{a = ", "}"), ("[{a = ", "}]")])
 def test_brackets_are_ten_deep_at_the_most(tmp_path: Path, opens: str, closes: str) -> None:
     pairs = DEEPEST // len(closes)
     assert read(tmp_path, f"x = {opens * pairs}{closes[:0] if '=' not in opens else '1'}{closes * pairs}")
@@ -58,7 +59,7 @@ def test_brackets_are_ten_deep_at_the_most(tmp_path: Path, opens: str, closes: s
             read(tmp_path, f"y = 1\nx = {opens * count}")
 
 
-@pytest.mark.parametrize("text", ['"""\n{}\\""" {}"""', "'''{}\\'''", '"{}\\""', "'{}'", '1 # " {}', "1 # {}"])
+@together("text", ['"""\n{}\\""" {}"""', "'''{}\\'''", '"{}\\""', "'{}'", '1 # " {}', "1 # {}"])
 def test_brackets_in_texts_and_comments_are_none(tmp_path: Path, text: str) -> None:
     brackets = "[" * (DEEPEST + 1)
     assert "x" in read(tmp_path, f"x = {text.replace('{}', brackets)}\ny = [1]")

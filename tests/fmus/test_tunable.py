@@ -15,10 +15,11 @@ from driveline.harness.studies.back_to_back.back_to_back import random_inputs
 from driveline.models.block.runner import runner
 from tests.fmus.host import opened
 from tests.fmus.test_values import outside
+from tests.together import together
 
 STEP = 0.001
 
-BUILDS = pytest.mark.parametrize("build", ["built", "native", "fmi3"])
+BUILDS = together("build", ["built", "native", "fmi3"])
 
 
 def tunable(name: str) -> list[Variable]:
@@ -49,7 +50,7 @@ def test_what_a_calibration_engineer_turns_is_tunable_and_what_belongs_to_the_ca
 
 
 @BUILDS
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_the_description_says_which(request: Any, name: str, build: str) -> None:
     listed = fmpy.read_model_description(str(request.getfixturevalue(build) / f"{name}.fmu")).modelVariables
     assert {v.name: v.variability for v in listed if v.causality == "parameter"} == {
@@ -58,7 +59,7 @@ def test_the_description_says_which(request: Any, name: str, build: str) -> None
 
 
 @BUILDS
-@pytest.mark.parametrize("name", WITH_TUNABLE)
+@together("name", WITH_TUNABLE)
 def test_turned_in_a_run_they_act_as_in_the_functions(request: Any, tmp_path: Any, name: str, build: str) -> None:
     block: Any = FMUS[name].block
     draw, steps = Random(name), 60
@@ -98,7 +99,7 @@ def test_a_sampled_block_takes_them_over_at_the_next_sample(request: Any, tmp_pa
 
 
 @BUILDS
-@pytest.mark.parametrize("name", WITH_TUNABLE)
+@together("name", WITH_TUNABLE)
 def test_in_a_run_both_ends_are_allowed_and_what_is_beyond_is_refused(
     request: Any, tmp_path: Any, name: str, build: str
 ) -> None:

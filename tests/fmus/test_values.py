@@ -7,6 +7,7 @@ import pytest
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import LARGEST, interface
 from tests.fmus.host import opened
+from tests.together import together
 
 SETTABLE = [
     (name, variable)
@@ -36,7 +37,7 @@ def outside(variable):
     return [*ends, math.nan, math.inf, -math.inf]
 
 
-@pytest.mark.parametrize(("name", "variable"), STRICT, ids=lambda v: getattr(v, "name", v))
+@together("name, variable", STRICT)
 def test_a_value_that_is_not_allowed_is_refused_by_name_and_changes_nothing(hosts, name, variable):
     host = hosts[name]
     before = host.outputs(), host.get(variable.name)
@@ -47,7 +48,7 @@ def test_a_value_that_is_not_allowed_is_refused_by_name_and_changes_nothing(host
         assert (host.outputs(), host.get(variable.name)) == before
 
 
-@pytest.mark.parametrize(("name", "variable"), SETTABLE, ids=lambda v: getattr(v, "name", v))
+@together("name, variable", SETTABLE)
 def test_both_ends_of_the_range_are_allowed(hosts, name, variable):
     host = hosts[name]
     for value in (*variable.bounds(), variable.start):

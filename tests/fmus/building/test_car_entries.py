@@ -10,6 +10,7 @@ from driveline.fmus.building.car_entries import DEFAULT, FOLLOWS, SET, SOURCES, 
 from driveline.fmus.building.one_car import FOLLOW, of_one_car
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
+from tests.together import together
 
 
 def test_each_entry_says_where_it_is_from_and_who_takes_it() -> None:
@@ -48,8 +49,8 @@ def test_a_car_has_all_its_entries() -> None:
         car({"C": 300.0})
 
 
-@pytest.mark.parametrize(
-    ("entries", "message"),
+@together(
+    "entries, message",
     [
         ({"ks": 30000.0}, "ks is not known; did you mean k_s"),
         ({"C": "150"}, "C = '150': it must be a finite number"),
@@ -65,7 +66,7 @@ def test_what_no_vehicle_file_could_have_is_refused(entries: dict[str, Any], mes
     assert str(refused.value).startswith(message)
 
 
-@pytest.mark.parametrize("given", [3, 0, "van.toml", [("m", 1900.0)]])
+@together("given", [3, 0, "van.toml", [("m", 1900.0)]])
 def test_a_car_that_is_no_mapping_is_refused(given: Any) -> None:
     with pytest.raises(ParameterFileError) as refused:
         car(given)

@@ -20,6 +20,7 @@ from driveline.fmus.building.one_car import (
     updated,
 )
 from driveline.fmus.errors import ParameterFileError
+from tests.together import together
 
 APART = frequencies({}).apart
 """Frequency of the validation vehicle over that of the design model, in the default car."""
@@ -37,7 +38,7 @@ def refusal(**entries: float) -> str:
     return str(found.value)
 
 
-@pytest.mark.parametrize(("name", "car"), cars().items(), ids=list(cars()))
+@together("name, car", cars().items())
 def test_both_plants_swing_as_far_apart_as_with_the_default_car(name: str, car: dict[str, float]) -> None:
     """The examples and 20 drawn ones; the goal is 3 %."""
     assert frequencies(car).apart == pytest.approx(APART, rel=1e-4), name
@@ -52,8 +53,8 @@ def test_the_default_car_is_left_as_it_is() -> None:
     assert followed(phi_B=0.3) == {}
 
 
-@pytest.mark.parametrize("name", ["C", "k_s"])
-@pytest.mark.parametrize("kind", [np.float64, np.float32, int])
+@together("name", ["C", "k_s"])
+@together("kind", [np.float64, np.float32, int])
 def test_numbers_of_all_kinds_are_taken(name: str, kind: type) -> None:
     value = 1.1 * DEFAULT_CAR[name] // 1
     assert of_one_car({name: kind(value)}, FOLLOW) == of_one_car({name: value}, FOLLOW)
@@ -78,7 +79,7 @@ def test_a_stiffer_drive_train_is_stiffer_in_detail_with_the_same_shares() -> No
     assert "C" not in found
 
 
-@pytest.mark.parametrize("C", [60.0, 160.0])
+@together("C", [60.0, 160.0])
 def test_shafts_alone_give_the_design_its_stiffness(C: float) -> None:
     """The way back."""
     shafts = {name: followed(C=C)[name] for name in SHAFTS}
@@ -117,7 +118,7 @@ def test_dampers_keep_the_damping_ratio() -> None:
     assert found["d_s"] / DEFAULT_CAR["d_s"] == pytest.approx((k * J) ** 0.5, rel=1e-5)
 
 
-@pytest.mark.parametrize(("k_s", "disagrees"), [(0.90, True), (0.92, False), (1.08, False), (1.12, True)])
+@together("k_s, disagrees", [(0.90, True), (0.92, False), (1.08, False), (1.12, True)])
 def test_shafts_that_make_another_frequency_by_three_per_cent_disagree(k_s: float, disagrees: bool) -> None:
     entries = {"C": 117.4, **{name: k_s * DEFAULT_CAR[name] for name in SHAFTS}}
     apart = frequencies({name: entries[name] for name in SHAFTS}).design / frequencies({}).design
@@ -131,8 +132,8 @@ def test_shafts_that_make_another_frequency_by_three_per_cent_disagree(k_s: floa
     assert "with that C would be 1" in message
 
 
-@pytest.mark.parametrize(
-    ("entries", "message"),
+@together(
+    "entries, message",
     [
         ({"C": 300.0}, "C = 300 N.m/rad: k_s does not follow: the drive train would have to swing at 12.9 Hz"),
         ({"J_w": 24.95}, "J_w + J_g = 25.05 kg.m2 and J_2 = 0.3 kg.m2 disagree: with i = 9 J_2 is 24.3 kg.m2 at the"),
@@ -146,7 +147,7 @@ def test_a_car_that_cannot_be_is_refused_with_both_numbers(entries: dict[str, fl
     assert refusal(**entries).startswith(message)
 
 
-@pytest.mark.parametrize("entries", [{"J_w": 24.9}, {"F_z0": 14600.0}, {"m_h": 890.0}, {"J_2": 0.0235, "J_w": 1.8}])
+@together("entries", [{"J_w": 24.9}, {"F_z0": 14600.0}, {"m_h": 890.0}, {"J_2": 0.0235, "J_w": 1.8}])
 def test_measured_numbers_need_not_agree_to_the_last_digit(entries: dict[str, float]) -> None:
     assert of_one_car(entries, FOLLOW).items() >= entries.items()
 
@@ -168,8 +169,8 @@ def test_what_follows_is_what_the_validation_vehicle_alone_has() -> None:
     assert all(DECLARED[name][0] == DETAILED.name for name in FOLLOW)
 
 
-@pytest.mark.parametrize(
-    ("frequency", "most"),
+@together(
+    "frequency, most",
     [
         (lambda k: sqrt(k / (1.0 + k / 50.0)), 7),  # as a spring in series with another
         (lambda k: 1.0 + (k > 3.0) + 1e-3 * k, 60),  # steps lead nowhere: halved

@@ -10,6 +10,7 @@ from driveline.harness.studies.margins.linear_plant import linear_plant
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.block.types import ContinuousBlock
+from tests.together import together
 
 DESIGN, DETAILED = two_mass_driveline.BLOCK, validation_vehicle.BLOCK
 
@@ -21,7 +22,7 @@ def test_on_a_stiff_tyre_the_motor_swings_against_wheels_and_vehicle() -> None:
     assert oscillation(DESIGN, p).frequency == pytest.approx(rigid, rel=0.01)
 
 
-@pytest.mark.parametrize("plant", [DESIGN, DETAILED], ids=lambda plant: plant.name)
+@together("plant", [DESIGN, DETAILED])
 def test_the_mode_is_one_of_the_linear_plant_of_the_analysis(plant: ContinuousBlock) -> None:
     """Which has the motor in it, and more of the tyres' bend at its torque."""
     found = oscillation(plant, plant.Parameters())
@@ -37,7 +38,7 @@ def test_ripple_ice_and_gap_are_of_no_account() -> None:
     assert other == pytest.approx(usual, rel=1e-6)
 
 
-@pytest.mark.parametrize("factor", [0.1, 0.3, 3.0, 30.0])
+@together("factor", [0.1, 0.3, 3.0, 30.0])
 def test_neither_pitch_nor_mounts_are_taken_for_the_drive_train(factor: float) -> None:
     """It gets faster with stiffer shafts, up to what the tyres let it."""
     p = DETAILED.Parameters()
@@ -48,7 +49,7 @@ def test_neither_pitch_nor_mounts_are_taken_for_the_drive_train(factor: float) -
     assert 2.5 < found[0] < found[1] < 12.5
 
 
-@pytest.mark.parametrize("plant", [DESIGN, DETAILED], ids=lambda plant: plant.name)
+@together("plant", [DESIGN, DETAILED])
 def test_behind_a_heavy_motor_what_rolls_out_is_not_taken_for_the_oscillation(plant: ContinuousBlock) -> None:
     """The speed of a motor of 1.65 kg.m2 shows the rolling vehicle more than the swing."""
     p = plant.Parameters()

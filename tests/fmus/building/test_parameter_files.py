@@ -20,6 +20,7 @@ from driveline.fmus.errors import ParameterFileError
 from driveline.fmus.fmu import Fmu
 from driveline.models.block.declaration import variables
 from tests import ROOT
+from tests.together import together
 
 EXAMPLES = sorted((ROOT / "examples" / "cars").glob("*.toml"))
 PARAMETERS = {name: {v.name: v for v in variables(fmu.block.Parameters)} for name, fmu in FMUS.items()}
@@ -68,8 +69,8 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         assert read == ([] if name in OF_A_RUN else [{name: start}]), name
 
 
-@pytest.mark.parametrize(
-    ("entry", "message"),
+@together(
+    "entry, message",
     [
         ("J1 = 0.09", "J1 is not known; did you mean J_1"),
         ("hat = 3", "hat is not known"),
@@ -110,7 +111,7 @@ def test_all_that_is_wrong_is_said_at_once(written: Callable[[str], Path]) -> No
     assert [line.partition(", ")[2].partition(":")[0] for line in lines] == ["line 1", "line 3"]
 
 
-@pytest.mark.parametrize("text", ["J_1 = 0.09\nJ_1 = 0.1\n", "J_1 0.09\n", "J_1 =\n"])
+@together("text", ["J_1 = 0.09\nJ_1 = 0.1\n", "J_1 0.09\n", "J_1 =\n"])
 def test_what_is_no_toml_is_said_with_its_line(written: Callable[[str], Path], text: str) -> None:
     message = refusal(read_vehicle, written(text))
     assert "not TOML: " in message
@@ -197,7 +198,7 @@ def test_the_unit_of_an_entry_is_the_declared_one() -> None:
     assert "seed" not in units()
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@together("path", EXAMPLES)
 def test_an_example_names_the_whole_car(path: Path) -> None:
     values = read_vehicle(path)
     assert {"J_1", "J_2", "C", "phi_B", "i", "r", "m", "tau", "T_max", "T_cyc", "d_min", "d_max"} <= values.keys()

@@ -24,13 +24,14 @@ from driveline.fmus.release import DATE, VERSION, date
 from driveline.models.block.declaration import Boolean, Real
 from driveline.models.block.operators import where
 from driveline.models.block.types import ContinuousBlock
+from tests.together import together
 
-every_fmu = pytest.mark.parametrize("name", FMUS)
+every_fmu = together("name", FMUS)
 
 
 @pytest.fixture
-def description(built, name):
-    return fmpy.read_model_description(str(built / f"{name}.fmu"))
+def descriptions(built):
+    return {name: fmpy.read_model_description(str(built / f"{name}.fmu")) for name in FMUS}
 
 
 @every_fmu
@@ -39,12 +40,14 @@ def test_the_validator_finds_nothing(built, name):
 
 
 @every_fmu
-def test_it_tells_that_this_project_made_it(description):
+def test_it_tells_that_this_project_made_it(descriptions, name):
+    description = descriptions[name]
     assert description.generationTool.startswith(f"driveline-damping {VERSION} (")
 
 
 @every_fmu
-def test_value_references_count_inputs_outputs_and_parameters(description):
+def test_value_references_count_inputs_outputs_and_parameters(descriptions, name):
+    description = descriptions[name]
     assert [v.valueReference for v in description.modelVariables] == list(range(len(description.modelVariables)))
     assert [v.causality for v in description.modelVariables] == sorted(
         (v.causality for v in description.modelVariables), key=["input", "output", "parameter", "local"].index
@@ -52,7 +55,8 @@ def test_value_references_count_inputs_outputs_and_parameters(description):
 
 
 @every_fmu
-def test_every_quantity_has_unit_and_meaning_and_every_parameter_bounds(description):
+def test_every_quantity_has_unit_and_meaning_and_every_parameter_bounds(descriptions, name):
+    description = descriptions[name]
     units = {unit.name for unit in description.unitDefinitions}
     for v in description.modelVariables:
         assert v.description
@@ -74,8 +78,8 @@ def test_the_plants_have_the_same_inputs_and_outputs(built):
     assert shared[0] == shared[1]
 
 
-@pytest.mark.parametrize(
-    ("unit", "exponents"),
+@together(
+    "unit, exponents",
     [
         ("N.m", {"kg": 1, "m": 2, "s": -2}),
         ("N.m/rad", {"kg": 1, "m": 2, "s": -2, "rad": -1}),
@@ -187,13 +191,14 @@ def test_an_output_changes_only_with_what_it_is_said_to_depend_on(name):
 
 
 @every_fmu
-def test_every_real_input_and_output_tells_how_large_it_is(description):
+def test_every_real_input_and_output_tells_how_large_it_is(descriptions, name):
+    description = descriptions[name]
     for v in description.modelVariables:
         if v.causality != "parameter" and v.type == "Real":
             assert float(v.nominal) > 0.0, v.name
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_no_two_names_differ_in_case_only(name):
     names = [variable.name for variable in interface(FMUS[name].block)]
     assert len({each.casefold() for each in names}) == len(names)
@@ -211,7 +216,7 @@ def test_names_that_differ_in_case_only_are_refused():
         model_description(fmu, BuildKind("", {}, {}, ""), "")
 
 
-@pytest.mark.parametrize("name", EVERY)
+@together("name", EVERY)
 def test_the_experiment_that_it_proposes_takes_ten_seconds_and_that_of_the_motor_two(name):
     text = model_description(EVERY[name], BuildKind("", {}, {}, ""), "").decode()
     stop_time = 2 if name == "MotorTorqueLoop" else 10
@@ -219,7 +224,8 @@ def test_the_experiment_that_it_proposes_takes_ten_seconds_and_that_of_the_motor
 
 
 @every_fmu
-def test_it_says_whose_it_is_and_of_which_release(description):
+def test_it_says_whose_it_is_and_of_which_release(descriptions, name):
+    description = descriptions[name]
     assert (description.version, description.author) == (VERSION, "the driveline-damping authors")
     assert "driveline-damping" in description.copyright
     assert description.license.startswith("BSD-3-Clause")

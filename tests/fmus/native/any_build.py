@@ -1,7 +1,7 @@
 """Tests of the Python builds that every native build passes too; a module of it calls the folder of FMUs `built`."""
 
 from tests.fmus.description.test_model_description import (  # noqa: F401
-    description,
+    descriptions,
     test_it_tells_that_this_project_made_it,
     test_the_validator_finds_nothing,
 )

@@ -10,6 +10,7 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import host_compiler
 from driveline.harness.loop.places import NATIVE
 from tests.fmus.host import opened
+from tests.together import together
 
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 
@@ -38,7 +39,7 @@ def through_fmpy(path: Path, folder: Path, outputs: list[int]) -> list[list[floa
     return rows
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_a_c_program_gets_what_fmpy_gets_twice(both_built, host, tmp_path, name):
     folder = tmp_path / "unpacked"
     path = both_built / NATIVE / f"{name}.fmu"

@@ -11,6 +11,7 @@ from driveline.fmus.catalogue import FMUS
 from driveline.models.block.declaration import with_defaults
 from tests.fmus.forged import forged, sealed
 from tests.fmus.host import opened
+from tests.together import together
 
 OK, DISCARD, ERROR = 0, 2, 3
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
@@ -64,8 +65,8 @@ def bring(host, mode):
             return
 
 
-@pytest.mark.parametrize("mode", [BEFORE, DURING, AFTER, ENDED])
-@pytest.mark.parametrize("function", ALLOWED)
+@together("mode", [BEFORE, DURING, AFTER, ENDED])
+@together("function", ALLOWED)
 def test_a_function_is_refused_outside_its_place_and_says_where_that_is(native, tmp_path, function, mode):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         bring(host, mode)
@@ -75,7 +76,7 @@ def test_a_function_is_refused_outside_its_place_and_says_where_that_is(native, 
             assert host.message.startswith(f"{function} is refused")
 
 
-@pytest.mark.parametrize("function", ["SetReal", "GetReal", "SetInteger", "GetBoolean", "SetBoolean", "GetString"])
+@together("function", ["SetReal", "GetReal", "SetInteger", "GetBoolean", "SetBoolean", "GetString"])
 def test_missing_arrays_are_refused(native, tmp_path, function):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         two = ctypes.c_size_t(2)
@@ -87,7 +88,7 @@ def test_missing_arrays_are_refused(native, tmp_path, function):
         assert call(host, f"fmi2{function}", None, ctypes.c_size_t(0), None) == OK
 
 
-@pytest.mark.parametrize(
+@together(
     "function",
     [
         *ALLOWED,
@@ -110,8 +111,8 @@ def test_freeing_nothing_is_no_error(native, tmp_path):
         binary.fmi2FreeInstance(ctypes.c_void_p())
 
 
-@pytest.mark.parametrize(
-    ("what", "expected"),
+@together(
+    "what, expected",
     [
         ({"guid": b"{other}"}, "GUID"),
         ({"guid": None}, "GUID"),
@@ -136,7 +137,7 @@ def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, expected):
         assert binary.fmi2Instantiate(given["name"], 1, given["guid"], None, None, 0, 1) is None
 
 
-@pytest.mark.parametrize("missing", ["allocateMemory", "freeMemory"])
+@together("missing", ["allocateMemory", "freeMemory"])
 def test_without_callbacks_for_memory_nothing_is_instantiated(native, tmp_path, missing):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         binary = ctypes.CDLL(host.fmu.dll._name)
@@ -165,7 +166,7 @@ COMPLETE = {
 """Arguments of calls that succeed; the state, its bytes and their number stand for those of the test."""
 
 
-@pytest.mark.parametrize("function", COMPLETE)
+@together("function", COMPLETE)
 def test_an_argument_that_is_missing_is_an_error(native, tmp_path, function):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize()
@@ -199,7 +200,7 @@ def test_the_status_is_that_of_the_last_step(native, tmp_path):
         assert status(host, "fmi2GetStringStatus", PENDING_STATUS, ctypes.c_char_p()) == (OK, b"")
 
 
-@pytest.mark.parametrize("function", ["GetStatus", "GetRealStatus", "GetIntegerStatus", "GetBooleanStatus"])
+@together("function", ["GetStatus", "GetRealStatus", "GetIntegerStatus", "GetBooleanStatus"])
 def test_a_status_that_does_not_exist_is_discarded(native, tmp_path, function):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize()
@@ -238,7 +239,7 @@ def test_messages_are_given_out_by_category(native, tmp_path):
         assert messages() == [True, True]
 
 
-@pytest.mark.parametrize("change", [lambda saved: forged(saved, "mode", 3), lambda saved: sealed(saved[4:] + bytes(8))])
+@together("change", [lambda saved: forged(saved, "mode", 3), lambda saved: sealed(saved[4:] + bytes(8))])
 def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checksum(native, tmp_path, change):
     """With a mode that does not exist; with more in it than there is."""
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
@@ -262,7 +263,7 @@ def test_a_build_whose_name_does_not_end_is_named_as_far_as_there_is_room(native
         assert f"saved by {43 * 'x'}, this is" in host.refuses(host.fmu.deSerializeFMUstate, saved)
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_a_reset_instance_is_as_new(native, tmp_path, name):
     with opened(native / f"{name}.fmu", tmp_path) as host:
         new = host.fmu.serializeFMUstate(host.fmu.getFMUstate())

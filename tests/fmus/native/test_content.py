@@ -9,6 +9,7 @@ import pytest
 from driveline.fmus.catalogue import FMUS
 from tests.fmus.forged import HEAD, forged, with_number
 from tests.fmus.host import opened
+from tests.together import together
 
 SEED = 123457
 OUTPUTS_KNOWN = 2
@@ -34,8 +35,8 @@ def motor(native, tmp_path):
         yield host
 
 
-@pytest.mark.parametrize(
-    ("seed", "message"),
+@together(
+    "seed, message",
     [
         (1_000_001.0, "seed = 1000001 is refused"),
         (-1.0, "seed = -1 is refused"),

@@ -2,10 +2,9 @@
 
 import re
 
-import pytest
-
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.packaging import c_sources
+from tests.together import together
 
 OF_FMI = {
     2: {
@@ -19,8 +18,8 @@ OF_FMI = {
 }
 
 
-@pytest.mark.parametrize("fmi", OF_FMI)
-@pytest.mark.parametrize("name", FMUS)
+@together("fmi", OF_FMI)
+@together("name", FMUS)
 def test_the_adapter_alone_knows_fmi(name, fmi):
     sources = c_sources(FMUS[name], fmi)
     assert {"run.c", "shared.h", "variables.h", "operators.h"} <= set(sources)

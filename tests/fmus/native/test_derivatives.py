@@ -10,6 +10,7 @@ from driveline.fmus.native.rates import rates
 from driveline.fmus.native.symbol import TracedSymbol, node_of
 from driveline.models.block.operators import atan, clip, cos, exp, floor, log, maximum, sign, sin, sqrt, tanh, where
 from tests.fmus.native.recorded import values
+from tests.together import together
 
 AT = (0.7, 1.9)
 STEP = 1e-6
@@ -23,7 +24,7 @@ def of_two(function: Callable[..., Any]) -> tuple[Recording, list[int], list[int
     return recording, nodes[:2], nodes[2:], value
 
 
-@pytest.mark.parametrize(
+@together(
     "function",
     [
         lambda a, b: a + b,
@@ -46,7 +47,7 @@ def of_two(function: Callable[..., Any]) -> tuple[Recording, list[int], list[int
         lambda a, b: where(a < 1.0, 2.0, b),
     ],
 )
-@pytest.mark.parametrize("along", [(1.0, 0.0), (0.0, 1.0), (0.6, -1.3)])
+@together("along", [(1.0, 0.0), (0.0, 1.0), (0.6, -1.3)])
 def test_a_rate_is_what_a_small_step_along_it_makes(function: Callable[..., Any], along: tuple[float, float]) -> None:
     recording, inputs, moving, value = of_two(function)
     (rate,) = rates(recording, [value], dict(zip(inputs, moving, strict=True)))

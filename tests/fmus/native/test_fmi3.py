@@ -33,8 +33,9 @@ from tests.fmus.native.test_rates import (  # noqa: F401
     test_during_initialization_parameters_can_be_known_too,
     test_rates_of_outputs_are_their_differences_over_a_short_time,
 )
+from tests.together import together
 
-every_fmu = pytest.mark.parametrize("name", FMUS)
+every_fmu = together("name", FMUS)
 OK, ERROR = 0, 3
 
 
@@ -50,7 +51,7 @@ def native(fmi3):
     return fmi3
 
 
-@pytest.mark.parametrize("name", COMPARATORS)
+@together("name", COMPARATORS)
 def test_the_comparators_are_built_too(fmi3, tmp_path, name):
     (build,) = builders("native", fmi=3)
     assert validate_fmu(str(build(EVERY[name], tmp_path))) == []
@@ -90,8 +91,8 @@ def test_value_references_are_those_of_fmi_2_and_behind_what_follows_from_the_st
         assert base_exponents(rate.unit).get("s", 0) == base_exponents(rate.derivative.unit).get("s", 0) - 1
 
 
-@pytest.mark.parametrize(
-    ("unit", "rate"),
+@together(
+    "unit, rate",
     [("N.m", "N.m/s"), ("rad/s", "rad/s2"), ("N.m/rad", "N.m/(rad.s)"), ("J/(kg.K)", "J/(kg.K.s)"), ("1", "1/s")],
 )
 def test_a_rate_of_change_has_the_unit_by_second(unit, rate):
@@ -203,14 +204,14 @@ def test_an_enumeration_is_no_whole_number_and_a_type_without_variables_has_none
             assert "reference 999 is unknown" in host.refuses(get, [999])
 
 
-@pytest.mark.parametrize("value", [2**31, -(2**31) - 1, 2**63 - 1])
+@together("value", [2**31, -(2**31) - 1, 2**63 - 1])
 def test_a_whole_number_that_the_fmu_does_not_have_is_out_of_bounds(fmi3, tmp_path, value):
     with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
         seed = [host.variables["seed"].valueReference]
         assert "seed is of type Integer" in host.refuses(host.fmu.setInt64, seed, [value])
 
 
-@pytest.mark.parametrize("values", [0, 2])
+@together("values", [0, 2])
 def test_as_many_values_as_references_are_asked_for(fmi3, tmp_path, values):
     with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
         message = host.refuses(host.fmu.getFloat64, [0], values)
@@ -219,7 +220,7 @@ def test_as_many_values_as_references_are_asked_for(fmi3, tmp_path, values):
         )
 
 
-@pytest.mark.parametrize("name", ["Float64", "Int32", "Int64", "Boolean"])
+@together("name", ["Float64", "Int32", "Int64", "Boolean"])
 def test_missing_arrays_are_refused(fmi3, tmp_path, name):
     with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
         one, arrays = ctypes.c_size_t(1), ((ctypes.c_uint * 1)(0), (ctypes.c_double * 1)())
@@ -268,8 +269,8 @@ def arguments_of(function):
     }.get(function, ())
 
 
-@pytest.mark.parametrize("mode", [BEFORE, DURING, AFTER, ENDED])
-@pytest.mark.parametrize("function", MODES)
+@together("mode", [BEFORE, DURING, AFTER, ENDED])
+@together("function", MODES)
 def test_a_function_is_refused_outside_its_place_and_says_where_that_is(fmi3, tmp_path, function, mode):
     with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
         for step in (host.fmu.enterInitializationMode, host.fmu.exitInitializationMode, host.fmu.terminate)[:mode]:
@@ -281,7 +282,7 @@ def test_a_function_is_refused_outside_its_place_and_says_where_that_is(fmi3, tm
             assert host.message.startswith(f"{in_words_of_fmi2(function)} is refused")
 
 
-@pytest.mark.parametrize(("what", "function"), [(what, name) for what, names in NOT_OFFERED.items() for name in names])
+@together("what, function", [(what, name) for what, names in NOT_OFFERED.items() for name in names])
 def test_what_is_not_offered_says_so(fmi3, tmp_path, what, function):
     with opened(fmi3 / "DampingController.fmu", tmp_path) as host:
         called = ctypes.CDLL(host.fmu.dll._name)[f"fmi3{function}"]

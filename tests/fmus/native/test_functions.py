@@ -14,13 +14,14 @@ from driveline.fmus.native.trace import leaves
 from driveline.models.block.noise import M
 from driveline.models.block.types import ContinuousBlock, SampledBlock
 from tests.fmus.native.functions import Functions
+from tests.together import together
 
 TOLERANCE = 1e-12
 """Relative. Every operation is the same and rounds the same; on another machine sin, tanh and so on may not."""
 
 TIMES = 1000
 
-every_fmu = pytest.mark.parametrize("name", FMUS)
+every_fmu = together("name", FMUS)
 
 
 @pytest.fixture(scope="module")
@@ -82,8 +83,8 @@ def test_what_moves_the_state_is_equal(functions, name):
             assert_same(functions[name]("event_indicators", leaves(x), u, p), indicators)
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300])
-@pytest.mark.parametrize("signal", ["T_driver", "omega_1_meas", "T_mot_est", "omega_2_can"])
+@together("value", [math.nan, math.inf, -math.inf, 1e300])
+@together("signal", ["T_driver", "omega_1_meas", "T_mot_est", "omega_2_can"])
 def test_the_controller_copes_with_the_same_bad_signals(functions, signal, value):
     block = FMUS["DampingController"].block
     assert isinstance(block, SampledBlock)
@@ -105,15 +106,15 @@ def computed_by_operators(tmp_path, expression):
     return float.fromhex(subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout)
 
 
-@pytest.mark.parametrize(
-    ("x", "y"),
+@together(
+    "x, y",
     [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0), (5.5, 2.25), (7.75, 3.5)],
 )
 def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
     assert computed_by_operators(tmp_path, f"modulo({x!r}, {y!r})") == x % y
 
 
-@pytest.mark.parametrize("y", [2.0, 48.0, M, 2.0**26, 2.0**26 + 1.0, 5.5])
+@together("y", [2.0, 48.0, M, 2.0**26, 2.0**26 + 1.0, 5.5])
 def test_remainders_are_exact_beside_multiples_and_halves(native_builder, tmp_path, y):
     multiples = [k * y for k in (0.0, 0.5, 1.0, 1.5, 2.0, y - 1.0, y - 0.5, y, 2.0**26, 2.0**26 + 1.0)]
     numbers = [math.nextafter(x, x + side) for x in multiples for side in (-1.0, 0.0, 1.0)]
@@ -125,11 +126,11 @@ def test_a_remainder_of_zero_has_the_sign_of_the_divisor(native_builder, tmp_pat
     assert math.copysign(1.0, computed_by_operators(tmp_path, "modulo(-96.0, 48.0)")) == 1.0
 
 
-@pytest.mark.parametrize("x", [0.0, 3.0, 3.5])
+@together("x", [0.0, 3.0, 3.5])
 def test_there_is_no_remainder_of_a_division_by_zero(native_builder, tmp_path, x):
     assert math.isnan(computed_by_operators(tmp_path, f"modulo({x!r}, 0.0)"))
 
 
-@pytest.mark.parametrize(("x", "sign"), [(-2.5, -1.0), (-0.0, 0.0), (0.0, 0.0), (5e-324, 1.0), (2.5, 1.0)])
+@together("x, sign", [(-2.5, -1.0), (-0.0, 0.0), (0.0, 0.0), (5e-324, 1.0), (2.5, 1.0)])
 def test_the_sign_of_a_number_is_that_of_its_distance_from_zero(native_builder, tmp_path, x, sign):
     assert computed_by_operators(tmp_path, f"sign_of({x!r})") == sign

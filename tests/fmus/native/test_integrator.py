@@ -28,6 +28,7 @@ from driveline.models.block.integrator import Integrator, TooMuchWork
 from driveline.models.block.types import ContinuousBlock
 from tests.models.block.test_integrator import *  # noqa: F403
 from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIntegrator, Nothing, P, block
+from tests.together import together
 
 BLOCK = """
 typedef double real;
@@ -192,9 +193,9 @@ def test_it_looks_for_a_crossing_where_python_does(
     assert looked_at(integrator) == looked_at(Integrator)
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("behind", [1.0, 1.0 + 1e-6, 1e3])
-@pytest.mark.parametrize("until", [0.05, 1.0])
+@together("side", [1.0, -1.0])
+@together("behind", [1.0, 1.0 + 1e-6, 1e3])
+@together("until", [0.05, 1.0])
 def test_what_lies_at_the_resolution_has_crossed_no_zero_in_c_either(
     integrator: MakeIntegrator, side: float, behind: float, until: float
 ) -> None:
@@ -235,7 +236,7 @@ def traced(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], 
     return replace(block(watch), event_indicators=indicators), requested, zeros
 
 
-@pytest.mark.parametrize("which", ["x", "v", "beyond"])
+@together("which", ["x", "v", "beyond"])
 def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, which: str) -> None:
     """The state that changes fastest is named."""
 
@@ -280,7 +281,7 @@ def test_it_looks_for_an_excursion_where_python_does(
     assert looked_at(integrator) == looked_at(Integrator)
 
 
-@pytest.mark.parametrize("power", [6, 12, 60, 150, 290])
+@together("power", [6, 12, 60, 150, 290])
 def test_a_block_that_leaves_all_numbers_is_left_to_the_implicit_method_as_in_python(
     integrator: MakeIntegrator, power: int
 ) -> None:

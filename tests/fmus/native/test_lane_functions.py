@@ -9,6 +9,7 @@ from driveline.fmus.lanes_here import FEATURES, lanes_here
 from driveline.fmus.native.compiler import compile_in, host_compiler
 from driveline.fmus.native.lanes import COMMON, FLAGS
 from driveline.fmus.native.packaging import C_FILES
+from tests.together import together
 
 pytestmark = pytest.mark.skipif(not lanes_here(), reason="this processor has no lanes")
 
@@ -65,7 +66,7 @@ def spread(rng, least, most):
 SPECIAL = [0.0, -0.0, np.nan, np.inf, -np.inf, 1e300, -1e300, 1e-310]
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@together("name", FUNCTIONS)
 def test_they_are_as_exact_as_those_of_the_c_library(functions, name):
     rng = np.random.default_rng(1)
     x = spread(rng, 1e-9, {"exp": 709.0, "sin": 1e12, "cos": 1e12}.get(name, 1e30))
@@ -91,6 +92,6 @@ def test_the_remainder_is_that_of_python(functions):
     assert np.isnan(functions("moduli", [np.nan], [3.0]))
 
 
-@pytest.mark.parametrize("lanes", FEATURES)
+@together("lanes", FEATURES)
 def test_the_c_compiles_without_warnings_for_every_number_of_lanes(tmp_path, lanes):
     assert library(tmp_path, lanes).stat().st_size > 0

@@ -22,10 +22,11 @@ from driveline.harness.cosimulation.limits import USUAL_LIMITS
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.models.block.types import ContinuousBlock
 from tests.fmus.host import of_fmi3, opened
+from tests.together import together
 
 OK, DISCARD, ERROR = 0, 2, 3
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]
-every_continuous = pytest.mark.parametrize("name", CONTINUOUS)
+every_continuous = together("name", CONTINUOUS)
 
 
 @pytest.fixture(params=["native", "fmi3"])
@@ -86,7 +87,7 @@ def test_one_fmu_is_for_both_and_the_validator_finds_nothing(folder, name):
     assert not description.modelExchange.needsCompletedIntegratorStep
 
 
-@pytest.mark.parametrize("name", [name for name in FMUS if name not in CONTINUOUS])
+@together("name", [name for name in FMUS if name not in CONTINUOUS])
 def test_a_sampled_block_has_no_model_exchange(folder, name):
     description = fmpy.read_model_description(str(folder / f"{name}.fmu"))
     assert description.modelExchange is None
@@ -143,8 +144,8 @@ def test_states_and_derivatives_have_the_references_behind_the_interface(folder,
         assert base_exponents(v.unit or "") == {k: n for k, n in (state | {"s": state.get("s", 0) - 1}).items() if n}
 
 
-@pytest.mark.parametrize(
-    ("unit", "rate"),
+@together(
+    "unit, rate",
     [
         ("1", "1/s"),
         ("rad", "rad/s"),
@@ -315,7 +316,7 @@ def test_an_indicator_on_its_zero_is_not_zero_and_changes_sign_a_little_beyond(f
         assert upper_flank(0.25 - 1.1 * eps) < 0.0 < upper_flank(0.25 - 0.9 * eps)
 
 
-@pytest.mark.parametrize("name", PLANTS)
+@together("name", PLANTS)
 def test_a_plant_has_no_time_events_and_states_do_not_jump(folder, tmp_path, name):
     with exchanged(folder, tmp_path, name, v_0=8.0, T_0=20.0) as host:
         before = states(host)
@@ -443,8 +444,8 @@ def bring(host, mode):
             return
 
 
-@pytest.mark.parametrize("mode", ALL)
-@pytest.mark.parametrize("function", ALLOWED)
+@together("mode", ALL)
+@together("function", ALLOWED)
 def test_a_function_is_refused_outside_its_place_and_says_where_that_is(folder, tmp_path, function, mode):
     with opened(folder / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
         bring(host, mode)
@@ -459,8 +460,8 @@ def test_a_function_is_refused_outside_its_place_and_says_where_that_is(folder, 
             assert host.message == f"{function} is refused {mode}; its place is {first}"
 
 
-@pytest.mark.parametrize("mode", ALL)
-@pytest.mark.parametrize("function", STEPPING_ALONE)
+@together("mode", ALL)
+@together("function", STEPPING_ALONE)
 def test_a_function_of_co_simulation_is_refused_in_model_exchange(folder, tmp_path, function, mode):
     with opened(folder / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
         bring(host, mode)
@@ -470,7 +471,7 @@ def test_a_function_of_co_simulation_is_refused_in_model_exchange(folder, tmp_pa
         assert host.message == f"{function} is refused; the instance was made for model exchange"
 
 
-@pytest.mark.parametrize("function", EXCHANGING_ALONE)
+@together("function", EXCHANGING_ALONE)
 def test_a_function_of_model_exchange_is_refused_in_co_simulation(folder, tmp_path, function):
     with opened(folder / "MotorTorqueLoop.fmu", tmp_path) as host:
         for change in (lambda: None, host.initialize, host.fmu.terminate):
@@ -498,7 +499,7 @@ def test_a_wrong_number_of_states_is_refused(folder, tmp_path):
         assert states(host) == before
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@together("value", [math.nan, math.inf, -math.inf])
 def test_a_state_that_is_no_number_is_discarded_so_that_the_solver_may_try_another(folder, tmp_path, value):
     with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         host.fmu.enterContinuousTimeMode()
@@ -518,7 +519,7 @@ def test_derivatives_that_are_no_numbers_are_discarded(folder, tmp_path):
         assert host.status == DISCARD
 
 
-@pytest.mark.parametrize("time", [math.nan, math.inf])
+@together("time", [math.nan, math.inf])
 def test_a_time_that_is_no_number_is_refused(folder, tmp_path, time):
     with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
         message = host.refuses(host.fmu.setTime, time)
@@ -549,7 +550,7 @@ def test_a_saved_state_holds_mode_time_states_and_sides(folder, tmp_path):
         host.fmu.completedIntegratorStep()
 
 
-@pytest.mark.parametrize("kind", ["model exchange", "co-simulation"])
+@together("kind", ["model exchange", "co-simulation"])
 def test_a_saved_state_of_the_other_kind_is_refused(folder, tmp_path, kind):
     kinds = {"model exchange": {"kind": FMU2Model}, "co-simulation": {}}
     (other,) = [each for each in kinds if each != kind]
@@ -582,8 +583,8 @@ def test_an_output_that_is_no_number_is_discarded(folder, tmp_path):
 # a host that integrates
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
-@pytest.mark.parametrize("name", PLANTS)
+@together("tolerance", [1e-4, 1e-8])
+@together("name", PLANTS)
 def test_a_car_at_rest_stays_at_rest_and_meets_few_events(folder, name, tolerance):
     """All wheels are on the zeros of their indicators."""
     results = fmpy.simulate_fmu(
@@ -599,7 +600,7 @@ def test_a_car_at_rest_stays_at_rest_and_meets_few_events(folder, name, toleranc
     assert np.max(np.abs(results["v"])) < 1e-6
 
 
-@pytest.mark.parametrize("name", PLANTS)
+@together("name", PLANTS)
 def test_a_jump_of_the_torque_is_an_event_of_the_host(folder, name):
     """FMPy as it is: the inputs are constant before and after the jump."""
     jump = np.array([(0.0, -12.0), (0.1, -12.0), (0.1, 100.0), (0.4, 100.0)], dtype=[("time", float), ("T_mot", float)])
@@ -625,7 +626,7 @@ STEP_ERROR = 1e-3
 """In N.m: the error that the steps of the vehicle are chosen for (`python -m benchmarks.step_error`)."""
 
 
-@pytest.mark.parametrize(("manoeuvre", "plant"), [("tipin15", PLANTS[0]), ("launch", PLANTS[1])])
+@together("manoeuvre, plant", [("tipin15", PLANTS[0]), ("launch", PLANTS[1])])
 @pytest.mark.slow
 def test_plant_and_motor_give_the_torque_of_co_simulation(both_built, manoeuvre, plant):
     of_plant, of_motor = recorded(manoeuvre, plant, both_built)
@@ -636,8 +637,8 @@ def test_plant_and_motor_give_the_torque_of_co_simulation(both_built, manoeuvre,
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("manoeuvre", "plant"),
+@together(
+    "manoeuvre, plant",
     [
         *((manoeuvre, plant) for manoeuvre in ("creep", "hill_start", "park_forward", "abs") for plant in PLANTS),
         *((manoeuvre, PLANTS[1]) for manoeuvre in ("drive", "launch_brake", "ice_hill")),

@@ -13,6 +13,7 @@ from driveline.models.block.declaration import Real
 from driveline.models.block.operators import where
 from driveline.models.block.types import ContinuousBlock
 from tests.fmus.host import opened
+from tests.together import together
 
 
 class Input(NamedTuple):
@@ -83,8 +84,8 @@ def refusal_in_c(path, folder, pull: float) -> str:
     return message
 
 
-@pytest.mark.parametrize(
-    ("pull", "message"),
+@together(
+    "pull, message",
     [
         (1.0, "the step of 2.0 s is refused; x changes too fast to be followed with these parameters and inputs"),
         (-1.0, "the step of 2.0 s is refused; y would be inf"),

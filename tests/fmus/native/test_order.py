@@ -3,9 +3,8 @@
 import re
 from pathlib import Path
 
-import pytest
-
 from driveline.fmus.native.packaging import C_FILES
+from tests.together import together
 
 TARGET_FILES = C_FILES.parents[1] / "target" / "c"
 
@@ -56,7 +55,7 @@ def called(file: Path) -> set[str]:
     return set(CALLED.findall(COMMENT.sub("", file.read_text(encoding="utf-8"))))
 
 
-@pytest.mark.parametrize("folder", ORDERS, ids=lambda folder: folder.parent.name)
+@together("folder", ORDERS)
 def test_a_file_calls_no_function_of_a_later_one(folder: Path) -> None:
     order = ORDERS[folder]
     assert {file.name for file in folder.glob("*.c")} == set(order)

@@ -18,9 +18,10 @@ from driveline.fmus.native import compiler
 from tests import ROOT
 from tests.fmus.host import opened
 from tests.slow import slow
+from tests.together import together
 
 LARGEST = 150 * 1024
-every_fmu = pytest.mark.parametrize("name", FMUS)
+every_fmu = together("name", FMUS)
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into an ELF file")
 
 
@@ -106,8 +107,8 @@ def test_without_a_compiler_it_is_said_and_the_other_build_is_made(monkeypatch):
     assert len(builders(None)) == 1
 
 
-@pytest.mark.parametrize(
-    ("said", "code", "shown"),
+@together(
+    "said, code, shown",
     [
         ("", 1, "nothing"),
         (

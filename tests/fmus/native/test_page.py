@@ -17,6 +17,7 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
+from tests.together import together
 
 EXAMPLE, EXCHANGE, LINEAR = re.findall(
     r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S
@@ -133,7 +134,7 @@ def test_a_file_whose_name_is_taken_is_refused(tmp_path: Path) -> None:
     assert "there is a module called json" in done.stderr
 
 
-@pytest.mark.parametrize("builds", ["python", "both"])
+@together("builds", ["python", "both"])
 def test_a_block_of_a_file_has_no_python_build(tmp_path: Path, builds: str) -> None:
     file = tmp_path / "my_vehicle.py"
     file.write_text(EXAMPLE, encoding="utf-8")
@@ -147,8 +148,8 @@ def line_of(piece: str) -> int:
     return EXAMPLE[: EXAMPLE.index(piece)].count("\n") + 1
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
+@together(
+    "text, message",
     [
         ("import nonsense", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
         ("\nFMU = (", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),

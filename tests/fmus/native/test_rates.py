@@ -9,9 +9,10 @@ from fmpy.fmi1 import FMICallException
 from driveline.fmus.catalogue import FMUS
 from driveline.models.block.types import ContinuousBlock
 from tests.fmus.host import opened
+from tests.together import together
 
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]
-every_continuous = pytest.mark.parametrize("name", CONTINUOUS)
+every_continuous = together("name", CONTINUOUS)
 
 
 def references(host, *names):
@@ -74,7 +75,7 @@ def test_a_ramp_out_of_the_range_is_refused_and_nothing_moves(native, tmp_path):
         host.step(0.0, 0.005)
 
 
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@together("sign", [-1.0, 1.0])
 def test_a_ramp_may_end_at_the_bound(native, tmp_path, sign):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         host.initialize()
@@ -92,7 +93,7 @@ def test_after_a_ramp_the_outputs_no_longer_follow_it(native, tmp_path):
         assert rates_of(host, "omega_1_meas") == [0.0]
 
 
-@pytest.mark.parametrize("rate", [math.nan, math.inf])
+@together("rate", [math.nan, math.inf])
 def test_a_rate_that_is_not_finite_is_refused(native, tmp_path, rate):
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         assert "as derivative of T_ref" in host.refuses(ramp, host, T_ref=rate)
@@ -127,7 +128,7 @@ def test_rates_of_outputs_are_their_differences_over_a_short_time(native, tmp_pa
 
 
 @every_continuous
-@pytest.mark.parametrize("initializing", [True, False])
+@together("initializing", [True, False])
 def test_directional_derivatives_are_differences(native, tmp_path, name, initializing):
     with opened(native / f"{name}.fmu", tmp_path) as host:
         start = {"v_0": 8.0, "T_0": 20.0} if "v_0" in host.variables else {"T_ref": 50.0, "q_omega": 0.0}
@@ -151,7 +152,7 @@ def test_directional_derivatives_are_differences(native, tmp_path, name, initial
                 assert derivative(host, unknown, known) == pytest.approx(difference, rel=1e-3, abs=1e-4)
 
 
-@pytest.mark.parametrize("initializing", [True, False])
+@together("initializing", [True, False])
 def test_a_derivative_that_is_no_number_is_refused_and_not_given_out(native, tmp_path, initializing):
     with opened(native / "TwoMassDriveline.fmu", tmp_path) as host:
         host.fmu.enterInitializationMode() if initializing else host.initialize()
@@ -197,7 +198,7 @@ def test_during_initialization_parameters_can_be_known_too(native, tmp_path):
         assert message == "T_mot cannot be a known of a directional derivative; allowed is any input or parameter"
 
 
-@pytest.mark.parametrize("name", [name for name in FMUS if name not in CONTINUOUS])
+@together("name", [name for name in FMUS if name not in CONTINUOUS])
 def test_sampled_blocks_claim_no_rates_and_refuse_them(native, tmp_path, name):
     with opened(native / f"{name}.fmu", tmp_path) as host:
         claims = host.description.coSimulation

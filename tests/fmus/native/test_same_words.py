@@ -14,6 +14,7 @@ from driveline.fmus.description.variables import interface
 from driveline.fmus.native.records import paths, records_of
 from tests.fmus.forged import forged
 from tests.fmus.host import Host, opened
+from tests.together import together
 
 DISCARD, ERROR, FATAL = 2, 3, 4
 
@@ -148,7 +149,7 @@ def unpacked(tmp_path_factory):
     return {build: tmp_path_factory.mktemp(build) for build in ("python", "native", "fmi3")}
 
 
-@pytest.mark.parametrize("refusal", REFUSALS, ids=lambda refusal: refusal.sentence)
+@together("refusal", REFUSALS)
 def test_both_builds_say_the_same(built, native, unpacked, refusal):
     in_python, status_in_python = message(built, unpacked["python"] / refusal.fmu, refusal)
     in_c, status_in_c = message(native, unpacked["native"] / refusal.fmu, refusal)
@@ -159,9 +160,7 @@ def test_both_builds_say_the_same(built, native, unpacked, refusal):
     assert re.fullmatch("".join(re.escape(text) + (".+" if field else "") for text, field, _, _ in parts), in_c)
 
 
-@pytest.mark.parametrize(
-    "refusal", [each for each in REFUSALS if each != OF_TIME_IN_FMI_3], ids=lambda refusal: refusal.sentence
-)
+@together("refusal", [each for each in REFUSALS if each != OF_TIME_IN_FMI_3])
 def test_fmi_3_says_what_fmi_2_says(native, fmi3, unpacked, refusal):
     expected, status = message(native, unpacked["native"] / refusal.fmu, refusal)
     expected = expected.replace("fmi2SetupExperiment", "fmi2EnterInitializationMode")
@@ -169,8 +168,8 @@ def test_fmi_3_says_what_fmi_2_says(native, fmi3, unpacked, refusal):
     assert message(fmi3, unpacked["fmi3"] / refusal.fmu, refusal) == (expected, status)
 
 
-@pytest.mark.parametrize("ticks", [9, 11])
-@pytest.mark.parametrize("build", ["python", "native", "fmi3"])
+@together("ticks", [9, 11])
+@together("build", ["python", "native", "fmi3"])
 def test_one_tick_more_or_less_is_allowed_in_a_state(request, unpacked, build, ticks):
     folder = request.getfixturevalue({"python": "built"}.get(build, build))
     with opened(folder / "WheelSpeedCan.fmu", unpacked[build] / "WheelSpeedCan") as host:
@@ -178,8 +177,8 @@ def test_one_tick_more_or_less_is_allowed_in_a_state(request, unpacked, build, t
         host.step(1.01, 0.01)
 
 
-@pytest.mark.parametrize(("ticks", "allowed"), [(10**15, True), (10**15 + 1, False)])
-@pytest.mark.parametrize("build", ["python", "native", "fmi3"])
+@together("ticks, allowed", [(10**15, True), (10**15 + 1, False)])
+@together("build", ["python", "native", "fmi3"])
 def test_a_state_can_have_made_1e15_ticks(request, unpacked, build, ticks, allowed):
     folder = request.getfixturevalue({"python": "built"}.get(build, build))
     late = restored(lambda saved: forged(forged(saved, "time", 1.0 + 1e-3 * ticks), "ticks", ticks))

@@ -1,12 +1,11 @@
 """What Python says and allows, as C gets it."""
 
-import pytest
-
 from driveline.fmus.native.shared_header import definition, shared_header
+from tests.together import together
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
+@together(
+    "value, text",
     [
         (1e-13, "#define X 1e-13"),
         (16, "#define X 16"),

@@ -9,6 +9,7 @@ import pytest
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import FLAGS, host_compiler
 from tests.fmus.host import opened
+from tests.together import together
 
 PROGRAM = Path(__file__).parent / "linked.c"
 STEPS = 100
@@ -61,7 +62,7 @@ def test_all_fmus_are_linked_into_one_program_and_run_side_by_side(native, objec
     }
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_nothing_has_a_name_outside_its_fmu_but_the_functions_of_the_standard_with_the_prefix(objects, name):
     done = subprocess.run(["nm", "--defined-only", "-g", objects[name]], capture_output=True, text=True, check=True)
     symbols = [line.split()[-1].lstrip("_") for line in done.stdout.splitlines()]

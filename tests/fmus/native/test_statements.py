@@ -3,12 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 from driveline.fmus.native.arithmetic import LOOKED_UP
 from driveline.fmus.native.statements import Statements
 from driveline.models.block.operators import interpolate, where
 from tests.fmus.native.recorded import recorded
+from tests.together import together
 
 NAMES = [f"a[{k}]" for k in range(6)]
 
@@ -52,8 +51,8 @@ def test_a_choice_that_has_been_made_is_not_made_again() -> None:
     assert "a2 = 2.0 * x;" in lines
 
 
-@pytest.mark.parametrize(
-    ("of", "text"),
+@together(
+    "of, text",
     [
         (lambda x, y: x + y + x, "x + y + x"),
         (lambda x, y: x - (y - x), "x - (y - x)"),

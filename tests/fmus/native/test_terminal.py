@@ -210,7 +210,6 @@ def test_what_is_not_for_it_is_passed_over(node):
         struct.pack("<II", CONFIRM, 7),
         struct.pack("<I", CONFIRM),
     ],
-    ids=["unknown", "short frame", "short confirm", "longer than the data", "shorter than its head", "no length"],
 )
 def test_what_is_no_operation_is_sent_back_and_what_is_before_it_counts(node, data):
     node.start()

@@ -4,14 +4,13 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.source import block_sources
 from driveline.fmus.native.statements import Statements
 from driveline.fmus.native.terms import Terms
 from driveline.models.block.operators import maximum, sqrt, where
 from tests.fmus.native.recorded import recorded
+from tests.together import together
 
 
 def taken(*functions: Callable[..., Any]) -> tuple[Terms, list[list[str]]]:
@@ -52,13 +51,13 @@ def test_a_choice_between_parameters_is_a_term() -> None:
     assert written == [["y = p->terms[0] * x;"]]
 
 
-@pytest.mark.parametrize(("p", "q"), [(2.0, 3.0), (-1.0, 0.0)])
+@together("p, q", [(2.0, 3.0), (-1.0, 0.0)])
 def test_values_are_those_of_the_operations_also_where_they_are_infinite(p: float, q: float) -> None:
     terms, _ = taken(lambda x, p, q: x * (where(p > 0.0, sqrt(p * p), 7.0) + 1.0 / q))
     assert terms.values([p, q]) == [(p if p > 0.0 else 7.0) + (1.0 / q if q else float("inf"))]
 
 
-@pytest.mark.parametrize("name", ["TwoMassDriveline", "ValidationVehicle"])
+@together("name", ["TwoMassDriveline", "ValidationVehicle"])
 def test_no_stage_of_a_plant_divides_by_parameters(name: str) -> None:
     text = block_sources(FMUS[name])["block.c"].partition("derivative_held(")[2].partition("\n}")[0]
     assert "p->terms" in text

@@ -2,15 +2,15 @@
 
 import fmpy
 import numpy as np
-import pytest
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import interface
 from driveline.models.block.types import ContinuousBlock
+from tests.together import together
 
 
-@pytest.mark.parametrize(
-    ("kind", "name"),
+@together(
+    "kind, name",
     [
         *(("CoSimulation", name) for name in FMUS),
         *(("ModelExchange", name) for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)),

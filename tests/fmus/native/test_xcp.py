@@ -16,12 +16,13 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import interface
 from driveline.fmus.native.xcp import FOLDER, address_in
 from tests.fmus.host import Host, opened
+from tests.together import together
 
 pytestmark = pytest.mark.skipif(fmpy.platform != "linux64", reason="addresses are those of Linux")
 
 PLATFORMS = {"native": "linux64", "fmi3": "x86_64-linux"}
 
-BUILDS = pytest.mark.parametrize("build", PLATFORMS)
+BUILDS = together("build", PLATFORMS)
 
 STEP = 0.002
 
@@ -89,7 +90,7 @@ def stepped(host: Host, numbers: range) -> list[dict[str, Any]]:
 
 
 @BUILDS
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_a_public_parser_reads_what_is_declared(request: Any, name: str, build: str) -> None:
     pya2l = pytest.importorskip("pya2l.parser", reason="pya2l is not installed")
     path, listed = request.getfixturevalue(build) / f"{name}.fmu", interface(FMUS[name].block)
@@ -106,7 +107,7 @@ def test_a_public_parser_reads_what_is_declared(request: Any, name: str, build: 
         assert "/include" not in text
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_the_manifest_says_what_the_standard_asks(native: Path, name: str) -> None:
     with ZipFile(native / f"{name}.fmu") as archive:
         manifest = ElementTree.fromstring(archive.read(f"{FOLDER}/fmi-ls-manifest.xml"))
@@ -126,7 +127,7 @@ def test_the_manifest_says_what_the_standard_asks(native: Path, name: str) -> No
 
 
 @BUILDS
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_at_the_addresses_are_the_values_while_it_steps(bench: Any, name: str, build: str) -> None:
     host, tool = bench(name, build)
     host.initialize(**({"v_0": 10.0, "T_0": 20.0} if "v_0" in host.variables else {}))
@@ -139,9 +140,7 @@ def test_at_the_addresses_are_the_values_while_it_steps(bench: Any, name: str, b
 
 
 @BUILDS
-@pytest.mark.parametrize(
-    ("name", "values"), [("DampingController", {"k_d": 0.75, "haste": 0.0}), ("TwoMassDriveline", {"m": 2500.0})]
-)
+@together("name, values", [("DampingController", {"k_d": 0.75, "haste": 0.0}), ("TwoMassDriveline", {"m": 2500.0})])
 def test_what_is_written_acts_as_what_is_set(bench: Any, name: str, values: dict[str, float], build: str) -> None:
     results = []
     for write in (False, True, None):
@@ -160,8 +159,8 @@ def test_what_is_written_acts_as_what_is_set(bench: Any, name: str, values: dict
 
 
 @BUILDS
-@pytest.mark.parametrize(
-    ("name", "value", "message"),
+@together(
+    "name, value, message",
     [
         ("C", 100.0, "C = 100.0 is refused; a fixed parameter can be set until initialization mode is left"),
         ("k_d", 200.00000000000003, "k_d = 200.00000000000003 N.m.s/rad is refused; allowed is 0 to 200 N.m.s/rad"),

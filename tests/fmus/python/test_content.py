@@ -6,6 +6,7 @@ import pytest
 
 from tests.fmus.forged import with_checksum
 from tests.fmus.host import opened
+from tests.together import together
 
 
 def changed(path, value):
@@ -54,7 +55,7 @@ def host(built, tmp_path_factory):
         yield host
 
 
-@pytest.mark.parametrize("change", FORMS)
+@together("change", FORMS)
 def test_a_form_that_no_instance_can_have_written_is_refused(host, change):
     saved = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
     message = host.refuses(host.fmu.deSerializeFMUstate, change(saved))

@@ -11,6 +11,7 @@ import pytest
 from driveline.fmus.catalogue import FMUS
 from tests import copied_sources
 from tests.fmus.host import opened
+from tests.together import together
 
 HOST = Path(__file__).parents[1] / "host.py"
 
@@ -81,7 +82,7 @@ assert models.MINE and fmus.MINE and pythonfmu.MINE
     assert ends_in_order(run_host(program, tmp_path)) == "50.0\n"
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_the_process_ends_with_0_after_simulating_resetting_freeing_and_loading_again(built, tmp_path, name):
     program = f"""
 from pathlib import Path
@@ -100,7 +101,7 @@ print("done")
     assert ends_in_order(run_host(program, tmp_path)) == "done\n"
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_the_process_goes_on_and_ends_with_0_after_many_refusals(built, tmp_path, name):
     program = f"""
 import gc

@@ -15,6 +15,7 @@ import fmpy
 import pytest
 
 from tests.fmus.host import opened
+from tests.together import together
 
 HOST = Path(__file__).parents[1] / "host.py"
 OK, CO_SIMULATION, MODEL_EXCHANGE = 0, 1, 0
@@ -25,7 +26,7 @@ def instance_of(host):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the signal is that of Linux")
-@pytest.mark.parametrize("call", ["fmi2FreeFMUstate(component, None)", "fmi2DoStep(None, zero, zero, 0)"])
+@together("call", ["fmi2FreeFMUstate(component, None)", "fmi2DoStep(None, zero, zero, 0)"])
 def test_a_null_pointer_ends_the_host(built, tmp_path, call):
     shutil.copy(HOST, tmp_path / "fmu_host.py")
     program = f"""
@@ -42,7 +43,7 @@ with fmu_host.opened({str(built / "MotorTorqueLoop.fmu")!r}, Path("unpacked")) a
     assert done.returncode == -signal.SIGSEGV
 
 
-@pytest.mark.parametrize(("kind", "guid"), [(CO_SIMULATION, "{other}"), (MODEL_EXCHANGE, None)])
+@together("kind, guid", [(CO_SIMULATION, "{other}"), (MODEL_EXCHANGE, None)])
 def test_kind_and_guid_are_not_looked_at(built, tmp_path, kind, guid):
     fmpy.extract(str(built / "MotorTorqueLoop.fmu"), str(tmp_path))
     with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:

@@ -14,6 +14,7 @@ from driveline.fmus.python.packaging import build
 from driveline.fmus.release import DATE
 from tests import ROOT, copied_sources
 from tests.fmus.host import opened
+from tests.together import together
 
 
 def run(arguments, folder, **environment):
@@ -91,7 +92,7 @@ def test_an_fmu_that_has_run_can_be_built_again_in_the_same_process(built, tmp_p
     assert again.read_bytes() == (built / f"{name}.fmu").read_bytes()
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_the_archive_holds_what_runs_and_nothing_else(built, name):
     with zipfile.ZipFile(built / f"{name}.fmu") as archive:
         infos = archive.infolist()
@@ -106,13 +107,13 @@ def test_the_archive_holds_what_runs_and_nothing_else(built, name):
     assert carried & blocks == {FMUS[name].module.split(".")[1]}
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_what_it_needs_of_the_machine_is_told_where_the_standard_says(built, name):
     with zipfile.ZipFile(built / f"{name}.fmu") as archive:
         assert "Python 3.11 or later" in archive.read("documentation/externalDependencies.txt").decode()
 
 
-@pytest.mark.parametrize("name", FMUS)
+@together("name", FMUS)
 def test_top_level_modules_carry_the_name_of_the_build(built, name):
     with zipfile.ZipFile(built / f"{name}.fmu") as archive:
         resources = {n.split("/")[1] for n in archive.namelist() if n.startswith("resources/")}
@@ -120,7 +121,7 @@ def test_top_level_modules_carry_the_name_of_the_build(built, name):
     assert all(n == "slavemodule.txt" or n.startswith(f"driveline_{short}_") for n in resources)
 
 
-@pytest.mark.parametrize("module", ["fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
+@together("module", ["fmus.python.slave", *(fmu.module for fmu in FMUS.values())])
 def test_what_runs_inside_an_fmu_imports_the_standard_library_alone(module):
     ours, waiting = set(), {module}
     while waiting:

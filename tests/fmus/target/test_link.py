@@ -11,6 +11,7 @@ import pytest
 
 from driveline.fmus.target import link
 from driveline.fmus.target.link import Link, TargetError
+from tests.together import together
 
 PROGRAM = """
 import struct, sys, time
@@ -55,8 +56,8 @@ def test_what_is_asked_is_answered() -> None:
     assert (answer.outputs, answer.state, answer.count, answer.stack) == ((-1.0,), (2.0,), 100, 64)
 
 
-@pytest.mark.parametrize(
-    ("otherwise", "message"),
+@together(
+    "otherwise, message",
     [
         ("time.sleep(60)", "the target hangs: no answer within 1 s"),
         ("sys.stdout.buffer.write(b'ab'), sys.stdout.buffer.flush(), time.sleep(60)", "hangs"),

@@ -24,6 +24,7 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
 from driveline.models.controller.supervision import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
 from tests.slow import slow
+from tests.together import together
 
 OURS = CONTROLLERS["DampingController"]
 
@@ -75,7 +76,7 @@ FAULTS = {
 """Input, and what takes its place; None: what it was when the fault began."""
 
 
-@pytest.mark.parametrize("fault", FAULTS)
+@together("fault", FAULTS)
 def test_single_precision_recognises_a_fault_within_a_sample(
     fault: str, programs: dict[str, Path], both_built: Path
 ) -> None:
@@ -121,7 +122,7 @@ def test_no_instruction_is_in_double_precision(tmp_path: Path) -> None:
     assert not found["float"]
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@together("name", CONTROLLERS)
 def test_every_controller_compiles_under_the_names_of_any(name: str, tmp_path: Path) -> None:
     sources = target_sources(CONTROLLERS[name], SINGLE)
     for file, text in sources.items():

@@ -10,6 +10,7 @@ from driveline.fmus.target.link import Answer
 from driveline.harness.exchange.target.comparison import compare
 from driveline.harness.exchange.target.controllers import Programs
 from driveline.harness.exchange.target.offline_cases import Case
+from tests.together import together
 
 CASE = Case("two samples", ("T_driver",), np.zeros((2, 1)), None, False)
 
@@ -32,9 +33,7 @@ class StandIn:
     update = start
 
 
-@pytest.mark.parametrize(
-    ("T_ref", "distance", "margin"), [(100.0, 0.011, 1.0), (-100.0, 0.0055, 0.5), (0.0, 1e-3, 1.0)]
-)
+@together("T_ref, distance, margin", [(100.0, 0.011, 1.0), (-100.0, 0.0055, 0.5), (0.0, 1e-3, 1.0)])
 def test_torques_may_differ_by_a_millinewton_metre_and_a_ten_thousandth(
     T_ref: float, distance: float, margin: float
 ) -> None:
