@@ -32,8 +32,8 @@ from .study import Column, Measured, Study, Table
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
 
-KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES, METHODS = 200, 40, 200, 20, 5, 5
-DRAWS = {DESIGN_MODEL: 36, VEHICLE: 14}
+KNOWN_J_1, FREE_J_1, STARTS, OF_A_TRAP, VEHICLES, METHODS = 60, 20, 40, 5, 5, 3
+DRAWS = {DESIGN_MODEL: 18, VEHICLE: 7}
 """How many recordings of each."""
 
 DRAWN = 9
@@ -56,7 +56,7 @@ LOOPS = {
 TYRES = {"spring": (0, 2), "damper": (1,)}
 """Numbers of the cars by what their tyre mostly is at 8 Hz."""
 
-OF_A_LOOP = 5
+OF_A_LOOP = 2
 """Recordings of each car."""
 
 RIGHT = {"J_2": 0.004, "C": 0.001, "phi_B": 0.0035}

@@ -104,7 +104,6 @@ STUDIES = (
     "undetectable_faults",
     "plausible_drives",
     "replay",
-    "identification",
 )
 """Modules of this folder that have a STUDY; those that decide come first."""
 
