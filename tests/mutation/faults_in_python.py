@@ -17,6 +17,8 @@ ARITHMETIC: dict[type, type] = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: as
 NAMES = {"minimum": "maximum", "logical_and": "logical_or", "max": "min", "ceil": "floor"}
 NAMES |= {other: name for name, other in NAMES.items()}
 CHOICES = {"where", "branch"}
+SAYING = {"frozen", "kw_only", "slots", "strict"}
+"""Arguments that only say what holds anyway."""
 LEFT_OUT = {"clip", "abs", "logical_not", "minimum", "maximum", "max", "min"}
 
 
@@ -83,6 +85,8 @@ def parts(node: ast.AST, has_state: bool = False) -> Iterator[tuple[ast.AST, ast
             children: list[ast.AST] = [*defaults, *body]
         case ast.AnnAssign(value=value):
             children = [value] if value else []
+        case ast.keyword(arg=name) if name in SAYING:
+            children = []
         case ast.JoinedStr():  # Python 3.11 does not know where its parts stand
             children = []
         case _:

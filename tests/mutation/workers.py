@@ -9,17 +9,15 @@ import resource
 import select
 import shutil
 import signal
-import stat
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from hashlib import md5
 from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
-from types import ModuleType
+from runpy import run_path
 from typing import Any
 
 # slow to import and needed by every run of the tests, which inherits them
@@ -52,44 +50,27 @@ TEST_WAITED = 180
 """Time in s after which a test does not end, whatever it waits for."""
 
 WAITED = 300.0
-"""Time in s for the tests of a fault; those that are not run until then do not find it."""
+"""Time in s for the tests of a round; those that are not run until then do not find the fault."""
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 """Of prctl(2)."""
 
-COMPILER = """#!/bin/sh
-# cc that compiles a file again only when it, what it includes or an option has changed
-while [ $# -gt 0 ]; do
-    case $1 in
-    -o) output=$2; shift ;;
-    *.c)
-        key=$( (echo "$options"; cc $options -E -P "$1") 2>/dev/null | md5sum | cut -c1-32)
-        object=OBJECTS/$key.o
-        [ -f "$object" ] || cc $options -O0 -c "$1" -o "$object$$" || exit 1
-        [ -f "$object" ] || mv "$object$$" "$object"
-        objects="$objects $object" ;;
-    *) options="$options $1" ;;
-    esac
-    shift
-done
-exec cc $objects $options -o "$output"
-"""
+Task = tuple[Mutant, Sequence[Sequence[str]], Sequence[str]]
+"""A mutant, tests of which the fast ones are run, in rounds, and tests of which the slow ones are run after them."""
 
 
 def prepare(folder: str) -> None:
     """Gives this worker a copy of the tree to work in."""
     copy = Path(folder, str(os.getpid()))
-    ours = shutil.ignore_patterns(".*", "build", "results", "*.egg-info")
-    shutil.copytree(ROOT, copy, ignore=ours)
-    objects, compiler = copy / "objects", copy / "cc"
-    objects.mkdir()
-    (copy / "kept").mkdir()
-    (copy / "temporary").mkdir()
+    ours = shutil.ignore_patterns(".*", "build", "results", "site", "*.egg-info")
+    shutil.copytree(ROOT, copy, ignore=ours, symlinks=True)
+    for name in ("kept", "temporary", "compiled"):
+        (copy / name).mkdir()
     os.environ["TMPDIR"] = str(copy / "temporary")
     tempfile.tempdir = None
-    compiler.write_text(COMPILER.replace("OBJECTS", str(objects)))
-    compiler.chmod(stat.S_IRWXU)
-    os.environ["CC"] = str(compiler)
+    os.environ["CC"] = str(
+        run_path(str(ROOT / "tests" / "compiling.py"))["caching_compiler"](copy / "compiled") or "cc"
+    )
     os.chdir(copy)
     os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
     os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False  # each run imports the same
@@ -101,8 +82,15 @@ def _prctl(option: int, value: int) -> None:
     ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
-class TimeLimit:
-    """Ends the process, or the program that it waits for, when a test computes or waits for too long."""
+class Watched:
+    """Plugin that keeps which test is running, and ends the process, or the program that it waits for, when a test
+    computes or waits for too long."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        self.path.write_text(nodeid, encoding="utf-8")
 
     def pytest_runtest_setup(self) -> None:
         signal.alarm(TEST_WAITED)
@@ -112,32 +100,17 @@ class TimeLimit:
 
 
 class Remembered:
-    """What no fault outside of the code of the FMUs changes is computed once by a worker: traced sources, pages, what
-    is in the FMUs that run Python."""
+    """Plugin: what no fault outside of the code of the FMUs changes is computed once by a worker, traced sources,
+    pages, and what is in the FMUs that run Python."""
 
     def pytest_configure(self) -> None:
-        fmus = next(name for name, module in sys.modules.items() if _is_at(module, Path("fmus", "__init__.py")))
-        packaging: list[Any] = [import_module(f"{fmus}.{build}.packaging") for build in ("native", "python")]
-        native, python = packaging
-        native.block_sources = remembered(native.block_sources)
-        native.documentation = remembered(native.documentation)
-        python.documentation = remembered(python.documentation)
-        python._resources_and_binaries = remembered(python._resources_and_binaries)
-
-
-def _is_at(module: ModuleType, path: Path) -> bool:
-    """Whether a module is the file at a path of the tree, whatever it is imported as."""
-    return getattr(module, "__file__", None) == str(path.resolve())
-
-
-class Running:
-    """Keeps which test is running, so that one is known that fails or that ends its process."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-
-    def pytest_runtest_logstart(self, nodeid: str) -> None:
-        self.path.write_text(nodeid, encoding="utf-8")
+        for build, names in {
+            "native": ("block_sources", "documentation"),
+            "python": ("documentation", "_resources_and_binaries"),
+        }.items():
+            packaging: Any = import_module(f"driveline.fmus.{build}.packaging")
+            for name in names:
+                setattr(packaging, name, remembered(getattr(packaging, name)))
 
 
 def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -174,8 +147,7 @@ def failing(tests: Sequence[str], same_fmus: bool = False) -> str | None:
             nowhere = os.open(os.devnull, os.O_RDWR)
             for stream in range(3):
                 os.dup2(nowhere, stream)
-            plugins = [TimeLimit(), Running(running), *([Remembered()] if same_fmus else [])]
-            result = pytest.main([*OPTIONS, *tests], plugins=plugins)
+            result = pytest.main([*OPTIONS, *tests], plugins=[Watched(running), *([Remembered()] if same_fmus else [])])
         finally:
             os._exit(result)
     end = os.pidfd_open(child)
@@ -198,12 +170,7 @@ def _end_children() -> None:
 
 
 def finder(mutant: Mutant, rounds: Sequence[Sequence[str]], own: Sequence[str]) -> str | None:
-    """The first test that finds a fault; None if none does. Tests that fail without it are left out.
-
-    Args:
-        rounds: tests of which the fast ones are run, in this order.
-        own: of which the slow ones are run after them.
-    """
+    """The first test that finds a fault; None if none does. Tests that fail without it are left out."""
     for marker, some in (*(("not slow", tests) for tests in rounds), ("slow", own)):
         if some and (found := _finder(mutant, ["-m", marker, *some])) is not None:
             return found
@@ -226,29 +193,11 @@ def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
         UNSOUND.add(found)
 
 
-def finders(
-    mutants: Sequence[Mutant],
-    tests: Callable[[Mutant], tuple[Sequence[Sequence[str]], Sequence[str]]],
-    sound: Collection[str],
-    number: int,
-) -> Iterator[tuple[Mutant, str | None]]:
-    """Each of the faults with what finds it, as soon as that is known, by so many workers.
-
-    Args:
-        tests: of a fault, and those of its own, as `finder` takes them.
-        sound: tests that are known to pass without a fault.
-    """
-    SOUND.update(sound)
-    with working(number) as workers:
-        running = {workers.submit(finder, mutant, *tests(mutant)): mutant for mutant in mutants}
-        yield from ((running[done], done.result()) for done in as_completed(running))
-
-
-@contextmanager
-def working(number: int | None = None) -> Iterator[ProcessPoolExecutor]:
-    """So many workers, or one on each core, in copies of the tree."""
+def finders(tasks: Iterable[Task], number: int) -> Iterator[tuple[Mutant, str | None]]:
+    """Each of the faults with what finds it, as soon as that is known, by so many workers in copies of the tree."""
     with (
         tempfile.TemporaryDirectory(dir=MEMORY if MEMORY.exists() else None) as folder,
         ProcessPoolExecutor(number, get_context("fork"), prepare, (folder,)) as workers,
     ):
-        yield workers
+        running = {workers.submit(finder, *task): task[0] for task in tasks}
+        yield from ((running[done], done.result()) for done in as_completed(running))

@@ -1,0 +1,84 @@
+"""Which tests cover a file, by the names of files, by what tests import and by the folders in which they lie."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+from mutants import ROOT, rooms
+
+CALLS_IN_C = "calls", "same_words", "as_python", "rates", "no_step_to_nowhere", "content"
+CALLS = (
+    *(f"tests/fmus/native/test_{name}.py" for name in CALLS_IN_C),
+    "tests/test_fuzz.py::test_odd_input_is_answered_as_promised[calls]",
+)
+INTEGRATOR = (
+    *(f"tests/fmus/native/test_{name}.py" for name in ("integrator", "rates", "no_step_to_nowhere")),
+    "tests/fmus/test_stiff_plants.py",
+)
+IN_C = {
+    "sampled": ("tests/fmus/native/test_runner.py",),
+    **dict.fromkeys(("integrator", "explicit", "implicit"), INTEGRATOR),
+    "operators": ("tests/fmus/native/test_functions.py",),
+    "content": ("tests/fmus/test_state.py",),
+    **dict.fromkeys(
+        (f"fmi3{part}" for part in ("", "_instance", "_model_exchange", "_refused", "_terminal")),
+        ("tests/fmus/native/test_fmi3.py", "tests/fmus/native/test_terminal.py"),
+    ),
+    **dict.fromkeys(("lanes", "lane_loop"), ("tests/harness/cosimulation/test_lanes.py",)),
+    **dict.fromkeys(("model_exchange", "fmi2_model_exchange"), ("tests/fmus/native/test_model_exchange.py",)),
+}
+"""The tests of files of the C core that find their faults before those of the calls do."""
+
+
+def rounds(file: str) -> list[list[str]]:
+    """Files of tests in the order in which they are run: those of the file itself, those that import it, those that
+    belong to what imports it, and all of the room."""
+    path, found = Path(file), []
+    if path.suffix == ".py":
+        stages = [own(file), importing(path), near(path), room(path)]
+    else:
+        stages = [[name for name in IN_C.get(path.stem, ()) if (ROOT / name).exists()], list(CALLS)]
+    for names in stages:
+        found.append([name for name in names if not any(name in earlier for earlier in found)])
+    return [names for names in found if names]
+
+
+def own(file: str) -> list[str]:
+    """The files of the tests of a module."""
+    return [test for test in tests() if Path(test).stem == f"test_{Path(file).stem}"]
+
+
+def importing(path: Path) -> list[str]:
+    """Files of tests that name a module."""
+    return [test for test, named in tests().items() if path.stem in named]
+
+
+def near(path: Path) -> list[str]:
+    """Files of the tests of modules that import this one."""
+    return [test for file, named in modules().items() if path.stem in named for test in own(file)]
+
+
+def room(path: Path) -> list[str]:
+    """Files of the tests in the folder that belongs to that of a module, or to the one above."""
+    folder = Path("tests", path.parent)
+    folder = folder if (ROOT / folder).exists() else folder.parent
+    return [test for test in tests() if Path(test).parent == folder]
+
+
+@cache
+def tests() -> dict[str, set[str]]:
+    """Files of tests, with the names in them that may be those of modules."""
+    paths = [path for path in ROOT.glob("tests/**/test_*.py") if path.parent != Path(__file__).parent]
+    return {path.relative_to(ROOT).as_posix(): _names(path, r"[./](\w+)") for path in sorted(paths)}
+
+
+@cache
+def modules() -> dict[str, set[str]]:
+    """Files of the code, with the names that they import."""
+    return {file: _names(ROOT / file, r"^from \.+[\w.]*?(\w+) import") for files in rooms().values() for file in files}
+
+
+def _names(path: Path, pattern: str) -> set[str]:
+    text = path.read_text(encoding="utf-8")
+    imported = re.findall(r"^ *(?:from .*)?import (.*)", text, re.M)
+    return {*re.findall(pattern, text, re.M), *re.findall(r"\w+", " ".join(imported))}
