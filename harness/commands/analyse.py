@@ -1,11 +1,10 @@
-"""Analyses the loop with a controller of the catalogue: gain, phase and delay margins and M_s with the true delays,
+"""Analyses the loop with a controller of the project and prints its margins with the true delays: gain, phase, delay
+and M_s. The output folder gets the page analysis.md, sensitivity.csv, analysis.json (what made them) and the figures.
+
 Bode and Nyquist figures, the poles over speed, stiffness, inertia and dead time, the describing function of the
 backlash and the limit cycles that it excludes, the error of the estimate and its time in the wrong contact mode, and
-the sensitivity of the metrics to each parameter of car and controller.
-
-The linear model comes from the functions of the blocks themselves, differentiated with the teeth in contact. The table
-of margins is printed; the output folder gets the page analysis.md, sensitivity.csv, analysis.json (what made them) and,
-in its folder figures, the figures.
+the sensitivity of the metrics to each parameter of car and controller. The linear model comes from the functions of the
+blocks themselves, differentiated with the teeth in contact.
 
 examples:
   driveline analyse
@@ -14,36 +13,35 @@ examples:
   driveline analyse --plant TwoMassDriveline --json > analysis.json
 """
 
-import argparse
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 from ..loop.places import PLANTS
-from .course import job
-from .options import add_controller, add_fmus, add_output, add_printing
-from .settings import as_given, distinguishing, settings_of_ours
+from ..loop.settings import Settings
+from .arguments import option
+from .jobs import distinguishing, job
+from .options import FmuFolder, OurController, Replacing, output, record
+from .printing import JsonPrinting
+from .settings import as_given
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--plant",
-        action="append",
-        choices=PLANTS,
-        metavar="NAME",
-        help=f"the car: {' or '.join(PLANTS)} (repeatable; default: both)",
+@record
+class Arguments(OurController, FmuFolder, Replacing, JsonPrinting):
+    plant: tuple[str, ...] = option(
+        (), f"the car: {' or '.join(PLANTS)} (repeatable; default: both)", choices=PLANTS, metavar="NAME"
     )
-    add_controller(parser)
-    add_fmus(parser)
-    add_output(parser, "results/analyse", "the page, the table of sensitivities and the figures", of_a_run=True)
-    add_printing(parser, table=True)
+    output: Path = output("results/analyse", "the page, the table of sensitivities and the figures")
 
 
-def run(args: argparse.Namespace) -> int:
-    given = settings_of_ours(args, dict.fromkeys(args.plant or PLANTS))
+def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
+    from ..loop.given_parameters import built_with
     from ..studies.margins.analysis_report import announce, write
     from ..studies.margins.loop_analysis import analyse
 
+    loops = [Settings(plant, args.controller, folder=args.fmus) for plant in dict.fromkeys(args.plant or PLANTS)]
+    given = {each.plant_name: built_with(each, args.vehicle, args.parameters, {}) for each in loops}
     same = {plant: distinguishing(each) for plant, each in given.items()}
     with job(args, args.output / "analysis.json", same, given, [args.output / "analysis.md"]) as made:
         found = analyse(given)

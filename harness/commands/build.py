@@ -1,15 +1,49 @@
-import argparse
+"""Builds the FMUs of the loop, which the other commands run. The same sources give the same files, byte by byte.
 
-from ...fmus.building import build_command
+A vehicle file and the gains that `driveline design` makes of it become start values: the FMUs are that car. They are
+for co-simulation with FMI 2.0; the native ones of continuous blocks are for model exchange too, in either FMI. The
+native builds go into the folder native/ in that of the others. They need a C compiler; where it is missing, they are
+left out unless they are asked for. With --fmi 3 the FMUs are native ones for FMI 3.0, in the folder fmi3/.
+
+FMUs: {fmus}
+only by name, controllers to compare ours with: {comparators}
+
+examples:
+  driveline build                            all FMUs, each build that is possible here
+  driveline build TwoMassDriveline           only that one
+  driveline build --output /srv/fmus         somewhere else
+  driveline build --build native             only the native ones
+  driveline build my_vehicle.py              the block in a file of your own, see docs/native.md
+  driveline build --vehicle car.toml --parameters gains.toml
+  driveline build --fmi 3                    for FMI 3.0
+  driveline build --platform all             native ones for Linux, Windows and macOS (extra `cross`)
+"""
+
+from pathlib import Path
+
+from ...fmus.building.builds import BUILDS, FMIS, PLATFORMS, build_fmus
+from ...fmus.catalogue import FMUS
+from ...fmus.names import COMPARATORS
 from ..loop.places import BUILD
+from .arguments import option, positional
+from .options import ParameterFiles, output_folder, record
+from .printing import Printing
 
-__doc__ = f"{build_command.DESCRIPTION}\n{build_command.examples('driveline build')}"
+IN_HELP = {"fmus": ", ".join(FMUS), "comparators": ", ".join(COMPARATORS)}
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    build_command.add_arguments(parser, BUILD)
+@record
+class Arguments(ParameterFiles, Printing):
+    names: tuple[str, ...] = positional("a name or a file of your own (default: all names)", str, "FMU", "*")
+    build: str | None = option(None, "which build (default: each that is possible here)", choices=BUILDS)
+    platform: str = option("host", "of the native build (default: %(default)s)", choices=PLATFORMS)
+    fmi: str = option(str(FMIS[0]), "2.0 or 3.0 (default: %(default)s)", choices=[str(fmi) for fmi in FMIS])
+    output: Path = option(BUILD, "(default: %(default)s)", output_folder, metavar="FOLDER")
 
 
-def run(args: argparse.Namespace) -> int:
-    build_command.run(args)
+def run(args: Arguments) -> int:
+    files = args.vehicle, args.parameters
+    for path in build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi)):
+        if not args.quiet:
+            print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
     return 0

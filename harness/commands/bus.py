@@ -1,11 +1,10 @@
 """Writes the database of the bus, driveline.dbc, from what the blocks declare of their frames: the wheel speed as the
 ABS unit sends it (identifier, cycle, resolution, range), and what motor control says of the motor and is asked to make.
+
 With it other tools, and `driveline replay --dbc`, read logs of that bus; `driveline simulate --frames blf` writes some.
-
 With --fmu it also builds WheelSpeedCan as an FMU of FMI 3.0 that sends its frames to other FMUs or to a simulation of
-the bus, as binary variables with clocks (FMI-LS-BUS); the database is in it.
-
-The cycle and the resolution are those of the car of a vehicle file (T_cyc, q_v). Needs the extra `recordings`.
+the bus, as binary variables with clocks (FMI-LS-BUS); the database is in it. The cycle and the resolution are those of
+the car of a vehicle file (T_cyc, q_v). Needs the extra `recordings`.
 
 examples:
   driveline bus
@@ -13,31 +12,30 @@ examples:
   driveline bus --vehicle examples/cars/van.toml --output results/van_bus
 """
 
-import argparse
+from pathlib import Path
 
+from ...fmus.building.builds import PLATFORMS
 from ..loop.places import PLACES
-from .options import add_output, add_printing
-from .printing import Printer
+from .arguments import option
+from .options import file_of, output, record
+from .printing import Printing
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    from ...fmus.building.builds import PLATFORMS
-    from ...fmus.building.options import file
-
-    parser.add_argument("--vehicle", type=file, metavar="FILE.toml", help="what belongs to the car")
-    parser.add_argument(
-        "--fmu",
+@record
+class Arguments(Printing):
+    vehicle: Path | None = file_of("what belongs to the car")
+    fmu: str | None = option(
+        None,
+        "build the FMU too, for this machine, or for Linux, Windows and macOS (all)",
         choices=PLATFORMS,
         nargs="?",
         const=PLATFORMS[0],
         metavar="PLATFORM",
-        help="build the FMU too, for this machine, or for Linux, Windows and macOS (all)",
     )
-    add_output(parser, "results/bus", "the database")
-    add_printing(parser)
+    output: Path = output("results/bus", "the database")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(args: Arguments) -> int:
     from ...fmus.building.builds import sender_builder
     from ...fmus.building.parameter_files import read_vehicle
     from ...fmus.catalogue import FMUS
@@ -48,5 +46,5 @@ def run(args: argparse.Namespace) -> int:
     if args.fmu:
         made.append(sender_builder(dbc(sent), args.fmu)(FMUS["WheelSpeedCan"].started_with(car), args.output))
     write_dbc(sent, path)
-    Printer(args).files(made)
+    args.written(made)
     return 0

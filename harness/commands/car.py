@@ -4,7 +4,6 @@ drive train swings in either plant at 15 km/h, its damping ratio without and wit
 and how much torque the control may take and add. docs/control.md says what follows from what.
 
 With control means with the gains of --parameters, or else with those that `driveline design` computes for this car.
-
 --template writes a commented vehicle file instead: the default car, to be changed.
 
 examples:
@@ -15,41 +14,40 @@ examples:
   driveline car --template --output my.toml
 """
 
-import argparse
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...fmus.building.options import file
 from ..base.errors import DrivelineError
-from .options import add_printing, add_replace
-from .printing import Printer
-from .search_options import write_toml
+from .arguments import option, positional
+from .options import Replacing, file, file_of, record
+from .printing import JsonPrinting, write_toml
 
 if TYPE_CHECKING:
     from ...fmus.building.car_entries import Entry
     from ..studies.margins.car_properties import CarProperties, PlantProperties
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "vehicle", nargs="?", type=file, metavar="FILE.toml", help="the car (default: that of all blocks)"
-    )
-    parser.add_argument(
-        "--parameters",
-        type=file,
-        metavar="FILE.toml",
-        help="what is set in the controller (default: what `driveline design` computes for the car)",
-    )
-    parser.add_argument("--template", action="store_true", help="write a commented vehicle file")
-    parser.add_argument("--output", type=file, metavar="FILE.toml", help="of the template (default: it is printed)")
-    add_replace(parser)
-    add_printing(parser, table=True)
+SHORT = {
+    "TwoMassDriveline": "design plant",
+    "ValidationVehicle": "vehicle",
+    "MotorTorqueLoop": "motor",
+    "WheelSpeedCan": "bus",
+    "DampingController": "controller",
+}
+"""What stands in the table for the name of an FMU."""
 
 
-def run(args: argparse.Namespace) -> int:
-    out = Printer(args)
+@record
+class Arguments(Replacing, JsonPrinting):
+    vehicle: Path | None = positional("the car (default: that of all blocks)", file, "FILE.toml", "?")
+    parameters: Path | None = file_of("what is set in the controller (default: what `driveline design` computes)")
+    template: bool = option(False, "write a commented vehicle file")
+    output: Path | None = file_of("of the template (default: it is printed)")
+
+
+def run(args: Arguments) -> int:
     if args.template:
-        return _template(args, out)
+        return _template(args)
     if args.output is not None:
         raise DrivelineError("--output is for a template: give --template")
     from ...fmus.building.car_entries import car_entries
@@ -66,19 +64,15 @@ def run(args: argparse.Namespace) -> int:
     except DesignError as reason:
         gains, origin = None, f"no gains: {' '.join(str(reason).splitlines())}"
     found = car_properties(values, gains)
-    if not out.silent:
+    if not args.silent:
         _show(entries, found, args.vehicle, origin)
-    out.document(
-        {
-            "entries": [entry._asdict() for entry in entries],
-            "gains": origin,
-            "properties": {**found._asdict(), "plants": [_of_plant(plant) for plant in found.plants]},
-        }
-    )
+    plants = [_of_plant(plant) for plant in found.plants]
+    properties = {**found._asdict(), "plants": plants}
+    args.document({"entries": [each._asdict() for each in entries], "gains": origin, "properties": properties})
     return 0
 
 
-def _template(args: argparse.Namespace, out: Printer) -> int:
+def _template(args: Arguments) -> int:
     from ...fmus.building.car_entries import template
 
     if args.vehicle is not None or args.parameters is not None or args.json:
@@ -87,7 +81,7 @@ def _template(args: argparse.Namespace, out: Printer) -> int:
         print(template(), end="")
         return 0
     write_toml(template(), args.output, args.replace)
-    out.files([args.output])
+    args.written([args.output])
     return 0
 
 
@@ -95,7 +89,7 @@ def _of_plant(plant: "PlantProperties") -> dict[str, Any]:
     return {**plant._asdict(), "damped": plant.damped and plant.damped._asdict()}
 
 
-def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, gains: str) -> None:
+def _show(entries: "Iterable[Entry]", found: "CarProperties", vehicle: Path | None, gains: str) -> None:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
@@ -104,12 +98,15 @@ def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, 
     table = Table(title=str(vehicle or "the default car"), title_justify="left", box=SIMPLE_HEAD, padding=0)
     for heading in ("entry", "value", "unit", "from", "taken by", "meaning"):
         table.add_column(heading, justify="right" if heading == "value" else "left", no_wrap=heading != "meaning")
-    for k, entry in enumerate(entries):
-        if k and entry.origin != entries[k - 1].origin:
+    before = None
+    for entry in entries:
+        if before not in (None, entry.origin):
             table.add_section()
+        before = entry.origin
         origin = f"{entry.origin} ({entry.source})" if entry.source else entry.origin
         value = str(entry.value).lower() if isinstance(entry.value, bool) else f"{entry.value:.6g}"
-        table.add_row(entry.name, value, entry.unit, origin, ", ".join(map(_short, entry.blocks)), entry.meaning)
+        blocks = ", ".join(SHORT.get(name, name) for name in entry.blocks)
+        table.add_row(entry.name, value, entry.unit, origin, blocks, entry.meaning)
     print_table(table)
 
     headings = ["drive train at 15 km/h", "frequency\nHz", "damping\nratio", "with control\nHz", "damping\nratio"]
@@ -124,17 +121,3 @@ def _show(entries: "list[Entry]", found: "CarProperties", vehicle: Path | None, 
         f"of T_max = {found.T_max:g} N.m\n"
         f"at the wheels: {found.wheel_torque:.4g} N.m by all of the motor, which is {found.acceleration:.2f} m/s2"
     )
-
-
-SHORT = {
-    "TwoMassDriveline": "design plant",
-    "ValidationVehicle": "vehicle",
-    "MotorTorqueLoop": "motor",
-    "WheelSpeedCan": "bus",
-    "DampingController": "controller",
-}
-"""What stands in the table for the name of an FMU."""
-
-
-def _short(block: str) -> str:
-    return SHORT.get(block, block)

@@ -12,15 +12,16 @@ examples:
   driveline check --format junit build/native/*.fmu > findings.xml
 """
 
-import argparse
 import json
+from argparse import ArgumentTypeError
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.plain_text import quoted
-from .options import add_json, add_limits, add_printing
-from .settings import limits
+from .arguments import option, positional
+from .options import ForeignLimits, record
+from .printing import JsonPrinting
 
 if TYPE_CHECKING:
     from ..exchange.compliance.rule import Verdict
@@ -28,47 +29,45 @@ if TYPE_CHECKING:
 FORMATS = ("text", "json", "junit")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("fmus", nargs="+", type=Path, metavar="FILE.fmu", help="the FMUs to check")
-    parser.add_argument("--strict", action="store_true", help="warnings count as errors do")
-    parser.add_argument("--quick", action="store_true", help="of the behaviours only the first steps of a run")
-    parser.add_argument(
-        "--ignore", action="append", default=[], metavar="RULE", type=rule, help="leave out this rule (repeatable)"
-    )
-    style = parser.add_mutually_exclusive_group()
-    style.add_argument("--format", choices=FORMATS, help=f"lines, one document or JUnit XML (default: {FORMATS[0]})")
-    add_json(style)
-    add_limits(parser)
-    add_printing(parser)
-
-
-def rule(text: str) -> str:
+def _rule(text: str) -> str:
     """The name of a rule."""
     from ..base.known_names import nearest
     from ..exchange.compliance.check import RULES
 
     names = [rule.name for rule in RULES]
     if text not in names:
-        raise argparse.ArgumentTypeError(f"there is no rule {quoted(text)}; {nearest(text, names)}")
+        raise ArgumentTypeError(f"there is no rule {quoted(text)}; {nearest(text, names)}")
     return text
 
 
-def run(args: argparse.Namespace) -> int:
+@record
+class Arguments(ForeignLimits, JsonPrinting):
+    fmus: tuple[Path, ...] = positional("the FMUs to check", Path, "FILE.fmu", "+")
+    strict: bool = option(False, "warnings count as errors do")
+    quick: bool = option(False, "of the behaviours only the first steps of a run")
+    ignore: tuple[str, ...] = option((), "leave out this rule (repeatable)", _rule, metavar="RULE")
+    format: str | None = option(
+        None, f"lines, one document or JUnit XML (default: {FORMATS[0]})", choices=FORMATS, exclusive=True
+    )
+    json: bool = option(False, "print one JSON document, as --format json", exclusive=True)
+
+
+def run(args: Arguments) -> int:
     from ..exchange.compliance.check import check
     from ..exchange.compliance.rule import Severity
 
     style = "json" if args.json else args.format or FORMATS[0]
-    checks = {path: check(path, limits(args), args.quick, args.ignore) for path in args.fmus}  # all files are there
-    found = {str(path): printed(path, answers, style == "text", args.quiet) for path, answers in checks.items()}
+    checks = {path: check(path, args.limits, args.quick, args.ignore) for path in args.fmus}  # all files are there
+    found = {str(path): _printed(path, answers, style == "text", args.quiet) for path, answers in checks.items()}
     counts = dict.fromkeys((severity.value for severity in Severity), 0)
     for verdict in (verdict for verdicts in found.values() for verdict in verdicts):
         counts[verdict.severity] += len(verdict.problems)
     failing = {Severity.ERROR.value, *([Severity.WARNING.value] if args.strict else [])}
-    print_summary(style, found, counts, failing, args.quiet)
+    _print_summary(style, found, counts, failing, args.quiet)
     return 1 if any(counts[severity] for severity in failing) else 0
 
 
-def printed(path: Path, answers: "Iterable[Verdict]", text: bool, quiet: bool) -> "list[Verdict]":
+def _printed(path: Path, answers: "Iterable[Verdict]", text: bool, quiet: bool) -> "list[Verdict]":
     """The verdicts on an FMU; as text each is printed as it comes, or only its problems."""
     from ..views.terminal import print_verdict
 
@@ -84,7 +83,7 @@ def printed(path: Path, answers: "Iterable[Verdict]", text: bool, quiet: bool) -
     return verdicts
 
 
-def print_summary(
+def _print_summary(
     style: str, found: "Mapping[str, list[Verdict]]", counts: Mapping[str, int], failing: set[str], quiet: bool
 ) -> None:
     """Prints the numbers of findings; in the styles for tools the one document."""

@@ -1,19 +1,23 @@
 """The command line `driveline`: finds the command and answers mistakes in one sentence.
 
-A command is a module of `harness.commands` with add_arguments(parser) and run(args) -> int, or with ACTIONS that are
-such modules. Its docstring is its help, to which its IN_HELP may give what stands there in braces. It is imported only
-when it is asked for, and itself imports what it needs when it runs, so that help and mistakes are answered at once.
+A command is a module of `harness.commands` with the record `Arguments` (see `arguments`) and `run(args: Arguments)`,
+which returns the exit code, or with ACTIONS that are such pairs. Its docstring is its help, to which its IN_HELP may
+give what stands there in braces; `--help` shows the first paragraph, the options that most need and the examples. It
+is imported only when it is asked for, and itself imports what it needs when it runs, so that help and mistakes are
+answered at once.
 """
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from errno import ENOSPC
 from functools import partial
+from importlib import import_module
+from inspect import cleandoc
 from io import TextIOWrapper
 from tempfile import gettempdir
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 from unicodedata import category
 
 from ..base.errors import DrivelineError
@@ -22,8 +26,6 @@ from ..base.known_names import nearest
 from ..base.plain_text import plain, quoted, reason
 from ..base.progress import hidden
 from ..base.status_line import waiting
-from .course import command, run
-from .options import EXPERTS
 
 PURPOSES = {
     "run": {
@@ -51,7 +53,6 @@ PURPOSES = {
     "studies": {
         "faults": "put faults on the controller's signals and judge what it makes of them",
         "robustness": "drive cars and sensors that are drawn at random with every controller",
-        "study": "what is measured of the project itself: its bound, its coupling, its builds",
     },
 }
 """The commands, each with what it does, by what they are for."""
@@ -71,40 +72,87 @@ EXIT_CODES = (
 SHELLS = ("bash", "zsh", "tcsh")
 
 
+Style = partial(argparse.RawDescriptionHelpFormatter, max_help_position=32)
+
+
+class Command(NamedTuple):
+    """What a parser parses for.
+
+    Attributes:
+        record: of its arguments.
+        run: takes the record, returns the exit code.
+    """
+
+    record: type
+    run: Callable[[Any], int]
+
+
+class HelpAll(argparse.Action):
+    """Prints all of the help of a command."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> NoReturn:
+        parser._print_message(parser.format_help(everything=True), sys.stdout)  # type: ignore[call-arg]  # see Parser
+        parser.exit()
+
+
 class Parser(argparse.ArgumentParser):
     """Takes the arguments of a command from its module, and answers unknown options and values with the nearest.
 
     Attributes:
-        command: name of the command whose arguments are still to be added; None for all others.
+        command: name of the command whose arguments are still to be added, or the command; None for all others.
     """
 
-    command: str | None = None
+    command: str | Command | None = None
 
     def add_command(self) -> None:
         """Adds description, examples and arguments of the command."""
         if self.command is None:
             return
-        name, self.command = self.command, None
-        module = command(name)
-        text = (module.__doc__ or "").format(**getattr(module, "IN_HELP", {}))
-        self.description, *examples = text.partition("examples:\n")
-        self.epilog = "".join(examples)
-        if hasattr(module, "ACTIONS"):
-            self.add_commands(module.ACTIONS, "action")
+        found, self.command = self.command, None
+        if isinstance(found, str):
+            module = import_module(f".{found}", __package__)
+            self._describe((module.__doc__ or "").format(**getattr(module, "IN_HELP", {})))
+            if hasattr(module, "ACTIONS"):
+                actions = {name: (Command(*both), text) for name, (*both, text) in module.ACTIONS.items()}
+                self.add_commands(actions, "action")
+                return
+            found = Command(module.Arguments, module.run)
         else:
-            module.add_arguments(self)
-            self.set_defaults(module=name, program=self.prog)
-            self.usage = self.short_usage()
+            self._describe(cleandoc(found.record.__doc__ or ""))
+        from .arguments import EXPERTS, add_arguments  # what the help of `driveline` does without
+
+        self.add_argument("--help-all", action=HelpAll, nargs=0, help="tell more, with the options for experts")
+        add_arguments(self, found.record)
+        self.set_defaults(found=found, program=self.prog)
+        self.usage = self.short_usage()
         self._action_groups.sort(key=lambda group: group.title == EXPERTS)
 
-    def add_commands(self, commands: Mapping[str, tuple[str, str]], dest: str) -> None:
-        """Adds commands by their names, each with its module and what it does; `dest` gets the one that is given."""
+    def _describe(self, text: str) -> None:
+        self.description, *examples = text.partition("examples:\n")
+        self.epilog = "".join(examples)
+
+    def format_help(self, everything: bool = False) -> str:
+        """The help, by default without what few need: the first paragraph alone, and no options for experts."""
+        from .arguments import EXPERTS
+
+        formatter, text = self._get_formatter(), self.description or ""
+        formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups)
+        formatter.add_text(text if everything else text.partition("\n\n")[0])
+        for group in self._action_groups:
+            if everything or group.title != EXPERTS:
+                formatter.start_section(group.title)
+                formatter.add_arguments(group._group_actions)
+                formatter.end_section()
+        formatter.add_text(self.epilog)
+        return formatter.format_help()
+
+    def add_commands(self, commands: Mapping[str, tuple[str | Command, str]], dest: str) -> None:
+        """Adds commands by their names, each with what it does; `dest` gets the one that is given."""
         subparsers = self.add_subparsers(
             dest=dest, metavar=dest.upper(), required=True, prog=self.prog, parser_class=Parser
         )
-        for name, (module, text) in commands.items():
-            one = subparsers.add_parser(name, help=text, formatter_class=argparse.RawDescriptionHelpFormatter)
-            one.command = module
+        for name, (found, text) in commands.items():
+            subparsers.add_parser(name, help=text, formatter_class=Style).command = found
 
     def short_usage(self) -> str:
         """How the command is called, without its options one by one."""
@@ -149,7 +197,7 @@ class Parser(argparse.ArgumentParser):
 class Top(Parser):
     """The parser of `driveline` itself, whose help has the commands by what they are for."""
 
-    def format_help(self) -> str:
+    def format_help(self, everything: bool = False) -> str:
         formatter = self._get_formatter()
         formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups)
         formatter.add_text(self.description)
@@ -204,8 +252,12 @@ def complete_commands(parser: argparse.ArgumentParser) -> None:
 
 def parser() -> Parser:
     """The parser with all commands."""
-    style = partial(argparse.RawDescriptionHelpFormatter, max_help_position=16)
-    top = Top(prog="driveline", description=DESCRIPTION, epilog=EXIT_CODES, formatter_class=style)
+    top = Top(
+        prog="driveline",
+        description=DESCRIPTION,
+        epilog=EXIT_CODES,
+        formatter_class=partial(Style, max_help_position=16),
+    )
     top.add_argument("--version", action=Version, nargs=0, help="print the version and exit")
     top.add_argument(
         "--print-completion",
@@ -216,6 +268,26 @@ def parser() -> Parser:
     )
     top.add_commands({name: (name, text) for name, text in COMMANDS.items()}, "command")
     return top
+
+
+def run(args: argparse.Namespace) -> int:
+    """Runs the command of the arguments; returns its exit code.
+
+    Raises:
+        DrivelineError: the user can mend what is wrong.
+    """
+    if getattr(args, "list", False):
+        from .manoeuvres import print_manoeuvres
+
+        print_manoeuvres(getattr(args, "json", False))
+        return 0
+    from ...fmus.errors import BuildError
+    from .arguments import filled
+
+    try:
+        return args.found.run(filled(args.found.record, args))
+    except BuildError as refusal:
+        raise DrivelineError(str(refusal)) from refusal
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,7 +1,7 @@
-"""Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its
-unit and meaning, or writes them to a file that the other commands take as --parameters. What the vehicle
-file does not name is that of the default car. docs/control.md says how the gains come about. A file of parameters
-can set limits: with its T_take_max and T_add_max the control never takes or adds more, whatever the car would need.
+"""Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its unit and
+meaning, or writes them to a file that the other commands take as --parameters. What the vehicle file does not name is
+that of the default car. docs/control.md says how the gains come about. A file of parameters can set limits: with its
+T_take_max and T_add_max the control never takes or adds more, whatever the car would need.
 
 With --search the parameters of the law are searched instead, for this or another controller: by a cost over all
 manoeuvres on both plants and at corners of the parameter box, see docs/tuning.md. The folder gets all candidates
@@ -18,16 +18,14 @@ examples:
   driveline design --search results/washout --controller SpeedWashout
 """
 
-import argparse
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...fmus.building.options import file
 from ..base.errors import DrivelineError
-from .options import add_printing, add_replace
-from .printing import Printer
-from .search_options import add_search, require_search, run_search, write_toml
+from .design_search import Search, require_search, run_search
+from .options import file_of, record
+from .printing import write_toml
 
 if TYPE_CHECKING:
     from ..design.design_weights import Weights
@@ -37,30 +35,23 @@ Gains of the DampingController for {car}, by `driveline design` (driveline-dampi
 Drive train: {alone.frequency:.2f} Hz; damped: {damped.frequency:.2f} Hz, damping ratio {damped.damping_ratio:.2f}."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    for option, meaning in (
-        ("--vehicle", "the car (default: that of all blocks)"),
-        ("--parameters", "with limits, T_take_max and T_add_max"),
-        ("--output", "for the gains"),
-    ):
-        parser.add_argument(option, type=file, metavar="FILE.toml", help=meaning)
-    add_search(parser)
-    add_replace(parser)
-    add_printing(parser)
+@record
+class Arguments(Search):
+    parameters: Path | None = file_of("with limits, T_take_max and T_add_max")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(args: Arguments) -> int:
     if args.search is not None:
         if args.parameters is not None:
             raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
-        return run_search(args)
+        return run_search(args, args.search)
     require_search(args)
-    text, out = designed(args.vehicle, limits=args.parameters), Printer(args)
-    if args.output is None and not out.silent:
+    text = designed(args.vehicle, limits=args.parameters)
+    if args.output is None and not args.silent:
         print(text.rstrip())
     elif args.output is not None:
         write_toml(text, args.output, args.replace)
-        out.say(f"gains: {args.output}")
+        args.say(f"gains: {args.output}")
     return 0
 
 

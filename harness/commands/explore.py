@@ -1,10 +1,9 @@
 """Serves a page on this machine alone, for a browser: plant, manoeuvre, backlash, stiffness, mass, delay, gains, sport
 to comfort, control on and off, and the other controllers beside ours. Curves and metrics follow; the run without
-control stands behind in grey, and any run can be held beside those that follow. A recorded drive and manoeuvres
-from files can be driven too.
+control stands behind in grey, and any run can be held beside those that follow. Ctrl-C ends it.
 
-A click saves the car and the gains as files for --vehicle and --parameters of the other commands, another one a report
-(docs/explorer.md). Ctrl-C ends it.
+A recorded drive and manoeuvres from files can be driven too. A click saves the car and the gains as files for --vehicle
+and --parameters of the other commands, another one a report (docs/explorer.md).
 
 examples:
   driveline explore
@@ -15,65 +14,51 @@ examples:
   driveline explore --port 8000
 """
 
-import argparse
 from argparse import ArgumentTypeError
 from pathlib import Path
 
 from ..base.status_line import no_longer_waiting
 from ..manoeuvres.catalogue import MANOEUVRES
-from ..views.html.report_page import require_drawing
-from .manoeuvres import add_manoeuvre, chosen
-from .options import add_loop, add_output, add_plant, add_printing, assignment, count
-from .printing import Printer
-from .recording_options import add_recording
-from .settings import settings_of_pairs
-
-PORT = 5006
+from .arguments import option
+from .manoeuvres import Chosen, Listing, manoeuvre
+from .options import Loop, assignment, controllers, counted, output, plants, record
+from .printing import Printing
+from .recorded import Headings, recording
+from .settings import all_settings
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser, "a recorded drive that can be chosen too", nargs="?")
-    add_manoeuvre(
-        parser,
-        "what stands first in the list: a name of the catalogue, or a file (repeatable)",
-        action="append",
-        default=[],
+@record
+class Arguments(Headings, Listing, Loop, Printing):
+    recording: Path | None = recording("a recorded drive that can be chosen too", "?")
+    manoeuvre: Chosen = manoeuvre("what stands first in the list: one of --list, or a file (repeatable)")
+    plant: tuple[str, ...] = plants()
+    controller: tuple[str, ...] = controllers("all of these")
+    port: int = option(
+        5006, "of the page (default: %(default)s; 0: any that is free)", counted(0, 65535), metavar="NUMBER"
     )
-    add_plant(parser, several=True)
-    add_loop(parser, several={"controller": "all of these"})
-    parser.add_argument(
-        "--port",
-        type=_port,
-        default=PORT,
-        metavar="NUMBER",
-        help="of the page (default: %(default)s; 0: any that is free)",
-    )
-    add_output(parser, "results/explore", "what a click saves")
-    add_printing(parser)
+    output: Path = output("results/explore", "what a click saves")
 
 
-def _port(text: str) -> int:
-    return count(text, 0, 65535)
-
-
-def run(args: argparse.Namespace) -> int:
+def run(args: Arguments) -> int:
+    offered = args.manoeuvre.beside(MANOEUVRES)
+    given = all_settings(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
-    asked, offered = chosen(args.manoeuvre), chosen([*args.manoeuvre, *MANOEUVRES]).manoeuvres
-    given = settings_of_pairs(args)
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..explorer.request_runs import Answer, RequestRunner
     from ..explorer.saving import save_files, save_report
     from ..explorer.server import serve
+    from ..manoeuvres.drivable import require_possible
     from ..recordings.drive import read_drive
+    from ..views.html.report_page import require_drawing
 
     recording = None
     if args.recording is not None:
-        recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
+        recording = read_drive(args.recording, dict(args.column), args.aliases, args.dbc)
     car = read_vehicle(args.vehicle) if args.vehicle else {}
-    runner, out = RequestRunner(given, car, offered, recording), Printer(args)
+    runner = RequestRunner(given, car, offered, recording)
     fits = {plant: runner.fit(plant, runner.controllers[0]) for plant in runner.plants}
-    asked.require_drivable(fits, {plant: runner.settings(plant) for plant in runner.plants})
-    read = [args.vehicle, args.parameters, args.recording, *asked.files.values()]
+    require_possible(*args.manoeuvre, fits, {plant: runner.settings(plant) for plant in runner.plants})
+    read = [args.vehicle, args.parameters, args.recording, *args.manoeuvre.files.values()]
     gains = read_parameters(args.parameters) if args.parameters else {}
 
     def files(answer: Answer) -> list[Path]:
@@ -85,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
 
     def announce(address: str) -> None:
         no_longer_waiting()
-        out.say(f"{address} (Ctrl-C ends it)")
+        args.say(f"{address} (Ctrl-C ends it)")
 
     serve(runner, {"save car and gains": files, "save report": report}, _typed, args.port, announce)
     return 0

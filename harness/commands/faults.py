@@ -11,7 +11,7 @@ cases that are not clean a matrix of kinds of faults and judges is printed, for 
 
 The output folder gets faults.csv (all cases with what was measured), the page faults.md, faults.json (what made them)
 and, in its folder figures, the matrices as figures. The same command goes on where it was stopped. --case runs one case
-again, and writes its signals and draws them.
+again, and writes its signals and draws them. The exit code is 1 if a case is not clean.
 
 examples:
   driveline faults                                        1000 cases, both plants
@@ -20,60 +20,70 @@ examples:
   driveline faults --campaign roads --output results/roads  on ice, hills, under ABS; faults that stay, late frames
   driveline faults --case 806                             one of them, drawn
   driveline faults --controller my_controller.fmu         how good is mine?
-  driveline faults --json > faults.json
-  driveline faults --scheduler tcp://10.0.0.1:8786        on a Dask cluster
-
-exit code: 1 if a case is not clean
 """
 
-import argparse
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..loop.built_fmus import made_if_missing
 from ..loop.places import NATIVE
 from ..loop.settings import loop
-from ..views.html.report_page import require_report
-from .course import Job, campaign_job, job
-from .options import add_cases, add_loop, add_output, add_plant, add_printing, add_report
-from .settings import as_given, caption, distinguishing, settings_of_plants
+from .arguments import option
+from .jobs import Job, campaign_job, distinguishing, job
+from .options import (
+    Cases,
+    Loop,
+    Replacing,
+    Report,
+    case,
+    cases,
+    controller,
+    output,
+    plants,
+    record,
+    seed,
+)
+from .printing import JsonPrinting
+from .settings import as_given, caption, plants_settings
 
 if TYPE_CHECKING:
     from ..cosimulation.system import System
     from ..studies.faults.fault_campaign import Outcome
     from ..studies.faults.fault_injection import FaultRunner
 
+MOST = 1_000_000
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_cases(parser, 1000, 1_000_000, "only the case of this number, with a figure")
-    parser.add_argument(
-        "--campaign",
+
+@record
+class Arguments(Loop, Cases, Replacing, Report, JsonPrinting):
+    cases: int = cases(1000, MOST)
+    case: int | None = case(MOST, "only the case of this number, with a figure")
+    campaign: str | None = option(
+        None,
+        "dry: on a dry road, where ice is a fault too (default); roads: slippery ones, hills, ABS, late frames",
         choices=("dry", "roads"),
-        help="which cases (default: dry); dry: on a dry road, where ice that makes wheels lock or spin is a fault too; "
-        "roads: on roads that are slippery themselves, on hills, under ABS, with frames that are late",
     )
-    add_plant(parser, several=True)
-    add_loop(parser, drawn="the faults and the sensor noise")
-    add_output(parser, "results/faults", "the cases, the page and the figures", of_a_run=True)
-    add_report(parser)
-    add_printing(parser, table=True)
+    plant: tuple[str, ...] = plants()
+    controller: str = controller()
+    seed: int = option(1, "of the faults and the sensor noise (default: %(default)s)", seed)
+    output: Path = output("results/faults", "the cases, the page and the figures")
 
 
-def run(args: argparse.Namespace) -> int:
-    require_report(args.report)
-    given = settings_of_plants(args)
+def run(args: Arguments) -> int:
+    given = plants_settings(args)
     # here and not above: mistakes and help are answered without them
     from ...fmus.catalogue import SIGNAL_FAULTS
+    from ..loop.built_fmus import made_if_missing
     from ..studies.faults.fault_injection import FaultRunner, with_faults
 
     injector = made_if_missing(SIGNAL_FAULTS, args.fmus, NATIVE)
-    runner = FaultRunner(injector, given)
-    same: dict[str, Any] = {each.plant_name: distinguishing(each) for each in given.values()}
-    tried = {each.plant_name: with_faults(loop(each), injector) for each in given.values()}
+    runner = FaultRunner(injector, {str(each.plant): each for each in given.values()})
+    same: dict[str, Any] = {name: distinguishing(each) for name, each in given.items()}
+    tried = {name: with_faults(loop(each), injector) for name, each in given.items()}
     return (_all if args.case is None else _one)(args, runner, same, tried)
 
 
-def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
+def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
     from ..studies.faults.fault_campaign import campaign, table
     from ..studies.faults.fault_campaign import distinguishing as of_the_cases
     from ..studies.faults.fault_cases import PLANS
@@ -89,28 +99,29 @@ def _all(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], 
         return _tell(made, outcomes, runner)
 
 
-def _one(args: argparse.Namespace, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
+def _one(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
     """One case again."""
     from ..studies.faults.fault_cases import PLANS
     from ..studies.faults.fault_report import write_case
 
+    assert args.case is not None
     plan = PLANS[args.campaign or "dry"]
     record, signals = (args.output / f"case_{args.case}{ending}" for ending in (".json", ".csv"))
     with job(args, record, same | {"case": args.case}, systems, [signals]) as made:
         made.begin()
         outcome, files = write_case(args.case, args.seed, runner, args.output, case_caption(args), plan)
         made.wrote(*files)
-        made.out.say(f"case {outcome.case}")
+        args.say(f"case {outcome.case}")
         return _tell(made, [outcome], runner)
 
 
-def case_caption(args: argparse.Namespace) -> str:
+def case_caption(args: Arguments) -> str:
     """What the figure of a case says of the options: the campaign too, as each counts its own cases."""
     campaign = f"--campaign {args.campaign}" if args.campaign not in (None, "dry") else ""
     return f"{campaign} {caption(args)}".strip()
 
 
-def _tell(made: Job, outcomes: "Sequence[Outcome]", runner: "FaultRunner") -> int:
+def _tell(made: Job[Any], outcomes: "Sequence[Outcome]", runner: "FaultRunner") -> int:
     """Writes the report if one is asked for, and says what came of the cases; returns the exit code."""
     from ..studies.faults.fault_report import announce
 

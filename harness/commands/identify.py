@@ -1,13 +1,14 @@
-"""Identifies the drive train from a recording of a test drive, a file with the columns
+"""Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and half
+the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded, and
+structural damping where the data ask for it. Written are the vehicle file, which other commands take as --vehicle,
+beside it all that was found (NAME_identified.json), what made it (NAME.json) and four figures.
+
+The recording is a file with the columns
 
   {columns}
 
 under any name that docs/recordings.md lists (the wheel speed tells wrong units and signs; the fit does not
-use it). It finds more with {more}.
-
-Found are the inertia of the wheels J_2, the stiffness C and half the gap phi_B, each with its 95 % interval,
-the lag of motor control where the torque demand was recorded, and structural damping where the data ask for
-it. Two results have different names, as they mean different things:
+use it). It finds more with {more}. Two results have different names, as they mean different things:
 
   with load torque                  measurement wheels were recorded: J_2 is that of the wheels
   effective, without load torque    J_2 carries the vehicle
@@ -19,11 +20,8 @@ those that the data ask for, up to 6 ms and less than a sample too.
 Where the model explains the recording, prediction error is used (innovations of an extended Kalman filter); where it
 does not, output error over pieces of 0.5 s. The fit is judged on the last quarter, with parameters found without it.
 What is likely to be wrong with the recording, or is not determined by it, is said. A stiffness that is known to no
-better than +- 50 % makes no vehicle file, and a gap that is known no better stays as it was.
-
-Written are the vehicle file for the controller's design, which other commands take as --vehicle, beside it all that was
-found (NAME_identified.json), what made it (NAME.json) and four figures: measured and simulated signals, the
-innovations, the cost over each pair of parameters, the frequency response; signals in the units of the recording.
+better than +- 50 % makes no vehicle file, and a gap that is known no better stays as it was. The figures are measured
+and simulated signals, the innovations, the cost over each pair of parameters, the frequency response.
 
 examples:
   driveline record && driveline identify results/record/TwoMassDriveline_prbs_off.csv --output car.toml
@@ -33,7 +31,6 @@ examples:
   driveline identify drive.csv --design
 """
 
-import argparse
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -41,16 +38,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...fmus.building.options import file
 from ..base.errors import DrivelineError
 from ..base.optional_packages import required
-from ..recordings.quantities import aliases, example
-from ..views.html.report_page import require_report
-from .course import job
-from .options import add_figures, add_printing, add_replace, add_report, figure_options
-from .printing import Printer
-from .recording_options import add_recording, files_of, of_recording
-from .redesign import compared_in, redesign
+from .arguments import option
+from .jobs import job
+from .options import Figures, Replacing, Report, file_of, record
+from .printing import Printing
+from .recorded import Recorded, examples, recording
 
 if TYPE_CHECKING:
     from ..identification.identify import Identified
@@ -59,60 +53,47 @@ if TYPE_CHECKING:
 
 FREE = ("J_1", "d", "g_T")
 
-NAMES = aliases()
 IN_HELP = {
-    "columns": ", ".join(example(quantity, NAMES) for quantity in ("time", "T_mot", "omega_1", "omega_wheel")),
-    "more": " and ".join(example(quantity, NAMES) for quantity in ("T_wheel", "T_ref")),
+    "columns": ", ".join(examples("time", "T_mot", "omega_1", "omega_wheel")),
+    "more": " and ".join(examples("T_wheel", "T_ref")),
 }
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser, "the recorded test drive")
-    parser.add_argument(
-        "--vehicle", type=file, metavar="FILE.toml", help="what is known of the car (default: that of all blocks)"
+@record
+class Arguments(Recorded, Figures, Replacing, Report, Printing):
+    recording: Path = recording("the recorded test drive")
+    vehicle: Path | None = file_of("what is known of the car (default: that of all blocks)")
+    free: tuple[str, ...] = option((), "identify this too (repeatable); d is freed where the data ask", choices=FREE)
+    output: Path | None = option(
+        None, "the vehicle file (default: results/identify/RECORDING_car.toml)", Path, metavar="FILE.toml"
     )
-    parser.add_argument(
-        "--free",
-        action="append",
-        default=[],
-        choices=FREE,
-        help="identify this too, which is else as known (repeatable); d is freed where the data ask for it",
-    )
-    parser.add_argument(
-        "--output",
-        type=Path,
-        metavar="FILE.toml",
-        help="the vehicle file (default: results/identify/RECORDING_car.toml); the others are beside it",
-    )
-    parser.add_argument(
-        "--design",
-        action="store_true",
-        help="compute the gains for this car, build the controller with them, compare before and after on both plants",
-    )
-    add_figures(parser)
-    add_replace(parser)
-    add_report(parser)
-    add_printing(parser)
+    design: bool = option(False, "compute gains for this car, build the controller, compare on both plants")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
     from ...fmus.building.parameter_files import read_vehicle
 
-    require_report(args.report)
     vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     require_possible(args.free, output)
     recording = read(args, vehicle)
-    options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
+    options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "identification")
-    runs = compared_in() if args.design else None
+    runs = None
+    if args.design:
+        from .redesign import compared_in, redesign
+
+        runs = compared_in()
     from ..identification.prior_knowledge import identify
 
-    same, first = of_recording(args) | {"vehicle": vehicle, "free": sorted(set(args.free))}, [output, all_found(output)]
-    with job(args, output.with_suffix(".json"), same, {}, first, files_of(args)) as made:
-        identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), made.out.say)
-        say(identified, recording, made.out)
+    same, first = (
+        args.distinguishing | {"vehicle": vehicle, "free": sorted(set(args.free))},
+        [output, all_found(output)],
+    )
+    with job(args, output.with_suffix(".json"), same, {}, first, args.read) as made:
+        identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), args.say)
+        say(identified, recording, args)
         require_known(identified)
         made.begin()
         figures = draw(identified, recording, output.with_suffix(""), options)
@@ -120,17 +101,17 @@ def run(args: argparse.Namespace) -> int:
         for provenance, path in made.reports():
             report(identified, recording, provenance, path)
         if runs:
-            made.wrote(*redesign(output, vehicle, runs, args.replace, made.out))
+            made.wrote(*redesign(output, vehicle, runs, args.replace, args))
     return 0
 
 
-def read(args: argparse.Namespace, vehicle: Mapping[str, Any]) -> "Measurement":
+def read(args: Arguments, vehicle: Mapping[str, Any]) -> "Measurement":
     """The recording, of the car of a vehicle file."""
     from ..design.design_weights import records
     from ..recordings.measurement import read_measurement
 
     plant, _, _ = records(vehicle)
-    return read_measurement(args.recording, plant.i, plant.r, dict(args.columns), args.aliases, args.databases)
+    return read_measurement(args.recording, plant.i, plant.r, dict(args.column), args.aliases, args.dbc)
 
 
 def require_known(identified: "Identified") -> None:
@@ -159,7 +140,7 @@ def require_possible(free: Sequence[str], output: Path) -> None:
         raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
 
 
-def say(identified: "Identified", recording: "Measurement", out: Printer) -> None:
+def say(identified: "Identified", recording: "Measurement", out: Printing) -> None:
     """What was found, and what is likely to be wrong with the recording."""
     from ..identification import car_file
 

@@ -1,60 +1,20 @@
-"""--manoeuvre: one of the catalogue by its name, or a file of the user's own."""
+"""--manoeuvre: those of the catalogue by their names, or files of the user's own."""
 
-import argparse
 import json
+from argparse import ArgumentTypeError
 from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..base.plain_text import plain
 from ..loop.places import PLANTS
-from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .options import names_or_files
-
-if TYPE_CHECKING:
-    from ..cosimulation.wiring import Fit
-
-OWN = """\
-a manoeuvre of your own: a TOML file with steps, ramps, pulses, sines, ... of demand, brake and slope, or a
-table of them over time (docs/manoeuvres.md)"""
-
-
-def add_manoeuvre(parser: argparse.ArgumentParser, what: str, **how: Any) -> None:
-    """
-    Args:
-        what: is chosen, for help.
-        how: further arguments of `add_argument`.
-    """
-    action = parser.add_argument("--manoeuvre", type=name_or_file, metavar="NAME|FILE", help=what, **how)
-    parser.add_argument("--list", action="store_true", help="print the manoeuvres and exit")
-    action.complete = names_or_files(tuple(MANOEUVRES), ("toml", "csv"), "manoeuvre")  # type: ignore[attr-defined]
-
-
-def print_manoeuvres(as_json: bool) -> None:
-    """Prints the manoeuvres of the catalogue, a line each or as one document for tools."""
-    if as_json:
-        rows = [{"name": m.name, "description": m.description, "duration": m.duration} for m in MANOEUVRES.values()]
-        print(json.dumps({"manoeuvres": rows}, indent=2))
-        return
-    width = max(map(len, MANOEUVRES))
-    for each in MANOEUVRES.values():
-        road = f"; for a plant with {', '.join(each.road)}: {PLANTS[1]}" if each.road else ""
-        print(f"{each.name:{width}}  {each.description} ({each.duration:g} s{road})")
-
-
-def name_or_file(text: str) -> str:
-    """A name of the catalogue, or what has an ending and so is a file."""
-    if text not in MANOEUVRES and not Path(text).suffix:
-        shown = plain(text, 60) or "an empty name"
-        raise argparse.ArgumentTypeError(
-            f"{shown} is unknown; {nearest(text, MANOEUVRES)} (or give a .toml or .csv file)"
-        )
-    return text
+from .arguments import option
+from .options import names_or_files, record
 
 
 class Chosen(NamedTuple):
@@ -69,21 +29,24 @@ class Chosen(NamedTuple):
     files: Mapping[str, Path]
 
     @property
+    def first(self) -> Manoeuvre:
+        return next(iter(self.manoeuvres.values()))
+
+    @property
     def digests(self) -> dict[str, Any]:
         """What distinguishes a run by the files of its manoeuvres; nothing if there are none."""
         found = {name: sha256(path.read_bytes()).hexdigest() for name, path in self.files.items()}
         return {"manoeuvre_files": found} if found else {}
 
-    def require_drivable(self, fits: "Mapping[str, Fit]", given: Mapping[str, Settings]) -> None:
-        """Refuses those that the loops of the plants, by their names, cannot be driven through, see
-        `harness.manoeuvres.drivable`; only those of files are not known to be within all bounds."""
-        from ..manoeuvres.drivable import require_drivable, require_road
+    def beside(self, others: Mapping[str, Manoeuvre]) -> dict[str, Manoeuvre]:
+        """These, then those of others that are not among them.
 
-        for plant, fitted in fits.items():
-            for manoeuvre in self.manoeuvres.values():
-                require_road(manoeuvre, fitted)
-            for name, path in self.files.items():
-                require_drivable(self.manoeuvres[name], fitted, given[plant].parameters, str(path))
+        Raises:
+            DrivelineError: another one has the name of one of these.
+        """
+        if same := next((name for name in self.files if name in others), None):
+            raise DrivelineError(f"two manoeuvres are called {same}; rename the file of one")
+        return {**self.manoeuvres, **others}
 
 
 def chosen(texts: Iterable[str]) -> Chosen:
@@ -94,11 +57,54 @@ def chosen(texts: Iterable[str]) -> Chosen:
     Raises:
         DrivelineError: a file is refused; two manoeuvres have the same name.
     """
-    from ..manoeuvres.manoeuvre_file import read_manoeuvre
-
     found: dict[str, Manoeuvre] = {}
     for text in dict.fromkeys(texts):
-        manoeuvre = MANOEUVRES[text] if text in MANOEUVRES else read_manoeuvre(Path(text))
+        manoeuvre = MANOEUVRES[text] if text in MANOEUVRES else _of_file(Path(text))
         if found.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
             raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename the file of one")
     return Chosen(found, {Path(text).stem: Path(text) for text in texts if text not in MANOEUVRES})
+
+
+def _of_file(path: Path) -> Manoeuvre:
+    from ..manoeuvres.manoeuvre_file import read_manoeuvre
+
+    return read_manoeuvre(path)
+
+
+def _name_or_file(text: str) -> str:
+    """A name of the catalogue, or what has an ending and so is a file."""
+    if text not in MANOEUVRES and not Path(text).suffix:
+        shown = plain(text, 60) or "an empty name"
+        raise ArgumentTypeError(f"{shown} is unknown; {nearest(text, MANOEUVRES)} (or give a .toml or .csv file)")
+    return text
+
+
+def manoeuvre(help: str, default: str | None = None) -> Any:
+    """--manoeuvre, of one manoeuvre with a default, or of several."""
+    return option(
+        default or (),
+        help,
+        _name_or_file,
+        read=lambda given: chosen([given] if default else given),
+        complete=names_or_files(tuple(MANOEUVRES), ("toml", "csv"), "manoeuvre"),
+        metavar="NAME|FILE",
+    )
+
+
+@record
+class Listing:
+    """Of a command that takes --manoeuvre; `list` is answered before the command is called."""
+
+    list: bool = option(False, "print the manoeuvres and exit")
+
+
+def print_manoeuvres(as_json: bool) -> None:
+    """Prints the manoeuvres of the catalogue, a line each or as one document for tools."""
+    if as_json:
+        rows = [{"name": m.name, "description": m.description, "duration": m.duration} for m in MANOEUVRES.values()]
+        print(json.dumps({"manoeuvres": rows}, indent=2))
+        return
+    width = max(map(len, MANOEUVRES))
+    for each in MANOEUVRES.values():
+        road = f"; for a plant with {', '.join(each.road)}: {PLANTS[1]}" if each.road else ""
+        print(f"{each.name:{width}}  {each.description} ({each.duration:g} s{road})")

@@ -1,6 +1,5 @@
 """What a command prints: for people, or with --json one document for tools, or with --quiet only what goes wrong."""
 
-import argparse
 import json
 from collections.abc import Iterable
 from contextlib import suppress
@@ -9,19 +8,19 @@ from pathlib import Path
 from typing import Any
 
 from ..views.figure_options import KINDS
+from .arguments import option, record
 
 
-class Printer:
-    """Prints what the options of a command let it print.
+@record
+class Printing:
+    """What a command may print."""
 
-    Attributes:
-        silent: nothing is printed for people but what goes wrong.
-        json: a document is printed.
-    """
+    quiet: bool = option(False, "print only what goes wrong")
 
-    def __init__(self, args: argparse.Namespace) -> None:
-        self.json = getattr(args, "json", False)
-        self.silent = args.quiet or self.json
+    @property
+    def silent(self) -> bool:
+        """Whether nothing is printed for people but what goes wrong."""
+        return self.quiet or getattr(self, "json", False)
 
     def say(self, text: str) -> None:
         """A line for people. Where nobody reads it any more, what runs goes on all the same."""
@@ -29,7 +28,7 @@ class Printer:
             with suppress(BrokenPipeError):
                 print(text)
 
-    def files(self, paths: Iterable[Path]) -> None:
+    def written(self, paths: Iterable[Path]) -> None:
         """A line for each file that was written, one for all kinds of a figure."""
         for _, alike in groupby(paths, lambda path: path.with_suffix("") if path.suffix[1:] in KINDS else path):
             first, *others = alike
@@ -38,5 +37,22 @@ class Printer:
 
     def document(self, content: Any) -> None:
         """The document for tools."""
-        if self.json:
+        if getattr(self, "json", False):
             print(json.dumps(content, indent=2, allow_nan=False, default=str))
+
+
+@record
+class JsonPrinting(Printing):
+    """Of a command that prints a table."""
+
+    json: bool = option(False, "print one JSON document in the place of the table")
+
+
+def write_toml(text: str, path: Path, replace: bool) -> None:
+    """Writes a vehicle file or one of gains; one with another content only if it may be replaced."""
+    from ..base.atomic_files import write_text
+    from ..simulation.provenance import require_same_text
+
+    if not replace:
+        require_same_text(text, path)
+    write_text(text, path)

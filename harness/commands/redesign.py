@@ -11,8 +11,7 @@ from ..loop.built_fmus import built_together
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from .design import designed
-from .printing import Printer
-from .search_options import write_toml
+from .printing import Printing, write_toml
 
 
 def compared_in() -> Settings:
@@ -24,7 +23,7 @@ def compared_in() -> Settings:
     return built_together(Settings(plant) for plant in PLANTS)[0]
 
 
-def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace: bool, out: Printer) -> Iterator[Path]:
+def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace: bool, out: Printing) -> Iterator[Path]:
     """Gains for the car of a vehicle file and the controller built with both, beside it; yields the paths.
 
     What the controller was before and what it is now on that car is printed.

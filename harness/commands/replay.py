@@ -1,12 +1,13 @@
-"""Reads a recorded drive, a file with the columns
+"""Drives the vehicle with the torque demand of a recorded drive, once without damping and once with each controller.
+Brake and grade keep the simulated car at the recorded speed: they are found by driving without damping and are then
+the same for all; nothing in them is as fast as 1 Hz (docs/replay.md).
+
+The recording is a file with the columns
 
   {columns}
 
-in any order and under any name that docs/recordings.md lists (others are ignored; without elevation the
-road is level), and drives the vehicle with its torque demand, once without damping
-and once with each controller. Brake and grade keep the simulated car at the recorded speed. They are
-found by driving without damping and are then the same for all; nothing in them is as fast as 1 Hz
-(docs/replay.md). The table shows
+in any order and under any name that docs/recordings.md lists (others are ignored; without elevation the road is level).
+The table shows
 
 {metrics}
 
@@ -24,36 +25,34 @@ examples:
   driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
   driveline replay my_trip.blf --dbc drive_train.dbc
   driveline replay my_trip.csv --held 0.5 --output results/rough_foot
-  driveline replay my_trip.csv --window 310,325 --figures svg
-  driveline replay my_trip.csv --set plant.m=1900
 """
 
-import argparse
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import DrivelineError
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from ..metrics.run_metrics import RideMetrics
-from ..recordings.quantities import aliases, example
-from ..views.html.report_page import require_report
 from ..views.metrics_table import legend
-from .course import RunJob, job
+from .arguments import option
+from .jobs import RunJob, distinguishing, job
 from .options import (
-    add_figures,
-    add_format,
-    add_loop,
-    add_output,
-    add_plant,
-    add_printing,
-    add_report,
-    figure_options,
+    Figures,
+    Loop,
+    Replacing,
+    Report,
+    SignalsFormat,
+    controllers,
+    output,
+    plant,
+    record,
     seconds,
 )
-from .printing import Printer
-from .recording_options import add_recording, files_of, of_recording
-from .settings import caption, distinguishing, other_format, settings_of_each
+from .printing import JsonPrinting
+from .recorded import Recorded, examples, recording
+from .settings import all_settings, caption
 
 if TYPE_CHECKING:
     from ..manoeuvres.road_load import RoadLoad, Track
@@ -61,53 +60,39 @@ if TYPE_CHECKING:
     from ..recordings.plausibility import Finding
     from ..studies.drives.replay import Ride
 
-NAMES = aliases()
 IN_HELP = {
-    "columns": ", ".join(example(quantity, NAMES) for quantity in ("time", "v", "elevation", "T_mot")),
+    "columns": ", ".join(examples("time", "v", "elevation", "T_mot")),
     "metrics": legend(RideMetrics),
 }
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser, "the recorded drive")
-    add_plant(parser, default=PLANTS[1], because="nearer to the real cars of recordings")
-    parser.add_argument(
-        "--held",
-        type=seconds,
-        metavar="SECONDS",
-        help="sample and hold the demand for so long, a rougher foot (default: straight lines)",
-    )
-    parser.add_argument(
-        "--look",
-        action="store_true",
-        help="run nothing: print what was found in the recording, units, ranges, rate and what is odd, and draw it in "
-        "RECORDING_look.png",
-    )
-    parser.add_argument("--strict", action="store_true", help="refuse a recording in which something is odd")
-    add_loop(parser, several={"controller": PLACES["controller"][0]})
-    add_output(parser, "results/replay", "the metrics, the signals and the figure", of_a_run=True)
-    add_format(parser)
-    add_figures(parser)
-    add_report(parser)
-    add_printing(parser, table=True)
+@record
+class Arguments(Recorded, Loop, Replacing, SignalsFormat, Figures, Report, JsonPrinting):
+    recording: Path = recording("the recorded drive")
+    plant: str = plant(PLANTS[1])
+    held: float | None = option(None, "hold the demand for so long, as a rougher foot does", seconds, metavar="SECONDS")
+    look: bool = option(False, "run nothing: print and draw what was found in the recording")
+    strict: bool = option(False, "refuse a recording in which something is odd")
+    controller: tuple[str, ...] = controllers(PLACES["controller"][0])
+    output: Path = output("results/replay", "metrics, signals and figure")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
     from ..manoeuvres.road_load import Track
     from ..manoeuvres.speed_following import require_held
     from ..recordings.drive import read_drive
     from ..recordings.plausibility import of_drive
-    from ..studies.drives.replay import by_name, car_of
+    from ..studies.drives.replay import car_of
     from ..studies.drives.verdict import tell
 
     if args.look and args.report:
         raise DrivelineError("--look runs nothing, so that there is nothing to --report")
-    require_report(args.report)
     require_held(args.held)
-    recording = read_drive(args.recording, dict(args.columns), args.aliases, args.databases)
-    same = of_recording(args) | {"held": args.held} | other_format(args)
-    given = settings_of_each(args, args.plant, by_name(args.controller or PLACES["controller"][:1]))
+    recording = read_drive(args.recording, dict(args.column), args.aliases, args.dbc)
+    same = args.distinguishing | {"held": args.held} | args.other_format
+    found = all_settings(args, [args.plant], args.controller or PLACES["controller"][:1])
+    given = {controller: made for (_, controller), made in found.items()}
     load, T_max = car_of(next(iter(given.values())))
     odd = of_drive(recording, load, T_max)
     if args.look:
@@ -118,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def drive(
-    args: argparse.Namespace,
+    args: Arguments,
     recording: "Drive",
     odd: "Sequence[Finding]",
     track: "Track",
@@ -137,13 +122,13 @@ def drive(
     from ..studies.drives.replay import replay, write
     from ..studies.drives.verdict import followed_speed, tell
 
-    options = figure_options(args, caption(args), (recording.name, 0.0, float(track.t[-1])))
+    options = args.options(caption(args), (recording.name, 0.0, float(track.t[-1])))
     same = {**same, "controllers": list(given)} | {f"with {n}": distinguishing(each) for n, each in given.items()}
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
     plant, build = next((each.plant_name, each.build) for each in given.values())
-    with job(args, record, same, given, [metrics], files_of(args)) as made:
+    with job(args, record, same, given, [metrics], args.read) as made:
         level = "" if recording.elevation is not None else "; it has no elevation: the road is level"
-        made.out.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {build} FMUs, {', '.join(given)}{level}")
+        args.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {build} FMUs, {', '.join(given)}{level}")
         rides = replay(track, load, given, args.held)
         unkept = followed_speed(recording, rides)
         tell(unkept, args.recording, args.strict)
@@ -172,7 +157,7 @@ def _tell(
     made.tell(print_rides, metrics, f"{plant} on {track.name}", [*reasons, *notes], **found)
 
 
-def look(args: argparse.Namespace, recording: "Drive", odd: "Sequence[Finding]") -> int:
+def look(args: Arguments, recording: "Drive", odd: "Sequence[Finding]") -> int:
     """Shows a recording, without any run."""
     from rich.markup import escape
 
@@ -180,16 +165,15 @@ def look(args: argparse.Namespace, recording: "Drive", odd: "Sequence[Finding]")
     from ..views.recording_view import HEADINGS, column_rows, columns, plot_recording
     from ..views.terminal import plain_table, print_table
 
-    options = figure_options(args, "", (recording.name, float(recording.time[0]), float(recording.time[-1])))
-    out = Printer(args)
-    if not out.silent:
+    options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
+    if not args.silent:
         rows = (map(escape, row) for row in column_rows(recording))
         print_table(plain_table(escape(str(args.recording)), HEADINGS, map(list, rows)))
     tell(odd, args.recording, args.strict)
-    out.say("" if odd else "nothing is odd")
+    args.say("" if odd else "nothing is odd")
     kinds = tuple(args.figures or ("png",))
     figures = plot_recording(recording, odd, args.output / f"{recording.name}_look", options._replace(kinds=kinds))
-    out.files(figures)
+    args.written(figures)
     findings = [finding.document() for finding in odd]
-    out.document({"columns": columns(recording), "findings": findings, "files": figures})
+    args.document({"columns": columns(recording), "findings": findings, "files": figures})
     return 0

@@ -15,34 +15,49 @@ examples:
   driveline robustness --scheduler tcp://10.0.0.1:8786       on a Dask cluster
 """
 
-import argparse
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..loop.places import PLACES
 from ..loop.settings import Settings
-from ..views.html.report_page import require_report
-from .course import Job, campaign_job, job
-from .options import add_cases, add_loop, add_output, add_plant, add_printing, add_report
-from .settings import as_given, caption, distinguishing, settings_of_pairs
+from .arguments import option
+from .jobs import Job, campaign_job, distinguishing, job
+from .options import (
+    Cases,
+    Loop,
+    Replacing,
+    Report,
+    case,
+    cases,
+    controllers,
+    output,
+    plants,
+    record,
+    seed,
+)
+from .printing import JsonPrinting
+from .settings import all_settings, as_given, caption
 
 if TYPE_CHECKING:
     from ..studies.robustness.case_runs import CaseRunner
     from ..studies.robustness.outcome import Outcome
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_cases(parser, 300, 100_000, "only the draw of this number, with figures")
-    add_plant(parser, several=True)
-    add_loop(parser, several={"controller": "all of these"}, drawn="the cars and the sensor noise")
-    add_output(parser, "results/robustness", "the runs, the page and the figures", of_a_run=True)
-    add_report(parser)
-    add_printing(parser, table=True)
+MOST = 100_000
 
 
-def run(args: argparse.Namespace) -> int:
-    require_report(args.report)
-    given = settings_of_pairs(args)
+@record
+class Arguments(Loop, Cases, Replacing, Report, JsonPrinting):
+    cases: int = cases(300, MOST)
+    case: int | None = case(MOST, "only the draw of this number, with figures")
+    plant: tuple[str, ...] = plants()
+    controller: tuple[str, ...] = controllers("all of these")
+    seed: int = option(1, "of the cars and the sensor noise (default: %(default)s)", seed)
+    output: Path = output("results/robustness", "the runs, the page and the figures")
+
+
+def run(args: Arguments) -> int:
+    given = all_settings(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
     from ..studies.robustness.case_runs import CaseRunner
     from ..studies.robustness.robustness_campaign import distinguishing as of_the_draws
@@ -52,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     return (_all if args.case is None else _one)(args, runner, same, loops)
 
 
-def _all(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
+def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
     from ..studies.robustness.robustness_campaign import RUNS, campaign, order
     from ..studies.robustness.robustness_report import write
 
@@ -65,14 +80,15 @@ def _all(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], l
     return 0
 
 
-def _one(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
+def _one(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
     """One draw again."""
     from ..studies.robustness.draws import draw
     from ..studies.robustness.robustness_campaign import campaign
     from ..studies.robustness.robustness_report import write_draw
 
+    assert args.case is not None
     with job(args, args.output / f"draw_{args.case}.json", same | {"case": args.case}, loops) as made:
-        made.out.say(f"draw {draw(args.case, args.seed)}")
+        args.say(f"draw {draw(args.case, args.seed)}")
         outcomes = campaign(runner, [args.case], scheduler=args.scheduler)
         made.begin()
         made.wrote(*write_draw(outcomes, runner, caption(args), args.output))
@@ -80,7 +96,7 @@ def _one(args: argparse.Namespace, runner: "CaseRunner", same: dict[str, Any], l
     return 0
 
 
-def _tell(made: Job, outcomes: Sequence["Outcome"], runner: "CaseRunner") -> None:
+def _tell(made: Job[Any], outcomes: Sequence["Outcome"], runner: "CaseRunner") -> None:
     from ..studies.robustness import robustness_report_html
     from ..studies.robustness.robustness_report import announce
     from ..studies.robustness.summary import summaries
@@ -90,8 +106,8 @@ def _tell(made: Job, outcomes: Sequence["Outcome"], runner: "CaseRunner") -> Non
     made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
 
 
-def _as_given(args: argparse.Namespace) -> str:
+def _as_given(args: Arguments) -> str:
     """The options that make the runs what they are; here our controller alone is not what is usual."""
     ours = PLACES["controller"][0]
-    alone = f" --controller {ours}" if args.controller == [ours] else ""
+    alone = f" --controller {ours}" if args.controller == (ours,) else ""
     return f"{alone} {as_given(args)}".rstrip()

@@ -1,28 +1,47 @@
-"""The course of commands that make one run of the loop and write its signals."""
+"""Commands that make one run of the loop and write its signals, and the frames of its bus."""
 
-import argparse
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.errors import DrivelineError
+from ..base.optional_packages import required
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .course import RunJob, job
-from .frames import require_frames, write_frames
-from .settings import distinguishing, other_format
+from .arguments import option
+from .jobs import RunJob, distinguishing, job
+from .options import Loop, Replacing, SignalsFormat, controller, output, plant, record
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from ..cosimulation.results import Results
+    from ..cosimulation.wiring import Fit
+
+SENDERS = ("can", "motor")
+"""The places whose blocks declare frames."""
+
+
+def control(default: str) -> Any:
+    """--control."""
+    return option(default, "active damping (default: %(default)s)", choices=("on", "off"))
+
+
+@record
+class OneRun(Loop, Replacing, SignalsFormat):
+    """Of a command that makes one run."""
+
+    plant: str = plant()
+    control: str = control("on")
+    controller: str = controller()
+    output: Path = output("results", "the signals")
+    frames: str | None = option(None, "log the frames of the bus too, with its DBC", choices=("asc", "blf"))
 
 
 @contextmanager
 def signals_job(
-    args: argparse.Namespace, given: Settings, manoeuvre: Manoeuvre, run: Mapping[str, Any], read: Iterable[Path] = ()
-) -> Iterator[RunJob]:
-    """As `harness.commands.course.job`, for files at `stem_of`.
+    args: OneRun, given: Settings, manoeuvre: Manoeuvre, run: Mapping[str, Any], read: Iterable[Path] = ()
+) -> Iterator[tuple[RunJob, Path]]:
+    """As `harness.commands.jobs.job`, with the path of the files without their endings, PLANT_MANOEUVRE_CONTROL.
 
     Args:
         run: what distinguishes it beside settings, manoeuvre and format.
@@ -32,30 +51,37 @@ def signals_job(
     """
     from ..views.signals_file import signals_path
 
-    require_frames(args, loop(given).own)
-    stem = stem_of(args, given, manoeuvre)
-    same = {**run, "damping": args.control} | distinguishing(given, manoeuvre) | other_format(args)
+    if args.frames:
+        _require_frames(args, loop(given).own)
+    stem = args.output / f"{given.plant_name}_{manoeuvre.name}_{args.control}"
+    same = {**run, "damping": args.control} | distinguishing(given, manoeuvre) | args.other_format
     record, signals = stem.with_name(f"{stem.name}.json"), signals_path(stem, args.format)
-    with job(args, record, same, {given.plant_name: given}, [signals], list(read)) as made:
-        yield made
+    with job(args, record, same, {given.plant_name: given}, [signals], read) as made:
+        yield made, stem
 
 
-def stem_of(args: argparse.Namespace, given: Settings, manoeuvre: Manoeuvre) -> Path:
-    """PLANT_MANOEUVRE_CONTROL in the folder for the results, the files without their endings."""
-    return args.output / f"{given.plant_name}_{manoeuvre.name}_{args.control}"
+def write_frames(fitted: "Fit", given: Settings, results: "Results", stem: Path, ending: str) -> tuple[Path, Path]:
+    """Writes the frames of a run as a log of the bus, and its database; returns the files."""
+    from ..exchange.bus.database import telegrams, write_dbc
+    from ..exchange.bus.log import write_log
+
+    sent = telegrams(fitted.parameters(given.parameters))
+    log, database = (stem.with_name(f"{stem.name}.{each}") for each in (ending, "dbc"))
+    write_log(sent, results, log)
+    write_dbc(sent, database)
+    return log, database
 
 
-def write_run(
-    args: argparse.Namespace,
-    made: RunJob,
-    given: Settings,
-    manoeuvre: Manoeuvre,
-    results: "Results",
-    signals: "np.ndarray",
-) -> None:
-    """Writes signals, and the frames of the results where they are asked for."""
-    from ..views.signals_file import write_signals
+def _require_frames(args: OneRun, own: frozenset[str]) -> None:
+    """
+    Args:
+        own: the places in which there are blocks of ours.
 
-    stem = stem_of(args, given, manoeuvre)
-    made.wrote(write_signals(signals, stem, args.format))
-    made.wrote(*write_frames(args, results, made.fits[given.plant_name], given.parameters, stem))
+    Raises:
+        DrivelineError: there are FMUs in the loop that declare no frames.
+        MissingExtra: the packages are not installed.
+    """
+    if others := [place for place in SENDERS if place not in own]:
+        raise DrivelineError(f"--frames: {', '.join(getattr(args, place) for place in others)} declares no frames")
+    for package in ("can", "cantools"):
+        required(package, "a log of the bus", "recordings")

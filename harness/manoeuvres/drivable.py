@@ -2,14 +2,40 @@
 
 from collections.abc import Iterator, Mapping
 from math import inf
+from pathlib import Path
 
 import numpy as np
 
 from ..cosimulation.experiment import instants, sampled
 from ..cosimulation.wiring import Fit, beyond_bounds
 from ..loop.places import INPUTS, PARAMETERS, STEP_SIZE
+from ..loop.settings import Settings
 from .manoeuvre import Manoeuvre
 from .parts import ManoeuvreError
+
+
+def require_possible(
+    manoeuvres: Mapping[str, Manoeuvre],
+    files: Mapping[str, Path],
+    fits: Mapping[str, Fit],
+    settings: Mapping[str, Settings],
+) -> None:
+    """Refuses manoeuvres that the loops of the plants cannot be driven through; only those of files are not known to be
+    within all bounds.
+
+    Args:
+        manoeuvres: by their names.
+        files: of those that are files.
+        fits, settings: by the names of the plants.
+
+    Raises:
+        ManoeuvreError: see `require_road` and `require_drivable`.
+    """
+    for plant, fitted in fits.items():
+        for manoeuvre in manoeuvres.values():
+            require_road(manoeuvre, fitted)
+        for name, path in files.items():
+            require_drivable(manoeuvres[name], fitted, settings[plant].parameters, str(path))
 
 
 def require_drivable(manoeuvre: Manoeuvre, fitted: Fit, parameters: Mapping[str, float], label: str) -> None:

@@ -38,7 +38,7 @@ def ends_in_order(done):
 @pytest.fixture
 def other_build(tmp_path):
     """The motor torque loop built from sources in which the motor gives twice the torque."""
-    project = copied_sources(tmp_path / "changed", "models", "fmus")
+    project = copied_sources(tmp_path / "changed", "models", "fmus", "harness")
     model = project / "models" / "motor_torque_loop.py"
     text = model.read_text(encoding="utf-8")
     changed = text.replace(

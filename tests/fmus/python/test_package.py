@@ -32,7 +32,7 @@ def run(arguments, folder, **environment):
 @pytest.fixture
 def copied_project(tmp_path):
     """A copy of the sources that build the FMUs, somewhere else."""
-    return copied_sources(tmp_path / "elsewhere", "models", "fmus")
+    return copied_sources(tmp_path / "elsewhere", "models", "fmus", "harness")
 
 
 @pytest.mark.slow

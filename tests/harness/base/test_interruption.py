@@ -145,7 +145,7 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
         signal.signal(number, before)
 
 
-@pytest.mark.parametrize("last", ["driveline.harness.base.errors", "driveline.harness.commands.options"])
+@pytest.mark.parametrize("last", ["driveline.harness.base.errors", "driveline.harness.commands.cli"])
 def test_stopped_while_it_is_imported_it_says_so_in_one_line(last: str) -> None:
     """Nothing of the command line is imported before the place that does."""
     program = f"""

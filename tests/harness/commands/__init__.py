@@ -1,0 +1,10 @@
+from typing import Any
+
+from driveline.harness.commands.arguments import filled
+from driveline.harness.commands.cli import parser
+
+
+def given(*words: str) -> Any:
+    """The record that a command gets of these words."""
+    args = parser().parse_args(words)
+    return filled(args.found.record, args)

@@ -5,19 +5,24 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import FrozenInstanceError
+from importlib import import_module
 from importlib.metadata import version
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from fmpy.util import read_csv
 
-from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS, main, parser
+from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS, main
+from driveline.harness.commands.target import ACTIONS
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
 from tests import ROOT
 from tests.foreign import build_car, tampered
+from tests.harness.commands import given
 
 
 def answer(capsys, *arguments):
@@ -29,14 +34,21 @@ def answer(capsys, *arguments):
     return code, *capsys.readouterr()
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, "target record", "study back-to-back", "study bound", "study coupling"])
-def test_every_command_teaches(capsys, command):
-    message = answer(capsys, *command.split(), "--help")
+@pytest.mark.parametrize("command", [*COMMANDS, *(f"target {action}" for action in ACTIONS)])
+def test_every_command_teaches_on_one_screen(capsys, monkeypatch, command):
+    """The options that few need, and the rest of what it says, are in --help-all."""
+    monkeypatch.setenv("COLUMNS", "102")
+    code, out, err = message = answer(capsys, *command.split(), "--help")
     assert message == answer(capsys, "help", *command.split())
-    code, out, _ = message
-    assert code == 0
+    assert (code, err) == (0, "")
+    assert out.startswith(f"usage: driveline {command} ")
     assert "examples:" in out
-    assert f"driveline {command}" in out
+    assert f"driveline {command}" in out.partition("examples:")[2]
+    assert len(out.splitlines()) <= 45
+    if command != "target":
+        code, everything, _ = answer(capsys, *command.split(), "--help-all")
+        assert code == 0
+        assert {line.split()[0] for line in out.splitlines() if line.startswith("  --")} <= set(everything.split())
 
 
 def test_help_has_the_commands_by_what_they_are_for_and_the_exit_codes(capsys):
@@ -52,12 +64,31 @@ def test_help_has_the_commands_by_what_they_are_for_and_the_exit_codes(capsys):
         assert "0 done, 1 something went wrong or there are findings, 2 wrong use" in out
 
 
-def test_what_experts_need_stands_at_the_end_of_the_options(capsys):
-    _, out, _ = answer(capsys, "simulate", "--help")
-    first, _, last = out.partition("options for experts:")
-    assert all(option in last and f"  {option}" not in first for option in ("--time-limit", "--scheme", "--build"))
+def test_what_experts_need_stands_in_help_all_alone(capsys):
+    (_, out, _), (_, everything, _) = (answer(capsys, "simulate", option) for option in ("--help", "--help-all"))
+    first, _, last = everything.partition("options for experts:")
+    for option in ("--time-limit", "--unpacked-limit", "--scheme", "--build", "--fmus", "--map"):
+        assert f"  {option}" in last
+        assert f"  {option}" not in first + out
     assert "--manoeuvre" in first
     assert first.startswith("usage: driveline simulate [OPTION ...]\n")
+
+
+def test_a_record_without_words_is_that_of_a_program():
+    """So that nothing is usual in one and not in the other."""
+    for command, words in {"replay": ["trip.csv"], "check": ["a.fmu"], "identify": ["a.csv"]}.items():
+        module = import_module(f"driveline.harness.commands.{command}")
+        positional = {"fmus": (Path("a.fmu"),)} if command == "check" else {"recording": Path(words[0])}
+        assert given(command, *words) == module.Arguments(**positional)
+    for command in COMMANDS.keys() - {"target", "replay", "check", "identify"}:
+        assert given(command) == import_module(f"driveline.harness.commands.{command}").Arguments()
+    for action, (record, *_) in ACTIONS.items():
+        assert given("target", action) == record()
+
+
+def test_a_record_does_not_change():
+    with pytest.raises(FrozenInstanceError):
+        given("simulate").seed = 2
 
 
 @pytest.mark.parametrize("command", ["simulate", "compare", "ssp"])
@@ -98,12 +129,6 @@ def test_all_that_can_be_printed_may_be_an_argument(capsys, name):
     assert answer(capsys, "replay", name) == (2, "", f"driveline replay: there is no recording {name}\n")
 
 
-@pytest.mark.parametrize("command", ["bound", "coupling", "back-to-back"])
-def test_what_is_measured_of_the_project_is_a_study(capsys, command):
-    assert answer(capsys, command)[0] == 2
-    assert answer(capsys, "study", command, "--help")[0] == 0
-
-
 def test_the_version_is_that_of_the_package(capsys):
     assert answer(capsys, "--version")[:2] == (0, f"driveline-damping {version('driveline-damping')}\n")
 
@@ -142,7 +167,8 @@ def test_the_version_is_that_of_the_package(capsys):
         (["--print-completion", "bsh"], "did you mean bash"),
         ([], "COMMAND"),
         (["help", "simulat"], "did you mean simulate"),
-        (["study", "bond"], "did you mean bound"),
+        (["target", "exprt"], "did you mean export"),
+        (["study", "bound"], "study is unknown"),
     ],
 )
 def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
@@ -172,11 +198,10 @@ def test_an_option_with_one_value_is_not_given_two(capsys, command, option, valu
 
 
 def test_options_that_are_repeatable_keep_all_values_and_the_same_value_twice_is_one():
-    given = ["--controller", "SpeedWashout", "--controller", "PaperObserver", "--seed", "1", "--seed", "1"]
-    assignments = ["--set", "can.tau=0.1", "--set", "plant.J_1=0.06"]
-    args = parser().parse_args(["replay", "trip.csv", *given, *assignments])
-    assert args.controller == ["SpeedWashout", "PaperObserver"]
-    assert args.assignments == [("can.tau", 0.1), ("plant.J_1", 0.06)]
+    words = ["--controller", "SpeedWashout", "--controller", "PaperObserver", "--seed", "1", "--seed", "1"]
+    args = given("replay", "trip.csv", *words, "--set", "can.tau=0.1", "--set", "plant.J_1=0.06")
+    assert args.controller == ("SpeedWashout", "PaperObserver")
+    assert args.set == (("can.tau", 0.1), ("plant.J_1", 0.06))
     assert args.seed == 1
 
 
@@ -208,7 +233,7 @@ def test_simulate_draws_nothing_unless_asked():
 def test_completion_knows_commands_options_and_manoeuvres(capsys, shell):
     code, out, _ = answer(capsys, "--print-completion", shell)
     assert code == 0
-    assert all(word in out for word in ("back-to-back", "manoeuvre", "launch_brake"))
+    assert all(word in out for word in ("export", "manoeuvre", "time-limit", "launch_brake"))
 
 
 @pytest.mark.parametrize(

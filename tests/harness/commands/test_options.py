@@ -3,96 +3,99 @@
 import os
 import subprocess
 import sys
-from argparse import ArgumentTypeError, Namespace
+from argparse import ArgumentTypeError
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 from shutil import copytree, ignore_patterns
+from typing import Any
 
 import pytest
 
-from driveline.fmus.building.options import file as a_file
-from driveline.fmus.building.options import folder, output_folder
 from driveline.fmus.building.parameter_files import seeds
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.base.errors import DrivelineError
-from driveline.harness.commands.cli import parser
-from driveline.harness.commands.options import assignment, figure_options, megabytes, seconds, seed, window
-from driveline.harness.commands.recording_options import of_recording
+from driveline.harness.commands.options import (
+    Figures,
+    assignment,
+    file,
+    folder,
+    megabytes,
+    output_folder,
+    seconds,
+    seed,
+    window,
+)
+from driveline.harness.commands.recorded import Recorded
 from driveline.harness.loop.places import BUILD
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.models.block.declaration import Integer, variables
 from tests import ROOT
+from tests.harness.commands import given
+
+Parse = Callable[[str], Any]
 
 
 @pytest.mark.parametrize(
-    ("text", "pair"),
+    ("parse", "text", "value"),
     [
-        ("plant.J_1=0.06", ("plant.J_1", 0.06)),
-        (" motor.g_T = 1e-2 ", ("motor.g_T", 0.01)),
-        ("controller.enable=True", ("controller.enable", 1.0)),
-        ("plant.recorded_load=false", ("plant.recorded_load", 0.0)),
-        ("plant.tyre.c=2", ("plant.tyre.c", 2.0)),
+        (assignment, "plant.J_1=0.06", ("plant.J_1", 0.06)),
+        (assignment, " motor.g_T = 1e-2 ", ("motor.g_T", 0.01)),
+        (assignment, "controller.enable=True", ("controller.enable", 1.0)),
+        (assignment, "plant.recorded_load=false", ("plant.recorded_load", 0.0)),
+        (assignment, "plant.tyre.c=2", ("plant.tyre.c", 2.0)),
+        (window, "1,2.5", (1.0, 2.5)),
+        (window, " 0.9 , 1e1 ", (0.9, 10.0)),
+        (window, "-1,1", (-1.0, 1.0)),
+        (window, "1,1.01", (1.0, 1.01)),
+        (seconds, "1e-9", 1e-9),
+        (megabytes, "1e302", round(1e308)),
+        *zip([megabytes] * 4, ("1000", "0.29", "1e-6", "1e-7"), (10**9, 290_000, 1, 1), strict=True),
     ],
 )
-def test_an_assignment_has_a_name_and_a_number(text, pair):
-    assert assignment(text) == pair
+def test_what_is_typed_becomes_a_value(parse: Parse, text: str, value: Any) -> None:
+    assert parse(text) == value
 
 
 @pytest.mark.parametrize(
-    "text", ["", "plant.J_1", "J_1=3", "plant.=3", ".J_1=3", "plant.J_1=", "plant.J_1=heavy", "plant.m=1_000"]
+    ("parse", "texts", "reason"),
+    [
+        (
+            assignment,
+            ("", "plant.J_1", "J_1=3", "plant.=3", ".J_1=3", "plant.J_1=", "plant.J_1=heavy", "plant.m=1_000"),
+            r"plant\.J_1=0\.06",
+        ),
+        (
+            assignment,
+            ("controller.k_d@2.0", "controller.k_d@2.0=", "controller.k_d@2.0=more"),
+            r"INSTANCE\.PARAMETER@TIME=VALUE, as controller\.k_d@2\.0=1\.5",
+        ),
+        (assignment, ("plant.m=nan", "plant.m=inf", "plant.m=-inf"), "a parameter is a finite number"),
+        (
+            window,
+            ("", "1", "1,", ",1", "2,1", "1,1", "1,1.009", "1,2,3", "a,b", "nan,2", "1,inf", "1;2"),
+            r"is not of the form 1\.0,2\.5",
+        ),
+        (seconds, ("0", "-0.001", "nan", "inf", "", "1 s", "1_0", "\u0661", "infinity"), "not a time above 0 s"),
+        (megabytes, ("1e303", "0", "inf"), "not a size above 0 MB"),
+    ],
 )
-def test_what_is_no_assignment_is_answered_with_one(text):
-    with pytest.raises(ArgumentTypeError, match=r"plant\.J_1=0\.06"):
-        assignment(text)
+def test_what_is_no_value_is_answered_with_one(parse: Parse, texts: tuple[str, ...], reason: str) -> None:
+    for text in texts:
+        with pytest.raises(ArgumentTypeError, match=reason):
+            parse(text)
 
 
-@pytest.mark.parametrize("text", ["controller.k_d@2.0", "controller.k_d@2.0=", "controller.k_d@2.0=more"])
-def test_a_change_without_a_value_is_answered_with_one(text):
-    with pytest.raises(ArgumentTypeError, match=r"INSTANCE\.PARAMETER@TIME=VALUE, as controller\.k_d@2\.0=1\.5"):
-        assignment(text)
+@pytest.mark.parametrize("parse", [assignment, seed, seconds, megabytes])
+def test_what_is_long_or_strange_is_not_repeated_as_it_is(parse: Parse) -> None:
+    for text in ("9" * 5000, "\x1b[31m9"):
+        with pytest.raises(ArgumentTypeError) as refusal:
+            parse(text)
+        assert len(str(refusal.value)) < 200
+        assert str(refusal.value).isprintable()
 
 
-@pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
-def test_a_parameter_is_finite(value):
-    with pytest.raises(ArgumentTypeError, match="finite"):
-        assignment(f"plant.m={value}")
-
-
-@pytest.mark.parametrize(
-    ("text", "times"),
-    [("1,2.5", (1.0, 2.5)), (" 0.9 , 1e1 ", (0.9, 10.0)), ("-1,1", (-1.0, 1.0)), ("1,1.01", (1, 1.01))],
-)
-def test_a_window_is_from_one_time_to_a_later_one(text, times):
-    assert window(text) == times
-
-
-@pytest.mark.parametrize(
-    "text", ["", "1", "1,", ",1", "2,1", "1,1", "1,1.009", "1,2,3", "a,b", "nan,2", "1,inf", "1;2"]
-)
-def test_what_is_no_window_is_answered_with_one(text):
-    with pytest.raises(ArgumentTypeError, match=r"is not of the form 1\.0,2\.5"):
-        window(text)
-
-
-def test_a_window_shows_something_of_every_run():
-    def options_for(start, end):
-        return figure_options(
-            Namespace(window=(start, end), figures=None), "", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0)
-        )
-
-    assert options_for(5.99, 9.0).clipped(0.0, 6.0) == (5.99, 6.0)
-    assert options_for(-1.0, 0.1).clipped(0.0, 6.0) == (0.0, 0.1)
-    for start, end in ((6.0, 9.0), (-1.0, 0.0), (30.0, 40.0)):
-        with pytest.raises(DrivelineError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
-            options_for(start, end)
-
-
-def test_figures_are_of_the_kinds_that_are_asked_for_each_once():
-    assert figure_options(Namespace(window=None, figures=["svg", "png", "svg"]), "said") == FigureOptions(
-        "said", None, ("svg", "png")
-    )
-    assert figure_options(Namespace(window=None, figures=None), "") == FigureOptions("", None, ("png", "pdf"))
-
-
-def test_a_seed_is_what_the_blocks_declare():
+def test_a_seed_is_what_the_blocks_declare() -> None:
     least, most = seeds()
     for name in ("MotorTorqueLoop", "WheelSpeedCan"):
         declared = next(v.declaration for v in variables(FMUS[name].block.Parameters) if v.name == "seed")
@@ -104,46 +107,41 @@ def test_a_seed_is_what_the_blocks_declare():
             seed(text)
 
 
-def test_a_time_is_above_zero_and_finite():
-    assert seconds("1e-9") == 1e-9
-    for text in ("0", "-0.001", "nan", "inf", "", "1 s", "1_0", "\u0661", "infinity"):
-        with pytest.raises(ArgumentTypeError, match="not a time above 0 s"):
-            seconds(text)
+def test_a_window_shows_something_of_every_run() -> None:
+    def options_for(*window: float) -> FigureOptions:
+        return Figures(window=window).options("", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0))
+
+    assert options_for(5.99, 9.0).clipped(0.0, 6.0) == (5.99, 6.0)
+    assert options_for(-1.0, 0.1).clipped(0.0, 6.0) == (0.0, 0.1)
+    for start, end in ((6.0, 9.0), (-1.0, 0.0), (30.0, 40.0)):
+        with pytest.raises(DrivelineError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
+            options_for(start, end)
 
 
-def test_a_size_is_finite_in_bytes():
-    assert megabytes("1e302") == round(1e308)
-    assert [megabytes(text) for text in ("1000", "0.29", "1e-6", "1e-7")] == [10**9, 290_000, 1, 1]
-    for text in ("1e303", "0", "inf"):
-        with pytest.raises(ArgumentTypeError, match="not a size above 0 MB"):
-            megabytes(text)
+def test_figures_are_of_the_kinds_that_are_asked_for_each_once() -> None:
+    asked = Figures(figures=("svg", "png", "svg"))
+    assert asked.options("said") == FigureOptions("said", None, ("svg", "png"))
+    assert Figures().options("") == FigureOptions("", None, ("png", "pdf"))
 
 
-@pytest.mark.parametrize("take", [assignment, seed, seconds, megabytes])
-def test_what_is_long_or_strange_is_not_repeated_as_it_is(take):
-    for text in ("9" * 5000, "\x1b[31m9"):
-        with pytest.raises(ArgumentTypeError) as refusal:
-            take(text)
-        assert len(str(refusal.value)) < 200
-        assert str(refusal.value).isprintable()
-
-
-def test_a_folder_is_no_file(tmp_path):
-    file = tmp_path / "signals.csv"
-    assert folder(str(file)) == file
-    file.touch()
-    with pytest.raises(ArgumentTypeError, match="is a file"):
-        folder(str(file))
+def test_a_folder_is_no_file_and_a_file_no_folder(tmp_path: Path) -> None:
+    one = tmp_path / "signals.csv"
+    assert [take(str(one)) for take in (folder, file)] == [one, one]
+    one.touch()
+    for take, path, reason in ((folder, one, "is a file"), (file, tmp_path, "is a folder")):
+        with pytest.raises(ArgumentTypeError, match=reason):
+            take(str(path))
     assert folder(str(tmp_path)) == tmp_path
 
 
-@pytest.mark.parametrize("take", [folder, output_folder, a_file])
-def test_a_name_that_is_too_long_is_refused(take):
-    with pytest.raises(ArgumentTypeError, match=r"^File name too long$"):
-        take("a" * 5000)
+@pytest.mark.parametrize("take", [folder, output_folder, file])
+def test_a_name_that_is_empty_or_too_long_is_refused(take: Parse) -> None:
+    for name, reason in (("a" * 5000, "^File name too long$"), ("", "is empty$")):
+        with pytest.raises(ArgumentTypeError, match=reason):
+            take(name)
 
 
-def test_a_folder_for_results_is_tried_and_nothing_is_left_of_it(tmp_path):
+def test_a_folder_for_results_is_tried_and_nothing_is_left_of_it(tmp_path: Path) -> None:
     assert output_folder(str(tmp_path / "new" / "results")) == tmp_path / "new" / "results"
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "file").touch()
@@ -152,15 +150,7 @@ def test_a_folder_for_results_is_tried_and_nothing_is_left_of_it(tmp_path):
             output_folder(text)
 
 
-def test_a_file_is_no_folder(tmp_path):
-    assert a_file(str(tmp_path / "gains.toml")) == tmp_path / "gains.toml"
-    with pytest.raises(ArgumentTypeError, match="is a folder"):
-        a_file(str(tmp_path))
-    with pytest.raises(ArgumentTypeError, match="empty"):
-        a_file("")
-
-
-def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
+def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path: Path) -> None:
     assert BUILD == ROOT / "build"
     package, left_out = tmp_path / "site/driveline", ignore_patterns("__pycache__", "*.so", "models", "fmus", "harness")
     copytree(ROOT / "driveline", package, ignore=left_out)
@@ -178,25 +168,27 @@ def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path):
     assert done.stdout.strip() == "build"
 
 
-def test_other_samples_columns_names_or_frames_make_another_run(tmp_path):
-    file, empty = tmp_path / "names.toml", tmp_path / "empty.csv"
+def test_other_samples_columns_names_or_frames_make_another_run(tmp_path: Path) -> None:
+    names, empty = tmp_path / "names.toml", tmp_path / "empty.csv"
     empty.touch()
-    usual = {"recording": empty, "columns": [], "databases": [], "aliases": []}
-    seen = [of_recording(Namespace(**usual | {"columns": [("v", "speed")]})), of_recording(Namespace(**usual))]
+    usual = Recorded(recording=empty)
+    seen = [replace(usual, column=(("v", "speed"),)).distinguishing, usual.distinguishing]
     assert seen[1].keys() == {"recording", "columns"}
     for text in ("v = ['a']", "v = ['b']"):
-        file.write_text(text)
-        for changed in ({"recording": file}, {"databases": [file]}, {"aliases": [file]}):
-            seen.append(of_recording(Namespace(**usual | changed)))
+        names.write_text(text)
+        for changed in ({"recording": names}, {"dbc": (names,)}, {"aliases": (names,)}):
+            seen.append(replace(usual, **changed).distinguishing)  # type: ignore[arg-type]
     assert len({str(each) for each in seen}) == 8
 
 
 @pytest.mark.parametrize(("command", "most"), [("faults", 1_000_000), ("robustness", 100_000)])
-@pytest.mark.parametrize("option", ["--case", "--cases"])
-def test_cases_have_numbers_from_one_to_the_most(command, most, option, capsys):
+@pytest.mark.parametrize("option", ["case", "cases"])
+def test_cases_have_numbers_from_one_to_the_most(
+    command: str, most: int, option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     for number in (1, most):
-        assert number in vars(parser().parse_args([command, option, str(number)])).values()
+        assert getattr(given(command, f"--{option}", str(number)), option) == number
     for number in (0, most + 1):
         with pytest.raises(SystemExit):
-            parser().parse_args([command, option, str(number)])
-        assert f"argument {option}: '{number}' is not a whole number from 1 to {most}" in capsys.readouterr().err
+            given(command, f"--{option}", str(number))
+        assert f"argument --{option}: '{number}' is not a whole number from 1 to {most}" in capsys.readouterr().err

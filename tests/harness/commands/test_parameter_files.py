@@ -4,10 +4,11 @@ import pytest
 
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.base.errors import DrivelineError, WiringError
-from driveline.harness.commands.cli import main, parser
+from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import settings
 from tests import ROOT
 from tests.foreign import build_car
+from tests.harness.commands import given as record
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
 
@@ -16,9 +17,9 @@ VAN = str(ROOT / "examples" / "cars" / "van.toml")
 def given(built):
     """What options of `driveline simulate` give the loop as parameters."""
 
-    def parameters(*options, plant="TwoMassDriveline"):
+    def parameters(*options, plant="TwoMassDriveline", controller="DampingController"):
         run = ["simulate", "--plant", str(plant), "--fmus", str(built), "--build", "python"]
-        return settings(parser().parse_args([*run, *options]), str(plant)).parameters
+        return settings(record(*run, *options), str(plant), controller).parameters
 
     return parameters
 
@@ -63,12 +64,12 @@ def test_a_refused_file_is_answered_with_its_line(given, gains):
 
 def test_a_file_for_another_controller_is_refused(given, gains, tmp_path):
     assert main(["build", "NoDamping", "--build", "python", "--output", str(tmp_path), "--quiet"]) == 0
-    controller = ("--controller", str(tmp_path / "NoDamping.fmu"))
+    controller = str(tmp_path / "NoDamping.fmu")
     with pytest.raises(DrivelineError, match=r"gains\.toml: NoDamping\.fmu has no parameter k_d$"):
-        given("--parameters", gains, *controller)
+        given("--parameters", gains, controller=controller)
     path = tmp_path / "of_both.toml"
     path.write_text("T_take_max = 80\n", encoding="utf-8")
-    assert given("--parameters", str(path), *controller) == {"controller.T_take_max": 80.0}
+    assert given("--parameters", str(path), controller=controller) == {"controller.T_take_max": 80.0}
 
 
 def test_a_file_for_a_controller_that_is_not_built_is_refused(capsys, gains, tmp_path):
@@ -103,5 +104,5 @@ def test_a_comparison_gives_each_plant_its_own(both_built, tmp_path):
 
 @pytest.mark.parametrize("command", [["simulate"], ["compare"], ["replay", "trip.csv"], ["build"]])
 def test_every_command_that_runs_or_builds_the_loop_takes_both_files(command, gains):
-    args = parser().parse_args([*command, "--vehicle", VAN, "--parameters", gains])
+    args = record(*command, "--vehicle", VAN, "--parameters", gains)
     assert (str(args.vehicle), str(args.parameters)) == (VAN, gains)

@@ -79,22 +79,3 @@ def test_the_c_of_another_controller_stays_unless_it_is_to_be_replaced(
     assert not (tmp_path / "speed_washout.c").exists()
     assert exported(tmp_path, *other, "--replace") == 0
     assert "SpeedWashout" in (tmp_path / "controller.h").read_text(encoding="utf-8")
-
-
-def test_a_wrong_action_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as end:
-        main(["target", "exprt"])
-    assert end.value.code == 2
-    assert "did you mean export" in capsys.readouterr().err
-
-
-def test_every_action_teaches(capsys: pytest.CaptureFixture[str]) -> None:
-    from driveline.harness.commands.target import ACTIONS
-
-    for action in ACTIONS:
-        with pytest.raises(SystemExit) as end:
-            main(["target", action, "--help"])
-        assert end.value.code == 0
-        message = capsys.readouterr().out
-        assert f"driveline target {action}" in message
-        assert "examples:" in message

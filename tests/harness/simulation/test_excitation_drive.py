@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from driveline.harness.base.errors import WiringError
-from driveline.harness.commands.cli import main, parser
+from driveline.harness.commands.cli import main
+from driveline.harness.commands.record import Arguments
 from driveline.harness.manoeuvres.prbs import FEEDBACK, binary_torque, shift_register
 from driveline.harness.manoeuvres.road_load import RoadLoad
 from driveline.harness.recordings.measurement import Measurement, read_measurement
@@ -158,7 +159,7 @@ def test_options_that_are_no_drive(option: list[str]) -> None:
 
 
 def test_without_options_the_measurement_wheels_are_those_of_a_program():
-    given = vars(parser().parse_args(["record"]))
+    given = vars(Arguments())
     assert {name: given[name] for name in asdict(MeasurementWheels())} == asdict(MeasurementWheels())
 
 

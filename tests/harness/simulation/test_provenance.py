@@ -19,7 +19,7 @@ from driveline.fmus.origin import ENTRY
 from driveline.harness.base.atomic_files import alone
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
-from driveline.harness.commands.settings import distinguishing
+from driveline.harness.commands.jobs import distinguishing
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation import provenance, simulate

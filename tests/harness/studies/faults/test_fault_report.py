@@ -4,7 +4,6 @@ import csv
 import json
 import re
 import shlex
-from argparse import ArgumentParser
 from dataclasses import replace
 from math import inf, isnan, nan
 
@@ -24,6 +23,7 @@ from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS, KIND
 from driveline.harness.studies.faults.fault_figures import case_panels
 from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
 from driveline.harness.studies.faults.judges import JUDGES
+from tests.harness.commands import given
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
@@ -155,20 +155,16 @@ def test_the_help_tells_how_many_cases_have_every_kind_in_every_situation(plan, 
     ],
 )
 def test_the_figure_of_a_case_names_its_campaign(options, caption):
-    parser = ArgumentParser()
-    faults.add_arguments(parser)
-    assert faults.case_caption(parser.parse_args(options)) == caption
+    assert faults.case_caption(given("faults", *options)) == caption
 
 
 def test_the_page_tells_how_a_case_is_run_again(outcomes):
     options = ["--plant", "my car.fmu", "--set", "controller.k_d=0.1", "--seed", "7", "--controller", "mine.fmu"]
-    parser = ArgumentParser()
-    faults.add_arguments(parser)
-    first = parser.parse_args(options)
+    first = given("faults", *options)
     text = page(outcomes, f" {as_given(first)}")
     again = next(line for line in text.splitlines() if line.startswith("    driveline faults --case NUMBER"))
     words = shlex.split(again)[2:]
-    assert vars(parser.parse_args(["--case", "3", *words[2:]])) == vars(first) | {"case": 3}
+    assert given("faults", "--case", "3", *words[2:]) == replace(first, case=3)
 
 
 @pytest.mark.slow

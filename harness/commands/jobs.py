@@ -1,17 +1,14 @@
-"""The course that commands share: what runs is recorded, the files are named, and what was found is told."""
+"""What commands that write results share: what runs is recorded, the files are named, and what was found is told."""
 
-import argparse
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
-from importlib import import_module
 from pathlib import Path
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ..base.errors import DrivelineError
 from ..loop.settings import Settings, loop
-from .printing import Printer
+from ..manoeuvres.manoeuvre import Manoeuvre
+from .printing import Printing
 
 if TYPE_CHECKING:
     from ..cosimulation.system import System
@@ -20,46 +17,24 @@ if TYPE_CHECKING:
     from ..simulation.provenance import Made
 
 
-def command(name: str) -> ModuleType:
-    """The module of a command."""
-    return import_module(f".{name.replace('-', '_')}", __package__)
+M = TypeVar("M", "Made", "Campaign[Any, Any]")
 
 
-def run(args: argparse.Namespace) -> int:
-    """Runs the command of the arguments; returns its exit code.
+class Job(Generic[M]):
+    """What a command makes, see `job` and `campaign_job`."""
 
-    Raises:
-        DrivelineError: the user can mend what is wrong.
-    """
-    from ...fmus.errors import BuildError
+    _made: M
+    _content: Callable[[], Any]
 
-    if getattr(args, "list", False):
-        from .manoeuvres import print_manoeuvres
-
-        print_manoeuvres(getattr(args, "json", False))
-        return 0
-    try:
-        return command(args.module).run(args)
-    except BuildError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
-
-
-class Job:
-    """What a command makes, see `job` and `campaign_job`.
-
-    Attributes:
-        out: prints.
-    """
-
-    def __init__(
-        self, out: Printer, made: "Made | Campaign[Any, Any]", reports: Iterable[Path], content: Callable[[], Any]
-    ) -> None:
-        self.out = out
-        self._made = made
+    def __init__(self, out: Printing, reports: Iterable[Path]) -> None:
+        self._out = out
         self._reports = reports
-        self._content = content
         self._show: Callable[[], None] = lambda: None
         self._document: dict[str, Any] = {}
+
+    def start(self, made: M, content: Callable[[], Any]) -> None:
+        """What is made is recorded from here on; `content` gives what made it."""
+        self._made, self._content = made, content
 
     def wrote(self, *files: Path) -> None:
         """These files are results."""
@@ -77,43 +52,38 @@ class Job:
 
     def end(self, record: Path) -> None:
         """Tells it, and which files there are."""
-        if not self.out.silent:
+        if not self._out.silent:
             self._show()
-        self.out.files([*self._made.files, record])
-        self.out.document(self._document | {"files": self._made.files})
+        self._out.written([*self._made.files, record])
+        self._out.document(self._document | {"files": self._made.files})
 
 
-class RunJob(Job):
-    """A job whose runs are all made anew.
+class RunJob(Job["Made"]):
+    """A job whose runs are all made anew."""
 
-    Attributes:
-        begin: see `harness.simulation.provenance.Made.begin`.
-        fits: the systems that run, by their names.
-    """
-
-    def __init__(self, out: Printer, made: "Made", reports: Iterable[Path], content: Callable[[], Any]) -> None:
-        super().__init__(out, made, reports, content)
-        self.begin = made.begin
-        self._run = made
+    def begin(self, *others: Path) -> None:
+        """See `harness.simulation.provenance.Made.begin`."""
+        self._made.begin(*others)
 
     @property
     def fits(self) -> "Mapping[str, Fit]":
-        return self._run.fits
+        """The systems that run, by their names."""
+        return self._made.fits
 
 
 @contextmanager
 def job(
-    args: argparse.Namespace,
+    args: Any,
     record: Path,
     run: Mapping[str, Any],
     systems: "Mapping[str, Settings | System]",
     results: Sequence[Path] = (),
-    read: Sequence[Path] = (),
+    read: Iterable[Path] = (),
 ) -> Iterator[RunJob]:
     """Within it a command makes its runs and writes their files; then what made them is recorded, and all is told.
 
     Args:
-        args: with --replace, and --report if the command has that.
+        args: the record of the command, with `replace`, and with `report` if it has that.
         record: the JSON file beside the results.
         run: all that distinguishes it.
         systems: that run, or the settings of the loops that run, by their names.
@@ -126,21 +96,22 @@ def job(
     from ..simulation.provenance import content, recorded
 
     reports, inputs, wired = _reports(args), [*read, *_files(args)], _wired(systems)
+    one = RunJob(args, reports)
     with recorded(record, run, wired, inputs, [*results, *reports], args.replace) as made:
-        one = RunJob(Printer(args), made, reports, lambda: content(run, made.fits, [], inputs))
+        one.start(made, lambda: content(run, made.fits, [], inputs))
         yield one
     one.end(record)
 
 
 @contextmanager
 def campaign_job(
-    args: argparse.Namespace,
+    args: Any,
     record: Path,
     path: Path,
     table: "Table[Any, Any]",
     run: Mapping[str, Any],
     systems: "Mapping[str, Settings | System]",
-) -> Iterator[tuple[Job, "CaseArchive[Any, Any]"]]:
+) -> "Iterator[tuple[Job[Campaign[Any, Any]], CaseArchive[Any, Any]]]":
     """Within it a command runs the cases of a campaign that are not in its archive yet; else as `job`.
 
     Args:
@@ -153,17 +124,45 @@ def campaign_job(
     from ..simulation.case_archive import resumable
 
     reports = _reports(args)
+    one: Job[Campaign[Any, Any]] = Job(args, reports)
     with resumable(path, table, record, run, _wired(systems), _files(args), reports, args.replace) as made:
-        one = Job(Printer(args), made, reports, lambda: made.provenance)
+        one.start(made, lambda: made.provenance)
         yield one, made.archive
     one.end(record)
 
 
-def _reports(args: argparse.Namespace) -> list[Path]:
+def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[str, Any]:
+    """What distinguishes a run of the loop from others: all that was set, and the FMUs: ours by the start values
+    that they were built with, others by their content.
+
+    Args:
+        manoeuvre: None: several.
+    """
+    from ...fmus.origin import origin_of
+    from ..loop.fmu_cache import as_built
+    from ..simulation.provenance import digest
+    from ..simulation.simulate import start
+
+    system = loop(made)
+    ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
+    others = {name: path for name, path in system.instances.items() if name not in system.own}
+    own = start(manoeuvre, made.seed) if manoeuvre else {}
+    digests = {name: digest(path) for name, path in others.items() if path.is_file()}
+    return {
+        "fmus": {name: str(as_built(path)) for name, path in system.instances.items()},
+        "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
+        **({"digests": digests} if digests else {}),
+        "parameters": {**own, **made.parameters},
+        "seed": made.seed,
+        "mapping": made.mapping,
+    }
+
+
+def _reports(args: Any) -> list[Path]:
     return [args.report] if getattr(args, "report", None) else []
 
 
-def _files(args: argparse.Namespace) -> list[Path | None]:
+def _files(args: Any) -> list[Path | None]:
     return [getattr(args, name, None) for name in ("vehicle", "parameters")]
 
 

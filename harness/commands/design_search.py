@@ -1,21 +1,18 @@
 """What `driveline design --search` does: parameters of a controller by a search, in a folder."""
 
-import argparse
 from collections.abc import Sequence
+from functools import partial
 from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...fmus.building.options import output_folder
 from ..base.errors import DrivelineError
-from ..base.plain_text import quoted
-from ..base.written_numbers import real
-from ..loop.built_fmus import built_together
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..loop.settings import Settings
-from .options import add_fmus, count, experts, seed
-from .printing import Printer
+from .arguments import option, record
+from .options import FmuFolder, Replacing, counted, expert, file_of, output_folder, seed, share
+from .printing import Printing, write_toml
 
 if TYPE_CHECKING:
     from ..design.search.parameter_search import Evaluated
@@ -28,44 +25,38 @@ Character {character:g} (0 sport, 1 comfort), the best of {count} candidates, se
 cost 1."""
 
 DEFAULTS: dict[str, Any] = {"controller": PLACES["controller"][0], "evaluations": 600, "character": 0.5, "seed": 1}
-"""Of the options that are for a search alone."""
+"""Of the options that are for a search alone, which are None where they are not given."""
 
-METAVARS = {"controller": "NAME", "evaluations": "COUNT", "character": "SHARE", "seed": "SEED"}
-MOST_EVALUATIONS = 100_000
 SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Characters in the table."""
 
-
-def add_search(parser: argparse.ArgumentParser) -> None:
-    """--search and the options that are for it alone; `None` where they are not given."""
-    group = parser.add_argument_group("searching")
-    group.add_argument("--search", type=output_folder, metavar="FOLDER", help="search, in this folder")
-    options: dict[str, tuple[str, dict[str, Any]]] = {
-        "controller": ("whose parameters", {"choices": PLACES["controller"]}),
-        "evaluations": ("how many candidates", {"type": _evaluations}),
-        "character": ("the choice from 0, sport, to 1, comfort", {"type": share}),
-        "seed": ("of the search", {"type": seed}),
-    }
-    for name, (meaning, how) in options.items():
-        group.add_argument(f"--{name}", metavar=METAVARS[name], help=f"{meaning} (default: {DEFAULTS[name]})", **how)
-    group.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs the candidates")
-    experts(parser).add_argument("--build", choices=BUILDS, help=BUILD_HELP)
-    add_fmus(parser)
+searching = partial(option, group="searching")
 
 
-def _evaluations(text: str) -> int:
-    return count(text, 1, MOST_EVALUATIONS)
+def _of_search(name: str, meaning: str, **how: Any) -> Any:
+    return searching(None, f"{meaning} (default: {DEFAULTS[name]})", **how)
 
 
-def share(text: str) -> float:
-    """A number from 0 to 1."""
-    number = real(text)
-    if number is None or not 0.0 <= number <= 1.0:
-        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a number from 0 to 1")
-    return number
+@record
+class Search(FmuFolder, Replacing, Printing):
+    """What a design can be given by a search too."""
+
+    vehicle: Path | None = file_of("the car (default: that of all blocks)")
+    output: Path | None = file_of("for the gains")
+    search: Path | None = searching(None, "search, in this folder", output_folder, metavar="FOLDER")
+    controller: str | None = _of_search("controller", "whose parameters", choices=PLACES["controller"], metavar="NAME")
+    evaluations: int | None = _of_search(
+        "evaluations", "how many candidates", parse=counted(1, 100_000), metavar="COUNT"
+    )
+    character: float | None = _of_search(
+        "character", "the choice from 0, sport, to 1, comfort", parse=share, metavar="SHARE"
+    )
+    seed: int | None = _of_search("seed", "of the search", parse=seed, metavar="SEED")
+    scheduler: str | None = expert(None, "of a Dask cluster that runs the candidates", metavar="ADDRESS")
+    build: str | None = expert(None, BUILD_HELP, choices=BUILDS)
 
 
-def require_search(args: argparse.Namespace) -> None:
+def require_search(args: Search) -> None:
     """Refuses options of a search without one.
 
     Raises:
@@ -76,7 +67,7 @@ def require_search(args: argparse.Namespace) -> None:
             raise DrivelineError(f"--{name} is for a search: give the folder of one, --search FOLDER")
 
 
-def run_search(args: argparse.Namespace) -> int:
+def run_search(args: Search, folder: Path) -> int:
     # here and not above: mistakes and help are answered without them
     from ...fmus.building.parameter_files import read_vehicle
     from ..design.search.cost_evaluation import CostEvaluation
@@ -91,26 +82,28 @@ def run_search(args: argparse.Namespace) -> int:
     car = read_vehicle(args.vehicle) if args.vehicle else {}
     where = space(controller, car)
     evaluation = CostEvaluation(_settings(args, controller), car)
-    gains = args.search / "gains.toml" if args.output is None else args.output
+    gains = folder / "gains.toml" if args.output is None else args.output
     visited = tune(
-        evaluation, where, evaluations, number, args.search, args.replace, [args.vehicle], scheduler=args.scheduler
+        evaluation, where, evaluations, number, folder, args.replace, [args.vehicle], scheduler=args.scheduler
     )
     name = args.vehicle.name if args.vehicle else "the default car"
     text = chosen(controller, where, visited, character, name, number)
     write_toml(text, gains, args.replace or args.output is None)
-    title = f"{controller}, {name}: {len(visited)} candidates"
-    figures = plot_front(visited, where, character, title, args.search / "front")
-    out = Printer(args)
-    if not out.silent:
+    figures = plot_front(
+        visited, where, character, f"{controller}, {name}: {len(visited)} candidates", folder / "front"
+    )
+    if not args.silent:
         print_table(choices_table(visited, where, sorted({*SHOWN, character})))
-    out.say(f"gains:      {gains} (character {character:g})")
-    out.say(f"figure:     {' '.join(map(str, figures))}")
-    out.say(f"candidates: {args.search / EVALUATIONS}, made by {args.search / RECORD}")
+    args.say(f"gains:      {gains} (character {character:g})")
+    args.say(f"figure:     {' '.join(map(str, figures))}")
+    args.say(f"candidates: {folder / EVALUATIONS}, made by {folder / RECORD}")
     return 0
 
 
-def _settings(args: argparse.Namespace, controller: str) -> Settings:
+def _settings(args: Search, controller: str) -> Settings:
     """Of the runs of a controller, with FMUs for both plants and for the controller that it is measured by."""
+    from ..loop.built_fmus import built_together
+
     given = Settings(folder=args.fmus, build=args.build)
     names = dict.fromkeys((controller, DEFAULTS["controller"]))
     first, *_ = built_together(given.replace(plant=p, controller=c) for c, p in product(names, PLANTS))
@@ -142,13 +135,3 @@ def chosen(
         costs=found.costs,
     )
     return gains_file(where.parameters(found.values), comment, declared_parameters(controller))
-
-
-def write_toml(text: str, path: Path, replace: bool) -> None:
-    """Writes a vehicle file or one of gains; one with another content only if it may be replaced."""
-    from ..base.atomic_files import write_text
-    from ..simulation.provenance import require_same_text
-
-    if not replace:
-        require_same_text(text, path)
-    write_text(text, path)

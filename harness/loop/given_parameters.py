@@ -1,0 +1,102 @@
+"""Settings with the parameters that a user gives: files of car and controller, and values by name."""
+
+import dataclasses
+import logging
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from ..base.errors import DrivelineError, WiringError
+from ..cosimulation.interface import Interface, unit_of
+from ..cosimulation.system import System
+from ..cosimulation.unit_conversion import factor
+from ..cosimulation.wiring import fit, out_of_bounds, require
+from .built_fmus import built
+from .places import PLANTS
+from .settings import Settings, loop
+
+LOG = logging.getLogger(__name__)
+
+
+class NotTaken(DrivelineError):
+    """A file of parameters names some that a controller does not have."""
+
+
+def built_with(
+    given: Settings, vehicle: Path | None, parameters: Path | None, assigned: Mapping[str, float]
+) -> Settings:
+    """What `built` makes of settings, with what the files name, for every instance that has it, and with the values of
+    `instance.parameter`, which go before.
+
+    Raises:
+        WiringError: the FMUs do not have a parameter, or not with that value or in that unit.
+        DrivelineError: an FMU is missing.
+        ParameterFileError: a file is refused.
+        NotTaken: the controller does not have all that its file names.
+    """
+    _require_of_plant(assigned, str(given.plant))
+    made = built(given)
+    system = loop(made)
+    values = (_of_files(system, vehicle, parameters) if vehicle or parameters else {}) | dict(assigned)
+    made = dataclasses.replace(made, parameters=values)
+    require(out_of_bounds(fit(system, parameters=made.parameters), made.parameters))
+    return made
+
+
+def _require_of_plant(names: Iterable[str], plant: str) -> None:
+    """Refuses parameters that a plant of the project lacks and another one has."""
+    from ...fmus.catalogue import FMUS
+
+    problems = []
+    for name in names if plant in PLANTS else ():
+        place, _, parameter = name.partition("@")[0].partition(".")
+        having = [other for other in PLANTS if parameter in FMUS[other].block.Parameters._fields]
+        if place == "plant" and having and plant not in having:
+            problems.append(f"{name}: {plant} has no parameter {parameter}; --plant {' or '.join(having)} has it")
+    if problems:
+        raise WiringError("\n".join(problems))
+
+
+def _of_files(system: System, vehicle: Path | None, parameters: Path | None) -> dict[str, float]:
+    from ...fmus.building.one_car import of_one_car
+    from ...fmus.building.parameter_files import for_instances, of_plants, read_files, require_taken, units
+    from ...fmus.errors import ParameterFileError
+
+    interfaces = fit(system).interfaces
+    names = {
+        instance: {variable.name for variable in interface.of_causality("parameter")}
+        for instance, interface in interfaces.items()
+    }
+    every = set().union(*names.values())
+    values = of_one_car(read_files(vehicle, parameters, others=every), every)
+    try:
+        require_taken(parameters, every, system.instances["controller"].name)
+    except ParameterFileError as refusal:
+        raise NotTaken(str(refusal)) from refusal
+    meant = {name: unit for name, unit in units().items() if name in values}
+    if vehicle is not None and parameters is None:
+        LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
+    plant = system.instances["plant"]
+    if "plant" not in system.own and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
+        LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
+    require(
+        problem
+        for instance, interface in interfaces.items()
+        for name in sorted(names[instance] & meant.keys())
+        if (problem := _other_unit(interface, f"{instance}.{name}", meant[name], system.mapping))
+    )
+    return for_instances(values, names)
+
+
+def _other_unit(interface: Interface, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:
+    """Why the number of a file, in the unit that is meant, does not reach the parameter `instance.name`, or None."""
+    theirs = mapping.get(name, name.partition(".")[2])
+    unit = next(unit_of(variable) for variable in interface.description.modelVariables if variable.name == theirs)
+    if unit in (None, "", meant):
+        return None
+    try:
+        factor(unit, meant)
+    except ValueError as reason:
+        return f"{name} {reason}, the unit of the file"
+    if name in mapping:
+        return None
+    return f"{name} is in {unit}; the file gives it in {meant} (--map {name}={theirs} converts it)"
