@@ -1,4 +1,4 @@
-"""The documentation page that `driveline study back-to-back` writes."""
+"""The documentation page that `python -m docs.studies back-to-back` writes."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

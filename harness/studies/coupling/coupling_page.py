@@ -1,4 +1,4 @@
-"""The documentation page that `driveline study coupling` writes."""
+"""The documentation page that `python -m docs.studies coupling` writes."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

@@ -51,7 +51,7 @@ rounds the same."""
 def test_every_metric_is_within_one_percent_of_that_with_half_the_step(
     native: Path, plant: str, manoeuvre: str
 ) -> None:
-    """The whole of it, at a tenth of the step, is measured by `driveline study coupling`."""
+    """The whole of it, at a tenth of the step, is measured by `python -m docs.studies coupling`."""
     found = compare(Case(plant, manoeuvre, True), native.parent, (1e-3, 5e-4))
     assert len(found) >= 6
     allowed = ROUNDED.get((plant, manoeuvre), {})
