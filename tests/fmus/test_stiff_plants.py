@@ -82,6 +82,7 @@ def test_a_stop_does_not_depend_on_the_communication_step(native: Path, unpacked
     assert (np.abs(coarse - fine) <= share * np.ptp(fine, axis=0) + 1e-6).all()
 
 
+@pytest.mark.slow
 @every_stop
 def test_both_builds_stop_alike_bit_by_bit(built: Path, native: Path, unpacked_once: Path, stop: Stop) -> None:
     assert (run(built, unpacked_once, stop) == run(native, unpacked_once, stop)).all()

@@ -21,7 +21,7 @@ TOLERANCE = 1e-12
 
 TIMES = 1000
 
-every_fmu = together("name", FMUS)
+every_fmu = pytest.mark.parametrize("name", FMUS)
 
 
 @pytest.fixture(scope="module")

@@ -142,6 +142,7 @@ def test_it_is_that_of_python_bit_by_bit(integrator: MakeIntegrator, T_mot: floa
 
 
 @settings(max_examples=30)
+@pytest.mark.slow
 @given(
     T_mot=st.floats(-2000.0, 2000.0),
     T_brake=st.floats(0.0, 20000.0),

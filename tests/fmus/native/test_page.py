@@ -92,6 +92,7 @@ def test_fmus_of_one_name_do_not_overwrite_each_other(tmp_path: Path) -> None:
     assert not list(tmp_path.rglob("*.fmu"))
 
 
+@pytest.mark.slow
 def test_a_block_of_ones_own_with_the_name_of_one_of_the_project_is_refused(tmp_path: Path) -> None:
     """It would run in the place of that one."""
     for name in ("DampingController", "SpeedWashout"):
@@ -103,6 +104,7 @@ def test_a_block_of_ones_own_with_the_name_of_one_of_the_project_is_refused(tmp_
         assert not list(tmp_path.rglob("*.fmu"))
 
 
+@pytest.mark.slow
 def test_a_controller_of_the_users_own_damps(both_built: Path, tmp_path: Path) -> None:
     """That of the page on the controller."""
     file = tmp_path / "my_controller.py"
@@ -148,8 +150,8 @@ def line_of(piece: str) -> int:
     return EXAMPLE[: EXAMPLE.index(piece)].count("\n") + 1
 
 
-@together(
-    "text, message",
+@pytest.mark.parametrize(
+    ("text", "message"),
     [
         ("import nonsense", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
         ("\nFMU = (", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),

@@ -2,20 +2,20 @@
 
 import fmpy
 import numpy as np
+import pytest
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import interface
 from driveline.models.block.types import ContinuousBlock
-from tests.together import together
+from tests.slow import slow
+
+CASES = [
+    *(("CoSimulation", name) for name in FMUS),
+    *(("ModelExchange", name) for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)),
+]
 
 
-@together(
-    "kind, name",
-    [
-        *(("CoSimulation", name) for name in FMUS),
-        *(("ModelExchange", name) for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)),
-    ],
-)
+@pytest.mark.parametrize(("kind", "name"), slow(CASES, but=CASES[:1] + CASES[-1:]))
 def test_fmpy_gets_the_results_of_fmi_2(native, fmi3, kind, name):
     """Over two seconds with moving inputs, to the last bit; in model exchange by CVode."""
     paths = native / f"{name}.fmu", fmi3 / f"{name}.fmu"

@@ -11,7 +11,9 @@ import pytest
 from driveline.fmus.catalogue import FMUS
 from tests import copied_sources
 from tests.fmus.host import opened
-from tests.together import together
+from tests.slow import slow
+
+every_fmu = pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
 
 HOST = Path(__file__).parents[1] / "host.py"
 
@@ -82,7 +84,7 @@ assert models.MINE and fmus.MINE and pythonfmu.MINE
     assert ends_in_order(run_host(program, tmp_path)) == "50.0\n"
 
 
-@together("name", FMUS)
+@every_fmu
 def test_the_process_ends_with_0_after_simulating_resetting_freeing_and_loading_again(built, tmp_path, name):
     program = f"""
 from pathlib import Path
@@ -101,7 +103,7 @@ print("done")
     assert ends_in_order(run_host(program, tmp_path)) == "done\n"
 
 
-@together("name", FMUS)
+@every_fmu
 def test_the_process_goes_on_and_ends_with_0_after_many_refusals(built, tmp_path, name):
     program = f"""
 import gc

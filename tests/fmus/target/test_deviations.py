@@ -20,6 +20,7 @@ def _checkable() -> None:
         require_packages(CHECKER)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_checkable")
 def test_every_finding_has_a_written_reason_and_every_reason_a_finding() -> None:
     found = findings(SOURCES)
@@ -28,6 +29,7 @@ def test_every_finding_has_a_written_reason_and_every_reason_a_finding() -> None
     assert places == {(each.rule, file) for each in DEVIATIONS for file in each.files}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_checkable")
 def test_what_breaks_a_rule_is_found_and_has_no_reason() -> None:
     bad = "static float f(float a, int b) { float x[100]; x[0] = a; return a + x[0] * (float)b; }"

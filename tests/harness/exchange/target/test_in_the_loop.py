@@ -24,7 +24,6 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.simulation.simulate import signals, simulate
 from driveline.models.damping_controller import BLOCK
-from tests.together import together
 
 TIPIN, LONG = MANOEUVRES["tipin15"], MANOEUVRES["drive"]
 
@@ -45,8 +44,8 @@ def emulators(folder: Path) -> set[int]:
     return set(map(int, subprocess.run(command, capture_output=True, text=True, check=False).stdout.split()))
 
 
-@together("scheme", Scheme)
-@together("plant", ["TwoMassDriveline", "ValidationVehicle"])
+@pytest.mark.parametrize("scheme", Scheme)
+@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
 def test_the_loop_gives_what_the_same_c_gives_off_line(
     scheme: Scheme, plant: str, on_target: Path, target: Programs, both_built: Path
 ) -> None:
@@ -94,7 +93,7 @@ SIGNALS = {
 """To the emulator, and what is said of the target then."""
 
 
-@together("number", SIGNALS)
+@pytest.mark.parametrize("number", SIGNALS)
 def test_a_target_that_is_lost_or_hangs_is_named_and_nothing_is_left(
     number: signal.Signals, on_target: Path, both_built: Path, unpacked: Path
 ) -> None:
