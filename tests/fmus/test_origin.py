@@ -107,3 +107,9 @@ def test_a_build_says_why_native_is_left_out(monkeypatch: pytest.MonkeyPatch, ca
     monkeypatch.setenv("CC", "no-such-compiler")
     assert len(builds.builders(None)) == 1
     assert "no native build: there is no C compiler 'no-such-compiler'" in caplog.text
+
+
+def test_a_platform_is_none_of_a_python_build(tmp_path):
+    with pytest.raises(BuildError, match="--platform all is for native builds; a Python build runs wherever"):
+        list(build_fmus((), tmp_path, "python", "all"))
+    assert list(tmp_path.iterdir()) == []

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mutants import ROOT, rooms
 
-CALLS_IN_C = "calls", "same_words", "as_python", "rates", "no_step_to_nowhere", "content"
+CALLS_IN_C = "places", "calls", "same_words", "as_python", "rates", "no_step_to_nowhere", "content"
 CALLS = (
     *(f"tests/fmus/native/test_{name}.py" for name in CALLS_IN_C),
     "tests/test_fuzz.py::test_odd_input_is_answered_as_promised[calls]",

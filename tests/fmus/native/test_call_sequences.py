@@ -283,3 +283,24 @@ def run_calls(calls: type[Calls], fmu: Path, folder: Path) -> None:
 @pytest.mark.slow
 def test_every_call_is_answered_as_the_standard_asks_and_the_sanitizers_find_nothing(both_built, tmp_path, name):
     run_calls(Calls, both_built / NATIVE / f"{name}.fmu", tmp_path)
+
+
+class CallsOfFmi3(Calls):
+    """What is different: the start time is told by what enters initialization mode; the time is a variable."""
+
+    @rule(start=any_number)
+    def setup(self, start):
+        allowed = self.now.mode == BEFORE and math.isfinite(start)
+        self.expect(allowed, "setup", start)
+        if allowed:
+            self.now.mode, self.now.time = DURING, start
+
+    @invariant()
+    def time_is_that_of_the_last_step(self):
+        assert self.call("time") == (OK, pytest.approx(self.now.time))
+
+
+@pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
+@pytest.mark.slow
+def test_every_call_to_fmi_3_is_answered_so_too(fmi3, tmp_path, name):
+    run_calls(CallsOfFmi3, fmi3 / f"{name}.fmu", tmp_path)

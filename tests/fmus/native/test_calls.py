@@ -11,69 +11,11 @@ from driveline.fmus.catalogue import FMUS
 from driveline.models.block.declaration import with_defaults
 from tests.fmus.forged import forged, sealed
 from tests.fmus.host import opened
+from tests.fmus.native.test_places import CO_SIMULATION, arguments_of, call
 from tests.together import together
 
 OK, DISCARD, ERROR = 0, 2, 3
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
-
-BEFORE, DURING, AFTER, ENDED = "before", "during", "after", "ended"
-
-ALLOWED = {
-    "fmi2SetupExperiment": {BEFORE},
-    "fmi2EnterInitializationMode": {BEFORE},
-    "fmi2ExitInitializationMode": {DURING},
-    "fmi2DoStep": {AFTER},
-    "fmi2Terminate": {AFTER},
-    "fmi2SetRealInputDerivatives": {BEFORE, DURING, AFTER},
-    "fmi2GetRealOutputDerivatives": {AFTER, ENDED},
-    "fmi2GetDirectionalDerivative": {DURING, AFTER, ENDED},
-    "fmi2GetRealStatus": {AFTER, ENDED},
-    "fmi2Reset": {BEFORE, DURING, AFTER, ENDED},
-    "fmi2CancelStep": set(),
-}
-
-
-def call(host, function, *arguments):
-    """The status that the binary answers; NULL where an argument is None."""
-    binary = ctypes.CDLL(host.fmu.dll._name)
-    return getattr(binary, function)(ctypes.c_void_p(host.fmu.component), *arguments)
-
-
-def arguments_of(function):
-    """Arguments that make sense."""
-    none, nothing = ctypes.c_void_p(), ctypes.c_size_t(0)
-    return {
-        "fmi2SetupExperiment": (0, ctypes.c_double(), ctypes.c_double(), 0, ctypes.c_double()),
-        "fmi2DoStep": (ctypes.c_double(), ctypes.c_double(1e-3), 0),
-        "fmi2SetRealInputDerivatives": (none, nothing, none, none),
-        "fmi2GetRealOutputDerivatives": (none, nothing, none, none),
-        "fmi2GetDirectionalDerivative": (none, nothing, none, nothing, none, none),
-        "fmi2GetRealStatus": (LAST_SUCCESSFUL_TIME, ctypes.byref(ctypes.c_double())),
-    }.get(function, ())
-
-
-def bring(host, mode):
-    """Through the sequence of calls up to a mode."""
-    for reached, step in (
-        (BEFORE, lambda: None),
-        (DURING, host.fmu.enterInitializationMode),
-        (AFTER, host.fmu.exitInitializationMode),
-        (ENDED, host.fmu.terminate),
-    ):
-        step()
-        if reached == mode:
-            return
-
-
-@together("mode", [BEFORE, DURING, AFTER, ENDED])
-@together("function", ALLOWED)
-def test_a_function_is_refused_outside_its_place_and_says_where_that_is(native, tmp_path, function, mode):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        bring(host, mode)
-        status = call(host, function, *arguments_of(function))
-        assert status == (OK if mode in ALLOWED[function] else ERROR)
-        if status == ERROR:
-            assert host.message.startswith(f"{function} is refused")
 
 
 @together("function", ["SetReal", "GetReal", "SetInteger", "GetBoolean", "SetBoolean", "GetString"])
@@ -91,7 +33,7 @@ def test_missing_arrays_are_refused(native, tmp_path, function):
 @together(
     "function",
     [
-        *ALLOWED,
+        *CO_SIMULATION,
         *("fmi2GetReal", "fmi2SetReal", "fmi2GetString", "fmi2SetString", "fmi2SetDebugLogging"),
         *("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate", "fmi2SerializedFMUstateSize"),
         *("fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate", "fmi2GetStatus", "fmi2GetStringStatus"),
@@ -101,7 +43,7 @@ def test_without_an_instance_every_function_is_an_error(native, tmp_path, functi
     with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
         binary = ctypes.CDLL(host.fmu.dll._name)
         zeros = (ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0))
-        assert getattr(binary, function)(ctypes.c_void_p(), *(arguments_of(function) or zeros)) == ERROR
+        assert getattr(binary, function)(ctypes.c_void_p(), *(arguments_of(function, host) or zeros)) == ERROR
 
 
 def test_freeing_nothing_is_no_error(native, tmp_path):

@@ -14,7 +14,7 @@ from fmpy.validation import validate_fmu
 
 from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import EVERY, FMUS
-from driveline.fmus.description.units import base_exponents, rate_unit
+from driveline.fmus.description.units import base_exponents
 from driveline.fmus.description.variables import interface
 from driveline.fmus.names import COMPARATORS
 from driveline.fmus.native.packaging import FMI_HEADERS
@@ -89,14 +89,6 @@ def test_value_references_are_those_of_fmi_2_and_behind_what_follows_from_the_st
         assert rate.name == f"der({rate.derivative.name})"
         assert rate.valueReference == time.valueReference + 1 + rate.derivative.valueReference
         assert base_exponents(rate.unit).get("s", 0) == base_exponents(rate.derivative.unit).get("s", 0) - 1
-
-
-@together(
-    "unit, rate",
-    [("N.m", "N.m/s"), ("rad/s", "rad/s2"), ("N.m/rad", "N.m/(rad.s)"), ("J/(kg.K)", "J/(kg.K.s)"), ("1", "1/s")],
-)
-def test_a_rate_of_change_has_the_unit_by_second(unit, rate):
-    assert rate_unit(unit) == rate
 
 
 def test_its_sources_are_described(fmi3):
@@ -234,17 +226,6 @@ def test_missing_arrays_are_refused(fmi3, tmp_path, name):
             assert function(None, *arrays[:1], one, arrays[1], one) == ERROR
 
 
-BEFORE, DURING, AFTER, ENDED = range(4)
-
-MODES = {
-    "fmi3EnterInitializationMode": {BEFORE},
-    "fmi3ExitInitializationMode": {DURING},
-    "fmi3DoStep": {AFTER},
-    "fmi3Terminate": {AFTER},
-    "fmi3GetOutputDerivatives": {AFTER, ENDED},
-    "fmi3GetDirectionalDerivative": {DURING, AFTER, ENDED},
-    "fmi3Reset": {BEFORE, DURING, AFTER, ENDED},
-}
 NOT_OFFERED = {
     "event mode": ("EnterEventMode", "UpdateDiscreteStates"),
     "event mode in co-simulation": ("EnterStepMode",),
@@ -255,31 +236,6 @@ NOT_OFFERED = {
     "array variables": ("GetNumberOfVariableDependencies", "GetVariableDependencies"),
     "model exchange": ("EnterContinuousTimeMode", "GetContinuousStates", "GetNumberOfEventIndicators"),
 }
-
-
-def arguments_of(function):
-    """Arguments that make sense."""
-    none, nothing, zero, truth = ctypes.c_void_p(), ctypes.c_size_t(0), ctypes.c_double(), ctypes.c_bool()
-    told = (ctypes.byref(truth), ctypes.byref(truth), ctypes.byref(truth), ctypes.byref(zero))
-    return {
-        "fmi3EnterInitializationMode": (truth, zero, zero, truth, zero),
-        "fmi3DoStep": (zero, ctypes.c_double(1e-3), truth, *told),
-        "fmi3GetOutputDerivatives": (none, nothing, none, none, nothing),
-        "fmi3GetDirectionalDerivative": (none, nothing, none, nothing, none, nothing, none, nothing),
-    }.get(function, ())
-
-
-@together("mode", [BEFORE, DURING, AFTER, ENDED])
-@together("function", MODES)
-def test_a_function_is_refused_outside_its_place_and_says_where_that_is(fmi3, tmp_path, function, mode):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        for step in (host.fmu.enterInitializationMode, host.fmu.exitInitializationMode, host.fmu.terminate)[:mode]:
-            step()
-        component = ctypes.c_void_p(host.fmu.component)
-        status = ctypes.CDLL(host.fmu.dll._name)[function](component, *arguments_of(function))
-        assert status == (OK if mode in MODES[function] else ERROR)
-        if status == ERROR:
-            assert host.message.startswith(f"{in_words_of_fmi2(function)} is refused")
 
 
 @together("what, function", [(what, name) for what, names in NOT_OFFERED.items() for name in names])

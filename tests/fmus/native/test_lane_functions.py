@@ -1,6 +1,8 @@
 """Sine and the like of several numbers at a time are those of single numbers."""
 
+import platform
 from ctypes import CDLL, c_size_t, c_void_p
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -95,3 +97,32 @@ def test_the_remainder_is_that_of_python(functions):
 @together("lanes", FEATURES)
 def test_the_c_compiles_without_warnings_for_every_number_of_lanes(tmp_path, lanes):
     assert library(tmp_path, lanes).stat().st_size > 0
+
+
+AVX2, AVX512 = "avx avx2 fma", "avx512f avx512dq avx512vl"
+
+
+@together(
+    "system, machine, flags, lanes",
+    [
+        ("Linux", "x86_64", f"{AVX2} {AVX512}", 8),
+        ("Linux", "x86_64", f"{AVX2} avx512f avx512dq", 4),
+        ("Linux", "x86_64", "avx avx2", 0),
+        ("Linux", "aarch64", AVX2, 0),
+        ("Windows", "x86_64", AVX2, 0),
+    ],
+)
+def test_their_number_is_that_of_the_processor(monkeypatch, system, machine, flags, lanes):
+    monkeypatch.setattr(platform, "system", lambda: system)
+    monkeypatch.setattr(platform, "machine", lambda: machine)
+    monkeypatch.setattr(Path, "read_text", lambda *_, **__: f"processor\t: 0\nflags\t\t: fpu {flags}\nbugs\t\t:\n")
+    assert lanes_here.__wrapped__() == lanes
+
+
+def test_without_that_file_there_are_none(monkeypatch):
+    def refused(*_, **__):
+        raise PermissionError
+
+    monkeypatch.setattr(platform, "system", lambda: "Linux")
+    monkeypatch.setattr(Path, "read_text", refused)
+    assert lanes_here.__wrapped__() == 0

@@ -21,10 +21,11 @@ from driveline.harness.cosimulation.description import attributes
 from driveline.harness.cosimulation.limits import USUAL_LIMITS
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.models.block.types import ContinuousBlock
-from tests.fmus.host import of_fmi3, opened
+from tests.fmus.host import opened
+from tests.fmus.native.test_places import ROOM, call
 from tests.together import together
 
-OK, DISCARD, ERROR = 0, 2, 3
+DISCARD, ERROR = 2, 3
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]
 every_continuous = together("name", CONTINUOUS)
 
@@ -153,6 +154,8 @@ def test_states_and_derivatives_have_the_references_behind_the_interface(folder,
         ("m/s2", "m/s3"),
         ("N.m/rad", "N.m/(rad.s)"),
         ("J/(kg.s)", "J/(kg.s2)"),
+        ("N.m", "N.m/s"),
+        ("J/(kg.K)", "J/(kg.K.s)"),
     ],
 )
 def test_a_rate_has_the_unit_of_its_quantity_over_seconds(unit, rate):
@@ -349,135 +352,7 @@ def test_the_noise_of_the_motor_changes_at_events_that_are_announced(folder, tmp
         assert len(set(seen)) == len(seen)
 
 
-# calls in and out of place
-
-BEFORE, DURING, EVENT, INTEGRATING, ENDED = (
-    *("before initialization mode", "in initialization mode"),
-    *("in event mode", "in continuous-time mode", "after termination"),
-)
-ALL = (BEFORE, DURING, EVENT, INTEGRATING, ENDED)
-
-ALLOWED = {
-    "fmi2SetupExperiment": {BEFORE},
-    "fmi2EnterInitializationMode": {BEFORE},
-    "fmi2ExitInitializationMode": {DURING},
-    "fmi2EnterEventMode": {EVENT, INTEGRATING},
-    "fmi2NewDiscreteStates": {EVENT},
-    "fmi2EnterContinuousTimeMode": {EVENT},
-    "fmi2CompletedIntegratorStep": {INTEGRATING},
-    "fmi2SetTime": {EVENT, INTEGRATING},
-    "fmi2SetContinuousStates": {INTEGRATING},
-    "fmi2GetContinuousStates": {DURING, EVENT, INTEGRATING, ENDED},
-    "fmi2GetDerivatives": {DURING, EVENT, INTEGRATING, ENDED},
-    "fmi2GetEventIndicators": {DURING, EVENT, INTEGRATING, ENDED},
-    "fmi2GetNominalsOfContinuousStates": set(ALL),
-    "fmi2GetDirectionalDerivative": {DURING, EVENT, INTEGRATING, ENDED},
-    "fmi2Terminate": {EVENT, INTEGRATING},
-    "fmi2Reset": set(ALL),
-}
-STEPPING_ALONE = ("fmi2DoStep", "fmi2CancelStep", "fmi2SetRealInputDerivatives", "fmi2GetRealOutputDerivatives")
-EXCHANGING_ALONE = [name for name in ALLOWED if "Event" in name or "Continuous" in name or "Derivatives" in name]
-
-ROOM = (ctypes.c_double * 100)(*[0.5] * 100)
-
-
-TOLD = (ctypes.byref(ctypes.c_double()),) * 6
-
-ARGUMENTS_OF_FMI3 = {
-    "fmi2EnterInitializationMode": (0, ctypes.c_double(), ctypes.c_double(), 0, ctypes.c_double()),
-    "fmi2NewDiscreteStates": TOLD,
-    "fmi2DoStep": (ctypes.c_double(), ctypes.c_double(1e-3), 0, *TOLD[:4]),
-    "fmi2GetRealOutputDerivatives": (None, ctypes.c_size_t(), None, None, ctypes.c_size_t()),
-    "fmi2GetDirectionalDerivative": (None, ctypes.c_size_t()) * 4,
-}
-"""Of functions that FMI 2.0 gives others, or none."""
-
-
-def is_there(function, host):
-    """Whether the FMU has the function."""
-    return host.description.fmiVersion == "2.0" or hasattr(ctypes.CDLL(host.fmu.dll._name), of_fmi3(function))
-
-
-def arguments_of(function, host):
-    """Arguments that make sense."""
-    nothing, none = ctypes.c_size_t(0), ctypes.c_void_p()
-    indicators = host.description.numberOfEventIndicators
-    count = indicators if "Indicators" in function else host.description.numberOfContinuousStates
-    if function == "fmi2CompletedIntegratorStep":
-        return 1, ctypes.byref(ctypes.c_int()), ctypes.byref(ctypes.c_int())
-    if host.description.fmiVersion == "3.0" and function in ARGUMENTS_OF_FMI3:
-        return ARGUMENTS_OF_FMI3[function]
-    if "ContinuousStates" in function or "Indicators" in function or function == "fmi2GetDerivatives":
-        return ROOM, ctypes.c_size_t(count)
-    return {
-        "fmi2SetupExperiment": (0, ctypes.c_double(), ctypes.c_double(), 0, ctypes.c_double()),
-        "fmi2NewDiscreteStates": (ctypes.create_string_buffer(100),),
-        "fmi2SetTime": (ctypes.c_double(1.0),),
-        "fmi2DoStep": (ctypes.c_double(), ctypes.c_double(1e-3), 0),
-        "fmi2SetRealInputDerivatives": (none, nothing, none, none),
-        "fmi2GetRealOutputDerivatives": (none, nothing, none, none),
-        "fmi2GetDirectionalDerivative": (none, nothing, none, nothing, none, none),
-    }.get(function, ())
-
-
-def call(host, function, *arguments):
-    binary = ctypes.CDLL(host.fmu.dll._name)
-    known = function if host.description.fmiVersion == "2.0" else of_fmi3(function)
-    return binary[known](ctypes.c_void_p(host.fmu.component), *arguments)
-
-
-def bring(host, mode):
-    fmu = host.fmu
-    for reached, step in zip(
-        ALL,
-        (
-            lambda: None,
-            fmu.enterInitializationMode,
-            fmu.exitInitializationMode,
-            fmu.enterContinuousTimeMode,
-            fmu.terminate,
-        ),
-        strict=True,
-    ):
-        step()
-        if reached == mode:
-            return
-
-
-@together("mode", ALL)
-@together("function", ALLOWED)
-def test_a_function_is_refused_outside_its_place_and_says_where_that_is(folder, tmp_path, function, mode):
-    with opened(folder / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
-        bring(host, mode)
-        if not is_there(function, host):
-            return
-        status = call(host, function, *arguments_of(function, host))
-        assert status == (OK if mode in ALLOWED[function] else ERROR)
-        if status == ERROR:
-            first = next(place for place in ALL if place in ALLOWED[function])
-            if function == "fmi2Terminate":
-                first = "after initialization"
-            assert host.message == f"{function} is refused {mode}; its place is {first}"
-
-
-@together("mode", ALL)
-@together("function", STEPPING_ALONE)
-def test_a_function_of_co_simulation_is_refused_in_model_exchange(folder, tmp_path, function, mode):
-    with opened(folder / "MotorTorqueLoop.fmu", tmp_path, kind=FMU2Model) as host:
-        bring(host, mode)
-        if not is_there(function, host):
-            return
-        assert call(host, function, *arguments_of(function, host)) == ERROR
-        assert host.message == f"{function} is refused; the instance was made for model exchange"
-
-
-@together("function", EXCHANGING_ALONE)
-def test_a_function_of_model_exchange_is_refused_in_co_simulation(folder, tmp_path, function):
-    with opened(folder / "MotorTorqueLoop.fmu", tmp_path) as host:
-        for change in (lambda: None, host.initialize, host.fmu.terminate):
-            change()
-            assert call(host, function, *arguments_of(function, host)) == ERROR
-            assert host.message == f"{function} is refused; the instance was made for co-simulation"
+# calls that make no sense
 
 
 def test_a_wrong_number_of_states_is_refused(folder, tmp_path):

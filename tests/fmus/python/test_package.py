@@ -4,12 +4,13 @@ import os
 import subprocess
 import sys
 import zipfile
+from itertools import combinations
 from pathlib import Path
 
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.python.bundle import imported, source_path
+from driveline.fmus.python.bundle import imported, package_name, source_path
 from driveline.fmus.python.packaging import build
 from driveline.fmus.release import DATE
 from tests import ROOT, copied_sources
@@ -131,3 +132,19 @@ def test_what_runs_inside_an_fmu_imports_the_standard_library_alone(module):
     code, message = run(["-S", "-c", f"import sys; sys.path.insert(0, {str(ROOT)!r}); {text}"], ROOT)
     assert code == 0, message
     assert all(source_path(name).is_file() for name in ours)
+
+
+def test_packages_with_other_files_have_other_names() -> None:
+    """Wherever one file ends and the next begins."""
+    fmu = FMUS["DampingController"]
+    contents = [
+        {},
+        {"a.py": b"1"},
+        {"a.py": b"2"},
+        {"b.py": b"1"},
+        {"a.py": b"1", "b.py": b""},
+        {"a.py": b"1\0b.py\x000\0"},
+    ]
+    names = [package_name(fmu, content) for content in contents]
+    assert all(one != other for one, other in combinations(names, 2))
+    assert package_name(fmu, {"b.py": b"2", "a.py": b"1"}) == package_name(fmu, {"a.py": b"1", "b.py": b"2"})

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import host_compiler
+from driveline.fmus.native.compiler import CompilerError, host_compiler
 from driveline.fmus.native.statements import SINGLE
 from driveline.fmus.target.image import FLAGS, host_program
 from driveline.fmus.target.link import Link
@@ -154,3 +154,8 @@ int main(void)
 def test_only_sampled_blocks_run_on_a_target() -> None:
     with pytest.raises(ValueError, match="TwoMassDriveline is a continuous block"):
         target_sources(FMUS["TwoMassDriveline"], SINGLE)
+
+
+def test_what_the_compiler_refuses_is_told_as_it_says_it(tmp_path: Path) -> None:
+    with pytest.raises(CompilerError, match=r"wrong\.c.*\n(.*\n)*.*nothing"):
+        host_program({"wrong.c": "int value(void) { return nothing; }\n"}, tmp_path)
