@@ -157,12 +157,6 @@ def test_the_page_of_the_package_leads_to_what_is_in_the_repository(metadata: Me
     assert all(ours.fullmatch(picture)[1] == "raw" for picture in pictures)  # type: ignore[index]
 
 
-def test_the_changelog_names_the_release_and_its_date() -> None:
-    headings = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.M)
-    released = [heading for heading in headings if heading != "Unreleased"]
-    assert released[0] == f"{release.VERSION} ({release.DATE})"
-
-
 def test_the_demo_needs_no_development_tools() -> None:
     commands = ran("make", "--dry-run", "--always-make", "demo", folder=ROOT).stdout
     assert re.findall(r"--editable '\.\[(.+)\]'", commands) == ["replay"]

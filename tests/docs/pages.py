@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests import ROOT
 
-PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "docs").glob("c*/*.md"))]
 
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.M | re.S)
 INLINE = re.compile(r"`([^`\n]+)`")
@@ -35,6 +35,6 @@ def commands(script: str) -> Iterator[list[str]]:
     """The arguments of each `driveline` in lines of a shell, up to what the shell does with its output."""
     for line in script.replace("\\\n", " ").splitlines():
         words = shlex.split(line.removeprefix("$ "), comments=True)
-        if words[:1] == ["driveline"]:
+        if words[:1] == ["driveline"] and "--print-completion" not in words:
             ends = [k for k, word in enumerate(words) if word in (">", "|", "&&", ";")]
             yield words[1 : min(ends, default=len(words))]
