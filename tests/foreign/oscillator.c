@@ -3,14 +3,8 @@
 
 #include "fmi2.h"
 
-#ifndef IN_DERIVATIVES
-#define IN_DERIVATIVES
-#endif
-#ifndef IN_NEW_STATES
-#define IN_NEW_STATES
-#endif
-#ifndef IN_RESET
-#define IN_RESET start()
+#ifndef RESET
+#define RESET start()
 #endif
 #ifndef NOMINAL
 #define NOMINAL 1.0
@@ -36,7 +30,7 @@ Component fmi2Instantiate(const char *name, int type, const char *guid, const ch
     return type == 0 ? x : NULL;
 }
 void fmi2FreeInstance(Component c) {}
-int fmi2Reset(Component c) { IN_RESET; return 0; }
+int fmi2Reset(Component c) { RESET; return 0; }
 
 #define NONE(function) int function(Component c, const void *a, size_t n, void *b) { return n ? 3 : 0; }
 NONE(fmi2GetReal) NONE(fmi2SetReal) NONE(fmi2GetInteger) NONE(fmi2SetInteger)

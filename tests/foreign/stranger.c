@@ -8,25 +8,6 @@
 
 #include "fmi2.h"
 
-#ifndef IN_INSTANTIATE
-#define IN_INSTANTIATE
-#endif
-#ifndef IN_DO_STEP
-#define IN_DO_STEP
-#endif
-#ifndef IN_GET_REAL
-#define IN_GET_REAL
-#endif
-#ifndef IN_RESET
-#define IN_RESET
-#endif
-#ifndef IN_GET_BOOLEAN_STATUS
-#define IN_GET_BOOLEAN_STATUS
-#endif
-#ifndef IN_FREE
-#define IN_FREE
-#endif
-
 typedef void (*Logger)(void *, const char *, int, const char *, const char *, ...);
 typedef struct {
     Logger log;

@@ -48,7 +48,7 @@ def test_ours_is_in_order_without_co_simulation_too(native, tmp_path):
         ({"IN_NEW_STATES": "info->needed=1"}, NAMES - {"exchange-states"}, "wants another iteration after 100 at 0 s"),
         ({"NOMINAL": "0.0"}, {"exchange-nominals"}, r"the nominal value of the state of der\(s\) is 0.0"),
         ({"NOMINAL": "-1.0"}, {"exchange-nominals"}, r"the nominal value of the state of der\(s\) is -1.0"),
-        ({"IN_RESET": "x[0]=x[0]"}, {"exchange-reset"}, "the run after fmi2Reset is another one"),
+        ({"RESET": "x[0]=x[0]"}, {"exchange-reset"}, "the run after fmi2Reset is another one"),
         ({"IN_DERIVATIVES": "exit(0)"}, {"exchange-runs"}, "exit code 0, in fmi2GetDerivatives"),
         ({"IN_DERIVATIVES": "for(;;){}"}, {"exchange-runs"}, "did not return from fmi2GetDerivatives"),
     ],
