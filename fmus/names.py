@@ -1,5 +1,7 @@
 """Names of the project's FMUs by their places in the loop, for those who need not import what these compute."""
 
+from ..models.controller import T_S as T_S
+
 COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "PerfectState")
 """Controllers that ours is compared with, in the order of the tables."""
 
@@ -11,3 +13,16 @@ PLACES: dict[str, tuple[str, ...]] = {
     "plant": ("TwoMassDriveline", "ValidationVehicle"),
 }
 """The places of the loop in the order in which they step, and the FMUs for each, the first by default."""
+
+RENAMED = {
+    "like": "launch_tolerance",
+    "grows": "swing_decay",
+    "excuse": "demand_excuse",
+    "apart": "wheel_deviation",
+    "leap": "wheel_jump",
+    "free": "launch_speed",
+    "haste": "demand_lead",
+    "bounce": "landing_share",
+    "brake": "landing_brake",
+}
+"""Parameters of the controllers that once had another name."""

@@ -24,9 +24,7 @@ from .block.declaration import Boolean, Integer, Real
 from .block.noise import normals, uniform
 from .block.operators import LARGEST, branch, clip, floor, logical_and, logical_not, logical_or, maximum, where
 from .block.types import SampledBlock
-
-T_S = 0.002
-"""Sample time in s, that of the controller."""
+from .controller import T_S
 
 HISTORY = 250
 """Samples that are kept for the signals that come late."""

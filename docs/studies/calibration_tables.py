@@ -68,7 +68,11 @@ REMEDIES = (
         "jerk when a tip-in lands", "T_gap", False, Effect("jerk_rms", "tipin15"), Effect("response_delay", "tipout")
     ),
     Remedy(
-        "jerk when a tip-in lands", "bounce", False, Effect("jerk_rms", "tipin15"), Effect("response_delay", "tipout")
+        "jerk when a tip-in lands",
+        "landing_share",
+        False,
+        Effect("jerk_rms", "tipin15"),
+        Effect("response_delay", "tipout"),
     ),
     Remedy(
         "a jolt after landing",
@@ -77,13 +81,33 @@ REMEDIES = (
         Effect("gear_torque_rms", "tipin15"),
         Effect("response_delay", "tipin15"),
     ),
-    Remedy("clunk in a ramp", "bounce", False, Effect("impact_speed", "tipin15r"), Effect("gear_torque_rms", "launch")),
+    Remedy(
+        "clunk in a ramp",
+        "landing_share",
+        False,
+        Effect("impact_speed", "tipin15r"),
+        Effect("gear_torque_rms", "launch"),
+    ),
     Remedy("clunk in a ramp", "k_gap", False, Effect("impact_speed", "tipin15r"), Effect("gear_torque_rms", "launch")),
-    Remedy("clunk in creeping", "brake", False, Effect("impact_speed", "creep"), Effect("gear_torque_rms", "tipin15r")),
-    Remedy("clunk in creeping", "haste", False, Effect("impact_speed", "creep"), Effect("gear_torque_rms", "tipin15r")),
+    Remedy(
+        "clunk in creeping",
+        "landing_brake",
+        False,
+        Effect("impact_speed", "creep"),
+        Effect("gear_torque_rms", "tipin15r"),
+    ),
+    Remedy(
+        "clunk in creeping",
+        "demand_lead",
+        False,
+        Effect("impact_speed", "creep"),
+        Effect("gear_torque_rms", "tipin15r"),
+    ),
     Remedy("swing in a launch", "k_gap", True, Effect("gear_torque_rms", "launch"), Effect("impact_speed", "launch")),
     Remedy("slow to pull away", "k_d", False, Effect("response_delay", "launch"), Effect("overshoot", "launch")),
-    Remedy("slow after letting go", "bounce", True, Effect("response_delay", "tipout"), Effect("jerk_rms", "tipout")),
+    Remedy(
+        "slow after letting go", "landing_share", True, Effect("response_delay", "tipout"), Effect("jerk_rms", "tipout")
+    ),
     Remedy("torque withheld", "omega_w", True, Effect("withheld_time", "tipin15"), Effect("overshoot", "tipin15")),
 )
 

@@ -21,8 +21,8 @@ from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from driveline.models.controller import causes, torque_loop, wheel_messages
-from driveline.models.controller.supervision import FALLBACK, T_S, Input
+from driveline.models.controller import T_S, causes, torque_loop, wheel_messages
+from driveline.models.controller.supervision import FALLBACK, Input
 from driveline.models.damping_controller import BLOCK
 from driveline.models.physics.vehicle import added_speed
 

@@ -17,6 +17,7 @@ from ..catalogue import EVERY, FMUS
 from ..description.variables import LARGEST, Variable, interface
 from ..errors import ParameterFileError
 from ..fmu import Fmu
+from ..names import RENAMED
 from ..toml_file import toml_entries
 from .one_car import of_one_car
 
@@ -240,6 +241,8 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
 
 
 def _nearest(name: str, known: Collection[str]) -> str:
+    if RENAMED.get(name) in known:
+        return f"; it is called {RENAMED[name]} now"
     near = get_close_matches(name, sorted(known), n=3)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 

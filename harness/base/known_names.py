@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 
+from ...fmus.names import RENAMED
 from .errors import DrivelineError
 
 
@@ -16,6 +17,8 @@ def nearest(name: str, known: Iterable[str], every: str = "known are") -> str:
         every: words before all of them.
     """
     names = list(known)
+    if RENAMED.get(name) in names:
+        return f"it is called {RENAMED[name]} now"
     by_folded = {candidate.casefold(): candidate for candidate in names}
     close = [by_folded[match] for match in get_close_matches(name.casefold(), by_folded, n=3)]
     if close:

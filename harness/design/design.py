@@ -117,9 +117,9 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
         "omega_w": omega_w,
         "k_gap": weights.k_gap,
         "T_gap": largest_landing(plant, motor, weights),
-        "bounce": weights.bounce,
-        "brake": weights.brake,
-        "haste": weights.haste,
+        "landing_share": weights.landing_share,
+        "landing_brake": weights.landing_brake,
+        "demand_lead": weights.demand_lead,
         "omega_slow": weights.recent * train.omega_v,
         "t_return": max(weights.comeback / train.omega_0, PARAMETERS["t_return"].bounds()[0]),
         "t_land": weights.longest_landing / train.omega_v,
@@ -130,10 +130,10 @@ def largest_landing(plant: Plant, motor: Motor, weights: Weights) -> float:
     """T_gap in N.m: a share of T_max, or less where the flight from flank to flank would begin too fast.
 
     The motor may begin it with omega_land at d = 2 phi_B. Turned into twist by the spring, that is the torque T_peak
-    of (bounce T)^2 + 4 brake C phi_B T = T_peak^2.
+    of (landing_share T)^2 + 4 landing_brake C phi_B T = T_peak^2.
     """
-    T_peak, flight = weights.impact * motor.T_max, 2.0 * weights.brake * plant.C * plant.phi_B
-    bearable = T_peak**2 / (flight + sqrt(flight**2 + (weights.bounce * T_peak) ** 2))
+    T_peak, flight = weights.impact * motor.T_max, 2.0 * weights.landing_brake * plant.C * plant.phi_B
+    bearable = T_peak**2 / (flight + sqrt(flight**2 + (weights.landing_share * T_peak) ** 2))
     return min(weights.landing * motor.T_max, bearable)
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ...fmus.building.one_car import of_one_car
 from ...fmus.description.variables import interface
 from ...models import motor_torque_loop, two_mass_driveline, wheel_speed_can
-from ...models.controller.supervision import T_S
+from ...models.controller import T_S
 from ...models.damping_controller import BLOCK
 
 Plant = two_mass_driveline.Parameters
@@ -58,7 +58,7 @@ class Weights:
         withheld: time by which the feedback of the gear torque delays the driver's impulse, times omega_v.
         landing: largest torque that the speed of a landing is derived from, over T_max.
         impact: gear torque that the largest speed of a landing could make, over T_max.
-        bounce, brake, haste: see the damping law.
+        landing_share, landing_brake, demand_lead: see the damping law.
         recent: corner frequency that tells which change of the demand is recent, over omega_v.
         comeback: time constant with which the torque that a landing withheld comes back, times omega_0.
         longest_landing: how long a landing may last, times omega_v.
@@ -82,9 +82,9 @@ class Weights:
     withheld: float = 0.008063731
     landing: float = 0.6111111
     impact: float = 0.5
-    bounce: float = 0.4
-    brake: float = 0.5
-    haste: float = 1.1
+    landing_share: float = 0.4
+    landing_brake: float = 0.5
+    demand_lead: float = 1.1
     recent: float = 1.612157
     comeback: float = 0.1629885
     longest_landing: float = 0.8063731

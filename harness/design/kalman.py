@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from ...models.controller.supervision import T_S
+from ...models.controller import T_S
 from ...models.controller.torque_estimator import Estimate, Parameters, integrated
 from ..base.errors import DrivelineError
 from .design_weights import Can, DriveTrain, Motor, Plant, Weights

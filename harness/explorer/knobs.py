@@ -10,7 +10,7 @@ CAR = ("phi_B", "C", "m", "J_1", "J_2", "c_slip", "tau", "d_max")
 """Of the car: each is one for all blocks that have it, and others follow from it as from a vehicle file. d_max is the
 longest delay of the wheel speed on the bus."""
 
-GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "brake", "haste", "t_return")
+GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "landing_brake", "demand_lead", "t_return")
 """Of the controller."""
 
 FAR = 5.0

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ...fmus.names import COMPARATORS as COMPARATORS
 from ...fmus.names import PLACES as PLACES
+from ...fmus.names import T_S as T_S
 from ..cosimulation.system import Connection, Port
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -24,9 +25,6 @@ PLANTS = PLACES["plant"]
 
 STEP_SIZE = 1e-3
 """Communication step of the loop in s, unless another is asked for."""
-
-T_S = 2e-3
-"""Sample time of the controller in s; no FMU tells it, so the harness declares it, here alone."""
 
 NameOrFile = str | Path
 """What stands in a place: the name of one of the project's FMUs, or the path of an FMU."""

@@ -9,16 +9,16 @@ from typing import Annotated, NamedTuple, cast
 
 from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, is_finite, logical_and
-from ..controller import damping_law, supervision, supervision_interface, torque_estimator
+from ..controller import T_S, damping_law, supervision_interface, torque_estimator
 from ..controller.damping_law import LawState
 from ..controller.motor_signals import in_range
 from ..controller.supervised_controller import Supervised, supervised
-from ..controller.torque_estimator import Estimate, EstimatorState
+from ..controller.torque_estimator import LARGEST_TORQUE, Estimate, EstimatorState
 from .fixed import fixed
 
 NO_GAINS = {name: 0.0 for name in torque_estimator.Parameters._fields if name.startswith("L")}
 
-MODEL = fixed(torque_estimator, T_age=supervision.T_S, **NO_GAINS)
+MODEL = fixed(torque_estimator, T_age=T_S, **NO_GAINS)
 """The estimator's model alone: nothing that is measured corrects it."""
 
 
@@ -54,7 +54,7 @@ def with_true_motion(expected: EstimatorState, u: Truth, p: AllParameters) -> Es
     phi = u.T_gear / p.C + clip(u.phi, -p.phi_B, p.phi_B)
     true = expected._replace(base=0.0, estimate=Estimate(u.omega_1, u.omega_2, phi, 0.0))
     known = logical_and(in_range(u.omega_1, p.omega_max), in_range(u.omega_2, p.omega_max))
-    known = logical_and(logical_and(known, is_finite(u.phi)), in_range(u.T_gear, 4.0 * p.T_max))
+    known = logical_and(logical_and(known, is_finite(u.phi)), in_range(u.T_gear, LARGEST_TORQUE * p.T_max))
     return branch(known, lambda: true, lambda: expected)
 
 

@@ -8,12 +8,13 @@ Between the flanks the motor is alone with its inertia. It is led to the flank t
 is d away, with the speed from which a share of that demand would still brake it to what the teeth may land with,
 
     T_ref = k_gap k_d (omega_land - omega)                       no more than T_next
-    omega_land^2 = (bounce T/sqrt(C J_1))^2 + 2 brake T d/J_1    T: T_next, at most T_gap
-    T_next = T_driver + haste s/(s + omega_slow) T_driver
+    omega_land^2 = (landing_share T/sqrt(C J_1))^2 + 2 landing_brake T d/J_1    T: T_next, at most T_gap
+    T_next = T_driver + demand_lead s/(s + omega_slow) T_driver
 
-with T_ref, omega and T counted towards that flank. An impact with bounce T/sqrt(C J_1) alone twists the drive train to
-the torque bounce T. What the landing has withheld comes back with the time constant t_return. A landing lasts t_land at
-most, and a demand that is next to nothing has none. All that with the motion T_pred ahead, when the torque will act.
+with T_ref, omega and T counted towards that flank. An impact with landing_share T/sqrt(C J_1) alone twists the drive
+train to the torque landing_share T. What the landing has withheld comes back with the time constant t_return. A landing
+lasts t_land at most, and a demand that is next to nothing has none. All that with the motion T_pred ahead, when the
+torque will act.
 """
 
 from typing import Annotated, NamedTuple
@@ -53,7 +54,7 @@ class Parameters(NamedTuple):
             tunable=True,
         ),
     ] = GAINS["T_gap"]
-    bounce: Annotated[
+    landing_share: Annotated[
         float,
         Real(
             "1",
@@ -63,17 +64,17 @@ class Parameters(NamedTuple):
             search=(0.0, 1.5),
             tunable=True,
         ),
-    ] = GAINS["bounce"]
-    brake: Annotated[
+    ] = GAINS["landing_share"]
+    landing_brake: Annotated[
         float,
         Real("1", "torque that can brake before an impact, over the demand", 0.0, 5.0, search=(0.0, 1.5), tunable=True),
-    ] = GAINS["brake"]
-    haste: Annotated[
+    ] = GAINS["landing_brake"]
+    demand_lead: Annotated[
         float,
         Real(
             "1", "expected further change of the demand, over the recent one", 0.0, 5.0, search=(0.0, 2.0), tunable=True
         ),
-    ] = GAINS["haste"]
+    ] = GAINS["demand_lead"]
     omega_slow: Annotated[
         float, Real("rad/s", "corner frequency that tells what is recent", 0.0, 400.0, search=(3.0, 60.0), tunable=True)
     ] = GAINS["omega_slow"]
@@ -117,7 +118,7 @@ def update(
     ahead = Motion(*(now + p.T_pred / T_s * (then - now) for now, then in zip(motion, expected, strict=True)))
     changing = fed_back(ahead, p)
     damping = clip(x.washout - changing, -p.T_add_max, p.T_add_max)
-    T_next = T_driver + p.haste * (T_driver - x.slow)
+    T_next = T_driver + p.demand_lead * (T_driver - x.slow)
 
     pushing = logical_and(abs(T_driver) > p.T_still, T_driver * T_next > 0.0)
     floating = logical_and(in_gap(motion, p), pushing)
@@ -154,7 +155,7 @@ def landing_torque(motion: Motion, T_next: float, p: Parameters) -> float:
     side = where(T_next > 0.0, 1.0, -1.0)
     omega, d = side * (motion.omega_1 - motion.omega_2), maximum(p.phi_B - side * motion.phi, 0.0)
     T = minimum(abs(T_next), p.T_gap)
-    touching = p.bounce * T / sqrt(p.C * p.J_1)
-    omega_land = sqrt(touching * touching + 2.0 * p.brake * T * d / p.J_1)
+    touching = p.landing_share * T / sqrt(p.C * p.J_1)
+    omega_land = sqrt(touching * touching + 2.0 * p.landing_brake * T * d / p.J_1)
     k = p.k_gap * p.k_d
     return side * minimum(k * (omega_land - omega), maximum(abs(T_next), -k * omega))

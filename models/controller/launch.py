@@ -2,8 +2,8 @@
 
 It is looked for when a demand ends the rest. The motor meets nothing but its inertia then, until the teeth touch. With
 s the speed that the demanded torque gives a free motor, J_1 ds/dt = T, one that turns against it has the speed -s. How
-far the motor speed is from that is integrated over s up to `free`; the integral of s itself is half the square of
-`free`. On the flank of a tooth, thrown back by one, or rocking on ice the motor is too fast or too slow for that.
+far the motor speed is from that is integrated over s up to `launch_speed`; the integral of s itself is half the square
+of that. On the flank of a tooth, thrown back by one, or rocking on ice the motor is too fast or too slow for that.
 """
 
 from typing import Annotated, NamedTuple
@@ -22,7 +22,7 @@ class LaunchState(NamedTuple):
 
 
 def start(T_s: float, p: Parameters) -> LaunchState:
-    return LaunchState(p.free * added_speed(p, T_s), 0.0)
+    return LaunchState(p.launch_speed * added_speed(p, T_s), 0.0)
 
 
 def update(
@@ -36,11 +36,11 @@ def update(
         omega_1: motor speed in use, rad/s.
         resting: whether the car was at rest until now.
     """
-    far = p.free * added_speed(p, T_s)
+    far = p.launch_speed * added_speed(p, T_s)
     counting = logical_and(abs(x.free) < far, T_mot * T_driver > 0.0)
     gained = T_s * T_mot / p.J_1
     free = x.free + where(counting, gained, 0.0)
     off = x.off + where(counting, abs(gained * (omega_1 + x.free + 0.5 * gained)), 0.0)
-    against = logical_and(logical_and(counting, abs(free) >= far), off <= p.like * 0.5 * free * free)
+    against = logical_and(logical_and(counting, abs(free) >= far), off <= p.launch_tolerance * 0.5 * free * free)
     none = abs(T_driver) <= p.T_still
     return LaunchState(where(resting, 0.0, where(none, far, free)), where(resting, 0.0, off)), against

@@ -2,11 +2,11 @@
 
 Behind a signal that is late, or wrong in a way that no comparison shows, damping may push where it should pull. It
 shows in the damping torque: in a damped drive train it dies away after a change of the demand, each half swing far
-smaller than the one before. Half swings are counted that reach `swing` on both sides and `grows` of the one before.
-From SWINGS on there is no damping, and less in the one before. They are forgotten at one a t_forget, once there is
-none at one a t_relapse, and at one where the demand changes by `excuse` times the largest torque of the present half
-swing and `swing` together. Whatever shakes the drive train from outside (ABS, a road without grip) is counted
-too, and the damping can do little against it: it only becomes less, and there is no fallback.
+smaller than the one before. Half swings are counted that reach `swing` on both sides and `swing_decay` of the one
+before. From SWINGS on there is no damping, and less in the one before. They are forgotten at one a t_forget, once there
+is none at one a t_relapse, and at one where the demand changes by `demand_excuse` times the largest torque of the
+present half swing and `swing` together. Whatever shakes the drive train from outside (ABS, a road without grip) is
+counted too, and the damping can do little against it: it only becomes less, and there is no fallback.
 """
 
 from typing import Annotated, NamedTuple
@@ -41,11 +41,11 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
     turned = logical_and(swings, damping * x.peak < 0.0)
     larger = logical_and(swings, logical_or(damping * x.peak <= 0.0, abs(damping) > abs(x.peak)))
     peak = where(larger, damping, x.peak)
-    enough = where(turned, p.grows * abs(x.peak), x.enough)
+    enough = where(turned, p.swing_decay * abs(x.peak), x.enough)
     counts = logical_and(enough > 0.0, abs(peak) >= enough)
     least = T_s / where(x.count < SWINGS, p.t_forget, p.t_relapse)
     forgotten = x.count - clip(x.count, -least, least)
-    explained = abs(change) / (p.excuse * (abs(peak) + p.swing * p.T_max))
+    explained = abs(change) / (p.demand_excuse * (abs(peak) + p.swing * p.T_max))
     count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
     return SwingState(
         peak=where(acting, peak, 0.0),

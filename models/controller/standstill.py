@@ -27,6 +27,6 @@ def is_complete(quiet: float, p: Parameters) -> bool:
     return quiet >= longest(p)
 
 
-def left(quiet: float, p: Parameters) -> float:
+def remaining_damping(quiet: float, p: Parameters) -> float:
     """Share of the damping that is left, `quiet` s after the last demand or motion: 0 at complete rest."""
     return minimum((longest(p) - quiet) / p.t_fade, 1.0)

@@ -6,10 +6,10 @@ from typing import Any, Generic
 from ..block.declaration import merged
 from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, where
 from ..block.types import SampledBlock
-from . import causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
+from . import T_S, causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
 from .fading import faded
 from .interfaces import Estimator, Law
-from .supervision import T_S, E, L, Output, State, demand, limited, status
+from .supervision import E, L, Output, State, demand, limited, status
 from .supervision_interface import Input, Parameters
 
 
@@ -69,7 +69,7 @@ class Supervised(Generic[E, L]):
         damping = clip(adding.damping, -p.T_add_max, p.T_add_max)
 
         level = faded(x.level, logical_and(u.enable, trusted), T_S, p.t_fade)
-        share = level * standstill.left(x.quiet, p)
+        share = level * standstill.remaining_damping(x.quiet, p)
         swings = oscillation.update(x.swings, share * damping, T_driver - (x.T_ref - x.T_damp), trusted, T_S, p)
         share = share * oscillation.share(swings)
         fading = level / maximum(x.level, T_S / p.t_fade) * x.T_damp
@@ -101,9 +101,9 @@ class Supervised(Generic[E, L]):
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
         pushed = logical_or(against, logical_and(rested, abs(T_driver) > p.T_still))
         direction = trust.direction(x.trust, u, pushed, omega_1, logical_not(bad), T_S, p)
-        way = trust.way(direction)
-        turned = way * omega_1 < -p.omega_still
-        wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, way, T_S, p)
+        side = trust.sign_of(direction)
+        turned = side * omega_1 < -p.omega_still
+        wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, side, T_S, p)
         found |= {
             causes.WHEEL_CONTRADICTS: contradicts,
             causes.WRONG_DIRECTION: logical_and(turned, u.direction != 0),
@@ -115,7 +115,7 @@ class Supervised(Generic[E, L]):
         rests = standstill.is_complete(quiet, p)
         begins = logical_or(rests, trust.is_healing(trusting, T_S))
         e = self.estimator.take_motor_speed(x.estimator, omega_1, T_S, p)
-        e = branch(taken, lambda: self.estimator.take_wheel_speed(e, way * wheel.omega_2, T_S, p), lambda: e)
+        e = branch(taken, lambda: self.estimator.take_wheel_speed(e, side * wheel.omega_2, T_S, p), lambda: e)
         e = self.estimated(e, u, p)
         omega_1, T_mot = where(rests, 0.0, omega_1), where(rests, 0.0, T_mot)
         e = branch(begins, lambda: self.estimator.restart(e, omega_1, T_mot, p), lambda: e)

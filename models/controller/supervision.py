@@ -21,9 +21,6 @@ from .supervision_interface import Input, Parameters
 from .trust import TrustState
 from .wheel_messages import WheelState
 
-T_S = 0.002
-"""Sample time in s."""
-
 E = TypeVar("E")
 L = TypeVar("L")
 """States of the estimator and of the law."""

@@ -41,16 +41,16 @@ class Parameters(NamedTuple):
     q_omega: Annotated[float, Real("rad/s", "resolution of the measured motor speed", 0.0, 10.0)] = 0.1
     jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.25
     frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.15
-    apart: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
-    leap: Annotated[float, speed("largest change from message to message that the motor speed does not make")] = 3.0
-    free: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
-    like: Annotated[float, Real("1", "share of that by which a launch against the torque may be off", 0.0, 1.0)] = 0.25
+    wheel_deviation: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
+    wheel_jump: Annotated[float, speed("largest change between messages that the motor speed does not make")] = 3.0
+    launch_speed: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.68
+    launch_tolerance: Annotated[float, Real("1", "error of a launch against the torque, over it", 0.0, 1.0)] = 0.25
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05
     g_off: Annotated[float, Real("1", "largest error of the torque estimate, over the torque", 0.0, 1.0)] = 0.35
     swing: Annotated[float, Real("1", "least damping torque of a half swing, over T_max", 1e-3, 1.0)] = 0.03
-    grows: Annotated[float, Real("1", "least half swing that counts, over the one before", 0.01, 10.0)] = 0.5
-    excuse: Annotated[float, Real("1", "change of the demand that explains a half swing, over it", 0.01, 10.0)] = 0.9
+    swing_decay: Annotated[float, Real("1", "least half swing that counts, over the one before", 0.01, 10.0)] = 0.5
+    demand_excuse: Annotated[float, Real("1", "change of demand that explains a half swing, over it", 0.01, 10.0)] = 0.9
 
 
 class Input(NamedTuple):

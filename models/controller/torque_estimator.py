@@ -31,6 +31,10 @@ from .fading import faded
 from .gains import GAINS
 from .interfaces import Motion
 
+LARGEST_TORQUE = 4.0
+"""Gear torque over T_max beyond which an estimate is none: a step of the demand from -T_max to T_max swings to 3 on a
+spring without damping, and an impact through the gap adds less than 1."""
+
 
 class Parameters(NamedTuple):
     J_1: MotorInertia = CAR.J_1
@@ -121,7 +125,7 @@ def take_motor_speed(x: EstimatorState, omega_1: float, T_s: float, p: AllParame
     L, Ls = (p.L_omega_1, p.L_omega_2, p.L_phi, p.L_T_l), (p.Ls_omega_1, p.Ls_omega_2, p.Ls_phi, p.Ls_T_l)
     e = corrected(e, -e.omega_1, [a + slip * (b - a) for a, b in zip(L, Ls, strict=True)])
     x = x._replace(base=omega_1, estimate=e, drift=drift, slip=slip)
-    plausible = p.C * (abs(e.phi) - p.phi_B) <= 4.0 * p.T_max
+    plausible = p.C * (abs(e.phi) - p.phi_B) <= LARGEST_TORQUE * p.T_max
     return branch(plausible, lambda: x, lambda: restart(x, omega_1, 0.0, p))
 
 

@@ -39,14 +39,14 @@ def direction(x: TrustState, u: Input, pushed: bool, omega_1: float, good: bool,
     """Of the car in this sample: of the demand where that has `pushed` it, else of the motor speed (rad/s) if good."""
     turning = logical_and(good, abs(omega_1) > p.omega_still)
     turning = logical_and(turning, logical_or(is_trusted(x), abs(x.direction) < 1.0))
-    towards = way(where(pushed, u.T_driver, omega_1))
+    towards = sign_of(where(pushed, u.T_driver, omega_1))
     later = x.direction + T_s / p.t_apart * towards
     later = where(logical_or(pushed, later * towards >= 0.0), towards, later)
     seen = where(logical_or(pushed, turning), later, x.direction)
     return where(u.direction > 0, 1.0, where(u.direction < 0, -1.0, seen))
 
 
-def way(value: float) -> float:
+def sign_of(value: float) -> float:
     """1 for what is forwards, -1 for what is not."""
     return where(value > 0.0, 1.0, -1.0)
 
@@ -77,4 +77,5 @@ def update(x: TrustState, found: Mapping[int, bool], turned: bool, T_s: float, p
 
 def is_healing(x: TrustState, T_s: float) -> bool:
     """Whether the motor signals are not trusted, and have not been good for more than a sample."""
-    return logical_and(logical_not(is_trusted(x)), x.clock < 1.5 * T_s)
+    one_sample = 1.5 * T_s  # half a sample of room for sums of T_s
+    return logical_and(logical_not(is_trusted(x)), x.clock < one_sample)

@@ -62,10 +62,10 @@ def update(
     speed = where(arrives, abs(u.omega_2_can), where(known, x.omega_2, 0.0))
     signed = direction * speed
     outside = maximum(signed - largest, least - signed) - p.g_radius * speed  # of what the motor speed was
-    changed = logical_and(x.omega_2 > 0.0, abs(speed - x.omega_2) > p.leap * unit)
-    leapt = logical_and(logical_and(arrives, changed), outside > p.leap * unit)
+    changed = logical_and(x.omega_2 > 0.0, abs(speed - x.omega_2) > p.wheel_jump * unit)
+    leapt = logical_and(logical_and(arrives, changed), outside > p.wheel_jump * unit)
     taken = logical_and(arrives, logical_not(leapt))
-    far = where(leapt, apart, logical_and(speed > 0.0, outside > p.apart * unit))
+    far = where(leapt, apart, logical_and(speed > 0.0, outside > p.wheel_deviation * unit))
     x = WheelState(
         counter=1.0 * u.counter,
         omega_2=where(leapt, x.omega_2, speed),

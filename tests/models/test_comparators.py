@@ -19,9 +19,9 @@ from driveline.models.comparators import (
     speed_washout,
     state_feedback,
 )
-from driveline.models.controller import supervision, torque_estimator
+from driveline.models.controller import T_S, supervision, torque_estimator
 from driveline.models.controller.interfaces import Motion
-from driveline.models.controller.supervision import T_S, Input, State
+from driveline.models.controller.supervision import Input, State
 from driveline.models.physics.backlash import dead_zone
 from tests.models.controller.controllers import OURS, drive_inputs, run, shaken
 

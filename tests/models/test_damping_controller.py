@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from driveline.harness.studies.coupling import monolithic
 from driveline.models import damping_controller, two_mass_driveline, validation_vehicle
 from driveline.models.block.types import ContinuousBlock
+from driveline.models.controller import T_S
 from driveline.models.controller import torque_estimator as estimator
-from driveline.models.controller.supervision import FALLBACK, T_S, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
+from driveline.models.controller.supervision import FALLBACK, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
 from driveline.models.physics.backlash import dead_zone
 from tests.models.controller.controllers import (
     ABSURD,
@@ -165,7 +166,7 @@ def test_a_landing_lasts_a_tenth_of_a_second_at_most() -> None:
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(100)]
     states = run(BLOCK, inputs, frozen=1000.0, T_max=2000.0, T_pred=0.0, tau=10.0)
     T = min(100.0, P.T_gap)
-    omega_land = math.sqrt((P.bounce * T) ** 2 / (P.C * P.J_1) + 2.0 * P.brake * T * P.phi_B / P.J_1)
+    omega_land = math.sqrt((P.landing_share * T) ** 2 / (P.C * P.J_1) + 2.0 * P.landing_brake * T * P.phi_B / P.J_1)
     T_land = P.k_gap * P.k_d * omega_land
     assert T_land < 60.0
     landing = [x for x in states if x.T_ref == pytest.approx(T_land, abs=1e-3)]
@@ -243,7 +244,7 @@ def test_good_signals_stay_good_with_half_of_every_threshold(
     plant: ContinuousBlock, v_0: float, before: float, after: float
 ) -> None:
     """When the teeth cross the gap and back, with noise and delays, no signal is near to being found bad."""
-    names = ("jump", "apart", "leap", "frozen", "t_stale", "omega_max", "t_bad", "t_apart")
+    names = ("jump", "wheel_deviation", "wheel_jump", "frozen", "t_stale", "omega_max", "t_bad", "t_apart")
     half = {name: 0.5 * getattr(P, name) for name in names}
     parameters = {
         "plant": {"v_0": v_0, "T_0": before},

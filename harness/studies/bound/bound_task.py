@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ....models.controller.supervision import T_S, Parameters, limited
+from ....models.controller import T_S
+from ....models.controller.supervision import Parameters, limited
 from ...base.errors import SimulationError
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import WINDOW, WITHHELD, at_samples, evaluate

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....models.controller.supervision import T_S
+from ....models.controller import T_S
 from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
 from ...cosimulation.system import Scheme

@@ -24,7 +24,7 @@ OPEN = NOISELESS | {
     "controller.k_d": 0.0,
     "controller.k_T": 0.0,
     "controller.t_land": 0.0,
-    **{f"controller.{name}": 1000.0 for name in ("jump", "apart", "leap", "frozen")},
+    **{f"controller.{name}": 1000.0 for name in ("jump", "wheel_deviation", "wheel_jump", "frozen")},
     "controller.slip_drift": 100.0,
     "controller.slip_load": 4.0,
 }

@@ -6,7 +6,7 @@ transport delays, and the controller takes it in its next sample.
 
 from typing import NamedTuple
 
-from ....models.controller.supervision import T_S
+from ....models.controller import T_S
 from .operating_point import CAN, Point
 
 

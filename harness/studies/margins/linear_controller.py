@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....models.controller.supervision import FALLBACK, T_S
+from ....models.controller import T_S
+from ....models.controller.supervision import FALLBACK
 from .averaged_messages import messages
 from .jacobians import NotLinear, Rates, like, names, numbers, rates
 from .linear_plant import MESSAGE, LinearPlant

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from ....models.controller.supervision import T_S
+from ....models.controller import T_S
 from .averaged_messages import Messages, messages
 from .linear_controller import LinearController, Sample, linear_controller
 from .linear_plant import MESSAGE, LinearPlant, linear_plant

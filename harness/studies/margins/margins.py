@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from scipy.optimize import root_scalar
 
-from ....models.controller.supervision import T_S
+from ....models.controller import T_S
 from ...metrics.declaration import Column, Metric
 from .linear_loop import LinearLoop
 

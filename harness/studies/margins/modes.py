@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....models.controller.supervision import T_S
+from ....models.controller import T_S
 from .linear_loop import LinearLoop, linear_loop
 from .operating_point import Point
 

@@ -19,11 +19,11 @@ from docs.studies.healthy_hours import (
     worst,
 )
 from driveline.harness.simulation.simulate import simulate
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S
 from driveline.models.physics.vehicle import added_speed
 
 P = healthy_hours.P
-FAR = P.apart * added_speed(P, T_S) + P.g_radius * 150.0
+FAR = P.wheel_deviation * added_speed(P, T_S) + P.g_radius * 150.0
 """How far the motor may be from wheels with 150 rad/s."""
 
 
@@ -132,7 +132,7 @@ def test_a_drive_with_a_wheel_that_is_told_far_too_small_shows_as_fallback(short
 def test_a_drive_whose_half_swings_all_count_has_samples_with_less_damping(short, monkeypatch):
     def with_a_low_count(road, seed):
         manoeuvre, errors = drive(road, seed)
-        return manoeuvre, errors | {"controller.swing": 1e-3, "controller.grows": 0.01}
+        return manoeuvre, errors | {"controller.swing": 1e-3, "controller.swing_decay": 0.01}
 
     assert found(ROADS["design model"], 7).feeding == 0
     monkeypatch.setattr(healthy_hours, "drive", with_a_low_count)

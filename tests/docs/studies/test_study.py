@@ -26,8 +26,8 @@ MS = Column("settling", "ms", 0, 0.02)
         (10.0, 10.6, False),
         (None, None, True),
         (None, 1.0, False),
-        ("haste", "haste", True),
-        ("haste", 1.0, False),
+        ("demand_lead", "demand_lead", True),
+        ("demand_lead", 1.0, False),
     ],
 )
 def test_a_number_is_the_same_within_its_tolerance_or_half_a_digit(was, now, same) -> None:

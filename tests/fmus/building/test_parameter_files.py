@@ -18,6 +18,7 @@ from driveline.fmus.building.parameter_files import (
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.errors import ParameterFileError
 from driveline.fmus.fmu import Fmu
+from driveline.fmus.names import RENAMED
 from driveline.models.block.declaration import variables
 from tests import ROOT
 from tests.together import together
@@ -211,3 +212,10 @@ def test_there_are_the_three_cars_of_the_documentation() -> None:
     assert set(cars) == {"mid_size", "small", "van"}
     assert (cars["small"]["m"], cars["small"]["C"]) == (900.0, default["C"] / 2.0)
     assert (cars["van"]["m"], cars["van"]["phi_B"]) == (3500.0, 2.0 * default["phi_B"])
+
+
+@pytest.mark.parametrize(("old", "new"), RENAMED.items())
+def test_a_parameter_that_was_renamed_is_refused_with_its_new_name(old: str, new: str, tmp_path: Path) -> None:
+    (tmp_path / "gains.toml").write_text(f"{old} = 0.5\n", encoding="utf-8")
+    with pytest.raises(ParameterFileError, match=f"{old} is not known; it is called {new} now"):
+        read_parameters(tmp_path / "gains.toml")

@@ -140,7 +140,9 @@ def test_at_the_addresses_are_the_values_while_it_steps(bench: Any, name: str, b
 
 
 @BUILDS
-@together("name, values", [("DampingController", {"k_d": 0.75, "haste": 0.0}), ("TwoMassDriveline", {"m": 2500.0})])
+@together(
+    "name, values", [("DampingController", {"k_d": 0.75, "demand_lead": 0.0}), ("TwoMassDriveline", {"m": 2500.0})]
+)
 def test_what_is_written_acts_as_what_is_set(bench: Any, name: str, values: dict[str, float], build: str) -> None:
     results = []
     for write in (False, True, None):

@@ -21,7 +21,7 @@ from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.offline_cases import Case, recorded
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
 from tests.slow import slow
 from tests.together import together

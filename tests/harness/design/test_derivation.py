@@ -6,8 +6,7 @@ from math import atan, degrees, pi, sqrt
 import pytest
 
 from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train
-from driveline.models.controller import damping_law, torque_estimator
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S, damping_law, torque_estimator
 from tests import ROOT
 
 PAGE = (ROOT / "docs" / "derivation.md").read_text(encoding="utf-8")
@@ -52,7 +51,7 @@ def test_values_are_those_of_the_default_car() -> None:
         (r"\$k_T/\\omega_w\$ \(([\d.]+) ms\)", 1e3 * LAW.k_T / LAW.omega_w),
         (r"over the whole gap make ([\d.]+) rad/s", sqrt(2.0 * 100.0 * 2.0 * LAW.phi_B / LAW.J_1)),
         (r"rad/s, and ([\d.]+) N·m of twist", sqrt(2.0 * 100.0 * 2.0 * LAW.phi_B * LAW.C)),
-        (r"\$\\mathrm\{haste\}/\\omega_\\mathrm\{slow\}\$ \(([\d.]+) ms\)", 1e3 * LAW.haste / LAW.omega_slow),
+        (r"\$\\mathrm\{lead\}/\\omega_\\mathrm\{slow\}\$ \(([\d.]+) ms\)", 1e3 * LAW.demand_lead / LAW.omega_slow),
         (r"\$h = T_s\$ of ([\d.]+) ms", 1e3 * T_S),
     ],
 )

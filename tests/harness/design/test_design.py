@@ -22,7 +22,7 @@ from driveline.harness.design.kalman import (
 )
 from driveline.harness.studies.margins.modes import swing
 from driveline.models.block.declaration import variables
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK
 from tests import ROOT
 
@@ -138,7 +138,7 @@ def test_a_slower_motor_is_looked_ahead_further_as_far_as_the_controller_can() -
 
 
 def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
-    """Washout, haste and return follow its frequencies, of which one is the motor's with it and one the vehicle's.
+    """Washout, lead and return follow its frequencies, of which one is the motor's with it and one the vehicle's.
 
     As far as the controller can: it gives nothing back sooner than in a sample.
     """
@@ -152,7 +152,7 @@ def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:
 
 def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_too_fast() -> None:
     def begins(T: float, phi_B: float) -> float:
-        return sqrt((WEIGHTS.bounce * T) ** 2 + 4.0 * WEIGHTS.brake * PLANT.C * phi_B * T)
+        return sqrt((WEIGHTS.landing_share * T) ** 2 + 4.0 * WEIGHTS.landing_brake * PLANT.C * phi_B * T)
 
     narrow, wide = 0.5 * PLANT.phi_B, 2.0 * PLANT.phi_B
     soft, hard = (gains_of(PLANT._replace(phi_B=gap))["T_gap"] for gap in (narrow, wide))

@@ -12,10 +12,11 @@ from driveline.models import damping_controller
 from driveline.models.block.declaration import Real
 from driveline.models.block.types import SampledBlock
 from driveline.models.comparators import measured_speeds
+from driveline.models.controller import T_S
 from driveline.models.controller.damping_law import washed_out
 from driveline.models.controller.interfaces import Addition, Motion
 from driveline.models.controller.supervised_controller import supervised
-from driveline.models.controller.supervision import T_S, Input, State
+from driveline.models.controller.supervision import Input, State
 
 OURS = damping_controller.BLOCK
 

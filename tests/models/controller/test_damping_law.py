@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from driveline.models import damping_controller
 from driveline.models.block.declaration import Real, variables
+from driveline.models.controller import T_S as SAMPLE
 from driveline.models.controller import damping_law as law
 from driveline.models.controller.damping_law import LawState
 from driveline.models.controller.interfaces import Addition, Motion
-from driveline.models.controller.supervision import T_S as SAMPLE
 
 P = damping_controller.BLOCK.Parameters(
     phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, t_land=1.0, t_return=0.5
-)._replace(J_1=0.25, C=4.0, T_gap=16.0, bounce=0.5, brake=1.125, haste=0.0, omega_slow=2.0)
+)._replace(J_1=0.25, C=4.0, T_gap=16.0, landing_share=0.5, landing_brake=1.125, demand_lead=0.0, omega_slow=2.0)
 """In the middle of the gap 16 N.m make omega_land 10 rad/s: the teeth may land with 8 rad/s."""
 T_S = 0.25
 STILL = Motion(omega_1=100.0, omega_2=100.0, phi=0.75, T_gear=40.0)
@@ -145,7 +145,7 @@ def test_between_the_flanks_the_motor_is_led_to_that_of_the_demand(side: float, 
 
 
 def test_the_nearer_the_flank_the_slower() -> None:
-    """At the flank bounce T/sqrt(C J_1) is left, before it what brake T brakes to that."""
+    """At the flank landing_share T/sqrt(C J_1) is left, before it what landing_brake T brakes to that."""
     for d in (0.0, 0.1, 0.4):
         motion = AFLOAT._replace(phi=0.25 - max(d, 1e-12))
         assert demanded([motion], 16.0) == [pytest.approx(math.sqrt(64.0 + 2.0 * 18.0 * d / 0.25), rel=1e-9)]
@@ -166,8 +166,8 @@ def test_the_motor_is_not_driven_towards_the_flank_with_more_than_the_demand() -
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_demand_that_rises_will_rise_further(side: float) -> None:
-    """By haste times what it has risen of late, which is forgotten with omega_slow."""
-    p, x = P._replace(haste=2.0), law.start(AFLOAT, -side * 2.0, P)
+    """By demand_lead times what it has risen of late, which is forgotten with omega_slow."""
+    p, x = P._replace(demand_lead=2.0), law.start(AFLOAT, -side * 2.0, P)
     torques = []
     for _ in range(3):
         x, torque = law.update(x, AFLOAT, AFLOAT, side * 2.5, T_S, p)
@@ -178,7 +178,7 @@ def test_a_demand_that_rises_will_rise_further(side: float) -> None:
 
 def test_a_demand_that_falls_to_zero_is_not_led_through_the_gap_before_it_has_turned() -> None:
     """It may stop there, and then no flank is asked for."""
-    p, x = P._replace(haste=1.0), law.start(AFLOAT, 40.0, P)
+    p, x = P._replace(demand_lead=1.0), law.start(AFLOAT, 40.0, P)
     for T_driver in (4.0, 2.0, 0.0, -2.0):
         assert added(AFLOAT, x, T_driver, p) == 0.0
     assert added(AFLOAT, x, -just_above(2.0), p) == pytest.approx(-8.0)

@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from driveline.models.controller import launch, supervision, trust
+from driveline.models.controller import launch, trust
 from driveline.models.controller.causes import NONE, WRONG_LAUNCH
 from driveline.models.controller.launch import LaunchState
 from driveline.models.controller.supervision import Input, Parameters, State
 from driveline.models.physics.vehicle import added_speed
 from tests.models.controller.controllers import OURS
 
-P = Parameters(T_max=1.0, J_1=0.25, T_still=0.25, free=4.5)
+P = Parameters(T_max=1.0, J_1=0.25, T_still=0.25, launch_speed=4.5)
 T_S = 0.25
 FREE = 4.5
 """Speed in rad/s of the free motor at which is looked; T_max adds 1 rad/s in such a sample."""
@@ -111,8 +111,8 @@ CAR = OURS.Parameters()
 def set_off(side: float) -> list[State]:
     """States of the controller as a free motor sets off against its torque, up to when it is looked at."""
     states, omega_1 = [OURS.start(Input(), CAR)], 0.0
-    while len(states) == 1 or abs(states[-1].launch.free) < CAR.free * added_speed(CAR, supervision.T_S):
-        gained = -supervision.T_S * states[-1].motor.loop.T_mot / CAR.J_1
+    while len(states) == 1 or abs(states[-1].launch.free) < CAR.free * added_speed(CAR, T_S):
+        gained = -T_S * states[-1].motor.loop.T_mot / CAR.J_1
         states += driven(states[-1], side, [omega_1 + 0.5 * gained])
         omega_1 += gained
     return states
@@ -131,7 +131,7 @@ def driven(x: State, side: float, speeds: list[float]) -> list[State]:
 def test_trust_is_lost_at_once(side: float) -> None:
     states = set_off(side)
     assert [x.trust.cause for x in states] == [NONE] * (len(states) - 1) + [WRONG_LAUNCH]
-    assert (states[-1].trust.clock, trust.way(states[-1].trust.direction)) == (0.0, side)
+    assert (states[-1].trust.clock, trust.sign_of(states[-1].trust.direction)) == (0.0, side)
 
 
 def pulled_away(lost: int, T_mot_share: float = 1.0) -> list[State]:
@@ -142,7 +142,7 @@ def pulled_away(lost: int, T_mot_share: float = 1.0) -> list[State]:
         measured = math.nan if k == lost else -omega_1
         u = Input(T_driver=min(2.4 * k, 120.0), omega_1_meas=measured, T_mot_est=T_mot_share * T_mot)
         states.append(OURS.update(states[-1], u, CAR))
-        omega_1 += supervision.T_S * T_mot / CAR.J_1
+        omega_1 += T_S * T_mot / CAR.J_1
     return states
 
 
@@ -155,10 +155,10 @@ def test_a_sample_without_a_motor_speed_and_a_wrong_estimate_of_the_torque_hide_
 @each_side
 def test_trust_is_back_once_the_motor_turns_the_other_way_or_rests_and_not_before(side: float) -> None:
     """Other wrong directions heal in t_turn."""
-    turning = [-side * (3.5 + 0.01 * (-1.0) ** k) for k in range(2 * round(CAR.t_turn / supervision.T_S))]
+    turning = [-side * (3.5 + 0.01 * (-1.0) ** k) for k in range(2 * round(CAR.t_turn / T_S))]
     states = driven(set_off(side)[-1], side, turning)
     assert {(x.trust.cause, x.trust.clock) for x in states} == {(WRONG_LAUNCH, 0.0)}
-    proof, still = round(CAR.t_proof / supervision.T_S), CAR.omega_still
+    proof, still = round(CAR.t_proof / T_S), CAR.omega_still
     beyond = math.nextafter(still, math.inf)
     for omega_1, other, heals in (
         (3.5, 3.6, True),
@@ -177,4 +177,4 @@ def test_the_direction_is_that_of_the_demand_even_if_it_ends_in_that_sample(side
     u = Input(T_driver=side * 1.0, omega_1_meas=found.motor.omega_1, T_mot_est=before.motor.loop.T_mot)
     x = OURS.update(before, u, CAR)
     assert abs(u.T_driver) < CAR.T_still
-    assert (x.trust.cause, trust.way(x.trust.direction)) == (WRONG_LAUNCH, side)
+    assert (x.trust.cause, trust.sign_of(x.trust.direction)) == (WRONG_LAUNCH, side)

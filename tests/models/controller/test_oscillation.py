@@ -32,7 +32,7 @@ def test_a_half_swing_reaches_over_a_torque_on_both_sides(side: float) -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_half_swing_that_is_far_smaller_than_the_one_before_is_not_counted(side: float) -> None:
     """For that is what damping makes of it; and none is counted twice."""
-    enough = P.grows * 40.0
+    enough = P.swing_decay * 40.0
     assert after([side * 40.0, -side * enough]).count == 1.0
     assert after([side * 40.0, -side * math.nextafter(enough, 0.0)]).count == 0.0
     assert after([side * 40.0, -side * 15.0, -side * enough, -side * 90.0]).count == 1.0 - 1.0 / 8.0
@@ -65,23 +65,25 @@ def test_once_there_is_no_damping_half_swings_are_forgotten_slower() -> None:
 def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
     """By how large it is beside them: one of the torque of a small half swing explains little of a large one."""
     for torque in (20.0, 80.0):
-        changes = [0.0, 0.0, side * 0.25 * P.excuse * (torque + PEAK), 0.0]
+        changes = [0.0, 0.0, side * 0.25 * P.demand_excuse * (torque + PEAK), 0.0]
         assert after([torque, -torque, 0.0, 0.0], changes).count == pytest.approx(1.0 - 0.25 - 2.0 / 8.0)
 
 
 def test_the_largest_torque_of_a_half_swing_is_that_of_the_sample_too() -> None:
     x = SwingState(peak=20.0, count=1.0)
-    assert after([80.0], [0.5 * P.excuse * (80.0 + PEAK)], x).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
+    assert after([80.0], [0.5 * P.demand_excuse * (80.0 + PEAK)], x).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
 
 
 def test_what_is_no_half_swing_is_taken_for_a_small_one() -> None:
-    assert after([0.0], [-0.5 * P.excuse * PEAK], SwingState(count=1.0)).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
+    assert after([0.0], [-0.5 * P.demand_excuse * PEAK], SwingState(count=1.0)).count == pytest.approx(
+        1.0 - 0.5 - 1.0 / 8.0
+    )
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_one_half_swing_may_follow_a_change_of_the_demand(side: float) -> None:
     """However large the change, one and no more; and within t_forget."""
-    for change in (AHEAD * P.excuse, 10.0 * P.excuse):
+    for change in (AHEAD * P.demand_excuse, 10.0 * P.demand_excuse):
         x = after([0.0, 20.0], [0.0, side * change * P.T_max])
         assert x.count == -AHEAD
         assert after([-20.0], x=x).count == pytest.approx(1.0 - AHEAD + 1.0 / 8.0)

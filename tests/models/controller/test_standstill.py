@@ -37,14 +37,20 @@ def test_a_demand_or_motion_ends_rest_at_once() -> None:
 
 
 def test_the_damping_fades_out_after_the_time_at_rest() -> None:
-    assert [standstill.left(quiet, P) for quiet in (0.0, 1.0, 1.125, 1.25, 1.5)] == [1.0, 1.0, 0.75, 0.5, 0.0]
-    assert standstill.left(above(1.0), P) < 1.0
+    assert [standstill.remaining_damping(quiet, P) for quiet in (0.0, 1.0, 1.125, 1.25, 1.5)] == [
+        1.0,
+        1.0,
+        0.75,
+        0.5,
+        0.0,
+    ]
+    assert standstill.remaining_damping(above(1.0), P) < 1.0
 
 
 def test_rest_is_complete_once_no_damping_is_left() -> None:
     assert standstill.is_complete(1.5, P)
     assert not standstill.is_complete(math.nextafter(1.5, 0.0), P)
-    assert standstill.left(math.nextafter(1.5, 0.0), P) > 0.0
+    assert standstill.remaining_damping(math.nextafter(1.5, 0.0), P) > 0.0
 
 
 @given(t_rest=st.floats(0.0, 10.0), t_fade=st.floats(0.002, 5.0))
@@ -52,6 +58,6 @@ def test_rest_is_complete_whatever_the_rounding_of_its_times(t_rest: float, t_fa
     p = P._replace(t_rest=t_rest, t_fade=t_fade)
     quiet = standstill.quiet_time(standstill.longest(p), True, 0.002, p)
     assert standstill.is_complete(quiet, p)
-    assert standstill.left(quiet, p) == 0.0
-    assert standstill.left(0.0, p) == 1.0
+    assert standstill.remaining_damping(quiet, p) == 0.0
+    assert standstill.remaining_damping(0.0, p) == 1.0
     assert not standstill.is_complete(0.0, p)

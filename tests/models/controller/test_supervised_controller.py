@@ -10,10 +10,9 @@ from driveline.models.block.declaration import variables
 from driveline.models.block.runner import runner
 from driveline.models.comparators import measured_speeds, speed_washout
 from driveline.models.comparators.speed_washout import Washout
-from driveline.models.controller import causes, damping_law, supervision, torque_estimator, torque_loop
+from driveline.models.controller import T_S, causes, damping_law, supervision, torque_estimator, torque_loop
 from driveline.models.controller.interfaces import Addition, Estimator, Law, Motion
 from driveline.models.controller.supervised_controller import supervised
-from driveline.models.controller.supervision import T_S
 from driveline.models.controller.trust import TrustState
 from tests.fmus.native.recorded import computed
 from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken

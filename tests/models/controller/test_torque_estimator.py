@@ -7,8 +7,8 @@ import pytest
 
 from driveline.models import damping_controller
 from driveline.models.block.declaration import Real, variables
+from driveline.models.controller import T_S
 from driveline.models.controller import torque_estimator as estimator
-from driveline.models.controller.supervision import T_S
 from driveline.models.controller.torque_estimator import Estimate, EstimatorState
 from tests.models.controller.controllers import ROLLING
 

@@ -5,8 +5,8 @@ from math import cos, exp, sin, sqrt
 
 import pytest
 
-from driveline.models.controller import torque_loop
-from driveline.models.controller.supervision import T_S, Parameters
+from driveline.models.controller import T_S, torque_loop
+from driveline.models.controller.supervision import Parameters
 from driveline.models.controller.torque_loop import LoopState
 
 P = Parameters(T_max=180.0, tau=0.003)

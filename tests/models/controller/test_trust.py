@@ -186,7 +186,7 @@ def turning(samples: int, x: TrustState, omega_1: float, good: bool = True, u: I
 def test_the_direction_is_that_in_which_a_trusted_motor_has_turned_for_t_apart(side: float) -> None:
     """Beyond its noise; a fault takes nothing away, and wheels that lock throw the motor back for less."""
     x, samples, beyond = TRUSTED._replace(direction=-side), round(P.t_apart / T_S), math.nextafter(3.0, 9.0)
-    assert [trust.way(turning(n, x, side * beyond)) for n in (samples - 1, samples)] == [-side, side]
+    assert [trust.sign_of(turning(n, x, side * beyond)) for n in (samples - 1, samples)] == [-side, side]
     assert turning(9 * samples, x, side * beyond) == side
     for omega_1, good in ((3.0, True), (99.0, False)):
         assert turning(9 * samples, x, side * omega_1, good) == -side

@@ -13,7 +13,8 @@ import pytest
 from driveline.fmus.catalogue import EVERY
 from driveline.fmus.description.variables import interface
 from driveline.models.block.types import SampledBlock
-from driveline.models.controller.supervision import FALLBACK, T_S, Input
+from driveline.models.controller import T_S
+from driveline.models.controller.supervision import FALLBACK, Input
 from driveline.models.damping_controller import BLOCK
 from tests.models.controller.controllers import ROLLING
 

@@ -11,7 +11,7 @@ from driveline.models.controller.wheel_messages import WheelState
 
 P = Parameters(
     T_max=100.0, J_1=0.25, omega_max=500.0, omega_still=3.0, t_stale=1.0, t_apart=1.0, t_late=1.0,
-    leap=0.2, apart=0.16, g_radius=0.0625,
+    wheel_jump=0.2, wheel_deviation=0.16, g_radius=0.0625,
 )  # fmt: skip
 T_S = 0.25
 LEAP, APART = 20.0, 16.0

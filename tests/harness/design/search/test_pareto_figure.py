@@ -12,7 +12,7 @@ from driveline.harness.design.search.pareto_figure import MARGIN, _around, _symb
         ("omega_w", r"$\omega_{w}$"),
         ("T_take_max", "$T_{take_max}$"),
         ("d", "$d$"),
-        ("bounce", "bounce"),
+        ("landing_share", "landing_share"),
     ],
 )
 def test_a_parameter_is_a_symbol_with_its_index_and_a_word_stays_a_word(name: str, shown: str) -> None:

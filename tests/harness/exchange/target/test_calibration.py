@@ -16,7 +16,7 @@ from driveline.harness.commands.cli import main
 from driveline.harness.exchange.target.controllers import Programs
 from driveline.models import motor_torque_loop, two_mass_driveline, wheel_speed_can
 from driveline.models.block.runner import runner
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK
 
 FMU = CONTROLLERS["DampingController"]

@@ -13,7 +13,7 @@ from driveline.fmus.target.sources import CONTROLLERS, target_sources
 from driveline.harness.exchange.target import costs
 from driveline.harness.exchange.target.controllers import Programs
 from driveline.harness.exchange.target.costs import schedule
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S
 
 CLOCK = 25e6
 

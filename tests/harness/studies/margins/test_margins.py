@@ -17,7 +17,7 @@ from driveline.harness.studies.margins.margins import FREQUENCIES, margins
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
 from driveline.models.block.types import SampledBlock
-from driveline.models.controller.supervision import T_S
+from driveline.models.controller import T_S
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
 from tests.slow import slow
 
