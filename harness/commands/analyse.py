@@ -1,13 +1,10 @@
 """Analyses the loop with a controller of the project and prints its margins with the true delays: gain, phase, delay
 and M_s. The output folder gets the page analysis.md, sensitivity.csv, analysis.json (what made them) and the figures.
 
-Bode and Nyquist figures, the poles over speed, stiffness, inertia and dead time, the describing function of the
-backlash and the limit cycles that it excludes, the error of the estimate and its time in the wrong contact mode, and
-the sensitivity of the metrics to each parameter of car and controller. The linear model comes from the functions of the
-blocks themselves, differentiated with the teeth in contact.
+On the page are Bode and Nyquist figures, poles, the describing function of the backlash, the error of the estimate and
+the sensitivity of the metrics. The linear model is that of the blocks themselves, with the teeth in contact.
 
 examples:
-  driveline analyse
   driveline analyse --controller SpeedWashout --output results/washout
   driveline analyse --vehicle examples/cars/van.toml --parameters van_gains.toml --output results/van
   driveline analyse --plant TwoMassDriveline --json > analysis.json

@@ -1,22 +1,17 @@
 """Builds the FMUs of the loop, which the other commands run. The same sources give the same files, byte by byte.
 
-A vehicle file and the gains that `driveline design` makes of it become start values: the FMUs are that car. They are
-for co-simulation with FMI 2.0; the native ones of continuous blocks are for model exchange too, in either FMI. The
-native builds go into the folder native/ in that of the others. They need a C compiler; where it is missing, they are
-left out unless they are asked for. With --fmi 3 the FMUs are native ones for FMI 3.0, in the folder fmi3/.
+A vehicle file and the gains that `driveline design` makes of it become start values: the FMUs are that car. The native
+builds need a C compiler; where it is missing, they are left out unless they are asked for (docs/fmus.md).
 
 FMUs: {fmus}
 only by name, controllers to compare ours with: {comparators}
 
 examples:
   driveline build                            all FMUs, each build that is possible here
-  driveline build TwoMassDriveline           only that one
-  driveline build --output /srv/fmus         somewhere else
-  driveline build --build native             only the native ones
+  driveline build TwoMassDriveline --build native --output /srv/fmus
   driveline build my_vehicle.py              the block in a file of your own, see docs/native.md
   driveline build --vehicle car.toml --parameters gains.toml
-  driveline build --fmi 3                    for FMI 3.0
-  driveline build --platform all             native ones for Linux, Windows and macOS (extra `cross`)
+  driveline build --platform all --fmi 3     for FMI 3.0, on Linux, Windows and macOS (extra `cross`)
 """
 
 from pathlib import Path

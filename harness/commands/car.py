@@ -14,7 +14,6 @@ examples:
   driveline car --template --output my.toml
 """
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,17 +23,7 @@ from .options import Replacing, file, file_of, record
 from .printing import JsonPrinting, write_toml
 
 if TYPE_CHECKING:
-    from ...fmus.building.car_entries import Entry
-    from ..studies.margins.car_properties import CarProperties, PlantProperties
-
-SHORT = {
-    "TwoMassDriveline": "design plant",
-    "ValidationVehicle": "vehicle",
-    "MotorTorqueLoop": "motor",
-    "WheelSpeedCan": "bus",
-    "DampingController": "controller",
-}
-"""What stands in the table for the name of an FMU."""
+    from ..studies.margins.car_properties import PlantProperties
 
 
 @record
@@ -54,7 +43,7 @@ def run(args: Arguments) -> int:
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..design.design import design
     from ..design.kalman import DesignError
-    from ..studies.margins.car_properties import car_properties
+    from ..studies.margins.car_properties import announce, car_properties
 
     values = read_vehicle(args.vehicle) if args.vehicle else {}
     entries = car_entries(values)
@@ -65,7 +54,7 @@ def run(args: Arguments) -> int:
         gains, origin = None, f"no gains: {' '.join(str(reason).splitlines())}"
     found = car_properties(values, gains)
     if not args.silent:
-        _show(entries, found, args.vehicle, origin)
+        announce(entries, found, str(args.vehicle or "the default car"), origin)
     plants = [_of_plant(plant) for plant in found.plants]
     properties = {**found._asdict(), "plants": plants}
     args.document({"entries": [each._asdict() for each in entries], "gains": origin, "properties": properties})
@@ -87,37 +76,3 @@ def _template(args: Arguments) -> int:
 
 def _of_plant(plant: "PlantProperties") -> dict[str, Any]:
     return {**plant._asdict(), "damped": plant.damped and plant.damped._asdict()}
-
-
-def _show(entries: "Iterable[Entry]", found: "CarProperties", vehicle: Path | None, gains: str) -> None:
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
-    from ..views.terminal import plain_table, print_table
-
-    table = Table(title=str(vehicle or "the default car"), title_justify="left", box=SIMPLE_HEAD, padding=0)
-    for heading in ("entry", "value", "unit", "from", "taken by", "meaning"):
-        table.add_column(heading, justify="right" if heading == "value" else "left", no_wrap=heading != "meaning")
-    before = None
-    for entry in entries:
-        if before not in (None, entry.origin):
-            table.add_section()
-        before = entry.origin
-        origin = f"{entry.origin} ({entry.source})" if entry.source else entry.origin
-        value = str(entry.value).lower() if isinstance(entry.value, bool) else f"{entry.value:.6g}"
-        blocks = ", ".join(SHORT.get(name, name) for name in entry.blocks)
-        table.add_row(entry.name, value, entry.unit, origin, blocks, entry.meaning)
-    print_table(table)
-
-    headings = ["drive train at 15 km/h", "frequency\nHz", "damping\nratio", "with control\nHz", "damping\nratio"]
-    rows = []
-    for plant in found.plants:
-        damped = [f"{plant.damped.frequency:.2f}", f"{plant.damped.damping_ratio:.2f}"] if plant.damped else ["-", "-"]
-        rows.append([plant.plant, f"{plant.frequency:.2f}", f"{plant.damping_ratio:.3f}", *damped])
-    print_table(plain_table(f"control: {gains}; - where there is none, or the loop is not stable", headings, rows))
-    print(
-        f"backlash at the wheel: {found.gap:.2f} degrees from flank to flank\n"
-        f"authority: the control takes up to {found.taken:g} N.m from the demand and adds up to {found.added:g} N.m, "
-        f"of T_max = {found.T_max:g} N.m\n"
-        f"at the wheels: {found.wheel_torque:.4g} N.m by all of the motor, which is {found.acceleration:.2f} m/s2"
-    )

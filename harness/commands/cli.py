@@ -14,9 +14,7 @@ from contextlib import suppress
 from errno import ENOSPC
 from functools import partial
 from importlib import import_module
-from inspect import cleandoc
 from io import TextIOWrapper
-from tempfile import gettempdir
 from typing import Any, NamedTuple, NoReturn
 from unicodedata import category
 
@@ -118,6 +116,8 @@ class Parser(argparse.ArgumentParser):
                 return
             found = Command(module.Arguments, module.run)
         else:
+            from inspect import cleandoc
+
             self._describe(cleandoc(found.record.__doc__ or ""))
         from .arguments import EXPERTS, add_arguments  # what the help of `driveline` does without
 
@@ -323,6 +323,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if error.filename == STDOUT:
             forget_stdout()
         elif error.errno == ENOSPC and error.filename is None:  # whoever writes results names them
+            from tempfile import gettempdir
+
             error.filename = f"temporary files in {gettempdir()}"
         print(f"{name}: {reason(error)}", file=sys.stderr)
         return 1

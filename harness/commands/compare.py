@@ -3,16 +3,12 @@ table, which goes to table.md in the output folder; all metrics go to metrics.cs
 
 {metrics}
 
-Metrics that make no sense for a manoeuvre, such as the settling of a pulse, are a dash. A manoeuvre of your own is a
-TOML file, or a table over time (docs/manoeuvres.md). If none are given: {compared}.
+Metrics that make no sense for a manoeuvre, such as the settling of a pulse, are a dash. If none are given: {compared}.
 
 examples:
-  driveline compare
   driveline compare --plant ValidationVehicle --manoeuvre tipin15 --manoeuvre drive
-  driveline compare --plant my_vehicle.fmu --seed 7 --output results/mine
-  driveline compare --set controller.k_d=1.5 --output results/softer
-  driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --output results/overtaking
-  driveline compare --manoeuvre tipin15 --window 0.95,1.3 --figures pdf --figures svg
+  driveline compare --plant my_vehicle.fmu --set controller.k_d=1.5 --seed 7 --output results/mine
+  driveline compare --manoeuvre examples/manoeuvres/overtaking.toml --window 0.95,1.3 --figures svg
   driveline compare --report comparison.html --json > comparison.json
 """
 

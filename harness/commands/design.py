@@ -1,21 +1,17 @@
 """Computes the gains of the controller for the car of a vehicle file and prints them as TOML, each with its unit and
-meaning, or writes them to a file that the other commands take as --parameters. What the vehicle file does not name is
-that of the default car. docs/control.md says how the gains come about. A file of parameters can set limits: with its
-T_take_max and T_add_max the control never takes or adds more, whatever the car would need.
+meaning, or writes them to a file that the other commands take as --parameters (docs/control.md). A file of parameters
+can set limits: with its T_take_max and T_add_max the control never takes or adds more, whatever the car would need.
 
-With --search the parameters of the law are searched instead, for this or another controller: by a cost over all
-manoeuvres on both plants and at corners of the parameter box, see docs/tuning.md. The folder gets all candidates
-(evaluations.csv), what made them (search.json), the gains of the one that is chosen (gains.toml) and the front between
-comfort and response (front.png and .pdf). A search that was stopped goes on there with the same command, and another
+With --search the parameters of the law are searched instead, for this or another controller, by a cost over all
+manoeuvres (docs/tuning.md). The folder gets all candidates, what made them, the gains of the one that is chosen and the
+front between comfort and response. A search that was stopped goes on there with the same command, and another
 --character chooses from the same candidates.
 
 examples:
-  driveline design --vehicle examples/cars/van.toml --output van_gains.toml
-  driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
   driveline design                                          the gains for the default car, only printed
+  driveline design --vehicle examples/cars/van.toml --output van_gains.toml
   driveline design --search results/design                  searched, in some minutes
   driveline design --search results/design --character 0.8  softer, from the same candidates
-  driveline design --search results/washout --controller SpeedWashout
 """
 
 from importlib.metadata import version

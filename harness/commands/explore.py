@@ -2,16 +2,12 @@
 to comfort, control on and off, and the other controllers beside ours. Curves and metrics follow; the run without
 control stands behind in grey, and any run can be held beside those that follow. Ctrl-C ends it.
 
-A recorded drive and manoeuvres from files can be driven too. A click saves the car and the gains as files for --vehicle
-and --parameters of the other commands, another one a report (docs/explorer.md).
+A click saves the car and the gains as files for the other commands, another one a report (docs/explorer.md).
 
 examples:
-  driveline explore
   driveline explore --vehicle examples/cars/van.toml --parameters van_gains.toml
-  driveline explore my_trip.csv
-  driveline explore --manoeuvre my_manoeuvre.toml
+  driveline explore my_trip.csv --manoeuvre my_manoeuvre.toml
   driveline explore --plant my_vehicle.fmu --controller my_controller.fmu
-  driveline explore --port 8000
 """
 
 from argparse import ArgumentTypeError

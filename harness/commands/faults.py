@@ -3,20 +3,14 @@ judges each run: is the torque reference finite and limited, does the status say
 0.5 s after the fault, is no oscillation left, does the drive train swing no more than without control?
 
 What fails, when, how much and for how long follows from the seed and the number of a case; half of the cases have two
-faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. Of the
-cases that are not clean a matrix of kinds of faults and judges is printed, for single faults and pairs together.
-
-840 cases have every kind of fault alone, in every situation, on both plants (420 on one); of the roads it takes 2664
-(1332). Of fewer cases the summary names the kinds that no case has alone.
-
-The output folder gets faults.csv (all cases with what was measured), the page faults.md, faults.json (what made them)
-and, in its folder figures, the matrices as figures. The same command goes on where it was stopped. --case runs one case
-again, and writes its signals and draws them. The exit code is 1 if a case is not clean.
+faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. 840 cases
+have every kind of fault alone, in every situation, on both plants (420 on one); of the roads it takes 2664 (1332). The
+same command goes on where it was stopped. --case runs one case again, and writes its signals and draws them. The exit
+code is 1 if a case is not clean.
 
 examples:
   driveline faults                                        1000 cases, both plants
-  driveline faults --cases 10000 --seed 2
-  driveline faults --plant ValidationVehicle --cases 300
+  driveline faults --cases 10000 --seed 2 --plant ValidationVehicle
   driveline faults --campaign roads --output results/roads  on ice, hills, under ABS; faults that stay, late frames
   driveline faults --case 806                             one of them, drawn
   driveline faults --controller my_controller.fmu         how good is mine?
@@ -30,19 +24,7 @@ from ..loop.places import NATIVE
 from ..loop.settings import loop
 from .arguments import option
 from .jobs import Job, campaign_job, distinguishing, job
-from .options import (
-    Cases,
-    Loop,
-    Replacing,
-    Report,
-    case,
-    cases,
-    controller,
-    output,
-    plants,
-    record,
-    seed,
-)
+from .options import Cases, Loop, Replacing, Report, case, cases, controller, output, plants, record, seed
 from .printing import JsonPrinting
 from .settings import as_given, caption, plants_settings
 

@@ -27,17 +27,25 @@ LEAST_WINDOW = 0.01
 """In s, of the figures: a few samples."""
 
 
-def folder(text: str) -> Path:
-    """The path of a folder, which may not exist yet."""
+def _path(text: str, what: str, other: str, wrong: Callable[[Path], bool]) -> Path:
     if not text:
-        raise ArgumentTypeError("the name of the folder is empty")
-    path = Path(text)
+        raise ArgumentTypeError(f"the name of the {what} is empty")
     try:
-        if path.exists() and not path.is_dir():
-            raise ArgumentTypeError(f"{text} is a file; a folder is needed")
+        if wrong(Path(text)):
+            raise ArgumentTypeError(f"{text} is a {other}; a {what} is needed")
     except OSError as error:  # a name that is too long
         raise ArgumentTypeError(error.strerror or str(error)) from error
-    return path
+    return Path(text)
+
+
+def folder(text: str) -> Path:
+    """The path of a folder, which may not exist yet."""
+    return _path(text, "folder", "file", lambda path: path.exists() and not path.is_dir())
+
+
+def file(text: str) -> Path:
+    """The path of a file, which may not exist yet."""
+    return _path(text, "file", "folder", Path.is_dir)
 
 
 def output_folder(text: str) -> Path:
@@ -51,19 +59,6 @@ def output_folder(text: str) -> Path:
             return path
     except OSError as error:
         raise ArgumentTypeError(f"{text} cannot be written to: {there}: {error.strerror}") from error
-
-
-def file(text: str) -> Path:
-    """The path of a file, which may not exist yet."""
-    if not text:
-        raise ArgumentTypeError("the name of the file is empty")
-    path = Path(text)
-    try:
-        if path.is_dir():
-            raise ArgumentTypeError(f"{text} is a folder; a file is needed")
-    except OSError as error:  # a name that is too long
-        raise ArgumentTypeError(error.strerror or str(error)) from error
-    return path
 
 
 def number(takes: Callable[[float], bool], what: str) -> Callable[[str], float]:
@@ -217,10 +212,7 @@ class OurController(ParameterFiles):
     """A controller of the project, with the values of car and controller."""
 
     controller: str = option(
-        PLACES["controller"][0],
-        "damping control (default: %(default)s)",
-        choices=PLACES["controller"],
-        metavar="NAME",
+        PLACES["controller"][0], "damping control (default: %(default)s)", choices=PLACES["controller"], metavar="NAME"
     )
 
 

@@ -4,19 +4,15 @@ what its sensors record every 2 ms to PLANT_prbs_CONTROL.csv in the output folde
   motor speed      of the resolver, with its noise and resolution
   motor torque     as motor control estimates it
   torque demand    that motor control receives, held until the next sample
-  wheel speed      mean of the driven wheels over CAN, as received: coarse, late, held between messages;
-                   with its validity, and a counter of the messages
-  wheel torque     of measurement wheels at both driven wheels, positive when it drives, with noise,
-                   offset and gain error; T_load = -(wheel torque)/i
+  wheel speed      mean of the driven wheels over CAN: coarse, late, held, with validity and counter
+  wheel torque     of measurement wheels at both driven wheels, positive when it drives
 
-Columns have their units in brackets, so that other commands read the file (docs/recordings.md). Errors of the other
-sensors are parameters of motor and can. The demand repeats after 2^order - 1 clocks.
+Errors of the other sensors are parameters of motor and can. The demand repeats after 2^order - 1 clocks.
 
 examples:
   driveline record --plant ValidationVehicle --seed 7
   driveline record --amplitude 15 --clock 0.06 --order 7 --mean 5 --speed 30 --duration 30
   driveline record --noise 0 --offset 0 --gain-error 0 --set motor.sigma_T=0 --set motor.g_T=1.03
-  driveline record --control on --vehicle examples/cars/van.toml --format mf4
 """
 
 from argparse import ArgumentTypeError

@@ -41,10 +41,7 @@ class Headings:
         (), "of a log of a bus (BLF, ASC): what its frames mean (repeatable)", Path, metavar="FILE.dbc"
     )
     column: tuple[tuple[str, str], ...] = option(
-        (),
-        "as v='Speed 2 [km/h]', or T_mot=-Torque to turn a sign (repeatable)",
-        column,
-        metavar="QUANTITY=HEADING",
+        (), "as v='Speed 2 [km/h]', or T_mot=-Torque to turn a sign (repeatable)", column, metavar="QUANTITY=HEADING"
     )
     aliases: tuple[Path, ...] = option(
         (), "more names of quantities, as in omega_1 = ['n_EM1'] (repeatable)", Path, metavar="FILE.toml"

@@ -6,14 +6,10 @@ The recording is a file with the columns
 
   {columns}
 
-in any order and under any name that docs/recordings.md lists (others are ignored; without elevation the road is level).
-The table shows
+under any name that docs/recordings.md lists (without elevation the road is level). The table, which goes to
+RECORDING_metrics.csv and RECORDING_table.md, shows, in brackets over that without damping,
 
 {metrics}
-
-in brackets over that without damping, and goes to RECORDING_metrics.csv and RECORDING_table.md in the output
-folder, the signals to RECORDING_off.csv and RECORDING_CONTROLLER.csv (or --format), the figure to RECORDING.png and
-RECORDING.pdf (or --figures), in the units of the recording.
 
 What makes the recording implausible is said with column and time before it is driven and after, and stands with the
 results: signs, units, rates, codes for missing values, spikes, jumps (docs/recordings.md#plausibility).
@@ -23,8 +19,7 @@ examples:
   driveline replay harness/manoeuvres/data/town_drive.csv
   driveline replay my_trip.csv --controller DampingController --controller SpeedWashout
   driveline replay bench.csv --column v='n_roller [km/h]' --column T_mot='-M_em [Nm]'
-  driveline replay my_trip.blf --dbc drive_train.dbc
-  driveline replay my_trip.csv --held 0.5 --output results/rough_foot
+  driveline replay my_trip.blf --dbc drive_train.dbc --held 0.5 --output results/rough_foot
 """
 
 from collections.abc import Mapping, Sequence
@@ -38,18 +33,7 @@ from ..metrics.run_metrics import RideMetrics
 from ..views.metrics_table import legend
 from .arguments import option
 from .jobs import RunJob, distinguishing, job
-from .options import (
-    Figures,
-    Loop,
-    Replacing,
-    Report,
-    SignalsFormat,
-    controllers,
-    output,
-    plant,
-    record,
-    seconds,
-)
+from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plant, record, seconds
 from .printing import JsonPrinting
 from .recorded import Recorded, examples, recording
 from .settings import all_settings, caption
@@ -60,10 +44,7 @@ if TYPE_CHECKING:
     from ..recordings.plausibility import Finding
     from ..studies.drives.replay import Ride
 
-IN_HELP = {
-    "columns": ", ".join(examples("time", "v", "elevation", "T_mot")),
-    "metrics": legend(RideMetrics),
-}
+IN_HELP = {"columns": ", ".join(examples("time", "v", "elevation", "T_mot")), "metrics": legend(RideMetrics)}
 
 
 @record

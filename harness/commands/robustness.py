@@ -2,17 +2,12 @@
 drives each through a tip-in, a tip-out and a launch with every controller, with the same noise. A table for each plant
 tells which share of the runs is bounded and quiet, which is good, and what half and 95 % of the runs do not exceed.
 
-The output folder gets runs.csv (every run with all metrics), draws.csv, summary.csv, the page robustness.md,
-robustness.json (what made them) and, in its folder figures, the distributions and the worst draws of the first
-controller. The same command goes on where it was stopped. --case runs one draw again, and writes its signals and draws
-them.
+The same command goes on where it was stopped. --case runs one draw again, and writes its signals and draws them.
 
 examples:
   driveline robustness                                       300 draws, both plants, all controllers
-  driveline robustness --cases 1000 --plant ValidationVehicle
   driveline robustness --controller DampingController --parameters my_gains.toml --output results/mine
   driveline robustness --case 17                             one of them, drawn
-  driveline robustness --scheduler tcp://10.0.0.1:8786       on a Dask cluster
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,19 +18,7 @@ from ..loop.places import PLACES
 from ..loop.settings import Settings
 from .arguments import option
 from .jobs import Job, campaign_job, distinguishing, job
-from .options import (
-    Cases,
-    Loop,
-    Replacing,
-    Report,
-    case,
-    cases,
-    controllers,
-    output,
-    plants,
-    record,
-    seed,
-)
+from .options import Cases, Loop, Replacing, Report, case, cases, controllers, output, plants, record, seed
 from .printing import JsonPrinting
 from .settings import all_settings, as_given, caption
 

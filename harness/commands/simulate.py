@@ -2,17 +2,14 @@
 every signal, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the output folder.
 
 An FMU of your own takes the place of controller, motor, plant or can by one word, its path; what it calls otherwise
-than ours, --map renames. A manoeuvre of your own is a TOML file with steps, ramps, pulses, sines, ... of demand, brake
-and slope, or a table of them over time (docs/manoeuvres.md). Signals can also be written as Parquet or ASAM MDF 4.
+than ours, --map renames. A manoeuvre of your own is a TOML file or a table over time (docs/manoeuvres.md).
 
 examples:
-  driveline simulate --manoeuvre tipin15
   driveline simulate --plant ValidationVehicle --control off --manoeuvre launch --plot
   driveline simulate --plant theirs.fmu --map plant.T_gear=Shaft.tau --output results/theirs
   driveline simulate --vehicle examples/cars/van.toml --parameters van_gains.toml
   driveline simulate --manoeuvre drive --set controller.k_d@2.0=1.5 --set motor.g_T=1.05 --seed 7
-  driveline simulate --manoeuvre drive --plot --window 4,6 --figures svg
-  driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --format mf4 --frames blf
+  driveline simulate --manoeuvre examples/manoeuvres/overtaking.toml --format mf4 --frames blf --figures svg --plot
 """
 
 from pathlib import Path

@@ -1,19 +1,14 @@
 """Writes the closed loop as a System Structure Package (SSP 1.0), one file driveline.ssp in which everything is that
 another tool needs to run it: the FMUs, how they are connected and drawn, their parameters with units, and a source FMU
-that drives one manoeuvre. Open it in FMPy, libcosim, ecos or OMSimulator and press Run, or unpack it and open the
-project that it holds in MasterSim; docs/ssp.md has the steps for each.
+that drives one manoeuvre. Open it in FMPy, libcosim, ecos or OMSimulator and press Run; docs/ssp.md has the steps.
 
 Its variants are the plants: the first one is what a tool opens that knows none (SystemStructure.ssd). The numbers of
---vehicle, --parameters and --set, the start and the points of the manoeuvre are parameter sets (SSV), which can be
-edited there. A manoeuvre of your own is made of steps, ramps, pulses or points, or its demand is a sine or a binary
-torque (docs/manoeuvres.md).
+--vehicle, --parameters and --set, the start and the points of the manoeuvre are parameter sets (SSV).
 
 examples:
-  driveline ssp
   driveline ssp --manoeuvre launch --output results/launch
   driveline ssp --plant ValidationVehicle                  only this plant, for tools that know no variants
   driveline ssp --vehicle examples/cars/van.toml --parameters van_gains.toml
-  driveline ssp --controller NoDamping --output results/undamped
   driveline ssp --build python                             FMUs that run Python, for hosts that are Python
 """
 

@@ -39,10 +39,7 @@ KINDS = (
         ("runs.csv", "draws.csv", "summary.csv", "robustness.md"),
     ),
     Kind(
-        "design",
-        ("design", "--evaluations", "6", "--build", "native"),
-        "--search",
-        ("evaluations.csv", "gains.toml"),
+        "design", ("design", "--evaluations", "6", "--build", "native"), "--search", ("evaluations.csv", "gains.toml")
     ),
 )
 
