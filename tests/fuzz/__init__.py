@@ -1,4 +1,6 @@
-"""Fuzz targets: odd input by the thousand, each answered as promised or told as a fault.
+"""Fuzz targets: odd input by the thousand, each answered as promised or told as a fault."""
 
-A target says what one try is. It draws everything from a random generator, so that a seed tells the whole run.
-"""
+from tests.fuzz import archives, calls, options, parameter_files, plants, recordings, swollen
+from tests.fuzz.target import TARGETS
+
+__all__ = ["TARGETS", "archives", "calls", "options", "parameter_files", "plants", "recordings", "swollen"]

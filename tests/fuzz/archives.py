@@ -4,7 +4,6 @@ import re
 import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 from zipfile import ZipFile, ZipInfo
@@ -18,7 +17,7 @@ from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 
 DESCRIPTION = "modelDescription.xml"
 ATTRIBUTE = re.compile(r' (\w+)="([^"]*)"')
@@ -69,7 +68,12 @@ def damaged(sound: Path, path: Path, random: Random) -> None:
             target.writestr(entry, content)
 
 
-@contextmanager
+@target(
+    "damaged archives and model descriptions of FMUs",
+    "a run, or lines that refuse it; nothing left behind",
+    short=60,
+    long=20_000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     list(build_fmus((), folder, "native"))
     sound, path, temporary = folder / NATIVE / f"{PLANTS[0]}.fmu", folder / "theirs.fmu", folder / "temporary"
@@ -99,12 +103,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         yield attempt
     finally:
         tempfile.tempdir = usual
-
-
-TARGET = Target(
-    "damaged archives and model descriptions of FMUs",
-    "a run, or lines that refuse it; nothing left behind",
-    attempts,
-    short=60,
-    long=20_000,
-)

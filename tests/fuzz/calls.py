@@ -2,7 +2,6 @@
 
 import subprocess
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 
@@ -13,7 +12,7 @@ from driveline.fmus.building.builds import FMIS, NotPossible, builders
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import host_compiler
 from driveline.fmus.native.packaging import FMI_HEADERS
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 
 HOST = Path(__file__).parents[1] / "fmus" / "native" / "native_host.c"
 
@@ -67,7 +66,12 @@ def program(fmu: Path, folder: Path, host: Path = HOST) -> list[str]:
     return [str(made), str(description.guid)]
 
 
-@contextmanager
+@target(
+    "calls of native FMUs in any order with any arguments, under address and undefined-behaviour sanitizers",
+    "no fault of memory or arithmetic, no memory left behind",
+    short=100,
+    long=100_000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     built = [build(fmu, folder) for fmi in FMIS for build in builders("native", fmi=fmi) for fmu in FMUS.values()]
     programs = [program(fmu, folder / f"{fmu.parent.name}_{fmu.stem}") for fmu in built]
@@ -80,12 +84,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         return f"sequences of {CALLS} calls, no fault of memory or arithmetic"
 
     yield attempt
-
-
-TARGET = Target(
-    "calls of native FMUs in any order with any arguments, under address and undefined-behaviour sanitizers",
-    "no fault of memory or arithmetic, no memory left behind",
-    attempts,
-    short=100,
-    long=100_000,
-)

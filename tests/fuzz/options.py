@@ -3,14 +3,14 @@
 import argparse
 import io
 from collections.abc import Iterator
-from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 from random import Random
 
 from driveline.fmus.building.builds import build_fmus
 from driveline.harness.commands.cli import COMMANDS, main, parser
 from tests.fuzz.damage import ODD
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 
 RUN = "simulate"
 """The command that is run; of the others the options are read."""
@@ -49,7 +49,12 @@ def code(arguments: list[str]) -> int:
         return int(end.code or 0)
 
 
-@contextmanager
+@target(
+    "odd words as options of `driveline`",
+    "exit code 0, or 1 or 2 with a short sentence",
+    short=40,
+    long=20_000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     fmus = folder / "fmus"
     list(build_fmus((), fmus))
@@ -71,12 +76,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         return f"exit code {answer}"
 
     yield attempt
-
-
-TARGET = Target(
-    "odd words as options of `driveline`",
-    "exit code 0, or 1 or 2 with a short sentence",
-    attempts,
-    short=40,
-    long=20_000,
-)

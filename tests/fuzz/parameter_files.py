@@ -1,14 +1,13 @@
 """Vehicle files."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 
 SOUND = "# a car\nJ_1 = 0.09\nJ_2 = 0.45\nC = 210.0\nphi_B = 0.06\ni = 10.5\nm = 2200\nr = 0.34\n"
 
@@ -20,7 +19,12 @@ def other_value(text: str, random: Random) -> str:
     return "\n".join(lines)
 
 
-@contextmanager
+@target(
+    "damaged vehicle files",
+    "the parameters, or a line for each entry that is refused",
+    short=100,
+    long=100_000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     def attempt(random: Random) -> str:
         path = folder / "car.toml"
@@ -35,12 +39,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         return "taken"
 
     yield attempt
-
-
-TARGET = Target(
-    "damaged vehicle files",
-    "the parameters, or a line for each entry that is refused",
-    attempts,
-    short=300,
-    long=100_000,
-)

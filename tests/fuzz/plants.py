@@ -9,7 +9,6 @@ import math
 import subprocess
 from collections import namedtuple
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -25,7 +24,7 @@ from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.block.declaration import Quantity, Real, variables
 from driveline.models.block.types import ContinuousBlock
 from tests.fuzz.energy import ENERGIES
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 
 PLANTS = (two_mass_driveline.BLOCK, validation_vehicle.BLOCK)
 
@@ -199,7 +198,13 @@ def _judge(y: Any, u: Any, p: Any, x: Any) -> None:
         raise Unclean(f"the brake has {braking} N.m of {u.T_brake}: {p}, {u}, {x}")
 
 
-@contextmanager
+@target(
+    "parameters and inputs of both plants, anywhere within their bounds",
+    "outputs of a step that is made are finite, energy less work is kept to 0.1 % of what was turned over, no brake "
+    "has more than its capacity",
+    short=100,
+    long=100_000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     compiled = [Compiled(plant, folder / plant.name) for plant in PLANTS]
 
@@ -207,13 +212,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         return followed(random.choice(compiled), random)
 
     yield attempt
-
-
-TARGET = Target(
-    "parameters and inputs of both plants, anywhere within their bounds",
-    "outputs of a step that is made are finite, energy less work is kept to 0.1 % of what was turned over, no brake "
-    "has more than its capacity",
-    attempts,
-    short=100,
-    long=100_000,
-)

@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 from random import Random
@@ -20,7 +19,7 @@ from driveline.harness.recordings.limits import PATIENCE
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.recordings.source import RecordingError
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 from tests.harness.recordings.car import RADIUS, RATIO
 from tests.harness.recordings.car import drive as excited
 from tests.harness.recordings.variants import TEXTS, recording, write_arrow, write_mdf
@@ -105,7 +104,12 @@ def identified(path: Path, random: Random) -> list[np.ndarray]:
     return [x for x in (found.time, found.T_mot, found.omega_1, found.omega_2, found.T_load) if x is not None]
 
 
-@contextmanager
+@target(
+    "damaged recordings, as text of every dialect, MDF, Parquet and Feather",
+    "a drive with finite signals, or one line that refuses it",
+    short=100,
+    long=100_000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
     files, other = sound_files(folder), measured()
@@ -135,12 +139,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         return "driven"
 
     yield attempt
-
-
-TARGET = Target(
-    "damaged recordings, as text of every dialect, MDF, Parquet and Feather",
-    "a drive with finite signals, or one line that refuses it",
-    attempts,
-    short=300,
-    long=100_000,
-)

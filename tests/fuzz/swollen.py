@@ -4,7 +4,6 @@ recordings that unpack to gigabytes."""
 import resource
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 from struct import pack
@@ -23,7 +22,7 @@ from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.limits import SECONDS
 from driveline.harness.recordings.quantities import aliases
-from tests.fuzz.target import Attempt, Target, Unclean
+from tests.fuzz.target import Attempt, Unclean, target
 from tests.harness.recordings.test_bus_log import drive as frames
 from tests.harness.recordings.test_bus_log import write as write_log
 
@@ -128,7 +127,13 @@ def written(path: Path, content: str) -> Path:
     return path
 
 
-@contextmanager
+@target(
+    "small files that take much: units, keys, numbers, lines and columns without end, Parquet, MDF and BLF that unpack "
+    "to gigabytes",
+    "read or refused in a line, with at most 30 s of computing and 2 GB",
+    short=15,
+    long=1000,
+)
 def attempts(folder: Path) -> Iterator[Attempt]:
     def attempt(random: Random) -> str:
         kind: Callable[[Random, Path], None] = random.choice(PACKED if random.random() < SHARE else QUICK)
@@ -156,13 +161,3 @@ def attempts(folder: Path) -> Iterator[Attempt]:
 def _children_time() -> float:
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
-
-
-TARGET = Target(
-    "small files that take much: units, keys, numbers, lines and columns without end, Parquet, MDF and BLF that unpack "
-    "to gigabytes",
-    "read or refused in a line, with at most 30 s of computing and 2 GB",
-    attempts,
-    short=15,
-    long=1000,
-)
