@@ -19,46 +19,45 @@ _CHECKOUT = Path(__file__).resolve().parents[1]
 if (_CHECKOUT / "build_fmus.py").is_file():  # its folders models, fmus and harness are packages of this one
     __path__.insert(0, str(_CHECKOUT))
 
+_MODULES = {
+    "operators": "models.block",
+    "plant": "models.physics",
+    "vehicle": "models.physics",
+    "torque_estimator": "models.controller",
+    "measured_speeds": "models.comparators",
+}
+"""Public names that are modules, with the package of each."""
+
 _IMPORTING = RLock()
 """Threads that import modules that import each other would get them half imported."""
 
 
 @cache
-def _public() -> dict[str, tuple[str, str]]:
-    """Module and name there of each public name, as `__init__.pyi` declares them."""
-    import ast  # not above: `driveline` asks for no name
+def _lazy() -> tuple:
+    """What imports a public name, and what lists them, as `__init__.pyi` declares them."""
+    from lazy_loader import attach_stub  # not above: `driveline --help` asks for no name
 
-    from .fmus.source_code import syntax_tree
-
-    declared = syntax_tree(Path(__file__).with_suffix(".pyi").read_bytes())
-    return {
-        alias.asname or alias.name: (f".{node.module}", alias.name)
-        for node in declared.body
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-    }
+    return attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:
     if name == "__all__":
         return __dir__()
-    if name not in _public():
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_nearest(name)}")
-    place, attribute = _public()[name]
     with _IMPORTING:
-        module = import_module(place, __name__)
-        if not hasattr(module, attribute):  # a module in a package
-            return import_module(f"{place}.{attribute}", __name__)
-        globals()[name] = found = getattr(module, attribute)
-        return found
+        find, names, _ = _lazy()
+        if name not in names():
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_nearest(name)}")
+        if name in _MODULES:
+            import_module(f".{_MODULES[name]}.{name}", __name__)
+        return find(name)
 
 
 def _nearest(name: str) -> str:
     from difflib import get_close_matches
 
-    near = get_close_matches(name, _public(), n=2)
+    near = get_close_matches(name, __dir__(), n=2)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
 def __dir__() -> list[str]:
-    return sorted(_public())
+    return _lazy()[1]()

@@ -1,6 +1,7 @@
 """What users import: the names of `driveline`, each with its docstring, and nothing of ours beside it."""
 
 import ast
+import importlib
 import inspect
 import os
 import re
@@ -29,8 +30,6 @@ DECLARED = {
 }
 """Module and name there of each public name."""
 
-EVERY_NAME = pytest.mark.parametrize("name", DECLARED)
-
 
 def ran(code: str, folder: Path, **environment: str) -> str:
     """What a program prints that runs in a folder and finds the package of the checkout."""
@@ -50,14 +49,13 @@ def test_the_file_of_names_declares_each_once_and_nothing_else() -> None:
     assert all(names), "`import a as a` is what a type checker takes for public"
 
 
-@EVERY_NAME
-def test_a_name_is_what_its_module_has(name: str) -> None:
-    module, there = DECLARED[name]
-    found = getattr(driveline, name)
-    if isinstance(found, ModuleType):
-        assert found is import_module(f"driveline.{module}.{there}")
-    else:
-        assert found is getattr(import_module(f"driveline.{module}"), there)
+def test_a_name_is_what_its_module_has() -> None:
+    for name, (module, there) in DECLARED.items():
+        found = getattr(driveline, name)
+        if isinstance(found, ModuleType):
+            assert found is import_module(f"driveline.{module}.{there}"), name
+        else:
+            assert found is getattr(import_module(f"driveline.{module}"), there), name
 
 
 def docstring(name: str) -> str:
@@ -72,22 +70,18 @@ def docstring(name: str) -> str:
     return ""
 
 
-@EVERY_NAME
-def test_a_name_has_a_docstring_of_its_own(name: str) -> None:
-    text = docstring(name)
-    assert text
-    assert not text.startswith(f"{name}("), "that of a dataclass without one"
-    assert not text.lstrip().startswith(("Args:", "Attributes:", "Returns:", "Raises:")), "it says first what it is"
-
-
-@EVERY_NAME
-def test_a_docstring_speaks_of_public_names_alone(name: str) -> None:
-    found = getattr(driveline, name)
-    parts = [member for member in vars(found).values() if inspect.isfunction(member)] if inspect.isclass(found) else []
-    for text in (docstring(name), *(part.__doc__ or "" for part in parts)):
-        assert not re.findall(r"\bharness\.\w+|\bdriveline\.(?:harness|models|fmus)\b", text)
-        for public in re.findall(r"\bdriveline\.(\w+)", text):
-            assert public in DECLARED
+def test_a_name_has_a_docstring_of_its_own_that_speaks_of_public_names_alone() -> None:
+    for name in DECLARED:
+        text, found = docstring(name), getattr(driveline, name)
+        assert text, name
+        assert not text.startswith(f"{name}("), "that of a dataclass without one"
+        assert not text.lstrip().startswith(("Args:", "Attributes:", "Returns:", "Raises:")), (
+            f"{name}: first what it is"
+        )
+        parts = filter(inspect.isfunction, vars(found).values()) if inspect.isclass(found) else ()
+        for each in (text, *(part.__doc__ or "" for part in parts)):
+            assert not re.findall(r"\bharness\.\w+|\bdriveline\.(?:harness|models|fmus)\b", each), name
+            assert set(re.findall(r"\bdriveline\.(\w+)", each)) <= DECLARED.keys(), name
 
 
 def code(text: str) -> Iterator[str]:
@@ -128,14 +122,14 @@ def test_one_thread_at_a_time_imports_a_name(monkeypatch: pytest.MonkeyPatch) ->
     """Modules that import each other are half imported for the others."""
     importing: list[str] = []
 
-    def alone(module: str, package: str) -> ModuleType:
+    def alone(module: str, package: str | None = None) -> ModuleType:
         assert not importing
         importing.append(module)
         sleep(0.01)
         importing.remove(module)
         return import_module(module, package)
 
-    monkeypatch.setattr(driveline, "import_module", alone)
+    monkeypatch.setattr(importlib, "import_module", alone)
     with ThreadPoolExecutor() as threads:
         assert list(threads.map(driveline.__getattr__, ["Ride", "Loop", "many", "Ride"]))
 
