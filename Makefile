@@ -5,8 +5,9 @@ BIN := $(VENV)/bin
 DEMO := $(VENV)/demo
 READY := $(VENV)/ready
 SITE := $(VENV)/site
+CROSS := $(VENV)/cross
 
-.PHONY: help setup demo test test-all test-target mutation fuzz lint check cross bench docs site dist clean
+.PHONY: help setup demo test test-all test-target mutation fuzz lint check cross bench studies site dist clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
@@ -51,11 +52,11 @@ test-target: $(READY) ## the controller's C on an emulated processor; says what 
 	$(BIN)/python -m driveline.fmus.target
 	$(BIN)/python -m pytest tests/fmus/target tests/harness/exchange/target
 
-mutation: $(READY) ## small faults put into all rooms, one by one: do the tests find them?
+mutation: $(READY) ## a sample of small faults, put into the code one by one: do the tests find them?
 	$(BIN)/python tests/mutation
 
 fuzz: $(READY) ## odd calls, files and options by the thousand
-	$(BIN)/python -m tests.fuzz
+	$(BIN)/python -m tests.fuzz --json fuzz.json
 
 lint: $(READY) ## format, lint, the order of the rooms, and types
 	$(BIN)/ruff format --check .
@@ -69,8 +70,11 @@ check: $(READY) ## build the FMUs and run every compliance check on them
 	$(BIN)/driveline check --ignore symbols build/*.fmu # the host lends them Python
 	$(BIN)/driveline check build/native/*.fmu
 
-cross: $(READY) ## what compiles native FMUs for all platforms, and those FMUs
+$(CROSS): $(READY)
 	$(INSTALL) '.[cross]'
+	@touch $@
+
+cross: $(CROSS) ## what compiles native FMUs for all platforms, and those FMUs
 	$(BIN)/driveline build --build native --platform all
 
 bench: $(READY) ## docs/speed.md: what a step, a run and a command take, side by side and in other hosts
@@ -79,7 +83,8 @@ bench: $(READY) ## docs/speed.md: what a step, a run and a command take, side by
 	$(BIN)/python -m benchmarks.step_error
 	$(BIN)/python -m benchmarks.standstill
 
-docs: cross ## the pages of the documentation that are stale, made anew
+studies: $(READY) ## all numbers of the documentation, measured anew for hours; says which have moved
+	$(BIN)/driveline build
 	$(BIN)/python -m docs.studies
 
 $(SITE): $(READY)
@@ -100,4 +105,4 @@ dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked,
 	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
 
 clean: ## everything that was made
-	rm -rf $(VENV) build dist results site .pytest_cache *.egg-info harness/cosimulation/_steps.*
+	rm -rf $(VENV) build dist results site fuzz.json .pytest_cache *.egg-info harness/cosimulation/_steps.*
