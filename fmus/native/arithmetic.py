@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..symbol import Symbol
+
 TRUTH_VALUES = ("LT", "LE", "EQ", "NE", "NOT", "AND", "OR")
 
 COMPUTED: dict[str, Callable[..., Any]] = {
@@ -258,3 +260,26 @@ class TracedGraph(Graph):
         names = self.inputs[vector][element : element + count + 1]
         is_array = names[0].endswith("]") and len({name.rpartition("[")[0] for name in names}) == 1
         return Node("INPUT", (), (vector, element + count)) if is_array and len(names) > count else None
+
+
+class TracedSymbol(Symbol):
+    """A real number or a truth value (0 or 1).
+
+    Attributes:
+        recording: the graph.
+        node: its number there.
+    """
+
+    __slots__ = ("node", "recording")
+
+    def __init__(self, recording: Recording, node: int) -> None:
+        self.recording, self.node = recording, node
+
+    def after(self, operation: str, *operands: Any) -> "TracedSymbol":
+        nodes = (node_of(each, self.recording) for each in operands)
+        return TracedSymbol(self.recording, self.recording.after(operation, *nodes))
+
+
+def node_of(value: Any, recording: Recording) -> int:
+    """The node of a symbol, a number or a truth value."""
+    return value.node if isinstance(value, TracedSymbol) else recording.constant(float(value))

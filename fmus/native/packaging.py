@@ -16,9 +16,8 @@ from ..fmu import Fmu
 from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES
 from .compiler import WHOLE, host_binaries
-from .frame import frame_header
 from .shared_header import shared_header
-from .source import block_sources, variables_header
+from .source import block_sources, frame_header, variables_header
 from .tableau import rosenbrock_header, step_header
 from .trace import trace_frame
 from .xcp import xcp_entries

@@ -7,8 +7,10 @@ from typing import Any, NamedTuple
 
 from ...models.block.declaration import Enumeration
 from ...models.block.explicit import small_sizes
+from ...models.block.frame import layout
 from ...models.block.types import SampledBlock
 from ..description.states import event_indicators, shown_by_fmi3, states
+from ..description.terminal import BAUD_RATE, OPERATIONS_SIZE, members
 from ..description.variables import Variable, interface
 from ..fmu import Fmu
 from .arithmetic import Graph
@@ -309,3 +311,39 @@ def _written(variable: Variable, fmi_type: str, kind: str, place: str) -> str:
 
 def _number(value: Any) -> str:
     return repr(float(value))
+
+
+FRAME_HEADER = """/* {frame}: the frame that is sent, and the terminal; written by build_fmus.py from {module}. */
+#ifndef FRAME_H
+#define FRAME_H
+
+#define FRAME_COUNTER {counter} /* among the outputs: one more with every frame */
+
+enum {{ FRAME_IDENTIFIER = {identifier:#x}, FRAME_SIGNALS = {signals}, FRAME_LENGTH = {length} /* bytes */ }};
+enum {{ BAUD_RATE = {baud_rate} /* bit/s */, OPERATIONS_SIZE = {size} /* bytes, at most */ }};
+enum {{ TX_DATA = {first}, TX_CLOCK, RX_DATA, RX_CLOCK }}; /* value references */
+
+static const unsigned frame_bits[FRAME_SIGNALS] = {{{bits}}};
+static const char *const terminal_names[] = {{{names}}}; /* from TX_DATA on */
+
+#endif
+"""
+
+
+def frame_header(fmu: Fmu) -> str:
+    """The header, for the first frame of the block with its start values."""
+    frame, terminal = fmu.block.frames[0], members(fmu.block)
+    bits = [layout(content, fmu.block.Parameters()).bits for content in frame.contents]
+    return FRAME_HEADER.format(
+        frame=frame.name,
+        module=fmu.module,
+        counter=frame.counter,
+        identifier=frame.identifier,
+        signals=len(bits),
+        length=(sum(bits) + 7) // 8,
+        baud_rate=BAUD_RATE,
+        size=OPERATIONS_SIZE,
+        first=min(terminal.values()),
+        bits=", ".join(map(str, bits)),
+        names=", ".join(f'"{name}"' for name in terminal),
+    )

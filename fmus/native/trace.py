@@ -9,9 +9,8 @@ from typing import Any, NamedTuple
 from ...models.block.declaration import is_tuple
 from ...models.block.frame import count, layout
 from ...models.block.types import Block, ContinuousBlock
-from .arithmetic import Node, Recording, TracedGraph
+from .arithmetic import Node, Recording, TracedGraph, TracedSymbol, node_of
 from .rates import rates
-from .symbol import TracedSymbol, node_of
 
 
 class Traced(NamedTuple):

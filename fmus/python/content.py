@@ -1,6 +1,9 @@
-"""Whether an instance can have come to what a saved state holds: nothing that was read from bytes is trusted."""
+"""Saved states: exact as bytes, and the same for the same state. Nothing that was read from bytes is trusted; what no
+instance can have come to is refused."""
 
+import json
 import math
+import zlib
 from typing import Any, NamedTuple
 
 from ...models.block.declaration import is_tuple
@@ -8,7 +11,16 @@ from ...models.block.runner import runner
 from ...models.block.types import Block, SampledBlock
 from ..description.numbers import numbers
 from ..description.variables import Variable, interface
-from ..protocol import ANY_NUMBER, BAD_STATE, DAMAGED_STATE, FROM_START_ON, MOST_TICKS, NEAR_ITS_TIME, Mode
+from ..protocol import (
+    ANY_NUMBER,
+    BAD_STATE,
+    DAMAGED_STATE,
+    FOREIGN_STATE,
+    FROM_START_ON,
+    MOST_TICKS,
+    NEAR_ITS_TIME,
+    Mode,
+)
 from .refusal import Refused
 
 TYPES = {"Real": (float, int), "Integer": (int,), "Boolean": (bool,)}
@@ -103,3 +115,30 @@ def shaped(read: Any, template: Any) -> Any:
     if type(read) is not type(template):
         raise TypeError(f"{read!r} is not of the type of {template!r}")
     return read
+
+
+def pack(build: str, content: tuple[Any, ...]) -> bytes:
+    """The bytes of nested tuples of numbers, for the build of that name.
+
+    JSON keeps floats exactly (the shortest text that reads back as the same number).
+    """
+    body = json.dumps([build, content], separators=(",", ":")).encode()
+    return b"%08x" % zlib.crc32(body) + body
+
+
+def unpack(build: str, state: bytes) -> list[Any]:
+    """What `pack` was given, with lists in the place of tuples.
+
+    Raises:
+        Refused: the bytes are damaged, or come from another build.
+    """
+    checksum, body = state[:8], state[8:]
+    if checksum != b"%08x" % zlib.crc32(body):
+        raise Refused(DAMAGED_STATE)
+    try:
+        origin, content = json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise Refused(DAMAGED_STATE) from error
+    if origin != build:
+        raise Refused(FOREIGN_STATE, origin=origin, build=build)
+    return content

@@ -10,7 +10,7 @@ from ...models.block.integrator import TooMuchWork
 from ...models.block.runner import Runner, runner
 from .. import protocol
 from ..protocol import Mode
-from . import content, snapshot
+from . import content
 from .refusal import Refused
 from .repairs import dismiss_guard, fmi_call, fmi_class_call
 from .values import Values
@@ -182,11 +182,11 @@ class BlockSlave:
         """The saved state, which is its own serialised form."""
         memory = self.runner and self.runner.memory
         times = self.start_time, self.stop_time, self.time
-        return snapshot.pack(type(self).__module__, (self.mode, *times, self.values.u, self.values.p, memory))
+        return content.pack(type(self).__module__, (self.mode, *times, self.values.u, self.values.p, memory))
 
     @fmi_call
     def _set_fmu_state(self, state: bytes) -> None:
-        self._restore(content.checked(self.block, snapshot.unpack(type(self).__module__, state)))
+        self._restore(content.checked(self.block, content.unpack(type(self).__module__, state)))
 
     def _restore(self, saved: content.Content) -> None:
         self.values.restore(saved.u, saved.p)
@@ -203,5 +203,5 @@ class BlockSlave:
     @classmethod
     @fmi_class_call
     def _fmu_state_from_bytes(cls, state: bytes) -> bytes:
-        content.checked(cls.block, snapshot.unpack(cls.__module__, state))
+        content.checked(cls.block, content.unpack(cls.__module__, state))
         return state

@@ -4,7 +4,7 @@ import math
 import re
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.python import snapshot
+from driveline.fmus.python import content
 from tests.fmus.host import opened
 from tests.together import together
 
@@ -115,13 +115,13 @@ def test_a_state_of_another_fmu_is_refused_and_both_are_named(built, tmp_path):
 
 @together("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, math.inf, 3, True])
 def test_numbers_keep_type_and_bits(value):
-    (restored,) = snapshot.unpack("build", snapshot.pack("build", (value,)))
+    (restored,) = content.unpack("build", content.pack("build", (value,)))
     assert type(restored) is type(value)
     assert repr(restored) == repr(value)
 
 
 def test_not_a_number_stays_not_a_number():
-    assert math.isnan(snapshot.unpack("build", snapshot.pack("build", (math.nan,)))[0])
+    assert math.isnan(content.unpack("build", content.pack("build", (math.nan,)))[0])
 
 
 def test_a_demand_that_is_on_its_way_through_the_dead_time_is_in_the_state(built, tmp_path):

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from driveline.fmus.native.arithmetic import COMPUTED, Node, Recording, TracedGraph
-from driveline.fmus.native.symbol import TracedSymbol, node_of
+from driveline.fmus.native.arithmetic import COMPUTED, Node, Recording, TracedGraph, TracedSymbol, node_of
 from driveline.fmus.native.trace import Traced
 
 

@@ -5,9 +5,8 @@ from typing import Any
 
 import pytest
 
-from driveline.fmus.native.arithmetic import Node, Recording
+from driveline.fmus.native.arithmetic import Node, Recording, TracedSymbol, node_of
 from driveline.fmus.native.rates import rates
-from driveline.fmus.native.symbol import TracedSymbol, node_of
 from driveline.models.block.operators import atan, clip, cos, exp, floor, log, maximum, sign, sin, sqrt, tanh, where
 from tests.fmus.native.recorded import values
 from tests.together import together

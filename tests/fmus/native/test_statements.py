@@ -4,8 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from driveline.fmus.native.arithmetic import LOOKED_UP
-from driveline.fmus.native.lane_statements import LaneStatements
-from driveline.fmus.native.lanes import LANES
+from driveline.fmus.native.lanes import LANES, LaneStatements
 from driveline.fmus.native.statements import Statements
 from driveline.fmus.symbol import Symbol
 from driveline.models.block import operators
