@@ -6,12 +6,7 @@ from ...models.block.declaration import Boolean, Declaration, Enumeration, Integ
 from ...models.block.types import Block, ContinuousBlock
 from ..fmu import Fmu
 from .build_kind import BuildKind
-from .dependencies import (
-    exchanged_dependencies,
-    initial_dependencies,
-    initial_state_dependencies,
-    output_dependencies,
-)
+from .dependencies import exchanged_dependencies, initial_dependencies, initial_state_dependencies, output_dependencies
 from .elements import (
     add_definitions,
     check_names,

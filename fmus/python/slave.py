@@ -89,12 +89,7 @@ class BlockSlave:
 
     def _require(self, mode: Mode, function: str) -> None:
         if self.mode != mode:
-            raise Refused(
-                protocol.WRONG_MODE,
-                function=function,
-                mode=NAMES[self.mode],
-                place=NAMES[mode],
-            )
+            raise Refused(protocol.WRONG_MODE, function=function, mode=NAMES[self.mode], place=NAMES[mode])
 
     def _enter(self, mode: Mode) -> None:
         self.mode = mode

@@ -65,9 +65,7 @@ class Node:
             instanceName="node",
         )
         self.fmu.instantiate(
-            loggingOn=True,
-            eventModeUsed=events,
-            logMessage=lambda *message: self.told.append(message[3].decode()),
+            loggingOn=True, eventModeUsed=events, logMessage=lambda *message: self.told.append(message[3].decode())
         )
 
     def start(self, **values: Any) -> None:

@@ -16,12 +16,7 @@ class Relay(Fmi2Slave):
         for name, kind in {"y": Real, "t": Real, "n_out": Integer, "b_out": Boolean}.items():
             variability = Fmi2Variability.continuous if kind is Real else Fmi2Variability.discrete
             self.register_variable(
-                kind(
-                    name,
-                    causality=Fmi2Causality.output,
-                    variability=variability,
-                    initial=Fmi2Initial.calculated,
-                )
+                kind(name, causality=Fmi2Causality.output, variability=variability, initial=Fmi2Initial.calculated)
             )
         for name, kind in {"gain": Real, "limit": Real, "count": Integer, "flag": Boolean}.items():
             self.register_variable(kind(name, causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed))

@@ -49,8 +49,7 @@ Status set_logging(Instance *instance, int on, size_t count, const char *const c
     for (size_t k = 0; k < count; k++)
         if (status_of(categories[k]) == OK)
             return refuse(
-                instance,
-                "log category %s is unknown; there are " LOG_ERROR " and " LOG_DISCARD,
+                instance, "log category %s is unknown; there are " LOG_ERROR " and " LOG_DISCARD,
                 categories[k] ? categories[k] : "NULL");
     for (size_t k = 0; k < count; k++)
         logged[status_of(categories[k])] = on;

@@ -46,8 +46,7 @@ static Status check_values(const Instance *instance, Memory *memory)
             return refuse(
                 instance,
                 BAD_STATE(
-                    variable->name,
-                    write_value(text, whole ? variable->type : REAL, value),
+                    variable->name, write_value(text, whole ? variable->type : REAL, value),
                     bounded ? variable->allowed : ANY_NUMBER));
         if (variable->type != REAL && !whole)
             return refuse(instance, DAMAGED_STATE);

@@ -46,12 +46,8 @@ Status check_moving_inputs(Instance *instance, double duration)
         char text[NUMBER_LENGTH];
         if (!(end >= variable->minimum && end <= variable->maximum))
             return refuse(
-                instance,
-                "%s = %s%s at the end of the step is refused; allowed is %s",
-                variable->name,
-                write_number(text, end),
-                variable->unit,
-                variable->allowed);
+                instance, "%s = %s%s at the end of the step is refused; allowed is %s", variable->name,
+                write_number(text, end), variable->unit, variable->allowed);
     }
     return OK;
 }
@@ -67,10 +63,8 @@ Status set_input_rates(Instance *instance, const Reference references[], size_t 
             return refuse(instance, "%s is not an input and has no input derivative", variable->name);
         if (!(fabs(rates[k]) <= DBL_MAX))
             return refuse(
-                instance,
-                "%s is refused as derivative of %s; allowed is any finite number",
-                write_number(text, rates[k]),
-                variable->name);
+                instance, "%s is refused as derivative of %s; allowed is any finite number",
+                write_number(text, rates[k]), variable->name);
     }
     for (size_t k = 0; k < count; k++)
         *rate_of(&instance->memory.du, &variables[references[k]]) = rates[k];
@@ -166,9 +160,7 @@ Status get_directional_derivative(const Instance *instance, const Direction *dir
         const Variable *known = &variables[direction->known[k]];
         if (!(fabs(change) <= DBL_MAX))
             return refuse(
-                instance,
-                "%s is refused as change of %s; allowed is any finite number",
-                write_number(text, change),
+                instance, "%s is refused as change of %s; allowed is any finite number", write_number(text, change),
                 known->name);
         *change_of(&changes, known) += change;
     }

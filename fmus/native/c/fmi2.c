@@ -70,13 +70,8 @@ static const char *objection(fmi2String name, fmi2Type type, fmi2String guid, co
 }
 
 fmi2Component fmi2Instantiate(
-    fmi2String instanceName,
-    fmi2Type fmuType,
-    fmi2String fmuGUID,
-    fmi2String fmuResourceLocation,
-    const fmi2CallbackFunctions *functions,
-    fmi2Boolean visible,
-    fmi2Boolean loggingOn)
+    fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID, fmi2String fmuResourceLocation,
+    const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean loggingOn)
 {
     (void)fmuResourceLocation;
     (void)visible;
@@ -109,12 +104,8 @@ void fmi2FreeInstance(fmi2Component c)
 }
 
 fmi2Status fmi2SetupExperiment(
-    fmi2Component c,
-    fmi2Boolean toleranceDefined,
-    fmi2Real tolerance,
-    fmi2Real startTime,
-    fmi2Boolean stopTimeDefined,
-    fmi2Real stopTime)
+    fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
+    fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
     (void)toleranceDefined; /* the integration has its own, see integrator.c; in model exchange it is the host's */
     (void)tolerance;
@@ -214,13 +205,8 @@ fmi2Status fmi2DeSerializeFMUstate(
 }
 
 fmi2Status fmi2GetDirectionalDerivative(
-    fmi2Component c,
-    const fmi2ValueReference vUnknown_ref[],
-    size_t nUnknown,
-    const fmi2ValueReference vKnown_ref[],
-    size_t nKnown,
-    const fmi2Real dvKnown[],
-    fmi2Real dvUnknown[])
+    fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown, const fmi2ValueReference vKnown_ref[],
+    size_t nKnown, const fmi2Real dvKnown[], fmi2Real dvUnknown[])
 {
     const int complete = (nUnknown == 0 || (vUnknown_ref && dvUnknown)) && (nKnown == 0 || (vKnown_ref && dvKnown));
     const Instance *instance = ready(c, INITIALIZATION | RUNNING | TERMINATED, complete, __func__);
@@ -231,11 +217,7 @@ fmi2Status fmi2GetDirectionalDerivative(
 }
 
 fmi2Status fmi2SetRealInputDerivatives(
-    fmi2Component c,
-    const fmi2ValueReference vr[],
-    size_t nvr,
-    const fmi2Integer order[],
-    const fmi2Real value[])
+    fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[], const fmi2Real value[])
 {
     const int complete = nvr == 0 || (vr && order && value);
     Instance *instance = ready_for(CO_SIMULATION, c, INSTANTIATED | INITIALIZATION | STEPPING, complete, __func__);
@@ -244,11 +226,7 @@ fmi2Status fmi2SetRealInputDerivatives(
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(
-    fmi2Component c,
-    const fmi2ValueReference vr[],
-    size_t nvr,
-    const fmi2Integer order[],
-    fmi2Real value[])
+    fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[], fmi2Real value[])
 {
     const int complete = nvr == 0 || (vr && order && value);
     const Instance *instance = ready_for(CO_SIMULATION, c, STEPPING | TERMINATED, complete, __func__);
@@ -257,9 +235,7 @@ fmi2Status fmi2GetRealOutputDerivatives(
 }
 
 fmi2Status fmi2DoStep(
-    fmi2Component c,
-    fmi2Real currentCommunicationPoint,
-    fmi2Real communicationStepSize,
+    fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
     fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
     (void)noSetFMUStatePriorToCurrentPoint;

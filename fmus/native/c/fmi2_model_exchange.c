@@ -31,9 +31,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *fmi2eventInfo)
 }
 
 fmi2Status fmi2CompletedIntegratorStep(
-    fmi2Component c,
-    fmi2Boolean noSetFMUStatePriorToCurrentPoint,
-    fmi2Boolean *enterEventMode,
+    fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint, fmi2Boolean *enterEventMode,
     fmi2Boolean *terminateSimulation)
 {
     (void)noSetFMUStatePriorToCurrentPoint;

@@ -51,12 +51,8 @@ static int own_name(char name[NAME_LENGTH], Reference reference)
 }
 
 fmi3Status fmi3EnterInitializationMode(
-    fmi3Instance c,
-    fmi3Boolean toleranceDefined,
-    fmi3Float64 tolerance,
-    fmi3Float64 startTime,
-    fmi3Boolean stopTimeDefined,
-    fmi3Float64 stopTime)
+    fmi3Instance c, fmi3Boolean toleranceDefined, fmi3Float64 tolerance, fmi3Float64 startTime,
+    fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
     (void)toleranceDefined; /* the integration has its own, see integrator.c */
     (void)tolerance;
@@ -154,11 +150,8 @@ static int is_count(const Instance *instance, size_t given, size_t expected, con
 {
     if (given != expected)
         refuse(
-            instance,
-            "%s: %lu values are refused; allowed is one for each of the %lu value references",
-            function,
-            (unsigned long)given,
-            (unsigned long)expected);
+            instance, "%s: %lu values are refused; allowed is one for each of the %lu value references", function,
+            (unsigned long)given, (unsigned long)expected);
     return given == expected;
 }
 
@@ -259,15 +252,8 @@ fmi3Status fmi3DeserializeFMUState(
 }
 
 fmi3Status fmi3GetDirectionalDerivative(
-    fmi3Instance c,
-    const fmi3ValueReference unknowns[],
-    size_t nUnknowns,
-    const fmi3ValueReference knowns[],
-    size_t nKnowns,
-    const fmi3Float64 seed[],
-    size_t nSeed,
-    fmi3Float64 sensitivity[],
-    size_t nSensitivity)
+    fmi3Instance c, const fmi3ValueReference unknowns[], size_t nUnknowns, const fmi3ValueReference knowns[],
+    size_t nKnowns, const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
 {
     const int complete = (nUnknowns == 0 || (unknowns && sensitivity)) && (nKnowns == 0 || (knowns && seed));
     const Instance *instance = ready(c, INITIALIZATION | RUNNING | TERMINATED, complete, __func__);
@@ -279,11 +265,7 @@ fmi3Status fmi3GetDirectionalDerivative(
 }
 
 fmi3Status fmi3GetOutputDerivatives(
-    fmi3Instance c,
-    const fmi3ValueReference vr[],
-    size_t nvr,
-    const fmi3Int32 orders[],
-    fmi3Float64 values[],
+    fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 orders[], fmi3Float64 values[],
     size_t nValues)
 {
     const int complete = nvr == 0 || (vr && orders && values);
@@ -294,14 +276,9 @@ fmi3Status fmi3GetOutputDerivatives(
 }
 
 fmi3Status fmi3DoStep(
-    fmi3Instance c,
-    fmi3Float64 currentCommunicationPoint,
-    fmi3Float64 communicationStepSize,
-    fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-    fmi3Boolean *eventHandlingNeeded,
-    fmi3Boolean *terminateSimulation,
-    fmi3Boolean *earlyReturn,
-    fmi3Float64 *lastSuccessfulTime)
+    fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
+    fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation,
+    fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
 {
     (void)noSetFMUStatePriorToCurrentPoint;
     const int complete = eventHandlingNeeded && terminateSimulation && earlyReturn && lastSuccessfulTime;

@@ -72,17 +72,10 @@ static Component *instantiate(const Asked *asked, Kind kind, int has_events)
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String instanceName,
-    fmi3String instantiationToken,
-    fmi3String resourcePath,
-    fmi3Boolean visible,
-    fmi3Boolean loggingOn,
-    fmi3Boolean eventModeUsed,
-    fmi3Boolean earlyReturnAllowed,
-    const fmi3ValueReference requiredIntermediateVariables[],
-    size_t nRequiredIntermediateVariables,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage,
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath, fmi3Boolean visible,
+    fmi3Boolean loggingOn, fmi3Boolean eventModeUsed, fmi3Boolean earlyReturnAllowed,
+    const fmi3ValueReference requiredIntermediateVariables[], size_t nRequiredIntermediateVariables,
+    fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
     fmi3IntermediateUpdateCallback intermediateUpdate)
 {
     (void)resourcePath;
@@ -99,13 +92,8 @@ fmi3Instance fmi3InstantiateCoSimulation(
 }
 
 fmi3Instance fmi3InstantiateModelExchange(
-    fmi3String instanceName,
-    fmi3String instantiationToken,
-    fmi3String resourcePath,
-    fmi3Boolean visible,
-    fmi3Boolean loggingOn,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage)
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath, fmi3Boolean visible,
+    fmi3Boolean loggingOn, fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage)
 {
     (void)resourcePath;
     (void)visible;
@@ -116,15 +104,9 @@ fmi3Instance fmi3InstantiateModelExchange(
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
-    fmi3String instanceName,
-    fmi3String instantiationToken,
-    fmi3String resourcePath,
-    fmi3Boolean visible,
-    fmi3Boolean loggingOn,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage,
-    fmi3ClockUpdateCallback clockUpdate,
-    fmi3LockPreemptionCallback lockPreemption,
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath, fmi3Boolean visible,
+    fmi3Boolean loggingOn, fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
+    fmi3ClockUpdateCallback clockUpdate, fmi3LockPreemptionCallback lockPreemption,
     fmi3UnlockPreemptionCallback unlockPreemption)
 {
     (void)resourcePath;

@@ -20,13 +20,9 @@ ENTER(fmi3EnterEventMode, INTEGRATING, EVENT)
 ENTER(fmi3EnterContinuousTimeMode, EVENT, CONTINUOUS_TIME)
 
 fmi3Status fmi3UpdateDiscreteStates(
-    fmi3Instance c,
-    fmi3Boolean *discreteStatesNeedUpdate,
-    fmi3Boolean *terminateSimulation,
-    fmi3Boolean *nominalsOfContinuousStatesChanged,
-    fmi3Boolean *valuesOfContinuousStatesChanged,
-    fmi3Boolean *nextEventTimeDefined,
-    fmi3Float64 *nextEventTime)
+    fmi3Instance c, fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
+    fmi3Boolean *nominalsOfContinuousStatesChanged, fmi3Boolean *valuesOfContinuousStatesChanged,
+    fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime)
 {
     const int complete = discreteStatesNeedUpdate && terminateSimulation && nominalsOfContinuousStatesChanged &&
                          valuesOfContinuousStatesChanged && nextEventTimeDefined && nextEventTime;
@@ -43,9 +39,7 @@ fmi3Status fmi3UpdateDiscreteStates(
 }
 
 fmi3Status fmi3CompletedIntegratorStep(
-    fmi3Instance c,
-    fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-    fmi3Boolean *enterEventMode,
+    fmi3Instance c, fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *enterEventMode,
     fmi3Boolean *terminateSimulation)
 {
     (void)noSetFMUStatePriorToCurrentPoint;

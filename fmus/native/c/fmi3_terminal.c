@@ -105,13 +105,9 @@ fmi3Status fmi3EnterEventMode(fmi3Instance c)
 CHANGE(fmi3EnterStepMode, EVENT, instance->memory.mode = STEPPING)
 
 fmi3Status fmi3UpdateDiscreteStates(
-    fmi3Instance c,
-    fmi3Boolean *discreteStatesNeedUpdate,
-    fmi3Boolean *terminateSimulation,
-    fmi3Boolean *nominalsOfContinuousStatesChanged,
-    fmi3Boolean *valuesOfContinuousStatesChanged,
-    fmi3Boolean *nextEventTimeDefined,
-    fmi3Float64 *nextEventTime)
+    fmi3Instance c, fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
+    fmi3Boolean *nominalsOfContinuousStatesChanged, fmi3Boolean *valuesOfContinuousStatesChanged,
+    fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime)
 {
     const int complete = discreteStatesNeedUpdate && terminateSimulation && nominalsOfContinuousStatesChanged &&
                          valuesOfContinuousStatesChanged && nextEventTimeDefined && nextEventTime;

@@ -26,11 +26,8 @@ static int are_numbers(const Instance *instance, const double values[], unsigned
             continue;
         const Variable *variable = &variables[first + k];
         discard(
-            instance,
-            "%s = %s%s is refused; allowed is any finite number",
-            variable->name,
-            write_number(text, values[k]),
-            variable->unit);
+            instance, "%s = %s%s is refused; allowed is any finite number", variable->name,
+            write_number(text, values[k]), variable->unit);
         return 0;
     }
     return 1;

@@ -230,8 +230,7 @@ static int is_allowed(const Instance *instance, const Variable *variable, double
         return 1;
     else
         refuse(
-            instance,
-            BAD_VALUE(name, write_value(text, variable->type, value), variable->unit, variable->allowed));
+            instance, BAD_VALUE(name, write_value(text, variable->type, value), variable->unit, variable->allowed));
     return 0;
 }
 

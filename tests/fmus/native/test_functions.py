@@ -107,8 +107,7 @@ def computed_by_operators(tmp_path, expression):
 
 
 @together(
-    "x, y",
-    [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0), (5.5, 2.25), (7.75, 3.5)],
+    "x, y", [(7.5, 2.0), (-7.5, 2.0), (-6.0, 3.0), (7.0, -3.0), (1e17, 7.0), (-0.25, 48.0), (5.5, 2.25), (7.75, 3.5)]
 )
 def test_remainders_have_the_sign_that_they_have_in_python(native_builder, tmp_path, x, y):
     assert computed_by_operators(tmp_path, f"modulo({x!r}, {y!r})") == x % y

@@ -52,10 +52,7 @@ def test_only_what_is_named_is_built_and_said_in_a_line(copied_project):
         str(copied_project / "build" / "WheelSpeedCan.fmu"),
         str(copied_project / "build" / "MotorTorqueLoop.fmu"),
     ]
-    assert {path.name for path in (copied_project / "build").iterdir()} == {
-        "WheelSpeedCan.fmu",
-        "MotorTorqueLoop.fmu",
-    }
+    assert {path.name for path in (copied_project / "build").iterdir()} == {"WheelSpeedCan.fmu", "MotorTorqueLoop.fmu"}
 
 
 def test_an_unknown_name_is_answered_with_the_nearest():

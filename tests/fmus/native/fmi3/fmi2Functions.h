@@ -23,13 +23,8 @@ static inline void pass_on(fmi3InstanceEnvironment environment, fmi3Status statu
 }
 
 static inline fmi2Component fmi2Instantiate(
-    fmi2String name,
-    fmi2Type type,
-    fmi2String token,
-    fmi2String resources,
-    const fmi2CallbackFunctions *callbacks,
-    fmi2Boolean visible,
-    fmi2Boolean logging)
+    fmi2String name, fmi2Type type, fmi2String token, fmi2String resources, const fmi2CallbackFunctions *callbacks,
+    fmi2Boolean visible, fmi2Boolean logging)
 {
     const fmi3LogMessageCallback log = callbacks && callbacks->logger ? pass_on : NULL;
     void *environment = (void *)(size_t)callbacks;
@@ -124,13 +119,8 @@ static inline fmi2Status fmi2GetRealOutputDerivatives(
 }
 
 static inline fmi2Status fmi2GetDirectionalDerivative(
-    fmi2Component c,
-    const fmi2ValueReference unknowns[],
-    size_t count,
-    const fmi2ValueReference knowns[],
-    size_t known,
-    const double changes[],
-    double results[])
+    fmi2Component c, const fmi2ValueReference unknowns[], size_t count, const fmi2ValueReference knowns[],
+    size_t known, const double changes[], double results[])
 {
     return in_fmi2(fmi3GetDirectionalDerivative(c, unknowns, count, knowns, known, changes, known, results, count));
 }

@@ -86,10 +86,7 @@ def test_no_emulator_is_left_after_a_run(on_target: Path, both_built: Path, unpa
     assert all_ended(unpacked)
 
 
-SIGNALS = {
-    signal.SIGKILL: "was lost: ended by SIGKILL",
-    signal.SIGSTOP: "hangs: no answer within 1 s",
-}
+SIGNALS = {signal.SIGKILL: "was lost: ended by SIGKILL", signal.SIGSTOP: "hangs: no answer within 1 s"}
 """To the emulator, and what is said of the target then."""
 
 
