@@ -56,17 +56,15 @@ def test_the_same_is_made_once_under_whatever_name(cached: Cached) -> None:
 @pytest.mark.parametrize("change", ["source", "header", "option", "compiler"])
 def test_what_differs_in_anything_is_made_again(cached: Cached, change: str) -> None:
     cached()
-    options = ["-O2"] if change == "option" else []
-    if change == "source":
-        (cached.folder / "program.c").write_text("int main(void) { return 8; }\n")
-    elif change == "header":
-        (cached.folder / "value.h").write_text("#define VALUE 8\n")
-    elif change == "compiler":
-        with open(cached.folder / "counting", "a") as file:
-            file.write("\n")
-    cached(*options)
-    assert cached.made == 2
-    assert cached.answer() == (8 if change in ("source", "header") else 7)
+    file, content = {
+        "source": ("program.c", "int main(void) { return 8; }\n"),
+        "header": ("value.h", "#define VALUE 8\n"),
+        "option": ("unused", ""),
+        "compiler": ("counting", (cached.folder / "counting").read_text() + "\n"),
+    }[change]
+    (cached.folder / file).write_text(content)
+    cached(*(["-O2"] if change == "option" else []))
+    assert (cached.made, cached.answer()) == (2, 8 if change in ("source", "header") else 7)
 
 
 def test_where_it_is_made_does_not_count(cached: Cached, tmp_path: Path) -> None:
@@ -81,27 +79,21 @@ def test_where_it_is_made_does_not_count(cached: Cached, tmp_path: Path) -> None
 
 
 def test_an_object_that_changed_is_linked_again(cached: Cached) -> None:
-    cached("-c", output="program.o")
-    link = [str(cached.command), "program.o", "-o", "linked"]
-    subprocess.run(link, cwd=cached.folder, check=True)
-    assert cached.answer("linked") == 7
-    (cached.folder / "value.h").write_text("#define VALUE 8\n")
-    cached("-c", output="program.o")
-    subprocess.run(link, cwd=cached.folder, check=True)
-    assert cached.answer("linked") == 8
+    for value in (7, 8):
+        (cached.folder / "value.h").write_text(f"#define VALUE {value}\n")
+        cached("-c", output="program.o")
+        subprocess.run([str(cached.command), "program.o", "-o", "linked"], cwd=cached.folder, check=True)
+        assert cached.answer("linked") == value
 
 
-@pytest.mark.parametrize(
-    "damage", [lambda content: content[:100], lambda content: b"", lambda content: content + b"\0"]
-)
-def test_what_is_not_as_it_was_written_is_made_again(cached: Cached, damage) -> None:
+def test_what_is_not_as_it_was_written_is_made_again(cached: Cached) -> None:
     cached()
     (entry,) = cached.kept.glob("*.made")
     whole = entry.read_bytes()
-    entry.write_bytes(damage(whole))
-    assert cached().returncode == 0
-    assert (cached.made, cached.answer()) == (2, 7)
-    assert entry.read_bytes() == whole
+    for k, damaged in enumerate((whole[:100], b"", whole + b"\0"), 2):
+        entry.write_bytes(damaged)
+        assert cached().returncode == 0
+        assert (cached.made, cached.answer(), entry.read_bytes()) == (k, 7, whole)
 
 
 @pytest.mark.parametrize("source", ['#include "nothing.h"\n', "int main(void) { return nothing; }\n"])
@@ -109,8 +101,7 @@ def test_what_is_refused_is_said_each_time_as_the_compiler_says_it(cached: Cache
     (cached.folder / "program.c").write_text(source)
     command = [compiling.COMPILER, "program.c", "-o", "program"]
     expected = subprocess.run(command, cwd=cached.folder, capture_output=True, text=True, check=False)
-    for _ in range(2):
-        done = cached()
-        assert (done.returncode, done.stderr) == (expected.returncode, expected.stderr)
     assert "nothing" in expected.stderr
+    for done in (cached(), cached()):
+        assert (done.returncode, done.stderr) == (expected.returncode, expected.stderr)
     assert list(cached.kept.glob("*.made")) == []
