@@ -18,12 +18,6 @@ if TYPE_CHECKING:
     from ..design.search.parameter_search import Evaluated
     from ..design.search.search_space import Space
 
-COMMENT = """\
-Parameters of the {controller} for {car}, by `driveline design --search` (driveline-damping {version}).
-Character {character:g} (0 sport, 1 comfort), the best of {count} candidates, seed {seed}. Cost {total:.3f}: swing
-{costs.swing:.3f}, comfort {costs.comfort:.3f}, response {costs.response:.3f}; computed gains of the DampingController \
-cost 1."""
-
 DEFAULTS: dict[str, Any] = {"controller": PLACES["controller"][0], "evaluations": 600, "character": 0.5, "seed": 1}
 """Of the options that are for a search alone, which are None where they are not given."""
 
@@ -124,14 +118,11 @@ def chosen(
     from ..design.search.search_space import declared_parameters
 
     found = best(visited, character)
-    comment = COMMENT.format(
-        controller=controller,
-        car=car,
-        version=version("driveline-damping"),
-        character=character,
-        count=len(visited),
-        seed=number,
-        total=found.costs.total(character),
-        costs=found.costs,
-    )
+    costs, program = found.costs, version("driveline-damping")
+    comment = f"""\
+Parameters of the {controller} for {car}, by `driveline design --search` (driveline-damping {program}).
+Character {character:g} (0 sport, 1 comfort), the best of {len(visited)} candidates, seed {number}. Cost \
+{costs.total(character):.3f}: swing
+{costs.swing:.3f}, comfort {costs.comfort:.3f}, response {costs.response:.3f}; computed gains of the DampingController \
+cost 1."""
     return gains_file(where.parameters(found.values), comment, declared_parameters(controller))

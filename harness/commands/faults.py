@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, Any
 
 from ..loop.places import NATIVE
 from ..loop.settings import loop
-from .arguments import option
+from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
-from .options import Cases, Loop, Replacing, Report, case, cases, controller, output, plants, record, seed
+from .options import Campaign, case, cases, controller, output, seed
 from .printing import JsonPrinting
 from .settings import as_given, caption, plants_settings
 
@@ -37,7 +37,7 @@ MOST = 1_000_000
 
 
 @record
-class Arguments(Loop, Cases, Replacing, Report, JsonPrinting):
+class Arguments(Campaign, JsonPrinting):
     cases: int = cases(1000, MOST)
     case: int | None = case(MOST, "only the case of this number, with a figure")
     campaign: str | None = option(
@@ -45,7 +45,6 @@ class Arguments(Loop, Cases, Replacing, Report, JsonPrinting):
         "dry: on a dry road, where ice is a fault too (default); roads: slippery ones, hills, ABS, late frames",
         choices=("dry", "roads"),
     )
-    plant: tuple[str, ...] = plants()
     controller: str = controller()
     seed: int = option(1, "of the faults and the sensor noise (default: %(default)s)", seed)
     output: Path = output("results/faults", "the cases, the page and the figures")

@@ -358,13 +358,6 @@ class Report:
     )
 
 
-@record
-class Cases:
-    """Of a campaign; each command says which `cases` and `case` it has."""
-
-    scheduler: str | None = expert(None, "of a Dask cluster that runs the cases", metavar="ADDRESS")
-
-
 def cases(default: int, most: int) -> Any:
     """--cases."""
     return option(default, "how many (default: %(default)s)", counted(1, most), metavar="COUNT")
@@ -373,3 +366,13 @@ def cases(default: int, most: int) -> Any:
 def case(most: int, help: str) -> Any:
     """--case."""
     return option(None, help, counted(1, most), metavar="NUMBER")
+
+
+@record
+class Campaign(Loop, Replacing, Report):
+    """Of a command that runs many cases, or one of them again."""
+
+    plant: tuple[str, ...] = plants()
+    cases: int = cases(1, 1)
+    case: int | None = case(1, "only the case of this number")
+    scheduler: str | None = expert(None, "of a Dask cluster that runs the cases", metavar="ADDRESS")

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 from ..loop.places import PLACES
 from ..loop.settings import Settings
-from .arguments import option
+from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
-from .options import Cases, Loop, Replacing, Report, case, cases, controllers, output, plants, record, seed
+from .options import Campaign, case, cases, controllers, output, seed
 from .printing import JsonPrinting
 from .settings import all_settings, as_given, caption
 
@@ -30,10 +30,9 @@ MOST = 100_000
 
 
 @record
-class Arguments(Loop, Cases, Replacing, Report, JsonPrinting):
+class Arguments(Campaign, JsonPrinting):
     cases: int = cases(300, MOST)
     case: int | None = case(MOST, "only the draw of this number, with figures")
-    plant: tuple[str, ...] = plants()
     controller: tuple[str, ...] = controllers("all of these")
     seed: int = option(1, "of the cars and the sensor noise (default: %(default)s)", seed)
     output: Path = output("results/robustness", "the runs, the page and the figures")

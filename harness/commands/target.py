@@ -26,15 +26,11 @@ class Export(OurController, Replacing, Printing):
     """Writes the C of a controller: NAME.h and NAME.c, the structs and the arithmetic of its FMU in C99 without
     any FMI, and controller.h, the same under names that do not tell which controller it is.
 
-    The values of the vehicle file and of the gains become its parameters. In single precision it needs
-    fabsf and sqrtf, for which a processor with a floating-point unit has instructions. docs/target.md says how a
-    project calls it.
+    The values of the vehicle file and of the gains become its parameters. docs/target.md says how a project calls it.
 
     examples:
-      driveline target export
       driveline target export --vehicle car.toml --parameters gains.toml --output car/controller
-      driveline target export --controller SpeedWashout
-      driveline target export --precision double --output build/double
+      driveline target export --controller SpeedWashout --precision double --output build/double
     """
 
     precision: str = option("float", "of the arithmetic (default: %(default)s)", choices=("float", "double"))
@@ -73,10 +69,8 @@ class Build(OurController, Printing):
     `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm`; to run, the last alone.
 
     examples:
-      driveline target build
-      driveline simulate --controller build/on_target/DampingController.fmu --manoeuvre launch --plot
-      driveline compare --controller build/on_target/DampingController.fmu --plant ValidationVehicle
       driveline target build --vehicle car.toml --parameters gains.toml --output car/on_target
+      driveline simulate --controller build/on_target/DampingController.fmu --manoeuvre launch --plot
     """
 
     output: Path = option(Path("build/on_target"), "(default: %(default)s)", output_folder, metavar="FOLDER")
@@ -101,7 +95,6 @@ class Image(OurController, Printing):
     It needs `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm`.
 
     examples:
-      driveline target image
       driveline target image --vehicle car.toml --parameters gains.toml --output car/image
     """
 
@@ -129,7 +122,6 @@ class Record(Loop, Replacing, Printing):
     `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
 
     examples:
-      driveline target record
       driveline target record --controller SpeedWashout --output results/washout
       driveline target record --vehicle car.toml --parameters gains.toml --plant ValidationVehicle
       driveline target record --set controller.k_d=2 --replace

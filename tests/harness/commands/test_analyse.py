@@ -62,13 +62,6 @@ def test_a_loop_that_is_not_stable_has_no_margins() -> None:
         linear_part(Part(PLANT, "15"), "SpeedWashout", unstable)
 
 
-def test_an_unknown_controller_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(["analyse", "--controller", "SpeedWashOut"])
-    assert stop.value.code == 2
-    assert "SpeedWashOut is unknown; did you mean SpeedWashout?" in capsys.readouterr().err
-
-
 def test_a_vehicle_file_that_is_wrong_is_answered_with_its_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

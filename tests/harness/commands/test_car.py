@@ -59,21 +59,6 @@ def test_the_template_is_printed_or_written_and_no_other_file_is_replaced(
     assert path.read_text(encoding="utf-8") == "mine"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--template", VAN], "--template writes the default car"),
-        (["--output", "car.toml"], "--output is for a template"),
-        (["no.toml"], "no.toml: there is no such file"),
-    ],
-)
-def test_what_does_not_go_together_is_refused(
-    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["car", *arguments]) == 2
-    assert message in capsys.readouterr().err
-
-
 def test_shafts_that_contradict_the_stiffness_are_refused_with_both_numbers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -169,13 +169,42 @@ def test_the_version_is_that_of_the_package(capsys):
         (["help", "simulat"], "did you mean simulate"),
         (["target", "exprt"], "did you mean export"),
         (["study", "bound"], "study is unknown"),
+        *(
+            (["simulate", "--output", f"run.{ending}"], "is to be a folder, for all files that are written")
+            for ending in ("mf4", "csv", "parquet")
+        ),
+        (["analyse", "--controller", "SpeedWashOut"], "SpeedWashOut is unknown; did you mean SpeedWashout?"),
+        (["robustness", "--cases", "0"], "'0' is not a whole number from 1 to 100000"),
+        (["robustness", "--case", "1.5"], "'1.5' is not a whole number"),
+        (["robustness", "--seed", "-1"], "is not a whole number from 0 to 1000000"),
+        (["car", "--template", "van.toml"], "--template writes the default car"),
+        (["car", "--output", "car.toml"], "--output is for a template"),
+        (["car", "no.toml"], "no.toml: there is no such file"),
+        (["identify", "a.csv", "--output", "car.json"], "--output car.json: a vehicle file is a .toml"),
+        (["identify", "a.csv", "--vehicle", "absent.toml"], "absent.toml"),
+        (["identify", "a.csv", "--free", "C"], "--free: C is unknown; known are: J_1, d, g_T"),
+        (["identify", "a.csv", "--free", "J_1", "--free", "g_T"], "free one of them"),
+        (["identify", "a.csv"], "there is no recording a.csv"),
+        *(
+            (["design", f"--{option}={value}"], f"--{option} is for a search: give the folder of one, --search FOLDER")
+            for option, value in (("controller", "SpeedWashout"), ("evaluations", 5), ("seed", 1), ("build", "native"))
+        ),
+        (["design", "--character", "0"], "--character is for a search: give the folder of one, --search FOLDER"),
+        *(
+            (["design", "--search", "search", f"--character={value}"], "is not a number from 0 to 1")
+            for value in ("1.1", "nan", "-0.1")
+        ),
+        (["design", "--search", "search", "--evaluations", "0"], "is not a whole number from 1 to 100000"),
+        (["design", "--search", "search", "--controller", "Mine"], "Mine is unknown; known are: DampingController"),
     ],
 )
-def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, arguments, hint):
+def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, monkeypatch, tmp_path, arguments, hint):
+    monkeypatch.chdir(tmp_path)
     code, _, err = answer(capsys, *arguments)
     assert code == 2
     assert hint in err
     assert "Traceback" not in err
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

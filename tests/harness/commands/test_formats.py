@@ -80,10 +80,3 @@ def test_another_format_is_another_run(driven, native, capsys):
     options = ["--manoeuvre", "prbs15", "--fmus", str(native.parent), "--output", str(driven / "csv")]
     assert main(["simulate", *options, "--format", "mf4"]) == 2
     assert "is of another run (format: not set there, mf4 here)" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("name", ["run.mf4", "run.csv", "run.parquet"])
-def test_a_file_in_the_place_of_the_folder_is_refused(capsys, tmp_path, name):
-    with pytest.raises(SystemExit):
-        main(["simulate", "--output", str(tmp_path / name)])
-    assert "is to be a folder, for all files that are written" in capsys.readouterr().err

@@ -135,13 +135,6 @@ def test_the_vehicle_file_that_is_given_is_what_is_known(
     assert (entries["J_1"], entries["m"]) == (1.03 * PLANT.J_1, 1450.0)
 
 
-def test_j_1_and_the_gain_of_the_motor_torque_together_are_refused(
-    identify: Identify, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert identify("--free", "J_1", "--free", "g_T") == 2
-    assert "free one of them" in capsys.readouterr().err
-
-
 def test_a_file_whose_folder_cannot_be_made_is_refused_before_the_search(
     recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -198,39 +191,6 @@ def test_design_writes_gains_and_both_builds_and_compares(
     message = "\n".join(line for line in lines if any(f" {name} " in line for name in redesign.REDESIGN_MANOEUVRES))
     assert message.count("234") == message.count("123") == message.count("5.6") == message.count("4.5") == 8
     assert all(of == car and settings is kept for of, settings in calls)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["--output", "car.json"], "--output car.json: a vehicle file is a .toml"),
-        (["--vehicle", "absent.toml"], "absent.toml"),
-        (["--free", "C"], "--free: C is unknown; known are: J_1, d, g_T"),
-        (["--column", "T_mot=Nothing"], "Nothing"),
-    ],
-)
-def test_wrong_use_is_refused_with_exit_code_2(
-    recording: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    options: list[str],
-    message: str,
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    try:
-        code = main(["identify", str(recording), *options])
-    except SystemExit as end:
-        code = end.code
-    assert code == 2
-    assert message in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_recording_that_is_not_there_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["identify", str(tmp_path / "drive.csv"), "--output", str(tmp_path / "car.toml")]) == 2
-    assert f"there is no recording {tmp_path / 'drive.csv'}" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
 
 
 def test_a_recording_that_is_too_short_is_refused_and_nothing_written(

@@ -88,9 +88,3 @@ def test_two_manoeuvres_of_one_name_are_refused(native, tmp_path, capsys, words)
     path.write_text(TIPIN, encoding="utf-8")
     assert main([*words, "--manoeuvre", str(path), "--fmus", str(native.parent)]) == 2
     assert "two manoeuvres are called tipin15; rename the file of one" in capsys.readouterr().err
-
-
-def test_what_is_neither_name_nor_file_gets_a_hint(capsys):
-    with pytest.raises(SystemExit):
-        main(["simulate", "--manoeuvre", "tipn15"])
-    assert "tipn15 is unknown; did you mean tipin15" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""What the shared options take and what they refuse."""
+"""What the shared options take and what they refuse, and what is said of them."""
 
 import os
 import subprocess
@@ -26,8 +26,11 @@ from driveline.harness.commands.options import (
     seed,
     window,
 )
+from driveline.harness.commands.printing import JsonPrinting, Printing
 from driveline.harness.commands.recorded import Recorded
+from driveline.harness.commands.settings import caption
 from driveline.harness.loop.places import BUILD
+from driveline.harness.studies.compare.compare import Case
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.models.block.declaration import Integer, variables
 from tests import ROOT
@@ -192,3 +195,52 @@ def test_cases_have_numbers_from_one_to_the_most(
         with pytest.raises(SystemExit):
             given(command, f"--{option}", str(number))
         assert f"argument --{option}: '{number}' is not a whole number from 1 to {most}" in capsys.readouterr().err
+
+
+RUNS = {"simulate": [], "compare": [], "replay": ["trip.csv"]}
+BOTH = "--controller DampingController --controller mine.fmu"
+
+
+@pytest.mark.parametrize(
+    ("command", "options", "message"),
+    [
+        *((command, "", "") for command in RUNS),
+        *((command, "--fmus /somewhere --build native --quiet", "") for command in RUNS),
+        *((command, "--seed 3 --set plant.J_1=0.06", "--set plant.J_1=0.06 --seed 3") for command in RUNS),
+        *(
+            (command, "--vehicle van.toml --controller mine.fmu", "--controller mine.fmu --vehicle van.toml")
+            for command in RUNS
+        ),
+        ("replay", BOTH, BOTH),
+        ("replay", "--controller DampingController", ""),
+        ("simulate", "--step 0.0005 --scheme jacobi", "--step 0.0005 --scheme jacobi"),
+        ("simulate", "--map plant.v=speed", "--map plant.v=speed"),
+    ],
+)
+def test_a_figure_says_what_was_set(command: str, options: str, message: str) -> None:
+    assert caption(given(command, *RUNS[command], *options.split())) == message
+
+
+def test_a_case_is_named_in_words() -> None:
+    assert str(Case("theirs/car.fmu", "tipin15", True)) == "tipin15 on car, damping on"
+
+
+def test_all_kinds_of_a_figure_are_one_line_and_every_other_file_has_its_own(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    names = ("table.md", "table.csv", "step.png", "step.pdf", "step.svg", "drive.png", "step.json")
+    Printing().written(Path("out") / name for name in names)
+    assert capsys.readouterr().out.splitlines() == [
+        "written: out/table.md",
+        "written: out/table.csv",
+        "written: out/step.png (and .pdf, .svg)",
+        "written: out/drive.png",
+        "written: out/step.json",
+    ]
+
+
+@pytest.mark.parametrize("out", [Printing(quiet=True), JsonPrinting(json=True)])
+def test_who_wants_no_lines_gets_none(out: Printing, capsys: pytest.CaptureFixture[str]) -> None:
+    out.written([Path("table.md")])
+    out.say("done")
+    assert capsys.readouterr().out == ""

@@ -129,23 +129,6 @@ def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
     assert "DampingController.fmu has no parameter k_v" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["--cases", "0"], "'0' is not a whole number from 1 to 100000"),
-        (["--case", "1.5"], "'1.5' is not a whole number"),
-        (["--seed", "-1"], "is not a whole number from 0 to 1000000"),
-    ],
-)
-def test_what_no_campaign_can_use_is_refused(
-    robustness: Callable[..., int], options: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(SystemExit) as end:
-        robustness(*options)
-    assert end.value.code == 2
-    assert message in capsys.readouterr().err
-
-
 def test_a_scheduler_that_is_not_there_is_one_line(
     robustness: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -66,31 +66,3 @@ def test_what_has_nothing_to_search_is_refused(
     assert search("--controller", "NoDamping") == 2
     assert "NoDamping has no parameter that is searched" in capsys.readouterr().err
     assert not (tmp_path / "search").exists()
-
-
-@pytest.mark.parametrize(
-    ("option", "value"),
-    [("controller", "SpeedWashout"), ("evaluations", "5"), ("character", "0"), ("seed", "1"), ("build", "native")],
-)
-def test_an_option_of_a_search_needs_one(option: str, value: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["design", f"--{option}", value]) == 2
-    assert f"--{option} is for a search: give the folder of one, --search FOLDER" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("option", "value", "message"),
-    [
-        ("character", "1.1", "is not a number from 0 to 1"),
-        ("character", "nan", "is not a number from 0 to 1"),
-        ("character", "-0.1", "is not a number from 0 to 1"),
-        ("evaluations", "0", "is not a whole number from 1 to 100000"),
-        ("controller", "Mine", "Mine is unknown; known are: DampingController"),
-    ],
-)
-def test_what_no_search_can_use_is_refused(
-    option: str, value: str, message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(SystemExit) as end:
-        main(["design", "--search", "search", f"--{option}={value}"])
-    assert end.value.code == 2
-    assert message in capsys.readouterr().err
