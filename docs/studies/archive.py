@@ -15,10 +15,9 @@ from tempfile import TemporaryDirectory
 import fmpy
 import numpy as np
 
-from driveline.fmus import manoeuvre
 from driveline.fmus.archive import write_archive
 from driveline.fmus.building.builds import FMI3_FOLDER, NATIVE_FOLDER, build_fmus
-from driveline.fmus.catalogue import FMUS
+from driveline.fmus.catalogue import FMUS, MANOEUVRE
 from driveline.fmus.release import VERSION
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.base.interruption import script
@@ -62,7 +61,7 @@ def archive(folder: Path, platform: str = "all") -> Path:
 
 
 def _content(made: Path, platform: str) -> dict[str, bytes]:
-    for fmi, names in ((2, [*FMUS, manoeuvre.FMU]), (3, list(FMUS))):
+    for fmi, names in ((2, [*FMUS, MANOEUVRE]), (3, list(FMUS))):
         list(build_fmus(names, made, "native", platform, fmi=fmi))
     if driveline(["ssp", "--fmus", str(made), "--build", "native", "--output", str(made), "--quiet"]):
         raise DrivelineError("driveline ssp failed")
