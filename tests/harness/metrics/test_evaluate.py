@@ -32,11 +32,6 @@ def run(duration=6.0, interval=1e-3, **signals):
     return results
 
 
-def test_the_samples_are_those_of_the_controller():
-    """No FMU tells its sample time, so the harness declares it."""
-    assert T_S == T_S
-
-
 STEP_METRICS = ("settling_time", "response_delay", "overshoot", "damping_ratio", "withheld_time")
 
 

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from driveline.models.controller import T_S as SAMPLE
 from driveline.models.controller import launch, trust
 from driveline.models.controller.causes import NONE, WRONG_LAUNCH
 from driveline.models.controller.launch import LaunchState
@@ -111,8 +112,8 @@ CAR = OURS.Parameters()
 def set_off(side: float) -> list[State]:
     """States of the controller as a free motor sets off against its torque, up to when it is looked at."""
     states, omega_1 = [OURS.start(Input(), CAR)], 0.0
-    while len(states) == 1 or abs(states[-1].launch.free) < CAR.free * added_speed(CAR, T_S):
-        gained = -T_S * states[-1].motor.loop.T_mot / CAR.J_1
+    while len(states) == 1 or abs(states[-1].launch.free) < CAR.launch_speed * added_speed(CAR, SAMPLE):
+        gained = -SAMPLE * states[-1].motor.loop.T_mot / CAR.J_1
         states += driven(states[-1], side, [omega_1 + 0.5 * gained])
         omega_1 += gained
     return states
@@ -142,7 +143,7 @@ def pulled_away(lost: int, T_mot_share: float = 1.0) -> list[State]:
         measured = math.nan if k == lost else -omega_1
         u = Input(T_driver=min(2.4 * k, 120.0), omega_1_meas=measured, T_mot_est=T_mot_share * T_mot)
         states.append(OURS.update(states[-1], u, CAR))
-        omega_1 += T_S * T_mot / CAR.J_1
+        omega_1 += SAMPLE * T_mot / CAR.J_1
     return states
 
 
@@ -155,10 +156,10 @@ def test_a_sample_without_a_motor_speed_and_a_wrong_estimate_of_the_torque_hide_
 @each_side
 def test_trust_is_back_once_the_motor_turns_the_other_way_or_rests_and_not_before(side: float) -> None:
     """Other wrong directions heal in t_turn."""
-    turning = [-side * (3.5 + 0.01 * (-1.0) ** k) for k in range(2 * round(CAR.t_turn / T_S))]
+    turning = [-side * (3.5 + 0.01 * (-1.0) ** k) for k in range(2 * round(CAR.t_turn / SAMPLE))]
     states = driven(set_off(side)[-1], side, turning)
     assert {(x.trust.cause, x.trust.clock) for x in states} == {(WRONG_LAUNCH, 0.0)}
-    proof, still = round(CAR.t_proof / T_S), CAR.omega_still
+    proof, still = round(CAR.t_proof / SAMPLE), CAR.omega_still
     beyond = math.nextafter(still, math.inf)
     for omega_1, other, heals in (
         (3.5, 3.6, True),
