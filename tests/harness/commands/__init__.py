@@ -1,7 +1,11 @@
 from typing import Any
 
+import pytest
+
 from driveline.harness.commands.arguments import filled
 from driveline.harness.commands.cli import parser
+
+Capsys = pytest.CaptureFixture[str]
 
 
 def given(*words: str) -> Any:

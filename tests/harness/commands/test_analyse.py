@@ -16,6 +16,7 @@ from driveline.harness.studies.margins.describing_function import LimitCycle, Sw
 from driveline.harness.studies.margins.loop_analysis import Analysis, Part, linear_part
 from driveline.harness.studies.margins.parameter_sweeps import SWEEPS, Swept
 from driveline.harness.studies.margins.sensitivity import SHOWN, Sensitivity
+from tests.harness.commands import Capsys
 
 PLANT = "TwoMassDriveline"
 
@@ -62,9 +63,7 @@ def test_a_loop_that_is_not_stable_has_no_margins() -> None:
         linear_part(Part(PLANT, "15"), "SpeedWashout", unstable)
 
 
-def test_a_vehicle_file_that_is_wrong_is_answered_with_its_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_vehicle_file_that_is_wrong_is_answered_with_its_line(tmp_path: Path, capsys: Capsys) -> None:
     car = tmp_path / "car.toml"
     car.write_text("C = -3.0\n", encoding="utf-8")
     assert main(["analyse", "--vehicle", str(car), "--output", str(tmp_path / "results")]) == 2

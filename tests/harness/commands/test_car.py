@@ -3,16 +3,15 @@
 import json
 from pathlib import Path
 
-import pytest
-
 from driveline.fmus.building.car_entries import template
 from driveline.harness.commands.cli import main
 from tests import ROOT
+from tests.harness.commands import Capsys
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
 
 
-def test_the_table_has_each_entry_and_what_comes_of_them(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_table_has_each_entry_and_what_comes_of_them(capsys: Capsys) -> None:
     assert main(["car", VAN]) == 0
     text = capsys.readouterr().out
     rows = {line.split()[0]: line for line in text.splitlines() if line.strip()}
@@ -25,7 +24,7 @@ def test_the_table_has_each_entry_and_what_comes_of_them(capsys: pytest.CaptureF
     assert rows["ValidationVehicle"].split()[1] == "7.50"
 
 
-def test_tools_get_one_document(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_tools_get_one_document(tmp_path: Path, capsys: Capsys) -> None:
     gains = tmp_path / "gains.toml"
     gains.write_text("k_d = 3.469\nT_add_max = 40\n", encoding="utf-8")
     assert main(["car", VAN, "--parameters", str(gains), "--json"]) == 0
@@ -37,7 +36,7 @@ def test_tools_get_one_document(tmp_path: Path, capsys: pytest.CaptureFixture[st
         assert plant["damping_ratio"] < 0.06 < 0.3 < plant["damped"]["damping_ratio"]
 
 
-def test_a_car_without_a_controller_has_no_damped_mode(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_car_without_a_controller_has_no_damped_mode(tmp_path: Path, capsys: Capsys) -> None:
     car = tmp_path / "car.toml"
     car.write_text("T_cyc = 0.2\n", encoding="utf-8")
     assert main(["car", str(car), "--json"]) == 0
@@ -46,9 +45,7 @@ def test_a_car_without_a_controller_has_no_damped_mode(tmp_path: Path, capsys: p
     assert [plant["damped"] for plant in found["properties"]["plants"]] == [None, None]
 
 
-def test_the_template_is_printed_or_written_and_no_other_file_is_replaced(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_template_is_printed_or_written_and_no_other_file_is_replaced(tmp_path: Path, capsys: Capsys) -> None:
     assert main(["car", "--template"]) == 0
     assert capsys.readouterr().out == template()
     path = tmp_path / "car.toml"
@@ -59,9 +56,7 @@ def test_the_template_is_printed_or_written_and_no_other_file_is_replaced(
     assert path.read_text(encoding="utf-8") == "mine"
 
 
-def test_shafts_that_contradict_the_stiffness_are_refused_with_both_numbers(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_shafts_that_contradict_the_stiffness_are_refused_with_both_numbers(tmp_path: Path, capsys: Capsys) -> None:
     car = tmp_path / "car.toml"
     car.write_text("C = 220.0\nk_s = 25800.0\n", encoding="utf-8")
     assert main(["car", str(car)]) == 2

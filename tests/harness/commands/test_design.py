@@ -9,11 +9,12 @@ from driveline.fmus.building.parameter_files import read_parameters, read_vehicl
 from driveline.harness.commands.cli import main
 from driveline.harness.design.design import design
 from tests import ROOT
+from tests.harness.commands import Capsys
 
 VAN = ROOT / "examples" / "cars" / "van.toml"
 
 
-def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: Capsys) -> None:
     assert main(["design", "--vehicle", str(VAN)]) == 0
     text = capsys.readouterr().out
     lines = text.splitlines()
@@ -26,9 +27,7 @@ def test_the_gains_of_a_car_are_printed_with_units_and_meaning(capsys: pytest.Ca
     assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)
 
 
-def test_the_gains_are_written_to_a_file_that_the_other_commands_take(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_gains_are_written_to_a_file_that_the_other_commands_take(tmp_path: Path, capsys: Capsys) -> None:
     path = tmp_path / "new" / "gains.toml"
     assert main(["design", "--vehicle", str(VAN), "--output", str(path)]) == 0
     assert capsys.readouterr().out == f"gains: {path}\n"
@@ -36,7 +35,7 @@ def test_the_gains_are_written_to_a_file_that_the_other_commands_take(
     assert [file.name for file in path.parent.iterdir()] == ["gains.toml"]
 
 
-def test_limits_of_a_user_are_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_limits_of_a_user_are_kept(tmp_path: Path, capsys: Capsys) -> None:
     limits, more = tmp_path / "limits.toml", tmp_path / "more.toml"
     limits.write_text("T_take_max = 120\nT_add_max = 500\n", encoding="utf-8")
     assert main(["design", "--vehicle", str(VAN), "--parameters", str(limits)]) == 0
@@ -51,7 +50,7 @@ def test_limits_of_a_user_are_kept(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.parametrize("name", ["T_take_max", "T_add_max"])
-def test_a_limit_may_be_small_but_not_zero(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_limit_may_be_small_but_not_zero(name: str, tmp_path: Path, capsys: Capsys) -> None:
     limits = tmp_path / "limits.toml"
     limits.write_text(f"{name} = 1e-3\n", encoding="utf-8")
     assert main(["design", "--parameters", str(limits)]) == 0
@@ -62,7 +61,7 @@ def test_a_limit_may_be_small_but_not_zero(name: str, tmp_path: Path, capsys: py
 
 
 def test_nothing_depends_on_the_working_directory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["design"]) == 0
@@ -80,7 +79,7 @@ def test_nothing_depends_on_the_working_directory(
     ],
 )
 def test_a_car_without_a_controller_is_answered_with_exit_code_2(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str
+    tmp_path: Path, capsys: Capsys, text: str, message: str
 ) -> None:
     car, gains = tmp_path / "car.toml", tmp_path / "gains.toml"
     car.write_text(text, encoding="utf-8")
@@ -89,7 +88,7 @@ def test_a_car_without_a_controller_is_answered_with_exit_code_2(
     assert not gains.exists()
 
 
-def test_gains_of_another_car_are_not_replaced_unasked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_gains_of_another_car_are_not_replaced_unasked(tmp_path: Path, capsys: Capsys) -> None:
     path = tmp_path / "gains.toml"
     of_van = ["design", "--vehicle", str(VAN), "--output", str(path)]
     assert [main(of_van), main(of_van)] == [0, 0]

@@ -16,6 +16,7 @@ from driveline.harness.design import redesign
 from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import PLANT
 from driveline.harness.loop.settings import Settings
+from tests.harness.commands import Capsys
 
 FIGURES = {
     f"car_{name}.{ending}" for name in ("simulation", "innovations", "cost", "response") for ending in ("png", "pdf")
@@ -52,7 +53,7 @@ def require_close(document: dict, name: str, true: float, relative: float) -> No
 
 @pytest.mark.slow
 def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_same(
-    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
     """What the figures show, and that they remain the same, is tested with them; here they are drawn but not saved."""
     monkeypatch.setattr(Figure, "savefig", lambda _, path, **__: path.write_bytes(b"a figure"))
@@ -105,7 +106,7 @@ def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_without_load_torque_and_demand_the_result_has_another_name(
-    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], without_figures: None
+    recording: Path, tmp_path: Path, capsys: Capsys, without_figures: None
 ) -> None:
     path = tmp_path / "less.csv"
     table = pd.read_csv(recording).drop(columns=["Wheel Torque [N.m]", "Torque Demand [N.m]"])
@@ -121,7 +122,7 @@ def test_without_load_torque_and_demand_the_result_has_another_name(
 
 @pytest.mark.slow
 def test_the_vehicle_file_that_is_given_is_what_is_known(
-    identify: Identify, tmp_path: Path, capsys: pytest.CaptureFixture[str], without_figures: None
+    identify: Identify, tmp_path: Path, capsys: Capsys, without_figures: None
 ) -> None:
     """Its J_1, 3 % wrong, is doubted; its other entries stay."""
     car = tmp_path / "known.toml"
@@ -136,7 +137,7 @@ def test_the_vehicle_file_that_is_given_is_what_is_known(
 
 
 def test_a_file_whose_folder_cannot_be_made_is_refused_before_the_search(
-    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    recording: Path, tmp_path: Path, capsys: Capsys
 ) -> None:
     (tmp_path / "file").touch()
     assert main(["identify", str(recording), "--output", str(tmp_path / "file" / "more" / "car.toml")]) == 2
@@ -162,7 +163,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
     identify: Identify,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    capsys: Capsys,
     without_figures: None,
     native_builder: object,
 ) -> None:
@@ -194,7 +195,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
 
 
 def test_a_recording_that_is_too_short_is_refused_and_nothing_written(
-    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    recording: Path, tmp_path: Path, capsys: Capsys
 ) -> None:
     path = tmp_path / "short.csv"
     path.write_text("".join(recording.read_text(encoding="utf-8").splitlines(keepends=True)[: 1 + 1251]))
@@ -205,7 +206,7 @@ def test_a_recording_that_is_too_short_is_refused_and_nothing_written(
 
 @pytest.mark.slow
 def test_a_car_that_is_hardly_known_is_told_but_not_written(
-    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
     monkeypatch.setattr("driveline.harness.identification.car_file.WIDEST_INTERVAL", 1e-6)
     assert identify() == 2
@@ -217,9 +218,7 @@ def test_a_car_that_is_hardly_known_is_told_but_not_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_files_of_another_origin_are_not_replaced(
-    identify: Identify, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_files_of_another_origin_are_not_replaced(identify: Identify, tmp_path: Path, capsys: Capsys) -> None:
     folder = tmp_path / "out"
     folder.mkdir()
     for name in ("car.toml", "car_identified.json"):
@@ -231,7 +230,7 @@ def test_files_of_another_origin_are_not_replaced(
 
 
 def test_without_casadi_the_extra_is_named(
-    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
     monkeypatch.setitem(sys.modules, "casadi", None)
     assert identify() == 2

@@ -34,7 +34,7 @@ from driveline.harness.studies.compare.compare import Case
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.models.block.declaration import Integer, variables
 from tests import ROOT
-from tests.harness.commands import given
+from tests.harness.commands import Capsys, given
 
 Parse = Callable[[str], Any]
 
@@ -111,8 +111,8 @@ def test_a_seed_is_what_the_blocks_declare() -> None:
 
 
 def test_a_window_shows_something_of_every_run() -> None:
-    def options_for(*window: float) -> FigureOptions:
-        return Figures(window=window).options("", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0))
+    def options_for(start: float, end: float) -> FigureOptions:
+        return Figures(window=(start, end)).options("", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0))
 
     assert options_for(5.99, 9.0).clipped(0.0, 6.0) == (5.99, 6.0)
     assert options_for(-1.0, 0.1).clipped(0.0, 6.0) == (0.0, 0.1)
@@ -186,9 +186,7 @@ def test_other_samples_columns_names_or_frames_make_another_run(tmp_path: Path) 
 
 @pytest.mark.parametrize(("command", "most"), [("faults", 1_000_000), ("robustness", 100_000)])
 @pytest.mark.parametrize("option", ["case", "cases"])
-def test_cases_have_numbers_from_one_to_the_most(
-    command: str, most: int, option: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_cases_have_numbers_from_one_to_the_most(command: str, most: int, option: str, capsys: Capsys) -> None:
     for number in (1, most):
         assert getattr(given(command, f"--{option}", str(number)), option) == number
     for number in (0, most + 1):
@@ -225,9 +223,7 @@ def test_a_case_is_named_in_words() -> None:
     assert str(Case("theirs/car.fmu", "tipin15", True)) == "tipin15 on car, damping on"
 
 
-def test_all_kinds_of_a_figure_are_one_line_and_every_other_file_has_its_own(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_all_kinds_of_a_figure_are_one_line_and_every_other_file_has_its_own(capsys: Capsys) -> None:
     names = ("table.md", "table.csv", "step.png", "step.pdf", "step.svg", "drive.png", "step.json")
     Printing().written(Path("out") / name for name in names)
     assert capsys.readouterr().out.splitlines() == [
@@ -240,7 +236,7 @@ def test_all_kinds_of_a_figure_are_one_line_and_every_other_file_has_its_own(
 
 
 @pytest.mark.parametrize("out", [Printing(quiet=True), JsonPrinting(json=True)])
-def test_who_wants_no_lines_gets_none(out: Printing, capsys: pytest.CaptureFixture[str]) -> None:
+def test_who_wants_no_lines_gets_none(out: Printing, capsys: Capsys) -> None:
     out.written([Path("table.md")])
     out.say("done")
     assert capsys.readouterr().out == ""

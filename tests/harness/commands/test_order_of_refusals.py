@@ -7,6 +7,7 @@ import pytest
 
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.town_drive import PATH
+from tests.harness.commands import Capsys
 
 FIRST = {
     "simulate": "TwoMassDriveline_tipin15_on.csv",
@@ -18,7 +19,7 @@ FIRST = {
 
 
 @pytest.fixture
-def message(both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def message(both_built: Path, tmp_path: Path, capsys: Capsys):
     """What a command says that must not run, into a folder with results of nobody knows which run."""
     folder = tmp_path / "results"
     folder.mkdir()
@@ -66,9 +67,7 @@ def test_two_plants_of_one_name_are_named_before_the_folder(message, native: Pat
 
 
 @pytest.mark.parametrize("command", ["replay", "identify"])
-def test_what_is_no_file_is_refused_before_it_is_read(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_no_file_is_refused_before_it_is_read(command: str, tmp_path: Path, capsys: Capsys) -> None:
     """A pipe that nobody writes to, or a device that gives without end, as a folder here."""
     assert main([command, str(tmp_path)]) == 2
     assert capsys.readouterr().err == f"driveline {command}: {tmp_path} is a folder; a file is needed\n"

@@ -11,6 +11,7 @@ from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import settings
 from tests import ROOT
 from tests.foreign import build_car
+from tests.harness.commands import Capsys
 from tests.harness.commands import given as record
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
@@ -113,7 +114,7 @@ def test_every_command_that_runs_or_builds_the_loop_takes_both_files(command, ga
 
 @pytest.mark.slow
 def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
-    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    both_built: Path, tmp_path: Path, capsys: Capsys
 ) -> None:
     heavy = tmp_path / "heavy.toml"
     heavy.write_text("m = 2000.0\n")
@@ -130,7 +131,7 @@ def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
 
 
 def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_mapped(
-    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    both_built: Path, tmp_path: Path, capsys: Capsys
 ) -> None:
     heavy = tmp_path / "heavy.toml"
     heavy.write_text("m = 2000.0\n")
@@ -143,7 +144,7 @@ def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_m
 
 @pytest.mark.slow
 def test_what_a_vehicle_file_does_not_reach_is_said(
-    both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+    both_built: Path, tmp_path: Path, capsys: Capsys, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Somebody else's plant without J_1, whatever its name, keeps its own, while the controller's model takes that of
     the file."""

@@ -16,6 +16,7 @@ from driveline.harness.simulation import many_runs
 from driveline.harness.simulation.case_archive import GOES_ON, CaseArchive
 from driveline.harness.studies.faults import fault_report
 from driveline.harness.studies.robustness import robustness_report
+from tests.harness.commands import Capsys
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),)
 
@@ -72,11 +73,7 @@ def command(fmus: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Kind, Path
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 @pytest.mark.slow
 def test_a_campaign_that_was_stopped_ends_with_the_bytes_of_one_that_was_not(
-    command: Callable[[Kind, Path], int],
-    kind: Kind,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    command: Callable[[Kind, Path], int], kind: Kind, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
     whole, stopped = tmp_path / "whole", tmp_path / "stopped"
     assert command(kind, whole) == 0
@@ -108,7 +105,7 @@ def test_a_campaign_that_was_stopped_ends_with_the_bytes_of_one_that_was_not(
 
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 def test_a_campaign_of_other_settings_is_not_continued(
-    command: Callable[[Kind, Path], int], kind: Kind, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: Callable[[Kind, Path], int], kind: Kind, tmp_path: Path, capsys: Capsys
 ) -> None:
     words = tuple("1" if word in ("2", "4", "6") else word for word in kind.given)
     few = kind._replace(given=tuple(" ".join(words).replace("--seed 1 ", "").split()))  # it is the usual one

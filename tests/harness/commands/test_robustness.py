@@ -12,6 +12,7 @@ from driveline.fmus.catalogue import EVERY
 from driveline.harness.commands.cli import main
 from driveline.harness.simulation import many_runs
 from driveline.harness.studies.robustness import robustness_report
+from tests.harness.commands import Capsys
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +43,7 @@ OURS, ALL = ("--controller", "DampingController"), ("--controller", "DampingCont
 
 @pytest.mark.slow
 def test_the_folder_gets_the_runs_the_page_and_the_figures(
-    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    robustness: Callable[..., int], tmp_path: Path, capsys: Capsys
 ) -> None:
     assert robustness("--cases", "2", *ALL) == 0
     folder, message = tmp_path / "results", capsys.readouterr().out
@@ -65,25 +66,7 @@ def test_the_folder_gets_the_runs_the_page_and_the_figures(
     assert record["files"][:4] == ["runs.csv", "draws.csv", "summary.csv", "robustness.md"]
 
 
-@pytest.mark.slow
-def test_more_cases_go_on_where_fewer_ended_with_the_same_bytes(
-    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    runs = tmp_path / "results" / "runs.csv"
-    assert robustness("--cases", "2", *ALL, "--json") == 0
-    at_once, document = runs.read_bytes(), json.loads(capsys.readouterr().out)
-    assert [each["runs"] for each in document["summaries"]] == 6 * [2]
-    assert robustness("--cases", "1", *ALL, "--quiet") == 0
-    assert runs.read_bytes() == at_once  # what is known is kept
-    runs.unlink()
-    assert robustness("--cases", "1", *ALL, "--quiet") == 0
-    assert robustness("--cases", "2", *ALL, "--quiet") == 0
-    assert runs.read_bytes() == at_once
-
-
-def test_runs_of_other_settings_are_not_mixed(
-    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_runs_of_other_settings_are_not_mixed(robustness: Callable[..., int], tmp_path: Path, capsys: Capsys) -> None:
     runs = tmp_path / "results" / "runs.csv"
     assert robustness("--cases", "1", *OURS, "--quiet") == 0
     first = runs.read_bytes()
@@ -97,7 +80,7 @@ def test_runs_of_other_settings_are_not_mixed(
 
 
 def test_one_draw_again_is_the_one_of_the_campaign(
-    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    robustness: Callable[..., int], tmp_path: Path, capsys: Capsys
 ) -> None:
     assert robustness("--case", "2", *OURS, "--json") == 0
     alone = json.loads(capsys.readouterr().out)
@@ -112,7 +95,7 @@ def test_one_draw_again_is_the_one_of_the_campaign(
 
 @pytest.mark.slow
 def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
-    robustness: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    robustness: Callable[..., int], tmp_path: Path, capsys: Capsys
 ) -> None:
     def settling(*more: str) -> dict[str, float]:
         assert robustness("--case", "1", *ALL, "--json", "--replace", *more) == 0
@@ -129,9 +112,7 @@ def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
     assert "DampingController.fmu has no parameter k_v" in capsys.readouterr().err
 
 
-def test_a_scheduler_that_is_not_there_is_one_line(
-    robustness: Callable[..., int], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scheduler_that_is_not_there_is_one_line(robustness: Callable[..., int], capsys: Capsys) -> None:
     assert robustness("--cases", "1", *OURS, "--scheduler", "nowhere") == 2
     assert capsys.readouterr().err == (
         "driveline robustness: no Dask scheduler answers at 'nowhere': missing port number in address 'nowhere'\n"

@@ -12,6 +12,7 @@ from driveline.harness.design.search import cost_evaluation
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.simulation import many_runs
+from tests.harness.commands import Capsys
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),)
 
@@ -27,7 +28,7 @@ def search(native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cal
 
 @pytest.mark.slow
 def test_the_folder_gets_the_gains_the_candidates_and_the_front(
-    search: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    search: Callable[..., int], tmp_path: Path, capsys: Capsys
 ) -> None:
     folder = tmp_path / "search"
     assert search() == 0
@@ -60,9 +61,7 @@ def test_the_character_chooses_from_the_same_candidates(search: Callable[..., in
     assert search("--character", "0", "--output", str(outputs[1]), "--quiet") == 2
 
 
-def test_what_has_nothing_to_search_is_refused(
-    search: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_has_nothing_to_search_is_refused(search: Callable[..., int], tmp_path: Path, capsys: Capsys) -> None:
     assert search("--controller", "NoDamping") == 2
     assert "NoDamping has no parameter that is searched" in capsys.readouterr().err
     assert not (tmp_path / "search").exists()

@@ -7,6 +7,7 @@ import pytest
 
 from driveline.harness.commands.cli import main
 from tests import ROOT
+from tests.harness.commands import Capsys
 
 EXPORT = ("target", "export", "--quiet")
 
@@ -23,7 +24,7 @@ def test_it_writes_headers_and_source(tmp_path: Path) -> None:
 
 
 def test_on_a_full_disk_it_writes_all_files_or_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
     write_text = Path.write_text
 
@@ -58,7 +59,7 @@ def test_it_takes_the_car_and_its_gains(tmp_path: Path) -> None:
     ],
 )
 def test_what_does_not_belong_to_the_controller_is_refused(
-    entry: str, controller: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    entry: str, controller: str, message: str, tmp_path: Path, capsys: Capsys
 ) -> None:
     gains = tmp_path / "gains.toml"
     gains.write_text(f"{entry}\n", encoding="utf-8")
@@ -67,9 +68,7 @@ def test_what_does_not_belong_to_the_controller_is_refused(
     assert not (tmp_path / "c").exists()
 
 
-def test_the_c_of_another_controller_stays_unless_it_is_to_be_replaced(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_c_of_another_controller_stays_unless_it_is_to_be_replaced(tmp_path: Path, capsys: Capsys) -> None:
     assert exported(tmp_path) == exported(tmp_path) == 0
     before = (tmp_path / "controller.h").read_bytes()
     other = ("--controller", "SpeedWashout")
