@@ -175,23 +175,10 @@ class Output(NamedTuple):
     y: Annotated[float, Real("1", "output")]
 
 
-def start(u, p):
-    return State(0.0)
-
-
-def derivative(x, u, p):
-    return State((u.u - x.y) / p.tau)
-
-
-def output(x, u, p):
-    return Output(x.y + 0.0 * p.slack)
-
-
-FMU = Fmu(
-    ContinuousBlock(
-        name="SmallLag", description="Lag", module=__name__, Parameters=Parameters, Input=Input, State=State,
-        Output=Output, start=start, output=output, derivative=derivative, step_size=0.001,
-    ),
-    stop_time=1.0,
+BLOCK = ContinuousBlock(
+    name="SmallLag", description="Lag", module=__name__, Parameters=Parameters, Input=Input, State=State,
+    Output=Output, start=lambda u, p: State(0.0), derivative=lambda x, u, p: State((u.u - x.y) / p.tau),
+    output=lambda x, u, p: Output(x.y + 0.0 * p.slack), step_size=0.001,
 )
+FMU = Fmu(BLOCK, stop_time=1.0)
 '''
