@@ -10,7 +10,6 @@ spring is lost at a rate with a kink at the flank that no state feels and no ste
 is never less than what its spring holds.
 """
 
-from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from driveline.models import two_mass_driveline as driveline
@@ -21,45 +20,32 @@ from driveline.models.physics.backlash import dead_zone
 
 
 class Energy(NamedTuple):
-    """Of a plant.
+    """Of a plant: `stored` without the spring of the gear, and in that spring, in J; `powers` that change what is
+    stored, without that of the gear, and the one that the gear takes, in W."""
 
-    Attributes:
-        stored: (x, p) -> energy in J, without the spring of the gear.
-        powers: (x, u, p) -> powers in W that change it, without that of the gear.
-        spring: (x, p) -> energy in J of the spring of the gear.
-        taken: (x, p) -> power in W that the gear takes.
-    """
-
-    stored: Callable[[Any, Any], Any]
-    powers: Callable[[Any, Any, Any], list[Any]]
-    spring: Callable[[Any, Any], Any]
-    taken: Callable[[Any, Any], Any]
+    stored: Any
+    powers: list[Any]
+    spring: Any
+    taken: Any
 
 
-def stored_in_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
-    return 0.5 * (p.J_1 * x.omega_1 * x.omega_1 + p.J_2 * x.omega_2 * x.omega_2 + p.m * x.v * x.v)
-
-
-def powers_of_driveline(x: driveline.State, u: Any, p: driveline.Parameters) -> list[Any]:
+def of_driveline(x: driveline.State, u: Any, p: driveline.Parameters) -> Energy:
     F = driveline.tyre_force(x, p)
     dz = brake.bristle_rate(x.omega_2 / p.i, x.z, p)
-    return [
-        u.T_mot * x.omega_1,
-        driveline.load_torque(x, u, F, dz, p) * x.omega_2,
-        (F - vehicle.resistance(x.v, u.slope, p.m * p.g, p)) * x.v,
-    ]
-
-
-def spring_of_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
     y = dead_zone(x.phi, p.phi_B)
-    return 0.5 * p.C * y * y
+    return Energy(
+        stored=0.5 * (p.J_1 * x.omega_1 * x.omega_1 + p.J_2 * x.omega_2 * x.omega_2 + p.m * x.v * x.v),
+        powers=[
+            u.T_mot * x.omega_1,
+            driveline.load_torque(x, u, F, dz, p) * x.omega_2,
+            (F - vehicle.resistance(x.v, u.slope, p.m * p.g, p)) * x.v,
+        ],
+        spring=0.5 * p.C * y * y,
+        taken=driveline.gear_torque(x, p) * (x.omega_1 - x.omega_2),
+    )
 
 
-def taken_in_driveline(x: driveline.State, p: driveline.Parameters) -> Any:
-    return driveline.gear_torque(x, p) * (x.omega_1 - x.omega_2)
-
-
-def stored_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
+def of_vehicle(x: validation_vehicle.State, u: Any, p: validation_vehicle.Parameters) -> Energy:
     rotor, mounts = x.omega_1 + x.omega_p, x.theta_p + x.theta_b
     terms = [
         p.J_1 * rotor * rotor,
@@ -75,38 +61,28 @@ def stored_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Paramet
         p.k_x * x.s_h * x.s_h,
         p.k_th * x.theta_b * x.theta_b,
     ]
-    return 0.5 * sum(terms)
-
-
-def powers_of_vehicle(x: validation_vehicle.State, u: Any, p: validation_vehicle.Parameters) -> list[Any]:
     k = validation_vehicle.wheels(x, u, p)
     dx_L, dx_R = x.omega_g + x.omega_d - x.omega_L, x.omega_g - x.omega_d - x.omega_R
-    mounts, bushing = x.omega_p + x.omega_b, x.v_h - x.v
+    turning, bushing = x.omega_p + x.omega_b, x.v_h - x.v
     F_h = validation_vehicle.bushing_force(x, p)
-    return [
-        validation_vehicle.air_gap_torque(x, u, p) * x.omega_1,
-        -(p.c_fg * tanh(x.omega_g / p.omega_fg) + p.v_fg * x.omega_g) * x.omega_g,
-        -0.5 * p.d_s * (dx_L * dx_L + dx_R * dx_R) - p.d_d * x.omega_d * x.omega_d,
-        -p.d_p * mounts * mounts - p.d_x * bushing * bushing - p.d_th * x.omega_b * x.omega_b,
-        -(p.r * k.F_L + k.T_rL + k.T_brL) * x.omega_L,
-        -(p.r * k.F_R + k.T_rR + k.T_brR) * x.omega_R,
-        (k.F_L + k.F_R) * x.v_h,
-        -vehicle.resistance(x.v, u.slope, p.m * p.g - p.F_z0, p) * x.v,
-        (F_h * (p.h - p.r) - k.T_brL - k.T_brR) * x.omega_b,
-    ]
-
-
-def spring_of_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
     y = dead_zone(x.gamma, p.phi_B / p.i)
-    return 0.5 * p.k_g * y * y
+    return Energy(
+        stored=0.5 * sum(terms),
+        powers=[
+            validation_vehicle.air_gap_torque(x, u, p) * x.omega_1,
+            -(p.c_fg * tanh(x.omega_g / p.omega_fg) + p.v_fg * x.omega_g) * x.omega_g,
+            -0.5 * p.d_s * (dx_L * dx_L + dx_R * dx_R) - p.d_d * x.omega_d * x.omega_d,
+            -p.d_p * turning * turning - p.d_x * bushing * bushing - p.d_th * x.omega_b * x.omega_b,
+            -(p.r * k.F_L + k.T_rL + k.T_brL) * x.omega_L,
+            -(p.r * k.F_R + k.T_rR + k.T_brR) * x.omega_R,
+            (k.F_L + k.F_R) * x.v_h,
+            -vehicle.resistance(x.v, u.slope, p.m * p.g - p.F_z0, p) * x.v,
+            (F_h * (p.h - p.r) - k.T_brL - k.T_brR) * x.omega_b,
+        ],
+        spring=0.5 * p.k_g * y * y,
+        taken=validation_vehicle.gear_torque(x, p) * (x.omega_1 / p.i + x.omega_p - x.omega_g),
+    )
 
 
-def taken_in_vehicle(x: validation_vehicle.State, p: validation_vehicle.Parameters) -> Any:
-    return validation_vehicle.gear_torque(x, p) * (x.omega_1 / p.i + x.omega_p - x.omega_g)
-
-
-ENERGIES: Mapping[str, Energy] = {
-    driveline.BLOCK.name: Energy(stored_in_driveline, powers_of_driveline, spring_of_driveline, taken_in_driveline),
-    validation_vehicle.BLOCK.name: Energy(stored_in_vehicle, powers_of_vehicle, spring_of_vehicle, taken_in_vehicle),
-}
+ENERGIES = {driveline.BLOCK.name: of_driveline, validation_vehicle.BLOCK.name: of_vehicle}
 """By the names of the plants."""

@@ -84,13 +84,14 @@ def balanced(plant: ContinuousBlock) -> ContinuousBlock:
     """The plant with the work done on its energy, what its gear took and the work turned over as states."""
     State: Any = namedtuple("State", [*plant.State._fields, "work", "taken", "turnover"])
     State.__annotations__ = plant.State.__annotations__
-    energy, size = ENERGIES[plant.name], len(plant.State._fields)
+    energy: Any = ENERGIES[plant.name]
+    size = len(plant.State._fields)
 
     def derivative(x: Any, u: Any, p: Any) -> Any:
         own = plant.State(*x[:size])
-        taken = energy.taken(own, p)
-        powers = [*energy.powers(own, u, p), -taken]
-        counted = sum(powers), taken, sum(abs(power) for power in powers)
+        now: Any = energy(own, u, p)
+        powers = [*now.powers, -now.taken]
+        counted = sum(powers), now.taken, sum(abs(power) for power in powers)
         return State(*plant.derivative(own, u, p), *(power / UNIT_OF_WORK for power in counted))
 
     return replace(
@@ -133,10 +134,10 @@ class Compiled:
         refused = self._library.run(_numbers(u), _numbers(p), ctypes.c_double(duration), state)
         return None if refused else self.State(*state)
 
-    def energies(self, x: Any, p: Any) -> tuple[float, float]:
+    def energies(self, x: Any, u: Any, p: Any) -> tuple[float, float]:
         """Stored, and in the spring of the gear."""
-        energy, own = ENERGIES[self.plant.name], self.plant.State(*x[: len(self.plant.State._fields)])
-        return energy.stored(own, p), energy.spring(own, p)
+        found: Any = ENERGIES[self.plant.name](self.plant.State(*x[: len(self.plant.State._fields)]), u, p)
+        return found.stored, found.spring
 
 
 def _numbers(record: Any) -> Any:
@@ -168,7 +169,7 @@ def followed(compiled: Compiled, random: Random) -> str:
     p = plant.Parameters(*(drawn(random, q) for q in variables(plant.Parameters)))
     u = plant.Input(*(drawn(random, q) for q in variables(plant.Input)))
     x = compiled.start(u, p)
-    first, strained = compiled.energies(x, p)
+    first, strained = compiled.energies(x, u, p)
     most = first + strained
     for _ in range(INPUTS):
         u = plant.Input(*(drawn(random, q) for q in variables(plant.Input)))
@@ -178,7 +179,7 @@ def followed(compiled: Compiled, random: Random) -> str:
             if x is None:
                 return "refused by name"
             _judge(compiled.outputs(x, u, p), u, p, x)
-            energy, spring = compiled.energies(x, p)
+            energy, spring = compiled.energies(x, u, p)
             most = max(most, energy + spring)
             lost = first + UNIT_OF_WORK * x.work - energy
             made = spring - strained - UNIT_OF_WORK * x.taken
