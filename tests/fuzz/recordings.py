@@ -107,7 +107,7 @@ def identified(path: Path, random: Random) -> list[np.ndarray]:
 @target(
     "damaged recordings, as text of every dialect, MDF, Parquet and Feather",
     "a drive with finite signals, or one line that refuses it",
-    short=100,
+    short=40,
     long=100_000,
 )
 def attempts(folder: Path) -> Iterator[Attempt]:

@@ -51,6 +51,7 @@ def native(fmi3):
     return fmi3
 
 
+@pytest.mark.slow
 @together("name", COMPARATORS)
 def test_the_comparators_are_built_too(fmi3, tmp_path, name):
     (build,) = builders("native", fmi=3)
