@@ -29,7 +29,7 @@ $(DEMO): $(INSTALLED)
 
 $(READY): $(INSTALLED)
 	$(environment)
-	$(INSTALL) '.[recordings,replay,design,bound,identification,cluster,report,notebook,dev]'
+	$(INSTALL) '.[recordings,replay,design,identification,cluster,report,notebook,dev]'
 	@touch $(DEMO) $@
 
 setup: $(READY) ## the virtual environment alone, with all that the other targets need

@@ -49,9 +49,6 @@ COMMANDS = (
     "target image",
     "target record",
     "bus",
-    "bound",
-    "coupling",
-    "back-to-back",
 )
 
 RECORD = ("-m", "driveline", "record", "--plant", "ValidationVehicle", "--quiet", "--output", "recorded")

@@ -30,7 +30,7 @@ from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.loop.stale_fmus import warn_of_stale
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.studies.back_to_back.back_to_back import STEP_SIZE, Given, drive, fed
+from tests.back_to_back import STEP_SIZE, Given, drive, fed
 
 TIGHT = 5e-5
 """Stretch of the tight integration in s: at 40 m/s the ripple turns by 1.5 rad in it, of which order 8 loses 1e-7."""

@@ -12,9 +12,9 @@ import numpy as np
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, step
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.many_runs import run_many
-from driveline.harness.studies.coupling import monolithic
 from driveline.models.controller.supervision import FALLBACK
 
+from . import monolithic
 from .study import Cell, Column, Measured, Study, Table
 
 LATE = 0.062

@@ -11,8 +11,8 @@ from fmpy.fmi2 import FMU2Model
 
 from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.description.variables import Variable, interface
-from driveline.harness.studies.back_to_back.back_to_back import random_inputs
 from driveline.models.block.runner import runner
+from tests.back_to_back import random_inputs
 from tests.fmus.host import opened
 from tests.fmus.test_values import outside
 from tests.together import together

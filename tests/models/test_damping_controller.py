@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from driveline.harness.studies.coupling import monolithic
+from docs.studies import monolithic
 from driveline.models import damping_controller, two_mass_driveline, validation_vehicle
 from driveline.models.block.types import ContinuousBlock
 from driveline.models.controller import T_S

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from docs.studies.bound import bounded
 from driveline.harness.base.errors import SimulationError, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
@@ -19,7 +20,6 @@ from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.studies.bound.bounds import bounded
 from driveline.harness.studies.margins.loop_analysis import analyse
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.3)

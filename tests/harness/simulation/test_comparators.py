@@ -22,10 +22,10 @@ from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.studies.back_to_back.back_to_back import compare_block, random_inputs
 from driveline.models.block.declaration import variables
 from driveline.models.controller import supervision
 from tests import ROOT
+from tests.back_to_back import compare_block, random_inputs
 from tests.slow import slow
 
 TIPIN = MANOEUVRES["tipin15"]

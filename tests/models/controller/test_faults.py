@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from docs.studies import monolithic
 from driveline.harness.metrics.spectrum import band_rms
-from driveline.harness.studies.coupling import monolithic
 from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.block.types import ContinuousBlock
 from driveline.models.controller.causes import WRONG_LAUNCH

@@ -5,11 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from driveline.harness.cosimulation.schedule import Transfer
-from driveline.harness.cosimulation.system import Scheme
-from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
-from driveline.harness.studies.coupling import coupling
-from driveline.harness.studies.coupling.coupling import (
+from docs.studies import coupling_error
+from docs.studies.coupling_error import (
     COUPLING_MANOEUVRES,
     NOISELESS,
     PLANTS,
@@ -19,9 +16,9 @@ from driveline.harness.studies.coupling.coupling import (
     cosimulated,
     reference,
 )
-from driveline.harness.studies.coupling.coupling_page import page
-from driveline.harness.studies.coupling.dead_time import dead_times, lateness
-from driveline.harness.studies.coupling.step_dependence import Case
+from docs.studies.dead_time import dead_times, lateness
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from tests.foreign import tampered
 
 IN_CONTACT = COUPLING_MANOEUVRES[0]
@@ -36,7 +33,7 @@ def integrated(plant: str, manoeuvre: Manoeuvre, parameters: frozenset[tuple[str
 def reference_once(monkeypatch):
     """The monolithic run does not depend on schemes and steps, and takes longest."""
     once = lambda plant, manoeuvre, parameters: integrated(plant, manoeuvre, frozenset(parameters.items()))  # noqa: E731
-    monkeypatch.setattr(coupling, "reference", once)
+    monkeypatch.setattr(coupling_error, "reference", once)
 
 
 @pytest.mark.parametrize("manoeuvre", COUPLING_MANOEUVRES, ids=lambda manoeuvre: manoeuvre.name)
@@ -82,14 +79,14 @@ def test_the_limit_of_small_steps_is_the_monolithic_solution(built, native, sche
     """In the build whose error is of the first power of the step."""
     built = built if scheme is Scheme.PROPAGATED else native.parent
     plant = "TwoMassDriveline"
-    exact = coupling.reference(plant, IN_CONTACT, NOISELESS)
+    exact = coupling_error.reference(plant, IN_CONTACT, NOISELESS)
     coarse, fine = (cosimulated(plant, IN_CONTACT, NOISELESS, step, scheme, built) for step in (2.5e-4, 1.25e-4))
     for signal in SIGNALS:
         limit = 2.0 * fine[signal] - coarse[signal]
         # the part that falls with the step is taken out; what remains falls with its square
         assert np.ptp(exact[signal]) > 10.0
-        left = coupling.deviation(limit, exact[signal]).rms
-        assert left < 0.15 * coupling.deviation(fine[signal], exact[signal]).rms
+        left = coupling_error.deviation(limit, exact[signal]).rms
+        assert left < 0.15 * coupling_error.deviation(fine[signal], exact[signal]).rms
 
 
 @pytest.mark.parametrize(
@@ -122,25 +119,6 @@ def test_lateness_of_a_signal_that_is_late():
     t = np.arange(0.0, 1.0, T_S)
     exact, late, signal = (np.sin(20.0 * (t - d)) for d in (0.0, T_S, 0.4 * T_S))
     assert lateness(signal, exact, late) == pytest.approx(0.4 * T_S, rel=0.01)
-
-
-def test_the_page_says_what_was_measured():
-    deviations = {step: dict.fromkeys(SIGNALS, coupling.Deviation(30.0 * step, 10.0 * step)) for step in (1e-3, 5e-4)}
-    comparison = coupling.Comparison("TwoMassDriveline", IN_CONTACT, Scheme.JACOBI, deviations)
-    assert comparison.order("plant.T_gear") == pytest.approx(1.0)
-    late = {(Scheme.JACOBI, 1e-3): {"T_mot to the plant": 5e-4}}
-    metrics = {
-        Case("TwoMassDriveline", "launch", control): {"overshoot": 0.002, "end_swing": 0.004}
-        for control in (True, False)
-    }
-    text = page([comparison], late, {"plant.T_mot": Transfer.INTERPOLATED}, ["motor", "plant"], 1e-3, metrics)
-    assert "it interpolates (`plant.T_mot`)" in text
-    assert "along its derivative (none here)" in text
-    assert "| T_mot to the plant | 0.50 |" in text
-    assert "| TwoMassDriveline | 20 to 100 N.m, the teeth stay in contact | jacobi | 3 / 1 |" in text
-    assert "| jacobi | 1 | 0.5 | 1.0 |" in text
-    assert "`motor`, `plant`" in text
-    assert "| TwoMassDriveline | launch | 0.4 (end swing) | 0.4 (end swing) |" in text
 
 
 @pytest.mark.parametrize("late", [-0.5, 0.0, 0.25])

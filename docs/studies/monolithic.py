@@ -10,10 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from ....models import damping_controller, motor_torque_loop, two_mass_driveline, validation_vehicle, wheel_speed_can
-from ....models.block.runner import runner
-from ....models.block.types import Block, ContinuousBlock
-from ..margins.linear_plant import motor_and_plant
+from driveline.harness.studies.margins.linear_plant import motor_and_plant
+from driveline.models import (
+    damping_controller,
+    motor_torque_loop,
+    two_mass_driveline,
+    validation_vehicle,
+    wheel_speed_can,
+)
+from driveline.models.block.runner import runner
+from driveline.models.block.types import Block, ContinuousBlock
 
 INTERVAL = wheel_speed_can.T_S
 """Interval in s of the results; the sample times of all blocks are whole multiples of it."""

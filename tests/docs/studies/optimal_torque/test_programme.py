@@ -1,15 +1,11 @@
 """Convex programmes of which the answer is known, and bounds that hold whatever the multipliers are."""
 
-import sys
-from importlib import import_module
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.harness.base.errors import MissingExtra
-from driveline.harness.studies.bound.programme import Cone, Programme, Rows, bound, joined, reached, solve
+from docs.studies.optimal_torque.programme import Cone, Programme, Rows, bound, joined, reached, solve
 
 EACH = np.arange(3)
 """Every sample has a torque of its own."""
@@ -67,12 +63,3 @@ def test_ratio_and_violation_are_those_of_the_torque_itself() -> None:
     assert reached(programme(counts=False), np.array([2.0, 2.0, 0.5])) == pytest.approx(
         (0.5, np.sqrt(8.25 / 3.0) - 1.0)
     )
-
-
-def test_without_the_solver_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, "driveline.harness.studies.bound.programme")
-    monkeypatch.setitem(sys.modules, "cvxpy", None)
-    with pytest.raises(
-        MissingExtra, match=r"^computing bounds needs the package cvxpy: .*'driveline-damping\[bound\]'"
-    ):
-        import_module("driveline.harness.studies.bound.programme")

@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from docs.studies.optimal_torque.linear_car import linear_car
+from docs.studies.optimal_torque.linear_prediction import Predictor, value
+from docs.studies.optimal_torque.open_loop_run import open_loop_run
+from docs.studies.optimal_torque.task import Task, task
 from driveline.harness.loop.places import T_S
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts, band_rms
 from driveline.harness.simulation.simulate import simulate, start
-from driveline.harness.studies.bound.bound_task import Task, task
-from driveline.harness.studies.bound.linear_car import linear_car
-from driveline.harness.studies.bound.linear_prediction import Predictor, value
-from driveline.harness.studies.bound.open_loop_run import open_loop_run
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 
 QUIET = {f"motor.{name}": value for name, value in NOISELESS.items()}

@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...loop.places import T_S
-from ...metrics.step_response import REACHED, fitted
+from driveline.harness.loop.places import T_S
+from driveline.harness.metrics.step_response import REACHED, fitted
+
 from .active_constraints import SWING_RESERVE, ActiveConstraints, settled_swing
-from .bound_task import Task
 from .contacts import GAP, Contacts
 from .linear_prediction import Prediction
 from .programme import Cone, Programme, Rows, joined
+from .task import Task
 
 RESERVE = 2e-3
 """Torque in N.m by which 90 % of the way are exceeded: more than solver and linear car are off by."""

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...loop.places import T_S
-from ...loop.settings import Settings
-from ...manoeuvres.manoeuvre import Manoeuvre
-from ...manoeuvres.signals import Held
-from ...simulation.simulate import simulate
+from driveline.harness.loop.places import T_S
+from driveline.harness.loop.settings import Settings
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.manoeuvres.signals import Held
+from driveline.harness.simulation.simulate import simulate
 
 
 def open_loop_run(manoeuvre: Manoeuvre, T_ref: np.ndarray, settings: Settings) -> np.ndarray:

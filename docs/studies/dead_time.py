@@ -6,17 +6,17 @@ dead time of a connection is how much later the signal behind it is than the sig
 """
 
 from collections.abc import Mapping
-from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ....models.controller.torque_estimator import Estimate
-from ...cosimulation.system import Scheme
-from ...loop.places import BUILD, STEP_SIZE
-from ...manoeuvres.signals import Signal
-from .coupling import NOISELESS, T_S, cosimulated, reference, short
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.loop.places import BUILD
+from driveline.harness.manoeuvres.signals import Signal
+from driveline.models.controller.torque_estimator import Estimate
+
+from .coupling_error import NOISELESS, T_S, cosimulated, reference, short
 
 PLANT = "TwoMassDriveline"
 
@@ -83,6 +83,8 @@ EXPERIMENTS: tuple[tuple[Mapping[str, float], tuple[Section, ...]], ...] = (
 )
 """What is measured with which parameters; those let each sink depend on its source alone."""
 
+SECTIONS = tuple(section for _, sections in EXPERIMENTS for section in sections)
+
 
 def sine(late: float) -> Signal:
     """6 + 4 N.m at 4 Hz from (0.1 + late) s on: no gap is crossed, and the car keeps its speed."""
@@ -103,12 +105,6 @@ def dead_times(scheme: Scheme, step_size: float, folder: Path = BUILD) -> dict[s
             after, before = (lateness(results[s], exact[s], late[s]) for s in (section.sink, section.source))
             found[section.name] = after - before
     return found
-
-
-def all_dead_times(folder: Path = BUILD) -> dict[tuple[Scheme, float], dict[str, float]]:
-    """Those of all schemes at the communication step of the loop and at half of it, with the FMUs in `folder`."""
-    cases = product(Scheme, (STEP_SIZE, 0.5 * STEP_SIZE))
-    return {(scheme, step): dead_times(scheme, step, folder) for scheme, step in cases}
 
 
 def lateness(signal: np.ndarray, exact: np.ndarray, late: np.ndarray) -> float:

@@ -13,11 +13,9 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from ...base.errors import SimulationError
-from ...base.optional_packages import required
-from .linear_prediction import value
+from driveline.harness.base.errors import SimulationError
 
-cp = required("cvxpy", "computing bounds", "bound")
+from .linear_prediction import value
 
 MOST = 2.0
 """Largest ratio that is looked at."""
@@ -88,6 +86,8 @@ def solve(programme: Programme, holds: np.ndarray) -> Solution:
     Raises:
         SimulationError: the solver gave up.
     """
+    import cvxpy as cp  # takes a second, which what is measured without it need not wait
+
     rows, lower, upper = programme.rows, programme.lower, programme.upper
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
 

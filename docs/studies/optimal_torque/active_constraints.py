@@ -5,10 +5,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ...loop.places import T_S
-from ...metrics.oscillation import SPAN
-from ...metrics.step_response import SETTLED, fitted
-from .bound_task import Task
+from driveline.harness.loop.places import T_S
+from driveline.harness.metrics.oscillation import SPAN
+from driveline.harness.metrics.step_response import SETTLED, fitted
+
+from .task import Task
 
 DENSE, SPARSE = 150, 25
 """To begin with, so many samples from 90 % of the way on are active, and later every SPARSEth."""

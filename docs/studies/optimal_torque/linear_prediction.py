@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...loop.places import T_S
-from ...metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
+from driveline.harness.loop.places import T_S
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
+
 from .contacts import GAP, PARTS, Contacts
 from .linear_car import OMEGA_1, OMEGA_2, PHI, STATES, LinearCar
 

@@ -3,19 +3,17 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+from docs.studies.bound import Bounded, bounded
 from driveline.harness.base.errors import SimulationError
 from driveline.harness.loop.settings import Settings
-from driveline.harness.studies.bound.bound_report import record, write
-from driveline.harness.studies.bound.bounds import Bounded, bounded
 
 
 @pytest.fixture(scope="module")
 def found(native: Path) -> Iterator[Bounded]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("driveline.harness.studies.bound.bounds.ALONE", ("jerk_rms_to_50_Hz",))
+        patch.setattr("docs.studies.bound.ALONE", ("jerk_rms_to_50_Hz",))
         yield bounded("tipin0", Settings(folder=native.parent, build="native"))
 
 
@@ -43,19 +41,6 @@ def test_one_metric_alone_can_be_smaller_than_all_jointly_and_the_others_are_kep
         for other in found.task.metrics:
             assert getattr(optimum.metrics, other) <= 1.005 * getattr(found.task.reached, other)
         assert optimum.metrics.settling_time <= found.task.reached.settling_time
-
-
-@pytest.mark.slow
-def test_page_and_record_tell_the_same(found: Bounded, tmp_path: Path) -> None:
-    files = write([found], "DampingController", "", tmp_path)
-    page = files[0].read_text(encoding="utf-8")
-    assert all(file.is_file() for file in files)
-    assert f"| tipin0 | {1.0 / found.ratio(found.jointly):.3f} | {1.0 / found.bound:.3f} |" in page
-    assert "{" not in page
-    entry = record(found)
-    assert entry["jointly"]["ratio"] == pytest.approx(found.ratio(found.jointly))
-    assert entry["jointly"]["contacts_s"] == []
-    assert np.isfinite(entry["jointly"]["jerk_rms_to_50_Hz_m_per_s3"])
 
 
 def test_what_the_controller_does_not_reach_is_no_bound(native: Path) -> None:

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from .active_constraints import ActiveConstraints
-from .bound_task import Task
 from .constraints import programme
 from .contacts import PARTS, Contacts
 from .linear_car import LinearCar
 from .linear_prediction import Predictor, value
 from .programme import Solution, solve
+from .task import Task
 
 STRIDES = (4, 2, 1)
 """Of the descent, in parts of a sample."""
@@ -42,7 +42,7 @@ class Search:
     """Of the best switching times for some metrics, along a car that is linear for given ones."""
 
     def __init__(self, task: Task, car: LinearCar, metrics: Sequence[str]) -> None:
-        """See `harness.studies.bound.constraints.programme`."""
+        """See `.constraints.programme`."""
         self.task, self.car, self.metrics = task, car, metrics
         self.predictor = Predictor(car, task.horizon, task.contacts.sides[-1])
         self.active = ActiveConstraints.of(task)

@@ -1,25 +1,23 @@
 """The functions of a block, its FMU in Python and its native FMU give the same, alone and in the loop."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.loop.places import PLANTS
-from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
-from driveline.harness.studies.back_to_back.back_to_back import (
-    Differences,
-    LoopRow,
+from driveline.models import two_mass_driveline
+from tests.back_to_back import (
     by_functions,
     compare_block,
     compare_loop,
     difference,
     random_inputs,
 )
-from driveline.harness.studies.back_to_back.back_to_back_page import page
-from driveline.models import two_mass_driveline
 from tests.slow import slow
 
 EXACT = 1e-12
@@ -29,11 +27,6 @@ AFTER_FLANKS = 1e-9
 """Within 10 s: each crossing is located anew and moves what rounding has made of it."""
 
 STEPS = 2000
-
-
-def short(name: str) -> Manoeuvre:
-    """The first 1.5 s: through the backlash, or away from standstill."""
-    return replace(MANOEUVRES[name], duration=1.5)
 
 
 @pytest.mark.parametrize("name", slow(FMUS, but=FMUS.keys() - {"ValidationVehicle"}))
@@ -59,13 +52,23 @@ def test_effects_that_are_off_by_default_are_the_same_in_functions_and_both_buil
     assert max(compare_block(name, given, both_built)) <= AFTER_FLANKS
 
 
-@pytest.mark.parametrize("plant", slow(PLANTS, but=("TwoMassDriveline",)))
-@pytest.mark.parametrize("manoeuvre", slow(["tipin15", "hill_hold"], but=["hill_hold"]))
-def test_the_loop_does_not_see_which_build_a_block_is_of(both_built, plant, manoeuvre):
-    found = compare_loop(plant, short(manoeuvre), both_built)
+def builds_are_alike(plant: str, manoeuvre: Manoeuvre, folder: Path) -> None:
+    """In the first 1.5 s: through the backlash, or away from standstill."""
+    found = compare_loop(plant, replace(manoeuvre, duration=1.5), folder)
     assert set(found) == {"motor", "controller", "can", "plant"}
     for instance, differences in found.items():
-        assert max(differences) <= AFTER_FLANKS, instance
+        assert max(differences) <= AFTER_FLANKS, (manoeuvre.name, instance)
+
+
+def test_the_loop_does_not_see_which_build_a_block_is_of(both_built):
+    builds_are_alike(PLANTS[0], MANOEUVRES["tipin15"], both_built)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.slow
+def test_nor_does_it_in_any_manoeuvre(both_built, plant):
+    for manoeuvre in USUAL_MANOEUVRES:
+        builds_are_alike(plant, manoeuvre, both_built)
 
 
 def test_a_difference_would_be_seen():
@@ -83,10 +86,3 @@ def test_random_inputs_cross_the_flanks():
     T_gear = by_functions(block, random_inputs(block, STEPS))["T_gear"]
     assert T_gear.min() < 0.0 < T_gear.max()
     assert np.any(T_gear == 0.0)
-
-
-def test_the_page_says_what_was_measured():
-    row = LoopRow("TwoMassDriveline", "launch", {"motor": Differences(0.0, 0.0, 3e-13)})
-    text = page({"MotorTorqueLoop": Differences(2e-16, 0.0)}, 10, [row])
-    assert "| MotorTorqueLoop | 2e-16 | 0 |" in text
-    assert "| TwoMassDriveline | launch | 0 / 0 / 3e-13 |" in text

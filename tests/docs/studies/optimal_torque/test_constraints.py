@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from docs.studies.optimal_torque.active_constraints import ActiveConstraints, settled_swing
+from docs.studies.optimal_torque.constraints import programme
+from docs.studies.optimal_torque.contacts import Contacts
+from docs.studies.optimal_torque.linear_prediction import Horizon
+from docs.studies.optimal_torque.programme import reached
+from docs.studies.optimal_torque.task import Task
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import T_S
-from driveline.harness.studies.bound.active_constraints import ActiveConstraints, settled_swing
-from driveline.harness.studies.bound.bound_task import Task
-from driveline.harness.studies.bound.constraints import programme
-from driveline.harness.studies.bound.contacts import Contacts
-from driveline.harness.studies.bound.linear_prediction import Horizon
-from driveline.harness.studies.bound.programme import reached
 
 SAMPLES = 1000
 EARLY, LATE = 20, 200

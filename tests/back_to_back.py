@@ -12,19 +12,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....fmus.catalogue import EVERY, FMUS
-from ....models.block.declaration import Boolean, Integer, Real, variables
-from ....models.block.runner import runner
-from ....models.block.types import Block
-from ...cosimulation.experiment import Experiment, Source
-from ...cosimulation.runs import run
-from ...cosimulation.system import Scheme, System
-from ...loop.places import NATIVE, PLANTS
-from ...loop.settings import loop
-from ...manoeuvres.catalogue import KMH, USUAL_MANOEUVRES
-from ...manoeuvres.manoeuvre import Manoeuvre
-from ...simulation.many_runs import run_many
-from ...simulation.simulate import signals, start
+from driveline.fmus.catalogue import EVERY
+from driveline.harness.cosimulation.experiment import Experiment, Source
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Scheme, System
+from driveline.harness.loop.places import NATIVE
+from driveline.harness.loop.settings import loop
+from driveline.harness.manoeuvres.catalogue import KMH
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.simulation.simulate import signals, start
+from driveline.models.block.declaration import Boolean, Integer, Real, variables
+from driveline.models.block.runner import runner
+from driveline.models.block.types import Block
 
 STEP_SIZE = 1e-3
 """Communication step in s."""
@@ -111,31 +110,11 @@ def by_fmu(path: Path, given: Given) -> np.ndarray:
     return chosen
 
 
-class LoopRow(NamedTuple):
-    """One manoeuvre with one plant; differences by instance."""
-
-    plant: str
-    manoeuvre: str
-    blocks: Mapping[str, Differences]
-
-
 def compare_block(name: str, given: Given, folder: Path) -> Differences:
     """A block of the project alone; the native FMUs are in the folder `native` of the folder."""
     native = by_fmu(folder / NATIVE / f"{name}.fmu", given)
     functions = by_functions(EVERY[name].block, given)
     return Differences(difference(functions, native), difference(by_fmu(folder / f"{name}.fmu", given), native))
-
-
-def compare_all(steps: int, folder: Path) -> tuple[dict[str, Differences], list[LoopRow]]:
-    """Each block of the project alone under random inputs, and in the loop in every manoeuvre with each plant, on all
-    cores; arguments as of `random_inputs` and `compare_block`."""
-    alone = run_many(
-        lambda name: compare_block(name, random_inputs(FMUS[name].block, steps), folder), FMUS, label="blocks alone"
-    )
-    cases = [(plant, each) for plant in PLANTS for each in USUAL_MANOEUVRES]
-    found = run_many(lambda case: compare_loop(*case, folder), cases, label="blocks in the loop")
-    rows = [LoopRow(plant, each.name, blocks) for (plant, each), blocks in zip(cases, found, strict=True)]
-    return dict(zip(FMUS, alone, strict=True)), rows
 
 
 def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Differences]:

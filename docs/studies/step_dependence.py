@@ -1,18 +1,16 @@
 """How far the metrics depend on the communication step: every manoeuvre at that of the loop, and at a tenth of it."""
 
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
-from ...loop.places import BUILD, PLANTS, T_S
-from ...manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
-from ...metrics.declaration import declared
-from ...metrics.evaluate import evaluate
-from ...metrics.run_metrics import Metrics
-from ...simulation.many_runs import run_many
-from ...simulation.simulate import simulate
+from driveline.harness.loop.places import BUILD, PLANTS, T_S
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
+from driveline.harness.metrics.declaration import declared
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.simulation.simulate import simulate
 
 STEPS = (1e-3, 1e-4)
 """Communication steps in s that are compared."""
@@ -51,7 +49,7 @@ def deviations(coarse: Metrics, fine: Metrics) -> dict[str, float]:
     return found
 
 
-def compare(case: Case, folder: Path = BUILD, steps: Sequence[float] = STEPS) -> dict[str, float]:
+def deviations_of(case: Case, folder: Path = BUILD, steps: Sequence[float] = STEPS) -> dict[str, float]:
     """The deviations of a case, with the FMUs in `folder`."""
     manoeuvre = MANOEUVRES[case.manoeuvre]
     coarse, fine = (
@@ -59,8 +57,3 @@ def compare(case: Case, folder: Path = BUILD, steps: Sequence[float] = STEPS) ->
         for step in steps
     )
     return deviations(coarse, fine)
-
-
-def compare_all(folder: Path = BUILD) -> dict[Case, Mapping[str, float]]:
-    """The deviations of all cases, on all cores."""
-    return dict(zip(CASES, run_many(partial(compare, folder=folder), CASES), strict=True))

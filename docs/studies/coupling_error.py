@@ -5,22 +5,22 @@ The demand changes only at these instants, so that all runs are given the same.
 """
 
 from collections.abc import Mapping, Sequence
-from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ....models.controller import T_S
-from ...cosimulation.experiment import Experiment
-from ...cosimulation.runs import run
-from ...cosimulation.system import Scheme
-from ...loop.places import BUILD
-from ...loop.settings import loop
-from ...manoeuvres.catalogue import KMH
-from ...manoeuvres.manoeuvre import Manoeuvre
-from ...manoeuvres.signals import Signal, lines
-from ...simulation.simulate import signals, start
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.loop.places import BUILD
+from driveline.harness.loop.settings import loop
+from driveline.harness.manoeuvres.catalogue import KMH
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
+from driveline.harness.manoeuvres.signals import Signal, lines
+from driveline.harness.simulation.simulate import signals, start
+from driveline.models.controller import T_S
+
 from . import monolithic
 from .monolithic import INTERVAL, PLANTS
 
@@ -62,6 +62,9 @@ class Comparison(NamedTuple):
     manoeuvre: Manoeuvre
     scheme: Scheme
     deviations: Mapping[float, Mapping[str, Deviation]]
+
+    def __str__(self) -> str:
+        return f"{self.plant}, {self.manoeuvre.name}, {self.scheme.value}"
 
     def order(self, signal: str) -> float:
         """Power of the communication step with which the rms of the deviation falls."""
@@ -118,12 +121,6 @@ def compare(
         results = cosimulated(plant, manoeuvre, NOISELESS, step, scheme, folder)
         deviations[step] = {name: deviation(results[name], exact[name]) for name in SIGNALS}
     return Comparison(plant, manoeuvre, scheme, deviations)
-
-
-def compare_all(folder: Path = BUILD) -> list[Comparison]:
-    """The comparisons of both plants, all manoeuvres and all schemes, with the FMUs in `folder`."""
-    cases = product(PLANTS, COUPLING_MANOEUVRES, Scheme)
-    return [compare(plant, manoeuvre, scheme, folder=folder) for plant, manoeuvre, scheme in cases]
 
 
 def deviation(signal: np.ndarray, exact: np.ndarray) -> Deviation:

@@ -13,13 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from ....models import two_mass_driveline
-from ....models.physics import vehicle
-from ...loop.places import T_S
-from ...metrics.evaluate import at_samples
-from ..margins.jacobians import rates
-from ..margins.linear_plant import motor_and_plant
-from ..margins.operating_point import MOTOR
+from driveline.harness.loop.places import T_S
+from driveline.harness.metrics.evaluate import at_samples
+from driveline.harness.studies.margins.jacobians import rates
+from driveline.harness.studies.margins.linear_plant import motor_and_plant
+from driveline.harness.studies.margins.operating_point import MOTOR
+from driveline.models import two_mass_driveline
+from driveline.models.physics import vehicle
+
 from .contacts import GAP
 
 PLANT = two_mass_driveline.BLOCK

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from docs.studies.optimal_torque.contacts import Contacts
+from docs.studies.optimal_torque.linear_car import linear_car
+from docs.studies.optimal_torque.linear_prediction import value
+from docs.studies.optimal_torque.open_loop_run import open_loop_run
+from docs.studies.optimal_torque.programme import Solution
+from docs.studies.optimal_torque.switching_search import BORDER, COARSE, FINE, Holding, Search, holds
+from docs.studies.optimal_torque.task import task
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.simulation.simulate import simulate, start
-from driveline.harness.studies.bound.bound_task import task
-from driveline.harness.studies.bound.contacts import Contacts
-from driveline.harness.studies.bound.linear_car import linear_car
-from driveline.harness.studies.bound.linear_prediction import value
-from driveline.harness.studies.bound.open_loop_run import open_loop_run
-from driveline.harness.studies.bound.programme import Solution
-from driveline.harness.studies.bound.switching_search import BORDER, COARSE, FINE, Holding, Search, holds
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 
 NATIVE = Settings(build="native", parameters={f"motor.{name}": value for name, value in NOISELESS.items()})

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from docs.studies.coupling_error import COUPLING_MANOEUVRES
+from docs.studies.step_dependence import Case, deviations, deviations_of
 from driveline.harness.loop.places import T_S
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.studies.coupling.coupling import COUPLING_MANOEUVRES
-from driveline.harness.studies.coupling.step_dependence import Case, compare, deviations
 
 VALUES: dict[str, Any] = {metric.name: 2.0 for metric in declared(Metrics)}
 FINE = Metrics(**VALUES)
@@ -51,8 +51,8 @@ rounds the same."""
 def test_every_metric_is_within_one_percent_of_that_with_half_the_step(
     native: Path, plant: str, manoeuvre: str
 ) -> None:
-    """The whole of it, at a tenth of the step, is measured by `python -m docs.studies coupling`."""
-    found = compare(Case(plant, manoeuvre, True), native.parent, (1e-3, 5e-4))
+    """The whole of it, at a tenth of the step, is measured by the study of the coupling."""
+    found = deviations_of(Case(plant, manoeuvre, True), native.parent, (1e-3, 5e-4))
     assert len(found) >= 6
     allowed = ROUNDED.get((plant, manoeuvre), {})
     assert {name: share for name, share in found.items() if share > allowed.get(name, 0.01)} == {}

@@ -1,1 +1,0 @@
-"""The functions and both builds of every block, compared."""

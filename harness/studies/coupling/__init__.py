@@ -1,1 +1,0 @@
-"""What the coupling of the FMUs costs, against the loop solved as one system."""
