@@ -49,7 +49,7 @@ ALLOWED_ERROR = 1.0
 """Of a step of the integration, in units of what is tolerated: a hundred times the usual.
 
 With ripple of up to 5 krad/s the estimate for steps of 1 ms comes near to it; T_gear is off by less than 1e-3 N.m then.
-`python -m benchmarks.step_error` measures it in every manoeuvre; docs/native.md has what it found.
+`python -m benchmarks.step_error` measures it in every manoeuvre.
 """
 
 

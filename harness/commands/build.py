@@ -9,7 +9,7 @@ only by name, controllers to compare ours with: {comparators}
 examples:
   driveline build                            all FMUs, each build that is possible here
   driveline build TwoMassDriveline --build native --output /srv/fmus
-  driveline build my_vehicle.py              the block in a file of your own, see docs/native.md
+  driveline build my_vehicle.py              the block in a file of your own, see docs/fmus.md
   driveline build --vehicle car.toml --parameters gains.toml
   driveline build --platform all --fmi 3     for FMI 3.0, on Linux, Windows and macOS (extra `cross`)
 """

@@ -3,7 +3,7 @@ aliases, units, dependencies, documentation), its binary and its behaviour in co
 experiment, odd step sizes, reset, several instances, saved states), the latter in a process of its own.
 
 A finding is an error (the standard demands it), a warning (it recommends it) or a note (people miss something).
-Exit code 0: no errors; 1: errors, with --strict also warnings; 2: no such file. docs/check.md lists the rules.
+Exit code 0: no errors; 1: errors, with --strict also warnings; 2: no such file. docs/fmus.md says more.
 
 examples:
   driveline check build/native/TwoMassDriveline.fmu

@@ -1,6 +1,6 @@
 """Drives the vehicle with the torque demand of a recorded drive, once without damping and once with each controller.
 Brake and grade keep the simulated car at the recorded speed: they are found by driving without damping and are then
-the same for all; nothing in them is as fast as 1 Hz (docs/replay.md).
+the same for all; nothing in them is as fast as 1 Hz (docs/recordings.md).
 
 The recording is a file with the columns
 

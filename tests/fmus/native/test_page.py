@@ -1,4 +1,4 @@
-"""The page on native FMUs: its example is built and driven in the loop, its lines for FMPy run."""
+"""The pages on FMUs: the example of a block is built and driven in the loop, the lines for FMPy run."""
 
 import re
 import subprocess
@@ -19,12 +19,14 @@ from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.together import together
 
-EXAMPLE, EXCHANGE, LINEAR = re.findall(
-    r"```python\n(.*?)```", (ROOT / "docs" / "native.md").read_text(encoding="utf-8"), re.S
-)
-(CONTROLLER,) = re.findall(
-    r"```python\n(\"\"\".*?)```", (ROOT / "docs" / "control.md").read_text(encoding="utf-8"), re.S
-)
+
+def python_of(page: str, beginning: str = "") -> list[str]:
+    return re.findall(rf"```python\n({beginning}.*?)```", (ROOT / "docs" / page).read_text(encoding="utf-8"), re.S)
+
+
+(EXAMPLE,) = python_of("fmus.md")
+EXCHANGE, LINEAR = python_of("native.md")
+(CONTROLLER,) = python_of("control.md", '"""')
 
 
 def build(file: Path, folder: Path, *options: str) -> subprocess.CompletedProcess[str]:

@@ -1,4 +1,4 @@
-"""The lines of docs/ssp.md run as they stand, where a package has just been written."""
+"""The lines of docs/hosts.md for the whole loop run as they stand, where a package has just been written."""
 
 import os
 import re
@@ -15,12 +15,14 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 
-LINES = dict(
-    re.findall(
-        r"^## (\w+)\n.*?```python\n(.*?)```", (ROOT / "docs" / "ssp.md").read_text(encoding="utf-8"), re.S | re.M
-    )
-)
-"""Of each tool."""
+SECTIONS = (ROOT / "docs" / "hosts.md").read_text(encoding="utf-8").split("\n## ")
+
+LINES = {
+    section.partition("\n")[0]: codes[1]
+    for section in SECTIONS
+    if len(codes := re.findall(r"```python\n(.*?)```", section, re.S)) == 2
+}
+"""Of each tool; the first lines are those for one FMU."""
 
 
 @pytest.mark.parametrize(
