@@ -32,10 +32,11 @@ IN_C = {
 
 def rounds(file: str) -> list[list[str]]:
     """Files of tests in the order in which they are run: those of the file itself, those that import it, those that
-    belong to what imports it, and all of the room."""
+    belong to what imports it, all of the room, and for a model the sentinels of the studies."""
     path, found = Path(file), []
     if path.suffix == ".py":
-        stages = [own(file), importing(path), near(path), room(path)]
+        sentinels = ["tests/docs/studies/test_study.py"] if file.startswith("models/") else []
+        stages = [own(file), importing(path), near(path), room(path), sentinels]
     else:
         stages = [[name for name in IN_C.get(path.stem, ()) if (ROOT / name).exists()], list(CALLS)]
     for names in stages:
