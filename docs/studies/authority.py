@@ -1,19 +1,16 @@
 """What the designed authority is worth: twelve cars with the default gains and limits, and with their own.
 
-    python -m docs.studies.authority
-
 Steps of the demand are scaled with T_max. The estimator is told the true car in either case. Means over the noise of
 three seeds.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import product
 from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.design.design import design
 from driveline.harness.design.design_trials import loop_parameters
 from driveline.harness.design.design_weights import MOTOR, PLANT
@@ -23,7 +20,8 @@ from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.views.terminal import print_table
+
+from .study import Cell, Column, Measured, Study, Table
 
 SEEDS = (1, 2, 3)
 
@@ -114,24 +112,44 @@ def measured(trial: Trial) -> tuple[float, float]:
     return float(settling), float(overshoot)
 
 
-def main() -> None:
-    trials = [
-        Trial(car, plant, name, own) for car in CARS for plant in PLANTS for name in STEPS for own in (False, True)
-    ]
-    found = dict(zip(trials, run_many(measured, trials), strict=True))
-    table = Table(title="overshoot in %; settling in ms: default gains / own gains, of both plants")
-    for heading in ("car", "takes / adds, N.m", *(f"{name}: {what}" for name in STEPS for what in ("%", "ms"))):
-        table.add_column(heading)
-    for car in CARS:
-        gains = design(CARS[car].entries())
-        cells = [car, f"{gains['T_take_max']:.0f} / {gains['T_add_max']:.0f}"]
-        for name in STEPS:
-            for k, form in ((1, ".0f"), (0, ".0f")):
-                pairs = [[found[Trial(car, plant, name, own)][k] for own in (False, True)] for plant in PLANTS]
-                cells.append(", ".join(f"{default:{form}} / {own:{form}}" for default, own in pairs))
-        table.add_row(*cells)
-    print_table(table)
+LIMITS = (Column("takes", "N.m", 0), Column("adds", "N.m", 0))
+COLUMNS = (
+    Column("overshoot", "%", 0),
+    Column("overshoot, own", "%", 0),
+    Column("settling", "ms", 0),
+    Column("settling, own", "ms", 0),
+)
 
 
-if __name__ == "__main__":
-    script(main)
+def tables(cars: Iterable[str], plants: Iterable[str] = PLANTS) -> dict[str, Table]:
+    """The limits of cars, and what their steps are with the default gains and limits, and with their own."""
+    named, driven = list(cars), list(plants)
+    gains = {car: design(CARS[car].entries()) for car in named}
+    trials = [Trial(*each) for each in product(named, driven, STEPS, (False, True))]
+    found = dict(zip(trials, run_many(measured, trials, label="cars"), strict=True))
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for default in trials[::2]:
+        pair = [found[default], found[default._replace(own=True)]]
+        rows[f"{default.car}, {default.plant}, {default.step}"] = tuple(each[k] for k in (1, 0) for each in pair)
+    limits = {car: (gains[car]["T_take_max"], gains[car]["T_add_max"]) for car in named}
+    return {"limits": Table("car", LIMITS, limits), "steps": Table("car, plant, step", COLUMNS, rows)}
+
+
+def measure() -> Measured:
+    return Measured(tables(CARS))
+
+
+def again() -> dict[str, Table]:
+    return tables(SENTINELS, PLANTS[:1])
+
+
+SENTINELS = ("van, wide gap",)
+
+STUDY = Study(
+    "what the designed authority is worth on twelve cars",
+    measure,
+    again,
+    {"limits": SENTINELS, "steps": [f"{car}, {PLANTS[0]}, {step}" for car in SENTINELS for step in STEPS]},
+    SEEDS,
+    seconds=60,
+)

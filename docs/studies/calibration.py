@@ -1,168 +1,311 @@
-"""What a change of a parameter does in a drive: of the damping law, of the car behind its back, and of its sensors."""
+"""What a change of a parameter does in a drive: of the damping law, of the car behind its back, and of its sensors.
 
-from functools import cache
+Of the default car, means over the noise of three seeds. "not told" is a controller that takes another car for the
+default one, "told" one that is designed for it.
+"""
+
+from collections.abc import Collection, Iterable, Mapping
 from itertools import product
 from typing import NamedTuple
 
-import numpy as np
-
-from driveline.harness.design.design import damping_law, design
-from driveline.harness.design.design_trials import loop_parameters, mean
-from driveline.harness.design.design_weights import CAN as BUS
-from driveline.harness.design.design_weights import MOTOR, PARAMETERS, PLANT, WEIGHTS, drive_train
-from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
-from driveline.harness.loop.places import PLACES, PLANTS
-from driveline.harness.loop.settings import Settings
-from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
-from driveline.harness.manoeuvres.signals import NOTHING
-from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.design.uncertainty_box import Deviation
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.metrics.declaration import Column as MetricColumn
+from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.simulate import simulate
-from driveline.models.controller.supervision import FALLBACK
+from driveline.harness.simulation.many_runs import run_many
 
-FACTOR = 1.5
-"""By which each parameter of the law is divided and multiplied."""
-
-STANDSTILL = Manoeuvre("standstill", "stand without demand", duration=4.0, v_0=0.0, T_driver=NOTHING)
-
-DRIVEN = ("tipin15", "tipin15r", "tipout", "launch", "creep")
-"""The manoeuvres in which the parameters of the law are changed."""
-
-CAR_DRIVEN = ("tipin15", "launch")
-"""Those in which the car is another one."""
-
-LAW = tuple(damping_law(PLANT, MOTOR, drive_train(PLANT, MOTOR, BUS), WEIGHTS))
-"""The parameters of the law that are designed."""
-
-DEVIATIONS = (
-    Deviation(C=0.5),
-    Deviation(C=2.0),
-    Deviation(J_2=0.5),
-    Deviation(J_2=2.0),
-    Deviation(phi_B=0.5),
-    Deviation(phi_B=2.0),
-    Deviation(tau=0.5),
-    Deviation(tau=2.0),
-    Deviation(delay=0.0),
-    Deviation(delay=0.04),
+from .calibration_cases import (
+    CAR_DRIVEN,
+    DEVIATIONS,
+    DRIVEN,
+    FACTOR,
+    LAW,
+    NOISES,
+    SEEDS,
+    STANDSTILL,
+    STIFF,
+    STILL,
+    SUSPECTS,
+    Answer,
+    Case,
+    Given,
+    Suspect,
+    another_car,
+    answered,
+    at_rest,
+    changed_law,
+    deviation_name,
+    stiff_vehicle,
 )
-"""Cars of which the controller knows nothing."""
+from .study import Cell, Column, Measured, Study, Table, cell
 
-Given = tuple[tuple[str, float], ...]
-"""Parameters that are set, `instance.name` and value."""
+COLUMNS: dict[str, MetricColumn] = {
+    metric.name: metric.column
+    for metric in declared(Metrics)
+    if metric.column and metric.name not in ("damping_ratio", "stationary_torque_change")
+}
+"""The metrics of the tables, and how they are printed."""
+
+METRICS = tuple(Column(of.plain_heading, of.unit, of.decimals) for of in COLUMNS.values())
+CHANGES = tuple(
+    Column(of.plain_heading, of.unit, of.decimals + (of.unit != "ms"), tolerance=0.1) for of in COLUMNS.values()
+)
+"""With a digit more than the metric."""
+
+LEAST = 0.05
+"""Share of a metric by which it changes at least where a row tells of it."""
 
 
-class Case(NamedTuple):
-    """A manoeuvre on a plant, with parameters that are set."""
+class Effect(NamedTuple):
+    """A metric of a manoeuvre."""
 
-    plant: str
+    metric: str
     manoeuvre: str
-    given: Given = ()
 
 
-class Answer(NamedTuple):
-    """Of a case, means over the seeds of the noise: its metrics, and the share of the samples in fallback."""
+class Remedy(NamedTuple):
+    """A parameter of the law to turn for a symptom: up or down, with what it does and what it costs."""
 
-    metrics: Metrics
-    fallback: float
-
-
-def answered(case: Case, seeds: tuple[int, ...] = (1, 2, 3), settings: Settings | None = None) -> Answer:
-    """What a case gives.
-
-    Args:
-        settings: of the runs beside what the case says.
-    """
-    manoeuvre = {**MANOEUVRES, STANDSTILL.name: STANDSTILL}[case.manoeuvre]
-    runs = [simulate(manoeuvre, settings, plant=case.plant, parameters=dict(case.given), seed=seed) for seed in seeds]
-    fallback = np.mean([np.mean(run["controller.status"] == FALLBACK) for run in runs])
-    return Answer(mean([evaluate(run, manoeuvre) for run in runs]), float(fallback))
+    symptom: str
+    parameter: str
+    up: bool
+    does: Effect
+    costs: Effect
 
 
-def changed_law(name: str) -> tuple[Given, Given]:
-    """A parameter of the law, smaller and larger by FACTOR."""
-    start = float(PARAMETERS[name].start)
-    return ((f"controller.{name}", start / FACTOR),), ((f"controller.{name}", start * FACTOR),)
-
-
-@cache
-def another_car(plant: str, deviation: Deviation) -> tuple[Given, Given]:
-    """A car that the controller takes for the default one, and the same car with a controller designed for it."""
-    controller = PLACES["controller"][0]
-    car = deviating({}, plant, controller, deviation)
-    vehicle = {name.partition(".")[2]: value for name, value in deviating({}, PLANTS[0], controller, deviation).items()}
-    own = loop_parameters(vehicle | design(vehicle), plant)
-    assumed = {name: value for name, value in own.items() if name.startswith("controller.")}
-    return tuple(car.items()), tuple((car | assumed).items())
-
-
-def stiff_vehicle() -> Case:
-    """A tip-in on the validation vehicle of doubled stiffness, with its own gains and FACTOR times its own k_d."""
-    own = dict(another_car(PLANTS[1], Deviation(C=2.0))[1])
-    return Case(PLANTS[1], "tipin15", tuple((own | {"controller.k_d": FACTOR * own["controller.k_d"]}).items()))
-
-
-def deviation_name(deviation: Deviation) -> str:
-    """What is another one in a deviation, in words."""
-    (name,) = (n for n in Deviation._fields if getattr(deviation, n) != getattr(NOMINAL, n))
-    value = getattr(deviation, name)
-    return f"transport delay {1e3 * value:g} ms" if name == "delay" else f"`{name}` x{value:g}"
-
-
-class Suspect(NamedTuple):
-    """What could lead to fallback without a fault: in words, what is set in car and controller, and what helps."""
-
-    what: str
-    given: Given
-    helps: str
-
-
-def _slow_motor(factor: float, **known: float) -> Given:
-    """A motor with so many times its lag, and what the controller assumes."""
-    return ("motor.tau", factor * MOTOR.tau), *((f"controller.{name}", value) for name, value in known.items())
-
-
-K_D = float(PARAMETERS["k_d"].start)
-
-SUSPECTS = (
-    Suspect("nothing", (), ""),
-    Suspect("noise of the motor speed, 2 rad/s rms", (("motor.sigma_omega", 2.0),), ""),
-    Suspect("noise of the motor speed, 3 rad/s rms", (("motor.sigma_omega", 3.0),), "a larger `jump`"),
-    Suspect("the same, `jump` 1.9", (("motor.sigma_omega", 3.0), ("controller.jump", 1.9)), ""),
-    Suspect("torque estimate x1.4", (("motor.g_T", 1.4),), ""),
-    Suspect("torque estimate x1.5", (("motor.g_T", 1.5),), "a better estimate"),
-    Suspect("torque estimate + 9 N.m", (("motor.o_T", 9.0),), ""),
-    Suspect("torque estimate + 12 N.m", (("motor.o_T", 12.0),), "a better estimate"),
-    Suspect("lag of the motor x4", _slow_motor(4.0), "the true `tau`"),
-    Suspect("the same, `tau` known", _slow_motor(4.0, tau=4.0 * MOTOR.tau), ""),
-    Suspect("lag of the motor x5", _slow_motor(5.0), "the true `tau`, and less `k_d`"),
-    Suspect("the same, `tau` known", _slow_motor(5.0, tau=5.0 * MOTOR.tau), "less `k_d`"),
-    Suspect("the same, `tau` known and `k_d` / 2", _slow_motor(5.0, tau=5.0 * MOTOR.tau, k_d=0.5 * K_D), ""),
-    Suspect("wheel speed x1.1", (("can.g_w2", 1.1),), ""),
-    Suspect("wheel speed x1.15", (("can.g_w2", 1.15),), "the true radius; a larger `g_radius`"),
-    Suspect("the same, `g_radius` 0.15", (("can.g_w2", 1.15), ("controller.g_radius", 0.15)), ""),
+REMEDIES = (
+    Remedy("overshoot, swing", "k_d", True, Effect("overshoot", "tipin15"), Effect("response_delay", "launch")),
+    Remedy("overshoot alone", "omega_w", False, Effect("overshoot", "tipin15"), Effect("withheld_time", "tipin15")),
+    Remedy(
+        "jerk when a tip-in lands", "T_gap", False, Effect("jerk_rms", "tipin15"), Effect("response_delay", "tipout")
+    ),
+    Remedy(
+        "jerk when a tip-in lands",
+        "landing_share",
+        False,
+        Effect("jerk_rms", "tipin15"),
+        Effect("response_delay", "tipout"),
+    ),
+    Remedy(
+        "a jolt after landing",
+        "t_return",
+        True,
+        Effect("gear_torque_rms", "tipin15"),
+        Effect("response_delay", "tipin15"),
+    ),
+    Remedy(
+        "clunk in a ramp",
+        "landing_share",
+        False,
+        Effect("impact_speed", "tipin15r"),
+        Effect("gear_torque_rms", "launch"),
+    ),
+    Remedy("clunk in a ramp", "k_gap", False, Effect("impact_speed", "tipin15r"), Effect("gear_torque_rms", "launch")),
+    Remedy(
+        "clunk in creeping",
+        "landing_brake",
+        False,
+        Effect("impact_speed", "creep"),
+        Effect("gear_torque_rms", "tipin15r"),
+    ),
+    Remedy(
+        "clunk in creeping",
+        "demand_lead",
+        False,
+        Effect("impact_speed", "creep"),
+        Effect("gear_torque_rms", "tipin15r"),
+    ),
+    Remedy("swing in a launch", "k_gap", True, Effect("gear_torque_rms", "launch"), Effect("impact_speed", "launch")),
+    Remedy("slow to pull away", "k_d", False, Effect("response_delay", "launch"), Effect("overshoot", "launch")),
+    Remedy(
+        "slow after letting go", "landing_share", True, Effect("response_delay", "tipout"), Effect("jerk_rms", "tipout")
+    ),
+    Remedy("torque withheld", "omega_w", True, Effect("withheld_time", "tipin15"), Effect("overshoot", "tipin15")),
 )
 
-NOISES = (0.15, 0.6, 1.0, 1.5)
-"""Of the motor speed at standstill, rms in rad/s."""
 
-STILL = (3.0, 6.0)
-"""Values of omega_still in rad/s that they are met with."""
+WAYS = (f"/ {FACTOR:g}", f"x {FACTOR:g}")
+"""In which a parameter of the law is changed."""
 
-
-def at_rest(sigma_omega: float, omega_still: float) -> Given:
-    return ("motor.sigma_omega", sigma_omega), ("controller.omega_still", omega_still)
+TOLD = ("not told", "told")
 
 
-def cases() -> list[Case]:
-    """All that the page tells, each once."""
-    found = [Case(plant, manoeuvre) for plant, manoeuvre in product(PLANTS, DRIVEN)] + [stiff_vehicle()]
+class Found:
+    """Answers to cases, each found once; `of` finds many at once on all cores."""
+
+    def __init__(self) -> None:
+        self.answers: dict[Case, Answer] = {}
+
+    def of(self, cases: Iterable[Case]) -> None:
+        todo = [case for case in dict.fromkeys(cases) if case not in self.answers]
+        self.answers |= zip(todo, run_many(answered, todo, label="calibration"), strict=True)
+
+    def values(self, case: Case) -> dict[str, float]:
+        """The metrics of a case, in the units of the tables."""
+        return {name: column.factor * getattr(self.answers[case].metrics, name) for name, column in COLUMNS.items()}
+
+    def changes(self, plant: str, manoeuvre: str, given: Given) -> dict[str, float]:
+        """By how much they change where parameters are set."""
+        usual, other = self.values(Case(plant, manoeuvre)), self.values(Case(plant, manoeuvre, given))
+        return {name: other[name] - usual[name] for name in COLUMNS}
+
+    def matters(self, plant: str, manoeuvre: str, name: str) -> bool:
+        """Whether a parameter of the law changes some metric by more than LEAST."""
+        usual = self.values(Case(plant, manoeuvre))
+        each = [self.changes(plant, manoeuvre, given) for given in changed_law(name)]
+        return any(abs(found[metric]) > LEAST * abs(usual[metric]) for found in each for metric in COLUMNS)
+
+
+def _cells(values: Mapping[str, float]) -> tuple[Cell, ...]:
+    return tuple(map(cell, values.values()))
+
+
+def nominal_table(found: Found, plant: str, manoeuvres: Iterable[str]) -> Table:
+    """The default car."""
+    rows = {name: _cells(found.values(Case(plant, name))) for name in manoeuvres}
+    return Table(f"{plant}, manoeuvre", METRICS, rows)
+
+
+def changes_table(found: Found, plant: str, pairs: Iterable[tuple[str, str]]) -> Table:
+    """The parameters that matter, one at a time, by pairs of parameter and manoeuvre."""
+    rows = {
+        f"{name} {way}, {manoeuvre}": _cells(found.changes(plant, manoeuvre, given))
+        for name, manoeuvre in pairs
+        if found.matters(plant, manoeuvre, name)
+        for way, given in zip(WAYS, changed_law(name), strict=True)
+    }
+    return Table(f"change on {plant}", CHANGES, rows)
+
+
+def remedies_table(found: Found, remedies: Iterable[Remedy]) -> Table:
+    """What each remedy does and costs."""
+    columns = tuple(
+        column
+        for what in ("does", "costs")
+        for column in (Column(what), *(Column(f"{what}, {plant}", "", 2, tolerance=0.1) for plant in PLANTS))
+    )
+
+    def effected(effect: Effect, given: Given) -> tuple[Cell, ...]:
+        column = COLUMNS[effect.metric]
+        changes = (found.changes(plant, effect.manoeuvre, given)[effect.metric] for plant in PLANTS)
+        return f"{column.plain_heading}, {column.unit}, {effect.manoeuvre}", *map(cell, changes)
+
+    rows = {}
+    for remedy in remedies:
+        given = changed_law(remedy.parameter)[remedy.up]
+        row = f"{remedy.symptom}: {remedy.parameter} {WAYS[remedy.up]}"
+        rows[row] = (*effected(remedy.does, given), *effected(remedy.costs, given))
+    return Table("symptom: turn", columns, rows)
+
+
+def cars_table(found: Found, cars: Iterable[tuple[str, Deviation]]) -> Table:
+    """Cars that the controller does not know, and knows, by pairs of plant and what is another one."""
+    rows = {
+        f"{plant}, {deviation_name(deviation)}, {manoeuvre}, {told}": _cells(
+            found.values(Case(plant, manoeuvre, given))
+        )
+        for plant, deviation in cars
+        for manoeuvre in CAR_DRIVEN
+        for told, given in zip(TOLD, another_car(plant, deviation), strict=True)
+    }
+    return Table("plant, car, manoeuvre", METRICS, rows)
+
+
+def rest_table(found: Found, noises: Iterable[float]) -> Table:
+    """The torque that noise of the motor speed makes at standstill, rms."""
+    cases = {f"{plant}, omega_still {still:g}": (plant, still) for plant, still in product(PLANTS, STILL)}
+    rows = {
+        f"{noise:g}": tuple(
+            found.answers[Case(plant, STANDSTILL.name, at_rest(noise, still))].metrics.added_torque_rms
+            for plant, still in cases.values()
+        )
+        for noise in noises
+    }
+    return Table("noise, rad/s", tuple(Column(name, "N.m", 2, tolerance=0.1) for name in cases), rows)
+
+
+def fallback_table(found: Found, suspects: Iterable[Suspect]) -> Table:
+    """The share of a drive in fallback, where something is off that is no fault."""
+    rows = {
+        suspect.what: (
+            suspect.helps,
+            *(1e2 * found.answers[Case(plant, "drive", suspect.given)].fallback for plant in PLANTS),
+        )
+        for suspect in suspects
+    }
+    return Table("what is off", (Column("what helps"), *(Column(plant, "%", 1) for plant in PLANTS)), rows)
+
+
+def cases(
+    law: Collection[tuple[str, str]],
+    cars: Collection[tuple[str, Deviation]],
+    noises: Collection[float],
+    suspects: Collection[Suspect],
+    plants: Collection[str] = PLANTS,
+) -> list[Case]:
+    """Those of the tables."""
+    usual = [Case(plant, manoeuvre) for plant in plants for _, manoeuvre in law]
+    changed = [Case(plant, manoeuvre, given) for plant in plants for p, manoeuvre in law for given in changed_law(p)]
+    others = [Case(plant, name, given) for plant, d in cars for given in another_car(plant, d) for name in CAR_DRIVEN]
+    off = [Case(plant, "drive", suspect.given) for plant in PLANTS for suspect in suspects]
+    still = [Case(plant, STANDSTILL.name, at_rest(*each)) for plant in PLANTS for each in product(noises, STILL)]
+    return [*usual, *changed, *others, *off, *still]
+
+
+ALL_LAW = tuple(product(LAW, DRIVEN))
+ALL_CARS = tuple(product(PLANTS, DEVIATIONS))
+
+
+def measure() -> Measured:
+    found = Found()
+    stiff = stiff_vehicle()
+    found.of([*cases(ALL_LAW, ALL_CARS, NOISES, SUSPECTS), stiff])
+    cars = cars_table(found, ALL_CARS)
+    more = f"{stiff.plant}, {deviation_name(STIFF)}, {stiff.manoeuvre}, told, k_d x {FACTOR:g}"
+    tables = {
+        "remedies": remedies_table(found, REMEDIES),
+        "cars": cars._replace(rows={**cars.rows, more: _cells(found.values(stiff))}),
+        "rest": rest_table(found, NOISES),
+        "fallback": fallback_table(found, SUSPECTS),
+    }
     for plant in PLANTS:
-        found += [Case(plant, name, given) for p in LAW for given in changed_law(p) for name in DRIVEN]
-        found += [
-            Case(plant, name, given) for d in DEVIATIONS for given in another_car(plant, d) for name in CAR_DRIVEN
-        ]
-        found += [Case(plant, "drive", suspect.given) for suspect in SUSPECTS]
-        found += [Case(plant, STANDSTILL.name, at_rest(*each)) for each in product(NOISES, STILL)]
-    return list(dict.fromkeys(found))
+        tables[f"nominal_{plant}"] = nominal_table(found, plant, DRIVEN)
+        tables[f"changes_{plant}"] = changes_table(found, plant, ALL_LAW)
+    return Measured(tables)
+
+
+SOFT = (PLANTS[0], Deviation(C=0.5))
+REMEDY = REMEDIES[1]
+
+
+def again() -> dict[str, Table]:
+    found, law = Found(), [("k_d", "tipin15")]
+    found.of(cases([*law, (REMEDY.parameter, "tipin15")], [SOFT], NOISES[:1], SUSPECTS[:1]))
+    tables = {
+        "remedies": remedies_table(found, [REMEDY]),
+        "cars": cars_table(found, [SOFT]),
+        "rest": rest_table(found, NOISES[:1]),
+        "fallback": fallback_table(found, SUSPECTS[:1]),
+    }
+    for plant in PLANTS:
+        tables[f"nominal_{plant}"] = nominal_table(found, plant, ["tipin15"])
+        tables[f"changes_{plant}"] = changes_table(found, plant, law)
+    return tables
+
+
+STUDY = Study(
+    "what to turn in a car: symptoms, sensitivities of the law, cars that are not known, rest and fallback",
+    measure,
+    again,
+    {
+        "remedies": [f"{REMEDY.symptom}: {REMEDY.parameter} {WAYS[REMEDY.up]}"],
+        "cars": [f"{SOFT[0]}, {deviation_name(SOFT[1])}, tipin15, {told}" for told in TOLD],
+        "rest": [f"{NOISES[0]:g}"],
+        "fallback": [SUSPECTS[0].what],
+        **{f"nominal_{plant}": ["tipin15"] for plant in PLANTS},
+        **{f"changes_{plant}": [f"k_d {way}, tipin15" for way in WAYS] for plant in PLANTS},
+    },
+    SEEDS,
+    seconds=120,
+)

@@ -1,7 +1,5 @@
 """One car in both plants: at which frequency its drive train swings in each, for the examples and for drawn cars.
 
-    python -m docs.studies.one_car
-
 The cars are drawn by what a short vehicle file names; all else follows. Rolling at 15 km/h, teeth in contact.
 """
 
@@ -10,14 +8,12 @@ from math import pi, sqrt
 from random import Random
 from typing import NamedTuple
 
-from rich.table import Table
-
-from docs.studies.imports import ROOT
 from driveline.fmus.building.one_car import DEFAULT_CAR, DESIGN, DETAILED, FOLLOW, of_one_car
 from driveline.fmus.building.oscillation import oscillation
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.base.interruption import script
-from driveline.harness.views.terminal import print_table
+
+from .data_file import ROOT
+from .study import Cell, Column, Measured, Study, Table
 
 CARS, SEED = 20, 1
 
@@ -78,18 +74,49 @@ def cars() -> dict[str, dict[str, float]]:
     return {"default": {}, **examples, **{f"drawn {k}": drawn(random) for k in range(1, CARS + 1)}}
 
 
-def main() -> None:
-    table = Table(title="drive train in Hz; apart: ValidationVehicle over TwoMassDriveline, and over that of default")
-    for heading in ("car", "two masses", "TwoMassDriveline", "ValidationVehicle", "apart", "over default", "k_s"):
-        table.add_column(heading, justify="left" if heading == "car" else "right")
+COLUMNS = (
+    Column("two masses", "Hz", 2),
+    Column("TwoMassDriveline", "Hz", 2),
+    Column("ValidationVehicle", "Hz", 2),
+    Column("vehicle over model", "", 4, 0.0),
+    Column("over that of default", "", 4, 0.0),
+    Column("k_s", "N.m/rad", 0),
+)
+
+
+def frequencies_table(chosen: Mapping[str, Car]) -> Table:
+    """How the drive trains of cars swing."""
     usual = frequencies({}).apart
-    for name, car in cars().items():
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for name, car in chosen.items():
         found = frequencies(car)
         k_s = of_one_car(car, FOLLOW).get("k_s", DEFAULT_CAR["k_s"])
-        cells = [*(f"{f:.2f}" for f in found), *(f"{x:.4f}" for x in (found.apart, found.apart / usual)), f"{k_s:.0f}"]
-        table.add_row(name, *cells)
-    print_table(table)
+        rows[name] = (*found, found.apart, found.apart / usual, k_s)
+    return Table("car", COLUMNS, rows)
 
 
-if __name__ == "__main__":
-    script(main)
+def spread_table(table: Table) -> Table:
+    """The least and the largest of each column."""
+    columns = list(zip(*table.rows.values(), strict=True))
+    return Table("of all cars", COLUMNS, {each.__name__: tuple(map(each, columns)) for each in (min, max)})
+
+
+def measure() -> Measured:
+    table = frequencies_table(cars())
+    return Measured({"frequencies": table, "spread": spread_table(table)})
+
+
+def again() -> dict[str, Table]:
+    return {"frequencies": frequencies_table({name: cars()[name] for name in SENTINELS})}
+
+
+SENTINELS = ("default", "van", "drawn 1")
+
+STUDY = Study(
+    "at which frequency the drive train of one car swings in either plant",
+    measure,
+    again,
+    {"frequencies": SENTINELS},
+    (SEED,),
+    seconds=2,
+)

@@ -1,12 +1,12 @@
-"""The calibration page: each parameter of the law both ways, cars that are told or not, and the same each time."""
+"""The calibration: each parameter of the law both ways, cars that are told or not."""
 
 import re
-from math import nan
 from pathlib import Path
 
 import pytest
 
-from docs.studies.calibration import (
+from docs.studies.calibration import Found, cases, changes_table
+from docs.studies.calibration_cases import (
     DEVIATIONS,
     LAW,
     SUSPECTS,
@@ -14,13 +14,9 @@ from docs.studies.calibration import (
     Case,
     another_car,
     answered,
-    cases,
     changed_law,
     deviation_name,
 )
-from docs.studies.calibration_figure import plot_calibration
-from docs.studies.calibration_page import page
-from docs.studies.calibration_tables import COLUMNS, matters, signed
 from driveline.harness.design.design_weights import MOTOR, PARAMETERS
 from driveline.harness.design.uncertainty_box import Deviation
 from driveline.harness.loop.places import NATIVE, PLANTS
@@ -69,38 +65,15 @@ def test_less_damping_overshoots_more_and_pulls_away_sooner(both_built: Path) ->
     assert [each.fallback for each in found] == [0.0, 0.0]
 
 
-def test_the_page_tells_all_cases_and_is_the_same_each_time() -> None:
-    found = {case: answer(1.0 + 0.01 * k) for k, case in enumerate(cases())}
-    text = page(found)
-    assert text == page(found)
-    assert all(f"| `{name}` | tipin15 |" in text for name in LAW)
-    assert all(f"| {deviation_name(deviation)} | launch |" in text for deviation in DEVIATIONS)
-    assert "25.0 %" in text
-
-
 def test_what_changes_nothing_has_no_row() -> None:
-    found = dict.fromkeys(cases(), answer(1.0))
-    assert not any(matters(found, "TwoMassDriveline", "tipin15", name) for name in LAW)
-    found[Case("TwoMassDriveline", "tipin15", changed_law("k_d")[1])] = answer(1.2)
-    assert matters(found, "TwoMassDriveline", "tipin15", "k_d")
-
-
-def test_a_change_has_its_sign_unless_it_is_nothing() -> None:
-    settling = COLUMNS["settling_time"]
-    assert [signed(change, settling) for change in (0.012, -0.012, 0.0001, -0.0001, nan)] == [
-        "+12",
-        "-12",
-        "0",
-        "0",
-        "-",
-    ]
-
-
-@pytest.mark.slow
-def test_the_figure_is_the_same_each_time(tmp_path: Path) -> None:
-    found = {case: answer(1.0 + 0.01 * k) for k, case in enumerate(cases())}
-    first, second = (plot_calibration(found, "TwoMassDriveline", tmp_path / name)[0] for name in ("a", "b"))
-    assert first.read_bytes() == second.read_bytes()
+    plant, law = PLANTS[0], [("k_d", "tipin15"), ("omega_w", "tipin15")]
+    found = Found()
+    found.answers = dict.fromkeys(cases(law, [], [], []), answer(1.0))
+    assert not changes_table(found, plant, law).rows
+    found.answers[Case(plant, "tipin15", changed_law("k_d")[1])] = answer(1.2)
+    rows = changes_table(found, plant, law).rows
+    assert list(rows) == ["k_d / 1.5, tipin15", "k_d x 1.5, tipin15"]
+    assert rows["k_d x 1.5, tipin15"][0] == pytest.approx(200.0)  # ms of the settling time
 
 
 def test_a_suspect_is_as_wrong_as_its_name_says() -> None:

@@ -1,0 +1,86 @@
+"""What the design is worth: the default car and those of the examples without damping, with the gains of the default
+car, and with their own.
+
+The estimator is told the true car in either case. Means over the noise of three seeds.
+"""
+
+from collections.abc import Iterable
+from itertools import product
+from pathlib import Path
+
+from driveline.fmus.building.parameter_files import read_vehicle
+from driveline.harness.design.design import design
+from driveline.harness.design.design_trials import Gains, Trial, measured, own_gains
+from driveline.harness.design.design_weights import records
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.metrics.declaration import declared
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.studies.margins.modes import swing
+
+from .data_file import ROOT
+from .study import Cell, Column, Measured, Study, Table, cell
+
+CARS = {"default": None, **{path.stem: path for path in sorted((ROOT / "examples" / "cars").glob("*.toml"))}}
+MANOEUVRES = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "drive", "creep")
+METRICS = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "response_delay", "withheld_time")
+SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column and metric.name in METRICS]
+
+COLUMNS = tuple(Column(column.plain_heading, column.unit, column.decimals) for _, column in SHOWN)
+MODES = (
+    Column("drive train", "Hz", 1),
+    Column("damping ratio, default gains", "", 2),
+    Column("damping ratio, own gains", "", 2),
+)
+
+
+def modes_table() -> Table:
+    """The drive trains in contact, linear and without tyre."""
+
+    def modes(vehicle: Path | None) -> tuple[Cell, ...]:
+        plant, motor, _ = records(read_vehicle(vehicle) if vehicle else {})
+        alone, damped = swing(plant, motor, own_gains(vehicle))
+        return alone.frequency, swing(plant, motor, design())[1].damping_ratio, damped.damping_ratio
+
+    return Table("car", MODES, {name: modes(vehicle) for name, vehicle in CARS.items()})
+
+
+def runs_table(trials: Iterable[Trial]) -> Table:
+    """The metrics of trials."""
+    todo = list(trials)
+    found = zip(todo, run_many(measured, todo, label="cars"), strict=True)
+    rows = {named(trial): tuple(cell(m.of(each) * c.factor) for m, c in SHOWN) for trial, each in found}
+    return Table("car, plant, manoeuvre, gains", COLUMNS, rows)
+
+
+def named(trial: Trial) -> str:
+    """The name of its row."""
+    car = trial.vehicle.stem if trial.vehicle else "default"
+    return f"{car}, {trial.plant}, {trial.manoeuvre}, {trial.gains.value}"
+
+
+def all_trials() -> list[Trial]:
+    """The default car's own gains are the default ones."""
+    every = (Trial(*each) for each in product(CARS.values(), PLANTS, MANOEUVRES, Gains))
+    return [trial for trial in every if trial.vehicle or trial.gains is not Gains.OWN]
+
+
+def measure() -> Measured:
+    return Measured({"modes": modes_table(), "runs": runs_table(all_trials())})
+
+
+SENTINELS = [trial for trial in all_trials() if trial[1:] == (PLANTS[0], "tipin15", Gains.OWN)]
+
+
+def again() -> dict[str, Table]:
+    return {"modes": modes_table(), "runs": runs_table(SENTINELS)}
+
+
+STUDY = Study(
+    "what the design is worth on several cars",
+    measure,
+    again,
+    {"modes": list(CARS), "runs": list(map(named, SENTINELS))},
+    (1, 2, 3),
+    seconds=60,
+)

@@ -1,0 +1,73 @@
+"""What effects of motor and road that are off by default do to a tip-in of the detailed vehicle."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
+
+from .results import COLUMNS, metrics_cells
+from .study import Measured, Study, Table
+
+PLANT, MANOEUVRE = PLANTS[1], MANOEUVRES["tipin15"]
+
+EFFECTS = (
+    None,
+    ("motor.t_dead", 0.002),
+    ("motor.t_dead", 0.005),
+    ("motor.t_dead", 0.01),
+    ("motor.dT_max", 2000.0),
+    ("motor.dT_max", 1000.0),
+    ("motor.omega_base", 60.0),
+    ("plant.g_muL", 0.15),
+)
+"""A parameter that is set, and to what."""
+
+
+class Run(NamedTuple):
+    """An effect, without or with damping."""
+
+    effect: tuple[str, float] | None
+    control: bool
+
+    def __str__(self) -> str:
+        return f"{'{}={:g}'.format(*self.effect) if self.effect else 'nothing'}, {'on' if self.control else 'off'}"
+
+
+RUNS = [Run(effect, control) for effect in EFFECTS for control in (False, True)]
+
+
+def measured(run: Run) -> Metrics:
+    parameters = dict([run.effect] if run.effect else [])
+    return evaluate(simulate(MANOEUVRE, PLANT, control=run.control, parameters=parameters), MANOEUVRE)
+
+
+def effects_table(runs: Iterable[Run]) -> Table:
+    """The metrics of runs."""
+    todo = list(runs)
+    found = zip(todo, run_many(measured, todo, label="effects"), strict=True)
+    return Table("set, damping", COLUMNS, {str(run): metrics_cells(metrics) for run, metrics in found})
+
+
+def measure() -> Measured:
+    return Measured({"effects": effects_table(RUNS)})
+
+
+SENTINELS = RUNS[4:6]
+
+
+def again() -> dict[str, Table]:
+    return {"effects": effects_table(SENTINELS)}
+
+
+STUDY = Study(
+    "what effects that are off by default do to a tip-in of the detailed vehicle",
+    measure,
+    again,
+    {"effects": list(map(str, SENTINELS))},
+    seconds=5,
+)
