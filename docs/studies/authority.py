@@ -151,5 +151,5 @@ STUDY = Study(
     again,
     {"limits": SENTINELS, "steps": [f"{car}, {PLANTS[0]}, {step}" for car in SENTINELS for step in STEPS]},
     SEEDS,
-    seconds=60,
+    seconds=20,
 )

@@ -307,5 +307,5 @@ STUDY = Study(
         **{f"changes_{plant}": [f"k_d {way}, tipin15" for way in WAYS] for plant in PLANTS},
     },
     SEEDS,
-    seconds=120,
+    seconds=30,
 )

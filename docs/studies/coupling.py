@@ -109,5 +109,5 @@ STUDY = Study(
         "orders": PROPAGATED,
         "metrics": ("TwoMassDriveline, tipin15",),
     },
-    seconds=60,
+    seconds=20,
 )

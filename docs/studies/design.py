@@ -82,5 +82,5 @@ STUDY = Study(
     again,
     {"modes": list(CARS), "runs": list(map(named, SENTINELS))},
     (1, 2, 3),
-    seconds=60,
+    seconds=20,
 )

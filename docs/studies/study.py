@@ -104,6 +104,12 @@ STUDIES = (
     "undetectable_faults",
     "plausible_drives",
     "replay",
+    "design",
+    "authority",
+    "calibration",
+    "vehicle_model",
+    "one_car",
+    "coupling",
 )
 """Modules of this folder that have a STUDY; those that decide come first."""
 
