@@ -10,11 +10,12 @@ from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.declaration import declared
 from ...metrics.estimate import EstimateMetrics
 from ...metrics.run_metrics import Metrics
+from ...views.figure_style import draw
 from ...views.markdown import markdown_table
 from ...views.metrics_table import number
 from ...views.terminal import plain_table, print_table
 from .describing_function import LimitCycle
-from .linear_figures import plot_backlash, plot_bode, plot_nyquist, plot_poles
+from .linear_figures import backlash, bode, plot_nyquist, plot_poles
 from .loop_analysis import SPEEDS, TORQUE, Analysis
 from .margins import Margins
 from .parameter_sweeps import SWEEPS
@@ -41,10 +42,10 @@ def write(found: Analysis, arguments: str, folder: Path) -> list[Path]:
     return [
         text,
         table,
-        *plot_bode(loops, f"{name}: loop gain", figures / "analysis_bode"),
+        *draw(bode(loops, f"{name}: loop gain"), figures / "analysis_bode"),
         *plot_nyquist(loops, f"{name}: loop gain", figures / "analysis_nyquist"),
         *plot_poles(found.swept, f"{name}: poles of the closed loop", figures / "analysis_poles"),
-        *plot_backlash(found.swings, f"{name}: swinging through the gap", figures / "analysis_backlash"),
+        *draw(backlash(found.swings, f"{name}: swinging through the gap"), figures / "analysis_backlash"),
         *plot_sensitivity(
             found.sensitivities, f"{found.controller}: sensitivity of the metrics", figures / "analysis_sensitivity"
         ),

@@ -53,6 +53,13 @@ class Swinging:
         drive, controller = _mixed_drive(N, *self._drives), _mixed_controller(N, *self._controllers)
         return assembled(drive, controller, messages(self.point), self.point.late + late)
 
+    def swing(self, amplitude: float) -> "Swing":
+        """A swing with an amplitude over phi_B."""
+        N = describing_function(amplitude)
+        loop = self.loop(N)
+        stable = is_stable(loop)
+        return Swing(amplitude, N, stable, margins(loop) if stable else None)
+
 
 def _mixed_drive(N: float, contact: LinearPlant, gap: LinearPlant) -> LinearPlant:
     A, C = (N * getattr(contact, name) + (1.0 - N) * getattr(gap, name) for name in ("A", "C"))
@@ -123,10 +130,4 @@ def _between(function: Callable[[float], float], one: Swing, other: Swing) -> fl
 def swings(point: Point) -> list[Swing]:
     """The loop of a point at all AMPLITUDES and in contact."""
     loops = Swinging(point)
-    found = []
-    for amplitude in (*AMPLITUDES.tolist(), inf):
-        N = describing_function(amplitude)
-        loop = loops.loop(N)
-        stable = is_stable(loop)
-        found.append(Swing(amplitude, N, stable, margins(loop) if stable else None))
-    return found
+    return [loops.swing(amplitude) for amplitude in (*AMPLITUDES.tolist(), inf)]

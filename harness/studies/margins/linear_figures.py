@@ -9,8 +9,8 @@ from matplotlib.colors import LogNorm, Normalize
 
 from ...metrics.spectrum import decibels
 from ...views.colours import BLACK, BLUE, GREEN, GREY, VERMILION
-from ...views.figure_style import plot, sheet
-from ...views.panels import Axis, Curve, Level, Panel, Part, Points
+from ...views.figure_style import sheet
+from ...views.panels import Axis, Curve, Drawing, Level, Panel, Part, Points
 from .describing_function import Swing
 from .linear_loop import LinearLoop
 from .margins import FREQUENCIES, Margins
@@ -28,8 +28,8 @@ DAMPING_RATIOS = (0.1, 0.3, 0.5)
 """Lines in the plane of the poles."""
 
 
-def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path) -> list[Path]:
-    """Magnitude and phase of the loop gain, with the crossings at which the margins are; returns the files."""
+def bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str) -> Drawing:
+    """Magnitude and phase of the loop gain, with the crossings at which the margins are."""
     f = FREQUENCIES[(FREQUENCIES >= SHOWN[0]) & (FREQUENCIES <= SHOWN[1])]
     named: set[str] = set()
     magnitude: list[Part] = [Level(0.0)]
@@ -55,7 +55,7 @@ def plot_bode(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem:
         Panel("phase of L in degrees", phase, bounds=(-450.0, 135.0), ticks={k: str(k) for k in range(-450, 136, 90)}),
     ]
     x = Axis("frequency in Hz", SHOWN, "log")
-    return plot([[panel] for panel in panels], x, title, stem, size=(7.2, 2.3))
+    return Drawing([[panel] for panel in panels], x, title, size=(7.2, 2.3))
 
 
 def plot_nyquist(loops: Mapping[str, tuple[LinearLoop, Margins]], title: str, stem: Path) -> list[Path]:
@@ -120,8 +120,8 @@ def _rays(axes: Axes) -> None:
         axes.annotate(f"{ratio:g}", (-x, y), color="0.4", fontsize=7, ha="left", va="bottom")
 
 
-def plot_backlash(found: Mapping[str, Sequence[Swing]], title: str, stem: Path) -> list[Path]:
-    """Gain and delay margin while the teeth swing, over the amplitude of the swing; returns the files."""
+def backlash(found: Mapping[str, Sequence[Swing]], title: str) -> Drawing:
+    """Gain and delay margin while the teeth swing, over the amplitude of the swing."""
     margins: tuple[list[Part], list[Part]] = [], []
     for (name, swings), color in zip(found.items(), COLOURS, strict=False):
         x = np.array([min(swing.amplitude - 1.0, IN_CONTACT) for swing in swings])
@@ -131,4 +131,4 @@ def plot_backlash(found: Mapping[str, Sequence[Swing]], title: str, stem: Path) 
     label = r"amplitude of the twist beyond the flanks over $\varphi_B$ (half the gap); arrows: in contact"
     labels = ("gain margin", "delay margin in ms")
     rows = [[Panel(label, parts, bounds=(0.0, None))] for label, parts in zip(labels, margins, strict=True)]
-    return plot(rows, Axis(label, (0.01, IN_CONTACT), "log"), title, stem, size=(7.2, 2.0))
+    return Drawing(rows, Axis(label, (0.01, IN_CONTACT), "log"), title, size=(7.2, 2.0))

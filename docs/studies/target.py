@@ -1,0 +1,124 @@
+"""Our controller in C on an emulated Cortex-M4F, beside the same C on this machine (`driveline target record`).
+
+It needs `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from driveline.fmus.target.sources import CONTROLLERS
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.exchange.target.comparison import Comparison, compare
+from driveline.harness.exchange.target.controllers import programs
+from driveline.harness.exchange.target.costs import Size, size_of
+from driveline.harness.exchange.target.offline_cases import recorded
+from driveline.harness.exchange.target.record import TYPICAL, Record, numbers, record
+from driveline.harness.loop.places import PLACES, T_S
+from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.views.colours import BLACK, BLUE, VERMILION
+from driveline.harness.views.panels import DASHED, Axis, Curve, Drawing, Panel
+
+from .study import Cell, Column, Measured, Study, Table
+
+CASES = (
+    Column("samples", "", 0),
+    Column("with a differing bit", "", 0),
+    Column("T_ref off by", "N.m", tolerance=0.5),
+    Column("T_gear_hat off by", "N.m", tolerance=0.5),
+    Column("of the allowed", "%", 0, tolerance=0.5),
+    Column("largest T_ref", "N.m", 0),
+    Column("instructions, mean", "", 0),
+    Column("most", "", 0),
+)
+LOOPS = (
+    Column("differing", "", 0),
+    Column("T_ref off by", "N.m", tolerance=0.5),
+    Column("T_gear off by", "N.m", tolerance=0.5),
+    Column("rms of T_ref", "N.m", tolerance=0.5),
+)
+PARTS = (Column("instructions", "", 0), Column("flash", "B", 0))
+COSTS = (Column("is"),)
+
+
+def cases_table(found: Iterable[Comparison]) -> Table:
+    """Off-line, the same inputs on the target and here."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for each in found:
+        off = (each.samples, each.differing, each.T_ref, each.T_gear_hat, 1e2 * each.margin, each.largest)
+        rows[each.case.name] = (*off, *each.instructions)
+    return Table("case", CASES, rows)
+
+
+def sizes(size: Size) -> dict[str, tuple[Cell, ...]]:
+    """Rows of the table of costs: what the image holds."""
+    whole = {f"{name}, B": (getattr(size, name),) for name in Size._fields if name != "library"}
+    return {**whole, "of the C library": (", ".join(size.library),)}
+
+
+def costs_table(found: Record, told: Mapping[str, Mapping[str, Any]]) -> Table:
+    """What the controller takes."""
+    rows: dict[str, tuple[Cell, ...]] = {
+        "instructions in a drive, most": (told["costs"]["driven"],),
+        "instructions of what is drawn, most": (told["costs"]["drawn"],),
+        "stack that is used, B": (told["costs"]["stack_used"],),
+        **sizes(found.size),
+        **{f"under the timer: {name}": (value,) for name, value in told["schedule"].items()},
+        "samples in all": (sum(each.samples for each in found.comparisons),),
+    }
+    return Table("what", COSTS, rows)
+
+
+def torques(found: Comparison) -> Drawing:
+    """The torque reference on the target and of the model, and their distance."""
+    target, model = found.traces
+    time = T_S * np.arange(len(target))
+    both = [Curve(time, model, "double precision", BLACK), Curve(time, target, "target", BLUE, DASHED)]
+    less = [Curve(time, target - model, "", VERMILION)]
+    rows = [[Panel("T_ref in N·m", both)], [Panel("target less\nmodel in N·m", less)]]
+    title = f"{found.case.name}: the C on the target, and the model"
+    return Drawing(rows, Axis("time in s", (0.0, float(time[-1]))), title)
+
+
+def measure() -> Measured:
+    found = record(Settings())
+    told = numbers(found)
+    loops = {name: tuple(of.values()) for name, of in told["loops"].items()}
+    parts = {name: tuple(of.values()) for name, of in told["parts"].items()}
+    deviations = {name: (of["found"], of["why"]) for name, of in told["deviations"].items()}
+    typical = next(each for each in found.comparisons if each.case.name == TYPICAL)
+    return Measured(
+        {
+            "cases": cases_table(found.comparisons),
+            "loops": Table("manoeuvre", LOOPS, loops),
+            "parts": Table("controller", PARTS, parts, f"Most instructions of a sample in {TYPICAL}."),
+            "costs": costs_table(found, told),
+            "deviations": Table("rule, file", (Column("found", "", 0), Column("why")), deviations),
+        },
+        {"torques": torques(typical)},
+    )
+
+
+SENTINEL = "tipin15"
+
+
+def again() -> dict[str, Table]:
+    settings = Settings()
+    system = loop(settings)
+    own = fit(system).interfaces["controller"]
+    inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
+    with programs(CONTROLLERS[PLACES["controller"][0]]) as made:
+        compared = compare(made, recorded(MANOEUVRES[SENTINEL], system, inputs, settings), outputs)
+        size = size_of(made)
+    return {"cases": cases_table([compared]), "costs": Table("what", COSTS, sizes(size))}
+
+
+STUDY = Study(
+    "our controller in C on an emulated Cortex-M4F, beside the same C on this machine",
+    measure,
+    again,
+    {"cases": [SENTINEL], "costs": ["flash, B"]},
+    seconds=120,
+)
