@@ -77,9 +77,9 @@ $(CROSS): $(READY)
 cross: $(CROSS) ## what compiles native FMUs for all platforms, and those FMUs
 	$(BIN)/driveline build --build native --platform all
 
-bench: $(READY) ## docs/speed.md: what a step, a run and a command take, side by side and in other hosts
+bench: $(READY) ## what a step, a run and a command take, side by side and in other hosts
 	$(BIN)/driveline build
-	$(BIN)/python -m benchmarks.speed_page
+	$(BIN)/python -m docs.studies speed
 	$(BIN)/python -m benchmarks.step_error
 	$(BIN)/python -m benchmarks.standstill
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from shutil import which
 from tempfile import TemporaryDirectory
 
-from docs.studies.imports import ROOT
+from docs.studies.data_file import ROOT
 from driveline.harness.base.interruption import script
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run

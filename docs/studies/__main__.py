@@ -111,7 +111,7 @@ def sentinel_differences(name: str) -> list[Difference]:
         LookupError: a sentinel is not in its table.
     """
     one = study(name)
-    now = one.again()
+    now = one.again() if one.again else {}
     for table, rows in one.sentinels.items():
         if lacking := set(rows) - now[table].rows.keys():
             raise LookupError(f"{name}, {table}: no row {', '.join(sorted(lacking))}")

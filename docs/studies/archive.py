@@ -29,7 +29,7 @@ from driveline.harness.loop.places import CONNECTIONS, PLACES, PLANTS, STEP_SIZE
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 
-from .imports import ROOT
+from .data_file import ROOT
 
 NAME = f"driveline-damping-{VERSION}-fmus"
 PAGE = Path(__file__).with_name("archive_page.md")

@@ -27,7 +27,7 @@ from driveline.harness.identification.quality import Z_95
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.robustness.draws import draw
 
-from .study import Column, Measured, Study, Table
+from .study import Column, Measured, Study, Table, table_of
 
 FIRST = 101
 """Seed of the first recording; none of these was used in development."""
@@ -143,13 +143,6 @@ def again() -> dict[str, Table]:
     return {"recordings": recordings_table({FIRST: accuracy((FIRST, ()))})}
 
 
-def _in_words(headings: Sequence[str], rows: Sequence[Sequence[str]], labels: int) -> Table:
-    """A table of words, the first of which name a row."""
-    label, named = ", ".join(filter(None, headings[:labels])), {", ".join(row[:labels]): row for row in rows}
-    columns = tuple(map(Column, headings[labels:]))
-    return Table(label, columns, {name: tuple(row[labels:]) for name, row in named.items()})
-
-
 def _off(found: Found, name: str) -> float:
     """Relative error."""
     return found.values[name] / TRUE[name] - 1.0
@@ -174,7 +167,7 @@ def _accuracy(known: Sequence[Found], free: Sequence[Found]) -> Table:
                 ]
             )
     headings = ["", "bound (sd)", "rms error", "worst", "goal (rms / worst)", "in the 95 % interval, %"]
-    return _in_words(headings, rows, labels=1)
+    return table_of(headings, rows, labels=1)
 
 
 def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> Table:
@@ -205,7 +198,7 @@ def _vehicle(measured: Sequence[Judged], alone: Sequence[Judged]) -> Table:
         ),
         row("time, s", "30", lambda one: one.found.seconds, 0),
     ]
-    return _in_words(["", "goal", "with load torque", "without"], rows, labels=1)
+    return table_of(["", "goal", "with load torque", "without"], rows, labels=1)
 
 
 SPREAD_GOALS = {"J_2": "2.5 %", "C": "1 %", "phi_B": "0.6 %", "d": ""}
@@ -227,7 +220,7 @@ def _methods(every: Mapping[str, Sequence[tuple[Method, Method]]]) -> Table:
         *("plant", "method", "J_2, kg.m2", "C, N.m/rad", "phi_B, rad", "d, N.m.s/rad"),
         *("simulated 0.5 s: omega_1, %", "time, s"),
     ]
-    return _in_words(headings, rows, labels=2)
+    return table_of(headings, rows, labels=2)
 
 
 def _traps(every: Sequence[Sequence[Found]]) -> Table:
@@ -244,7 +237,7 @@ def _traps(every: Sequence[Sequence[Found]]) -> Table:
         J_2 = _rms_and_worst([100.0 * _off(one, "J_2") for one in found])
         rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2], J_2])
     headings = ["", "right within 3 sd, %", "cause named, %", "either, %", "J_2 off by, % (rms / worst)"]
-    return _in_words(headings, rows, labels=1)
+    return table_of(headings, rows, labels=1)
 
 
 def _rms_and_worst(errors: Sequence[float]) -> str:
@@ -267,7 +260,7 @@ def _foreign(every: Sequence[Drives]) -> Table:
         *("loop and logger", "tyre", "J_2, %", "C, %", "phi_B, %", "95 % interval of J_2, +- %"),
         *("in the intervals, %", "motor / load torque late, ms", "found, off by at most, ms"),
     ]
-    return _in_words(headings, rows, labels=2)
+    return table_of(headings, rows, labels=2)
 
 
 def _of_drives(drives: Drives, true: str) -> list[str]:
@@ -310,7 +303,7 @@ def _redesigned(every: Sequence[Redesigned]) -> Table:
         *("settling not worse, %", "overshoot not worse, %", "neither worse, %", "settling at most 5 % worse, %"),
         "overshoot at most more, points of %",
     ]
-    return _in_words(headings, rows, labels=1)
+    return table_of(headings, rows, labels=1)
 
 
 def _means(of: Mapping[str, tuple[float, float]]) -> np.ndarray:

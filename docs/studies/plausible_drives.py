@@ -1,7 +1,7 @@
 """Drives of our own that are what they say: what `driveline replay` finds odd in them, which should be nothing.
 
 Plants, manoeuvres and damping in turn, each with a car, sensors and noise that are drawn at random (the box of
-docs/robustness.md). What its sensors record is judged as the recording of a drive at 500 Hz and at 10 Hz, and followed
+docs/results.md). What its sensors record is judged as the recording of a drive at 500 Hz and at 10 Hz, and followed
 by the same plant with the car as it is declared, which nobody knows better.
 """
 

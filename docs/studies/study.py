@@ -5,9 +5,10 @@ kept in docs/studies/data; pages and figures are rendered from there. Its sentin
 `make test` computes them again and compares.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from math import isclose, isnan
+from types import MappingProxyType
 from typing import NamedTuple
 
 from driveline.harness.views.panels import Drawing
@@ -74,7 +75,8 @@ class Study(NamedTuple):
     Attributes:
         purpose: in half a sentence.
         measure: gives all tables and figures.
-        again: gives tables that have the sentinels, in a second or two. Other rows in them are compared too.
+        again: gives tables that have the sentinels, in a second or two. Other rows in them are compared too. None:
+            there are none, as of times.
         sentinels: the rows that `again` gives at least.
         seeds: of what is drawn.
         explore: with arguments of its own, for who wants to know more; it prints, and keeps nothing.
@@ -83,8 +85,8 @@ class Study(NamedTuple):
 
     purpose: str
     measure: Callable[[], Measured]
-    again: Callable[[], Mapping[str, Table]]
-    sentinels: Rows
+    again: Callable[[], Mapping[str, Table]] | None = None
+    sentinels: Rows = MappingProxyType({})
     seeds: Sequence[int] = (1,)
     explore: Callable[[Sequence[str]], None] | None = None
     seconds: float = 60.0
@@ -104,12 +106,18 @@ STUDIES = (
     "undetectable_faults",
     "plausible_drives",
     "replay",
+    "identification",
     "design",
     "authority",
     "calibration",
     "vehicle_model",
     "one_car",
+    "tuning",
+    "analysis",
     "coupling",
+    "target",
+    "bound",
+    "speed",
 )
 """Modules of this folder that have a STUDY; those that decide come first."""
 
@@ -124,7 +132,7 @@ def number(value: Cell, column: Column) -> str:
     if value is None or isinstance(value, str):
         return value or "-"
     if column.decimals is None:
-        return f"{value:.3g}"
+        return f"{value:.3g}" if abs(value) < 1e3 else f"{value:.0f}"
     # adding zero turns a rounded -0 into 0
     return f"{round(value, column.decimals) + 0.0:.{column.decimals}f}"
 
@@ -132,6 +140,19 @@ def number(value: Cell, column: Column) -> str:
 def cell(value: float) -> float | None:
     """A number that has come out; None where there is none."""
     return None if isnan(value) else float(value)
+
+
+def table_of(headings: Sequence[str], rows: Iterable[Sequence[str]], labels: int) -> Table:
+    """A table from cells as they are shown: the first ones name a row, others are numbers where they can be."""
+    named = {", ".join(row[:labels]): tuple(map(_parsed, row[labels:])) for row in rows}
+    return Table(", ".join(filter(None, headings[:labels])), tuple(map(Column, headings[labels:])), named)
+
+
+def _parsed(text: str) -> Cell:
+    try:
+        return None if text == "-" else float(text)
+    except ValueError:
+        return text
 
 
 class Difference(NamedTuple):

@@ -3,8 +3,8 @@ meaning, or writes them to a file that the other commands take as --parameters (
 can set limits: with its T_take_max and T_add_max the control never takes or adds more, whatever the car would need.
 
 With --search the parameters of the law are searched instead, for this or another controller, by a cost over all
-manoeuvres (docs/tuning.md). The folder gets all candidates, what made them, the gains of the one that is chosen and the
-front between comfort and response. A search that was stopped goes on there with the same command, and another
+manoeuvres (docs/calibration.md). The folder gets all candidates, what made them, the gains of the one that is chosen,
+and the front between comfort and response. A search that was stopped goes on there with the same command, and another
 --character chooses from the same candidates.
 
 examples:

@@ -1,4 +1,4 @@
-"""Draws cars with their sensors from the box of parameters (docs/robustness.md), of which no controller is told, and
+"""Draws cars with their sensors from the box of parameters (docs/results.md), of which no controller is told, and
 drives each through a tip-in, a tip-out and a launch with every controller, with the same noise. A table for each plant
 tells which share of the runs is bounded and quiet, which is good, and what half and 95 % of the runs do not exceed.
 

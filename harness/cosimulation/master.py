@@ -1,7 +1,7 @@
 """The master: runs wired FMUs in step, k * step_size being the time, and records every output.
 
 What is done in which order, and when an output reaches an input, is the scheme: see schedule.py and
-docs/coupling.md.
+docs/loop.md.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -14,7 +14,7 @@ from .limits import USUAL_LIMITS, Limits
 
 
 class Scheme(Enum):
-    """When an output reaches the inputs it feeds; docs/coupling.md shows what each makes of the loop.
+    """When an output reaches the inputs it feeds; docs/loop.md shows what each makes of the loop.
 
     `Scheme("jacobi")` is the scheme of that name.
 

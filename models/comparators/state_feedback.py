@@ -13,6 +13,6 @@ NO_LANDING = dict.fromkeys(("T_gap", "landing_share", "landing_brake", "demand_l
 }
 
 GAINS = {"k_d": 2.92, "k_T": 0.0157, "omega_w": 3.83, "T_pred": 0.00114}
-"""Found by `driveline design --search`, see docs/tuning.md."""
+"""Found by `driveline design --search`, see docs/calibration.md."""
 
 LAW = fixed(damping_law, GAINS, phi_B=0.0, k_gap=1.0, **NO_LANDING)

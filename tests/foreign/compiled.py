@@ -29,7 +29,7 @@ def foreign_fmu(
     nothing = dict.fromkeys(
         re.findall(r"\bIN_\w+", "".join(path.read_text() for path in source.parent.glob("*.c"))), ""
     )
-    macros = [f"-D{macro}={code}" for macro, code in (nothing | does).items()]
+    macros = [f"-D{macro}={code}" for macro, code in {**nothing, **does}.items()]
     subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, source, "-o", library, *libraries], check=True)
     with ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", description)

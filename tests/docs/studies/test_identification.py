@@ -17,7 +17,7 @@ from docs.studies.identification import (
     accuracy_tables,
 )
 from docs.studies.identification_accuracy import TRAPS, Found, Judged, Method, Redesigned
-from docs.studies.study import Table
+from docs.studies.study import Cell, Table
 from driveline.harness.identification.drive_train import Parameters
 from driveline.harness.loop.places import PLANTS
 
@@ -36,13 +36,17 @@ def with_values(**values: float) -> Found:
 
 
 def row(table: Table, name: str) -> list[str]:
-    return [name, *map(str, table.rows[name])]
+    return [name, *map(_shown, table.rows[name])]
+
+
+def _shown(cell: Cell) -> str:
+    return "-" if cell is None else f"{cell:g}" if isinstance(cell, float) else str(cell)
 
 
 def test_accuracy_tells_rms_worst_and_the_share_within_the_interval() -> None:
     # two standard deviations off is outside of the 95 % interval, 1.9 is inside
     found = [RIGHT, with_values(J_2=0.3 * 1.002), with_values(J_2=0.3 * (1.0 - 0.0019)), RIGHT]
-    assert row(_accuracy(found, found), "J_2")[2:4] == ["0.138", "0.200"]
+    assert row(_accuracy(found, found), "J_2")[2:4] == ["0.138", "0.2"]
     assert row(_accuracy(found, found), "J_2")[5] == "75"
     assert row(_accuracy(found, found), "C")[5] == "100"
 
@@ -88,11 +92,11 @@ def test_loops_that_are_not_ours_are_told_by_tyre_and_together() -> None:
 
     every = [[drive(k, loop) for k in range(3)] for loop in LOOPS.values()]
     every[0][1] = drive(1, next(iter(LOOPS.values())), off=0.02)
-    lines = [[*name.rsplit(", ", 1), *map(str, cells)] for name, cells in _foreign(every).rows.items()]
+    lines = [[*name.rsplit(", ", 1), *map(_shown, cells)] for name, cells in _foreign(every).rows.items()]
     first, spring, damper = next(iter(LOOPS)), lines[-2], lines[-1]
     assert lines[0] == [first, "spring", *["0.00 / 0.00"] * 3, "0.98", "100", "0.0 / 0.0", "0.00 / 0.00"]
     assert lines[1][:3] == [first, "damper", "2.00 / 2.00"]
-    assert lines[1][5:] == ["1.00", "67", "0.0 / 0.0", "0.00 / 0.10"]
+    assert lines[1][5:] == ["1", "67", "0.0 / 0.0", "0.00 / 0.10"]
     assert spring[:3] == ["all", "spring", "0.00 / 0.00"]
     rms = 2.0 / len(LOOPS) ** 0.5
     assert damper == ["all", "damper", f"{rms:.2f} / 2.00", *["0.00 / 0.00"] * 2, "0.98", "96", "-", "0.00 / 0.10"]
@@ -118,8 +122,8 @@ def test_the_vehicle_is_told_with_and_without_load() -> None:
     one = Judged(with_values(d=0.3), (95.0, 78.0), (98.0, 94.0), (0.2, 0.7), 8.0)
     alone = replace(one, response=(float("nan"), 1.1), simulated=(93.0, 50.0))
     table = _vehicle([one, one], [alone, alone])
-    assert row(table, "simulated 0.5 s: omega_1 - omega_2")[2:] == ["78.0", "50.0"]
-    assert row(table, "response 2 to 12 Hz with the true load, dB rms")[2:] == ["0.20", "-"]
+    assert row(table, "simulated 0.5 s: omega_1 - omega_2")[2:] == ["78", "50"]
+    assert row(table, "response 2 to 12 Hz with the true load, dB rms")[2:] == ["0.2", "-"]
 
 
 def test_both_methods_are_told_with_their_scatter() -> None:
@@ -127,15 +131,15 @@ def test_both_methods_are_told_with_their_scatter() -> None:
     pair = (Method(near, 99.0, 2.0), Method(far, 90.0, 20.0))
     other = (Method(near._replace(C=119.4), 98.0, 4.0), Method(far, 90.0, 20.0))
     table = _methods({PLANTS[0]: [pair, other]})
-    cells = [[*name.split(", "), *map(str, of)] for name, of in table.rows.items()]
+    cells = [[*name.split(", "), *map(_shown, of)] for name, of in table.rows.items()]
     assert cells[0] == [
         PLANTS[0],
         "prediction error",
         "0.3 +- 0 %",
         "118.4 +- 1.2 %",
         "0.157 +- 0 %",
-        "0.200",
+        "0.2",
         "98.5",
-        "3.0",
+        "3",
     ]
-    assert cells[1][1:] == ["output error", "0.1 +- 0 %", "100 +- 0 %", "0.1 +- 0 %", "0.100", "90.0", "20.0"]
+    assert cells[1][1:] == ["output error", "0.1 +- 0 %", "100 +- 0 %", "0.1 +- 0 %", "0.1", "90", "20"]

@@ -1,4 +1,4 @@
-"""docs/derivation.md has every parameter, says the values that the code has, and its equations survive Markdown."""
+"""docs/control.md says the values that the code has, and its equations survive Markdown."""
 
 import re
 from math import atan, degrees, pi, sqrt
@@ -9,7 +9,7 @@ from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, 
 from driveline.models.controller import T_S, damping_law, torque_estimator
 from tests import ROOT
 
-PAGE = (ROOT / "docs" / "derivation.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "control.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^\$\$\n(.*?)\n\$\$$", PAGE, re.DOTALL | re.MULTILINE)
 INLINE = re.findall(r"\$([^$\n]+)\$", re.sub(r"^\$\$\n.*?\n\$\$$", "", PAGE, flags=re.DOTALL | re.MULTILINE))
 
@@ -19,14 +19,10 @@ TRAIN = drive_train(PLANT, MOTOR, CAN)
 CROSSOVER = LAW.k_d / LAW.J_1
 
 
-def test_every_parameter_of_observer_and_law_is_in_the_table() -> None:
-    table = PAGE.partition("## The parameters")[2]
-    rows = re.findall(r"^\| (`.*?) \|", table, re.MULTILINE)
-    assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == DECLARED.keys()
-
-
 def test_values_are_those_of_the_default_car() -> None:
-    documented = re.findall(r"\(`(\w+)`, ([\d.]+)( ms)?|`(\w+)` \(([\d.]+)\)", PAGE)
+    documented = re.findall(
+        r"\(`(\w+)`, ([\d.]+)( ms)?|`(\w+)` \(([\d.]+)\)", PAGE.partition("## Signals that fail")[0]
+    )
     values = {
         name or other: float(value or plain) * (1e-3 if ms else 1.0) for name, value, ms, other, plain in documented
     }

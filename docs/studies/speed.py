@@ -1,0 +1,156 @@
+"""What a step, a run and a command take, beside plain C and other hosts.
+
+    python -m docs.studies speed --turns 1 --duration 1    # a look at it
+
+The contenders take turns, each in a process of its own. What is not installed is left out and named. Numbers to keep
+are measured on a quiet machine. Times are no sentinels: nothing is timed in a test.
+"""
+
+import argparse
+import resource
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from multiprocessing import get_context
+from shutil import which
+from time import process_time
+from typing import Any
+
+from benchmarks import hosts, instructions, many_runs, start_up
+from benchmarks.hosts import CONTENDERS, MICRO, START, STEADY, STEP_SIZE
+from benchmarks.timed import Timed
+from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
+from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.loading import loaded
+from driveline.harness.cosimulation.steps import interpreted
+from driveline.harness.loop.places import NATIVE, PLANTS
+from driveline.harness.loop.settings import loop
+from driveline.harness.manoeuvres.signals import lines
+from driveline.harness.simulation.simulate import signals, simulate
+
+from .study import Cell, Column, Measured, Study, Table, cell
+from .terminal import show
+
+PLAIN = "plain C loop"
+SPEEDS = (4.0, 10.0, 20.0, 30.0, 40.0)
+"""In m/s."""
+
+LENGTHS = (6.0, 60.0, 600.0)
+"""Of runs in s."""
+
+CARS = (1, 10, 100)
+
+CRUISING = replace(STEADY, v_0=10.0, T_driver=lines((0.0, 10.0)))
+"""Of any length, without getting fast."""
+
+Cost = tuple[float, ...]
+
+
+def alone(function: Callable[..., Any], *given: Any) -> Any:
+    """What a function returns in a process of its own."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(function, *given).result()
+
+
+def in_turns(
+    turns: int, function: Callable[..., Cost], cases: Iterable[tuple[Any, ...]]
+) -> dict[tuple[Any, ...], Cost]:
+    """The least cost of each case."""
+    least: dict[tuple[Any, ...], Cost] = {}
+    for case in [*cases] * turns:
+        cost = alone(function, *case)
+        least[case] = min(cost, least.get(case, cost))
+    return least
+
+
+def at_speed(plant: str, v: float, duration: float) -> Cost:
+    """Microseconds a step of the loop in our master from a speed in m/s on."""
+    timed = Timed(CompiledSteps if LIBRARY else interpreted)
+    with loaded(loop(plant, build=NATIVE), make_steps=timed) as running:
+        running.run(Experiment(duration, STEP_SIZE, signals(STEADY), START | {"plant.v_0": v}, label="benchmark"))
+    return (timed.seconds / round(duration / STEP_SIZE) * MICRO,)
+
+
+def of_length(plant: str, duration: float) -> Cost:
+    """Microseconds a step of a run from its start to its end, and the largest memory of the process in MB."""
+    began = process_time()
+    results = simulate(replace(CRUISING, duration=duration), plant, build=NATIVE)
+    took = process_time() - began
+    return took / (len(results) - 1) * MICRO, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+
+
+def hosts_table(best: Mapping[str, Mapping[hosts.Contender, hosts.Run]]) -> Table:
+    """A step in each host, over that of the plain C loop."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for plant, runs in best.items():
+        limit = next((run.cost for contender, run in runs.items() if contender.name == PLAIN), float("nan"))
+        for contender, (cost, _) in sorted(runs.items(), key=lambda item: item[1].cost):
+            numbers = cost, STEP_SIZE * MICRO / cost, cell(cost / limit)
+            rows[f"{plant}, {contender.name}, {contender.build}"] = numbers
+    missing = [contender.name for contender in CONTENDERS if not contender.present]
+    columns = (Column("a step", "µs", 2), Column("times real time", decimals=0), Column("over plain C", decimals=2))
+    return Table("plant, host, FMUs", columns, rows, f"Not installed: {', '.join(missing)}." if missing else "")
+
+
+def instructions_table() -> Table:
+    """Of a step; they do not depend on what else the machine does."""
+    counts = {plant: instructions.steps_of(plant) for plant in PLANTS}
+    parts = tuple(Column(part, decimals=0) for part in next(iter(counts.values())))
+    return Table("plant", parts, {plant: tuple(found.values()) for plant, found in counts.items()})
+
+
+def growth(least: Mapping[tuple[Any, ...], Cost], case: str, columns: Sequence[Column]) -> Table:
+    """A row for each case, with its costs, and what the first of them is over that of the plant's first case."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    first: dict[str, float] = {}
+    for (plant, value, *_), costs in least.items():
+        rows[f"{plant}, {value:g}"] = (*costs, costs[0] / first.setdefault(plant, costs[0]))
+    return Table(f"plant, {case}", (*columns, Column("ratio", decimals=2)), rows)
+
+
+def of_cars(plant: str, runs: int) -> Cost:
+    """Milliseconds a run, of so many on all cores."""
+    return (many_runs.many(plant, runs)[0] / runs * 1e3,)
+
+
+def commands_table(least: Mapping[str, float]) -> Table:
+    base = least["python, import numpy, scipy"]
+    rows = {name: (1e3 * seconds, seconds / base) for name, seconds in least.items()}
+    return Table("command", (Column("time", "ms", 0), Column("ratio", decimals=2)), rows)
+
+
+def measured(turns: int, duration: float) -> Measured:
+    """All tables.
+
+    Args:
+        turns: of each contender.
+        duration: of its runs in s, where their length is not what is measured.
+    """
+    hosts.find_libraries()
+    best = {plant: hosts.measure(plant, round(duration / STEP_SIZE), turns) for plant in PLANTS}
+    speeds = in_turns(turns, at_speed, [(plant, v, duration) for plant in PLANTS for v in SPEEDS])
+    lengths = in_turns(turns, of_length, [(plant, each) for plant in PLANTS for each in LENGTHS])
+    cars = {(plant, n): of_cars(plant, n) for plant in PLANTS for n in CARS} if LIBRARY else {}
+    step = Column("a step", "µs", 2)
+    tables = {
+        "steps": hosts_table(best),
+        "speeds": growth(speeds, "m/s", (step,)),
+        "lengths": growth(lengths, "s", (step, Column("memory", "MB", 0))),
+        "cars": growth(cars, "cars", (Column("a car", "ms", 1),)),
+        "commands": commands_table(start_up.measure(turns)),
+    }
+    return Measured(tables | ({"instructions": instructions_table()} if which("valgrind") else {}))
+
+
+def explore(arguments: Sequence[str]) -> None:
+    parser = argparse.ArgumentParser(
+        prog="python -m docs.studies speed", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--turns", type=int, default=7, help="of each contender (default: %(default)s)")
+    parser.add_argument("--duration", type=float, default=5.0, help="of a run in s (default: %(default)s)")
+    args = parser.parse_args(arguments)
+    for name, table in measured(args.turns, args.duration).tables.items():
+        show(name, table)
+
+
+STUDY = Study("what a step, a run and a command take", lambda: measured(7, 5.0), explore=explore, seconds=200)
