@@ -40,7 +40,7 @@ LOOPS = (
     Column("rms of T_ref", "N.m", tolerance=0.5),
 )
 PARTS = (Column("instructions", "", 0), Column("flash", "B", 0))
-COSTS = (Column("is"),)
+COSTS = (Column("is", "", 0),)
 
 
 def cases_table(found: Iterable[Comparison]) -> Table:
