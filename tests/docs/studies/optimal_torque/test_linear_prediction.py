@@ -39,6 +39,7 @@ def test_a_run_is_driven_by_the_torque_that_is_given(tipin: Task, native: Path) 
     assert evaluate(results, tipin.manoeuvre).withheld_time == pytest.approx(tipin.reached.withheld_time, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_linear_car_moves_as_the_design_model_and_its_norms_are_the_metrics(tipin: Task, native: Path) -> None:
     """Linear along the run itself nothing is left out but what changes between two samples."""
     u = at_samples(tipin.results)["controller.T_ref"][tipin.first :][: len(tipin.lower)]
