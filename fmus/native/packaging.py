@@ -32,27 +32,12 @@ DESCRIPTIONS = {2: model_description, 3: model_description_3}
 """What writes the model description of each FMI."""
 
 FOR_ALL = (
-    "calls.c",
-    "content.c",
-    "first_instance.c",
-    "messages.c",
-    "run.c",
-    "state.c",
-    "values.c",
-    "instance.h",
-    "operators.h",
-    "variable.h",
+    *("calls.c", "content.c", "first_instance.c", "messages.c", "run.c", "state.c", "values.c", "instance.h"),
+    *("operators.h", "variable.h"),
 )
 FOR_CONTINUOUS = (
-    "continuous.c",
-    "explicit.c",
-    "implicit.c",
-    "integrator.c",
-    "explicit.h",
-    "implicit.h",
-    "integrator.h",
-    "model_exchange.c",
-    "model_exchange.h",
+    *("continuous.c", "explicit.c", "implicit.c", "integrator.c", "explicit.h", "implicit.h", "integrator.h"),
+    *("model_exchange.c", "model_exchange.h"),
 )
 FOR_SAMPLED = ("sampled.c",)
 FOR_TERMINAL = ("fmi3_terminal.c", "frames.c", "terminal.c", "terminal.h")
