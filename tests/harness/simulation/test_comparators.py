@@ -1,7 +1,6 @@
 """The controllers that ours is compared with are FMUs like any other, and stand in the loop by their names."""
 
 import logging
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,7 +23,6 @@ from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.block.declaration import variables
 from driveline.models.controller import supervision
-from tests import ROOT
 from tests.back_to_back import compare_block, random_inputs
 from tests.slow import slow
 
@@ -115,21 +113,3 @@ def test_a_file_of_parameters_sets_theirs(tmp_path: Path) -> None:
     path = tmp_path / "washout.toml"
     path.write_text("k_v = 3.0\nomega_v = 40\nomega_delta = 2.0\nk_delta = 1.5\n")
     assert read_parameters(path) == {"k_v": 3.0, "omega_v": 40.0, "omega_delta": 2.0, "k_delta": 1.5}
-
-
-def test_the_page_shows_each_with_its_parameters() -> None:
-    page = (ROOT / "docs" / "control.md").read_text(encoding="utf-8")
-    table = page.partition("| controller | T_damp |")[2].partition("\n\n")[0]
-    documented = dict(re.findall(r"^\| `(\w+)` \| .* \| (.*) \|$", table, re.MULTILINE))
-    assert list(documented) == list(COMPARATORS)
-    for name, cell in documented.items():
-        declared = {v.name: v.start for v in variables(EVERY[name].block.Parameters)}
-        given = {k: float(v) for k, v in re.findall(r"`(\w+)` ([\d.]+)", cell)}
-        assert given == {parameter: declared[parameter] for parameter in given}
-        of_all = {v.name for v in variables(supervision.Parameters)} | {"J_1", "J_2", "C", "phi_B", "T_age"}
-        families = re.findall(r"`(L\w*_)\.\.\.`", cell)
-        left = {n for n in declared.keys() - of_all - given.keys() if not n.startswith(tuple(families))}
-        if "as ours" in cell:
-            assert {n: declared[n] for n in left} == {n: OURS[n] for n in left}
-        else:
-            assert not left

@@ -2,7 +2,6 @@
 the gain times what it is multiplied with."""
 
 import math
-import re
 import runpy
 from collections.abc import Callable
 from pathlib import Path
@@ -103,13 +102,6 @@ def test_at_both_ends_of_every_range_the_state_stays_finite_in_a_swing(variable:
         base, estimate, *others = x.estimator
         assert all(map(math.isfinite, (base, *estimate, *others, *x.law, x.T_ref)))
         assert abs(x.T_ref) <= p.T_max
-
-
-def test_the_page_says_why_for_each_that_is_fixed() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "control.md").read_text(encoding="utf-8")
-    table = page.partition("| fixed | why |")[2].partition("\n\n")[0]
-    listed = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in table.splitlines() if row.startswith("| `")))
-    assert sorted(listed) == sorted(v.name for v in interface(BLOCK) if v.variability == "fixed")
 
 
 def test_the_example_turns_the_gain_once_and_twice(native: Path) -> None:
