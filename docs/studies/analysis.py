@@ -202,5 +202,5 @@ STUDY = Study(
         "estimates": [f"{PLANT}, tipin15"],
         "sensitivities": [f"{SENSITIVE}, {PLANT}, tipin15"],
     },
-    seconds=90,
+    seconds=60,
 )

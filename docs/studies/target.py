@@ -120,5 +120,5 @@ STUDY = Study(
     measure,
     again,
     {"cases": [SENTINEL], "costs": ["flash, B"]},
-    seconds=120,
+    seconds=60,
 )
