@@ -25,7 +25,7 @@ from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
 from ..base.plain_text import plain
 from ..cosimulation.runs import KeptLoops, kept_by
-from .together import Together
+from .side_by_side import BatchedRuns
 from .workers import answered_by, collect_warnings
 
 Lost = KilledWorker
@@ -40,7 +40,7 @@ MOST_UNDER_WAY = 64
 
 @contextmanager
 def on_cluster(
-    function: Callable[[Any], Any] | Together, address: str
+    function: Callable[[Any], Any] | BatchedRuns, address: str
 ) -> Iterator[tuple[Callable[[Sequence[Any]], "Future[Any]"], int]]:
     """What submits a batch of cases and gives the future of what `answered_by` gives for them, and how many batches
     should be under way.
@@ -115,7 +115,7 @@ class Runner(WorkerPlugin):
         expected: the version of the package.
     """
 
-    def __init__(self, function: Callable[[Any], Any] | Together, expected: str) -> None:
+    def __init__(self, function: Callable[[Any], Any] | BatchedRuns, expected: str) -> None:
         self._sent = dumps(function)
         self._expected = expected
 

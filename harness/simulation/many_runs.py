@@ -27,7 +27,7 @@ from ..base.optional_packages import required
 from ..base.plain_text import words
 from ..base.progress import progress
 from ..cosimulation.runs import kept_loaded
-from .together import MANY, Together, outcomes
+from .side_by_side import MANY, BatchedRuns, outcomes
 
 if TYPE_CHECKING:
     from .workers import Submitted
@@ -110,7 +110,7 @@ def _goes_in_lanes(cases: int) -> bool:
 def _many(
     function: Callable[[Case], Answer], count: int, scheduler: str | None, batch: int, in_lanes: bool
 ) -> AbstractContextManager[Callable[[Iterable[Case]], Iterator[Answer]]]:
-    work = Together(function) if in_lanes else function
+    work = BatchedRuns(function) if in_lanes else function
     if scheduler is not None:
         return _on_cluster(work, scheduler, batch)
     return _here(work, batch if in_lanes else 1) if count == 1 else _in_workers(work, count, batch)
@@ -135,7 +135,7 @@ def _cores() -> int:
 
 @contextmanager
 def _here(
-    function: Callable[[Case], Answer] | Together, batch: int
+    function: Callable[[Case], Answer] | BatchedRuns, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     def answered(cases: Iterable[Case]) -> Iterator[Answer]:
         for part in batched(cases, batch):
@@ -152,7 +152,7 @@ def _here(
 
 @contextmanager
 def _in_workers(
-    function: Callable[[Case], Answer] | Together, count: int, batch: int
+    function: Callable[[Case], Answer] | BatchedRuns, count: int, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     from .workers import Lost, Workers, in_order
 
@@ -173,7 +173,7 @@ def _in_workers(
 
 @contextmanager
 def _on_cluster(
-    function: Callable[[Case], Answer] | Together, scheduler: str, batch: int
+    function: Callable[[Case], Answer] | BatchedRuns, scheduler: str, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     required("distributed", "a Dask cluster", "cluster")
     from .cluster import Lost, on_cluster

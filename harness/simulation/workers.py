@@ -30,7 +30,7 @@ from ..base.plain_text import words
 from ..base.progress import hidden
 from ..cosimulation.row_file import keep_freed
 from ..cosimulation.runs import kept_loaded
-from .together import Together, outcomes
+from .side_by_side import BatchedRuns, outcomes
 
 Lost = BrokenProcessPool
 """Is raised where the process of a case was lost."""
@@ -45,7 +45,7 @@ class Workers:
         folder: for what they unpack and note, and for all their temporary files; who gives it removes it.
     """
 
-    def __init__(self, function: Callable[[Any], Any] | Together, count: int, folder: Path) -> None:
+    def __init__(self, function: Callable[[Any], Any] | BatchedRuns, count: int, folder: Path) -> None:
         self._count = count
         self._folder = folder
         self._given = folder, function, os.getpid()
@@ -152,11 +152,11 @@ def _is_lost(future: "Future[Any]") -> bool:
     return isinstance(future.exception(), Lost)
 
 
-_function: Callable[[Any], Any] | Together
+_function: Callable[[Any], Any] | BatchedRuns
 _collected = CollectedWarnings()
 
 
-def _begin(folder: Path, function: Callable[[Any], Any] | Together, waiting: int) -> None:
+def _begin(folder: Path, function: Callable[[Any], Any] | BatchedRuns, waiting: int) -> None:
     """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
     global _function
     _function = function
@@ -182,7 +182,7 @@ def _answer(batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
     return answered_by(_function, batch)
 
 
-def answered_by(function: Callable[[Any], Any] | Together, batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
+def answered_by(function: Callable[[Any], Any] | BatchedRuns, batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
     """In a worker: the answers as pickle has them and what was warned of, up to a case that raises an error, or whose
     answer cannot be pickled, which is raised if it is the first; what cannot be sent to the process that waits is told
     in words. Where cases are answered side by side, the first answer has the warnings of all."""

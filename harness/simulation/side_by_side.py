@@ -35,15 +35,15 @@ class Outcome(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Together:
-    """A function whose cases are answered side by side."""
+class BatchedRuns:
+    """A function whose cases are answered side by side, their runs in batches."""
 
     function: Callable[[Any], Any]
 
 
-def outcomes(function: Callable[[Any], Any] | Together, cases: Sequence[Any]) -> Iterator[Outcome]:
+def outcomes(function: Callable[[Any], Any] | BatchedRuns, cases: Sequence[Any]) -> Iterator[Outcome]:
     """Those of cases, in their order; systems are kept loaded where this thread keeps them."""
-    if not isinstance(function, Together):
+    if not isinstance(function, BatchedRuns):
         yield from (_outcome(function, case) for case in cases)
         return
     loops = kept_here()
@@ -63,7 +63,7 @@ class _Stopped(BaseException):
     """Nobody waits for the answer any more."""
 
 
-class _Asked(NamedTuple):
+class _RunRequest(NamedTuple):
     """A run."""
 
     system: System
@@ -79,13 +79,13 @@ class _Turn(KeptLoops):
     """A case whose function is at work in a thread of its own, while another one waits for it to ask for a run.
 
     Attributes:
-        asked: the run that it waits for; None: it has ended.
+        request: the run that it waits for; None: it has ended.
         outcome: once it has ended.
     """
 
     def __init__(self, function: Callable[[Any], Any], case: Any) -> None:
         super().__init__(None)
-        self.asked: _Asked | None = None
+        self.request: _RunRequest | None = None
         self.outcome = Outcome(None, _Stopped())
         self._reply: Any = None
         self._mine, self._yours = Semaphore(0), Semaphore(0)
@@ -105,11 +105,11 @@ class _Turn(KeptLoops):
 
     def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Any:
         """What asks for runs of a system."""
-        return _Asking(self, system)
+        return _RequestedLoop(self, system)
 
-    def ask(self, asked: _Asked) -> Results:
+    def results_of(self, request: _RunRequest) -> Results:
         """In its thread: gets the results of a run."""
-        self.asked = asked
+        self.request = request
         self._yours.release()
         self._mine.acquire()
         if isinstance(self._reply, BaseException):
@@ -123,11 +123,11 @@ class _Turn(KeptLoops):
                 with kept_by(self):
                     self.outcome = _outcome(function, case)
         finally:
-            self.asked = None
+            self.request = None
             self._yours.release()
 
 
-class _Asking(NamedTuple):
+class _RequestedLoop(NamedTuple):
     """A loop for the function of a case."""
 
     turn: _Turn
@@ -135,7 +135,7 @@ class _Asking(NamedTuple):
 
     def run(self, experiment: Experiment) -> Results:
         """As `Loop.run`."""
-        return self.turn.ask(_Asked(self.system, experiment))
+        return self.turn.results_of(_RunRequest(self.system, experiment))
 
 
 def _answered(function: Callable[[Any], Any], cases: Sequence[Any], loops: KeptLoops) -> list[Outcome]:
@@ -143,9 +143,9 @@ def _answered(function: Callable[[Any], Any], cases: Sequence[Any], loops: KeptL
     try:
         for turn in turns:
             turn.go_on()
-        while asked := [(turn, turn.asked, turn.asked.key()) for turn in turns if turn.asked]:
-            ((most, _),) = Counter(key for _, _, key in asked).most_common(1)
-            alike = [(turn, run) for turn, run, key in asked if key == most][: lanes_here() or None]
+        while requests := [(turn, turn.request, turn.request.key()) for turn in turns if turn.request]:
+            ((most, _),) = Counter(key for _, _, key in requests).most_common(1)
+            alike = [(turn, run) for turn, run, key in requests if key == most][: lanes_here() or None]
             for (turn, _), reply in zip(alike, _made([run for _, run in alike], loops), strict=True):
                 turn.go_on(reply)
     finally:
@@ -154,17 +154,17 @@ def _answered(function: Callable[[Any], Any], cases: Sequence[Any], loops: KeptL
     return [turn.outcome for turn in turns]
 
 
-def _made(asked: Sequence[_Asked], loops: KeptLoops) -> list[Results | BaseException]:
+def _made(requests: Sequence[_RunRequest], loops: KeptLoops) -> list[Results | BaseException]:
     """The results of runs of one system, or the errors."""
-    found: list[Results | BaseException | None] = [None] * len(asked)
-    lanes = _in_lanes(asked[0], loops)
+    found: list[Results | BaseException | None] = [None] * len(requests)
+    lanes = _in_lanes(requests[0], loops)
     if lanes is not None:
-        found = list[Results | BaseException | None](lanes([run.experiment for run in asked]))
-    return [_alone(run, loops) if each is None else each for run, each in zip(asked, found, strict=True)]
+        found = list[Results | BaseException | None](lanes([run.experiment for run in requests]))
+    return [_alone(run, loops) if each is None else each for run, each in zip(requests, found, strict=True)]
 
 
-def _alone(asked: _Asked, loops: KeptLoops) -> Results | BaseException:
-    system, experiment = asked
+def _alone(request: _RunRequest, loops: KeptLoops) -> Results | BaseException:
+    system, experiment = request
     try:
         return loops.loop(system, experiment.inputs, experiment.parameters).run(experiment)
     except Exception as error:
@@ -175,9 +175,9 @@ _lane_loops: WeakKeyDictionary[Loop, LaneLoop | None] = WeakKeyDictionary()
 """Those of loops that are loaded; None: they have none."""
 
 
-def _in_lanes(asked: _Asked, loops: KeptLoops) -> Callable[[list[Experiment]], list[Any]] | None:
+def _in_lanes(request: _RunRequest, loops: KeptLoops) -> Callable[[list[Experiment]], list[Any]] | None:
     """What makes runs of a system in lanes; None if that is not possible."""
-    system, experiment = asked
+    system, experiment = request
     try:
         loop = loops.loop(system, experiment.inputs, experiment.parameters)
     except Exception:

@@ -11,7 +11,7 @@ from driveline.fmus.lanes_here import lanes_here
 from driveline.harness.base.errors import SimulationError, WiringError
 from driveline.harness.loop.lane_libraries import _library
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation import many_runs, together
+from driveline.harness.simulation import many_runs, side_by_side
 from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 
@@ -31,13 +31,13 @@ def lanes(monkeypatch, tmp_path):
 def in_lanes(monkeypatch):
     """How many runs were made at a time."""
     counts: list[int] = []
-    run = together.LaneLoop.run
+    run = side_by_side.LaneLoop.run
 
     def counted(self, loop, experiments):
         counts.append(len(experiments))
         return run(self, loop, experiments)
 
-    monkeypatch.setattr(together.LaneLoop, "run", counted)
+    monkeypatch.setattr(side_by_side.LaneLoop, "run", counted)
     return counts
 
 
