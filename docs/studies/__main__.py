@@ -15,6 +15,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from unittest.mock import patch
 
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.base.interruption import script
@@ -105,13 +106,14 @@ def check(names: Sequence[str]) -> int:
 
 
 def sentinel_differences(name: str) -> list[Difference]:
-    """What has moved in the sentinels of a study.
+    """What has moved in the sentinels of a study; measured by this process alone, as workers take longer to start.
 
     Raises:
         LookupError: a sentinel is not in its table.
     """
     one = study(name)
-    now = one.again() if one.again else {}
+    with patch.dict(os.environ, LOKY_MAX_CPU_COUNT="1"):
+        now = one.again() if one.again else {}
     for table, rows in one.sentinels.items():
         if lacking := set(rows) - now[table].rows.keys():
             raise LookupError(f"{name}, {table}: no row {', '.join(sorted(lacking))}")

@@ -5,6 +5,7 @@ Each is there from the first sample to the last of a manoeuvre of 6 s. The table
 """
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,9 @@ SLOW = {
 }
 """Launches that give the wrong sign more time before the motor turns against a demand."""
 
+BRIEF = {"tipin15, 2 s of it": replace(MANOEUVRES["tipin15"], duration=2.0)}
+"""For the sentinel."""
+
 CASES = (
     *(("launch", fault) for fault in FAULTS),
     *((slow, "wrong sign") for slow in SLOW),
@@ -44,6 +48,7 @@ CASES = (
     ("tipin15", "late"),
     ("prbs", "late"),
     ("throttle", "late"),
+    *((brief, "late") for brief in BRIEF),
 )
 
 
@@ -64,7 +69,7 @@ def received(fault: str) -> Callable[[float, Any], Any]:
 
 def swing(plant: str, manoeuvre: str, fault: str | None) -> tuple[float, float]:
     """Rms of the gear torque in N.m, and the share in fallback; without control if there is no fault."""
-    course = (MANOEUVRES | SLOW)[manoeuvre]
+    course = (MANOEUVRES | SLOW | BRIEF)[manoeuvre]
 
     def signals(k: int) -> tuple[float, float, float]:
         t = k * monolithic.INTERVAL
@@ -97,6 +102,6 @@ STUDY = Study(
     "faults of the motor speed that no other signal contradicts",
     lambda: Measured({"faults": faults_table(CASES)}),
     lambda: {"faults": faults_table([SENTINEL], [PLANT])},
-    {"faults": [f"tipin15, late, {PLANT}"]},
+    {"faults": [f"{', '.join(SENTINEL)}, {PLANT}"]},
     seconds=60,
 )
