@@ -95,7 +95,7 @@ def faults_table(cases: Sequence[tuple[str, str]], plants: Collection[str] = tup
     return Table("manoeuvre, motor speed, plant", columns, rows)
 
 
-SENTINEL = ("tipin15", "late")
+SENTINEL = ("tipin15, 2 s of it", "late")
 PLANT = next(iter(monolithic.PLANTS))
 
 STUDY = Study(
