@@ -172,7 +172,7 @@ def worst(drives: Iterable[Found]) -> Found:
     return Found(*map(sum, columns[:3]), *map(max, columns[3:]))
 
 
-HOURS = 24.0
+HOURS = 3.0
 """Shared by the roads."""
 
 COLUMNS = (
