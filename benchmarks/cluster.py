@@ -49,7 +49,7 @@ def on_workers(count: int, runs: int, batch: int) -> tuple[float, float, float]:
     with (
         cast(Any, LocalCluster(**given)) as cluster,
         Client(cluster, set_as_default=False) as client,
-        many(tip_in, scheduler=str(cluster.scheduler_address), batch=batch) as answers,
+        many(tip_in, executor=cast(Any, client).get_executor(), batch=batch) as answers,
     ):
         for _ in answers(range(4 * count * batch)):  # all have loaded their loop
             pass

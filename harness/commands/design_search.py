@@ -68,6 +68,7 @@ def run_search(args: Search, folder: Path) -> int:
     from ..design.search.pareto_figure import choices_table, plot_front
     from ..design.search.search_space import space
     from ..design.search.tune import EVALUATIONS, RECORD, tune
+    from ..simulation.executors import dask_executor
     from ..views.terminal import print_table
 
     controller, evaluations, character, number = (
@@ -77,9 +78,8 @@ def run_search(args: Search, folder: Path) -> int:
     where = space(controller, car)
     evaluation = CostEvaluation(_settings(args, controller), car)
     gains = folder / "gains.toml" if args.output is None else args.output
-    visited = tune(
-        evaluation, where, evaluations, number, folder, args.replace, [args.vehicle], scheduler=args.scheduler
-    )
+    with dask_executor(args.scheduler) as executor:
+        visited = tune(evaluation, where, evaluations, number, folder, args.replace, [args.vehicle], executor=executor)
     name = args.vehicle.name if args.vehicle else "the default car"
     text = chosen(controller, where, visited, character, name, number)
     write_toml(text, gains, args.replace or args.output is None)

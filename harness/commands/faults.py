@@ -65,6 +65,7 @@ def run(args: Arguments) -> int:
 
 
 def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
+    from ..simulation.executors import dask_executor
     from ..studies.faults.fault_campaign import campaign, table
     from ..studies.faults.fault_campaign import distinguishing as of_the_cases
     from ..studies.faults.fault_cases import PLANS
@@ -73,8 +74,11 @@ def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: 
     plan = PLANS[args.campaign or "dry"]
     record, cases = args.output / "faults.json", args.output / "faults.csv"
     same |= of_the_cases(runner, args.seed, plan)
-    with campaign_job(args, record, cases, table(args.seed, runner.plants, plan), same, systems) as (made, archive):
-        outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, scheduler=args.scheduler, plan=plan)
+    with (
+        campaign_job(args, record, cases, table(args.seed, runner.plants, plan), same, systems) as (made, archive),
+        dask_executor(args.scheduler) as executor,
+    ):
+        outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, executor=executor, plan=plan)
         archive.sort(lambda case: case.number)
         made.wrote(*write(outcomes, f" {as_given(args)}", args.output))
         return _tell(made, outcomes, runner)

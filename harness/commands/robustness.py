@@ -50,12 +50,16 @@ def run(args: Arguments) -> int:
 
 
 def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
+    from ..simulation.executors import dask_executor
     from ..studies.robustness.robustness_campaign import RUNS, campaign, order
     from ..studies.robustness.robustness_report import write
 
     record, runs = args.output / "robustness.json", args.output / "runs.csv"
-    with campaign_job(args, record, runs, RUNS, same, loops) as (made, archive):
-        outcomes = campaign(runner, range(1, args.cases + 1), archive, scheduler=args.scheduler)
+    with (
+        campaign_job(args, record, runs, RUNS, same, loops) as (made, archive),
+        dask_executor(args.scheduler) as executor,
+    ):
+        outcomes = campaign(runner, range(1, args.cases + 1), archive, executor=executor)
         archive.sort(order(runner))
         made.wrote(*write(outcomes, runner, _as_given(args), caption(args), args.output))
         _tell(made, outcomes, runner)
@@ -71,7 +75,7 @@ def _one(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Map
     assert args.case is not None
     with job(args, args.output / f"draw_{args.case}.json", same | {"case": args.case}, loops) as made:
         args.say(f"draw {draw(args.case, args.seed)}")
-        outcomes = campaign(runner, [args.case], scheduler=args.scheduler)
+        outcomes = campaign(runner, [args.case])
         made.begin()
         made.wrote(*write_draw(outcomes, runner, caption(args), args.output))
         _tell(made, outcomes, runner)

@@ -11,7 +11,7 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 """
 
 from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Executor, Future
 from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
 from pathlib import Path
@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 from ...fmus.lanes_here import lanes_here
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, SimulationError
-from ..base.optional_packages import required
 from ..base.plain_text import words
 from ..base.progress import progress
 from ..cosimulation.runs import kept_loaded
@@ -44,7 +43,7 @@ def run_many(
     cases: Iterable[Case],
     workers: int | None = None,
     label: str = "simulating",
-    scheduler: str | None = None,
+    executor: Executor | None = None,
     known: MutableMapping[Case, Answer] | None = None,
     batch: int = 1,
 ) -> list[Answer]:
@@ -57,7 +56,7 @@ def run_many(
     Args:
         workers: processes that share the cases; with 1 it is this process. None: one a core.
         label: of the progress display.
-        scheduler: address of that of a Dask cluster, whose workers share the cases then.
+        executor: of `concurrent.futures`, which runs the cases then: `client.get_executor()` of a Dask client.
         known: answers by cases, which are hashable then. They are not asked for again; those that are missing are
             added, in the order of the cases, each as soon as it is there.
         batch: cases that a worker is given at a time; more where many are brief and workers are far.
@@ -71,10 +70,9 @@ def run_many(
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
     count = min(workers or _cores(), max(len(todo), 1))
     _require_batch(batch)
-    where = scheduler if todo else None
     if in_lanes := _goes_in_lanes(len(every)):
         batch = max(batch, min(MANY, -(-len(todo) // count)))
-    with _many(function, count, where, batch, in_lanes) as answered, progress(len(every), label) as done:
+    with _many(function, count, executor, batch, in_lanes) as answered, progress(len(every), label) as done:
         done(len(every) - len(todo))
         for case, answer in zip(todo, answered(todo), strict=True):
             if known is not None:
@@ -86,7 +84,7 @@ def run_many(
 
 @contextmanager
 def many(
-    function: Callable[[Case], Answer], workers: int | None = None, scheduler: str | None = None, batch: int = 1
+    function: Callable[[Case], Answer], workers: int | None = None, executor: Executor | None = None, batch: int = 1
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     """What gives the answers for cases, in their order, and can be asked again: processes and FMUs stay loaded.
 
@@ -99,7 +97,7 @@ def many(
     """
     require_workers(workers)
     _require_batch(batch)
-    with _many(function, workers or _cores(), scheduler, batch, _goes_in_lanes(batch)) as answered:
+    with _many(function, workers or _cores(), executor, batch, _goes_in_lanes(batch)) as answered:
         yield answered
 
 
@@ -108,11 +106,11 @@ def _goes_in_lanes(cases: int) -> bool:
 
 
 def _many(
-    function: Callable[[Case], Answer], count: int, scheduler: str | None, batch: int, in_lanes: bool
+    function: Callable[[Case], Answer], count: int, executor: Executor | None, batch: int, in_lanes: bool
 ) -> AbstractContextManager[Callable[[Iterable[Case]], Iterator[Answer]]]:
     work = BatchedRuns(function) if in_lanes else function
-    if scheduler is not None:
-        return _on_cluster(work, scheduler, batch)
+    if executor is not None:
+        return _on_executor(work, executor, batch)
     return _here(work, batch if in_lanes else 1) if count == 1 else _in_workers(work, count, batch)
 
 
@@ -172,20 +170,19 @@ def _in_workers(
 
 
 @contextmanager
-def _on_cluster(
-    function: Callable[[Case], Answer] | BatchedRuns, scheduler: str, batch: int
+def _on_executor(
+    function: Callable[[Case], Answer] | BatchedRuns, executor: Executor, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
-    required("distributed", "a Dask cluster", "cluster")
-    from .cluster import Lost, on_cluster
+    from .executors import MOST_UNDER_WAY, losses, submitting
     from .workers import in_order
 
-    with on_cluster(function, scheduler) as (submit, most):
+    submit = submitting(function, executor)
 
-        def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-            for each in in_order(submit, batched(cases, batch), most):
-                yield from _gathered(each, submit, Lost)
+    def answered(cases: Iterable[Case]) -> Iterator[Answer]:
+        for each in in_order(submit, batched(cases, batch), MOST_UNDER_WAY):
+            yield from _gathered(each, submit, losses())
 
-        yield answered
+    yield answered
 
 
 def batched(cases: Iterable[Case], size: int) -> Iterator[list[Case]]:
@@ -196,7 +193,9 @@ def batched(cases: Iterable[Case], size: int) -> Iterator[list[Case]]:
 
 
 def _gathered(
-    submitted: "Submitted", submit: "Callable[[Sequence[Any]], Future[Any]]", loss: type[Exception]
+    submitted: "Submitted",
+    submit: "Callable[[Sequence[Any]], Future[Any]]",
+    loss: type[Exception] | tuple[type[Exception], ...],
 ) -> Iterator[Any]:
     """The answers of a worker, whose warnings are logged here.
 
@@ -216,6 +215,8 @@ def _gathered(
             for case in batch:
                 yield from _gathered(submitted._replace(batch=[case], future=submit([case])), submit, loss)
             return
+        except CancelledError as error:
+            raise SimulationError(f"what runs the cases has gone before {_text(batch[0])}") from error
         except (Exception, SystemExit) as error:
             _raise(error, batch[0])
         for case, (answer, warnings) in zip(batch, answers, strict=False):

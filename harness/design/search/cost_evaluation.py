@@ -1,6 +1,7 @@
 """Costs of a controller: on a car, in the runs that count, against what the reference makes of them."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -85,14 +86,14 @@ class CostEvaluation:
 
     @contextmanager
     def opened(
-        self, workers: int | None = None, scheduler: str | None = None
+        self, workers: int | None = None, executor: Executor | None = None
     ) -> Iterator[Callable[[Sequence[Mapping[str, float]]], Iterator[Costs]]]:
         """What gives the costs of candidates (parameters of the controller by name), in their order, on all cores.
 
         The same candidates cost the same, whoever stands beside them and however many processes share the runs.
 
         Args:
-            workers, scheduler: see `run_many`.
+            workers, executor: see `run_many`.
         """
         expected, evaluation = self.digests(), replace(self, settings=anywhere(self.settings))
 
@@ -100,7 +101,7 @@ class CostEvaluation:
             require_same_fmus(expected)
             return evaluation.measured(trial)
 
-        with many(measured, workers, scheduler) as answers:
+        with many(measured, workers, executor) as answers:
 
             def metrics(controller: str, candidates: Sequence[Mapping[str, float]]) -> Iterator[list[Metrics]]:
                 found = answers(Trial(controller, candidate, run) for candidate in candidates for run in self.runs)

@@ -1,6 +1,7 @@
 """A search in a folder, where it is recorded and goes on if it was stopped."""
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from hashlib import sha256
 from math import isfinite
 from pathlib import Path
@@ -27,7 +28,7 @@ def tune(
     replace: bool = False,
     inputs: Sequence[Path | None] = (),
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
 ) -> list[Evaluated]:
     """All candidates of a search, of which those that the folder has already are not run again.
 
@@ -38,7 +39,7 @@ def tune(
         folder: of the search.
         replace: whether another search in the folder may be replaced.
         inputs: files that were read, for the record.
-        workers, scheduler: see `harness.simulation.many_runs.run_many`.
+        workers, executor: see `harness.simulation.many_runs.run_many`.
 
     Raises:
         DrivelineError: there is another search in the folder; or one that cannot be read.
@@ -49,7 +50,7 @@ def tune(
     run, file, record = distinguishing(evaluation, space, seed), folder / EVALUATIONS, folder / RECORD
     with (
         resumable(file, known, record, run, systems, inputs, replace=replace) as made,
-        evaluation.opened(workers, scheduler) as costs_of,
+        evaluation.opened(workers, executor) as costs_of,
         progress(evaluations, "searching") as done,
     ):
         return Search(space, costs_of, seed, made.archive, done).run(evaluations)

@@ -1,6 +1,7 @@
 """A campaign: many cases on all cores, each with its verdict."""
 
 from collections.abc import Iterable, Mapping, MutableMapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from hashlib import sha256
 from math import isfinite
@@ -82,17 +83,17 @@ def campaign(
     seed: int,
     known: MutableMapping[Case, Outcome] | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
     plan: Plan = PLANS["dry"],
 ) -> list[Outcome]:
     """What came of the cases of these numbers, in their order.
 
     Args:
         seed, plan: of the campaign.
-        known, workers, scheduler: see `harness.simulation.many_runs.run_many`.
+        known, workers, executor: see `harness.simulation.many_runs.run_many`.
     """
     cases = [case(number, seed, runner.plants, plan) for number in numbers]
-    return run_many(lambda each: outcome(runner, each), cases, workers, "faults", scheduler, known)
+    return run_many(lambda each: outcome(runner, each), cases, workers, "faults", executor, known)
 
 
 def outcome(runner: FaultRunner, each: Case) -> Outcome:

@@ -1,6 +1,7 @@
 """A campaign: the same draws with every controller, on all cores or on a cluster, resumed where it was stopped."""
 
 from collections.abc import Callable, Iterable, MutableMapping, Sequence
+from concurrent.futures import Executor
 from hashlib import sha256
 from math import nan
 from typing import Any
@@ -27,15 +28,15 @@ def campaign(
     numbers: Sequence[int],
     known: MutableMapping[Case, Outcome] | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    executor: Executor | None = None,
 ) -> list[Outcome]:
     """What came of all cases, in their order.
 
     Args:
         numbers: of the draws.
-        known, workers, scheduler: see `harness.simulation.many_runs.run_many`.
+        known, workers, executor: see `harness.simulation.many_runs.run_many`.
     """
-    return run_many(runner.outcome, cases(runner.loops, numbers), workers, "robustness", scheduler, known)
+    return run_many(runner.outcome, cases(runner.loops, numbers), workers, "robustness", executor, known)
 
 
 def order(runner: CaseRunner) -> Callable[[Case], tuple[int, int, int]]:

@@ -6,6 +6,7 @@ import signal
 import socket
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.case_archive import CaseArchive, Table
+from driveline.harness.simulation.executors import dask_executor
 from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.faults.fault_campaign import campaign
@@ -42,13 +44,13 @@ def cluster(tmp_path_factory):
 
 
 def answers(function, cases, cluster):
-    with many(function, scheduler=cluster.scheduler_address) as answered:
+    with dask_executor(cluster.scheduler_address) as executor, many(function, executor=executor) as answered:
         return list(answered(cases))
 
 
 @pytest.mark.slow
 def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
-    from driveline.harness.simulation.cluster import MOST_UNDER_WAY
+    from driveline.harness.simulation.executors import MOST_UNDER_WAY
 
     def run(case):
         with (tmp_path / f"{case}").open("a") as file:
@@ -59,7 +61,7 @@ def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
     def times(case):
         return len((tmp_path / f"{case}").read_text().split())
 
-    with many(run, scheduler=cluster.scheduler_address) as answered:
+    with dask_executor(cluster.scheduler_address) as executor, many(run, executor=executor) as answered:
         found = answered(range(300))
         first = [next(found) for _ in range(200)]
         os.kill(first[-1][1], signal.SIGKILL)
@@ -79,7 +81,8 @@ def test_a_worker_that_is_lost_leaves_an_archive_with_each_case_once(cluster, tm
 
     table = Table(["case", "answer"], lambda *row: row, lambda cells: (int(cells[0]), int(cells[1])))
     archive = CaseArchive(tmp_path / "archive.csv", table)
-    found = run_many(run, range(60), scheduler=cluster.scheduler_address, known=archive, batch=4)
+    with dask_executor(cluster.scheduler_address) as executor:
+        found = run_many(run, range(60), executor=executor, known=archive, batch=4)
     assert found == [-case for case in range(60)]
     lines = (tmp_path / "archive.csv").read_text().split()
     assert lines == ["case,answer", *(f"{case},{-case}" for case in range(60))]
@@ -98,18 +101,16 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
 
 @pytest.mark.slow
 def test_faults_and_search_on_a_cluster_are_those_here(cluster, native, native_builder, tmp_path):
-    folder, address = native.parent, cluster.scheduler_address
-    settings = Settings(folder=folder, build="native")
+    settings = Settings(folder=native.parent, build="native")
     faults = FaultRunner(native_builder(FMU, tmp_path), {"TwoMassDriveline": settings})
-    assert campaign(faults, [1, 2], 1, scheduler=address) == campaign(faults, [1, 2], 1, workers=1)
     search = CostEvaluation(settings, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
-    there, here = (
-        tune(
-            search, space("DampingController", {}), 3, 1, tmp_path / str(workers), workers=workers, scheduler=scheduler
-        )
-        for workers, scheduler in ((None, address), (1, None))
-    )
-    assert there == here
+
+    def searched(name, **where):
+        return tune(search, space("DampingController", {}), 3, 1, tmp_path / name, **where)
+
+    with dask_executor(cluster.scheduler_address) as executor:
+        assert campaign(faults, [1, 2], 1, executor=executor) == campaign(faults, [1, 2], 1, workers=1)
+        assert searched("there", executor=executor) == searched("here", workers=1)
 
 
 def test_a_notebook_has_an_event_loop_of_its_own(cluster):
@@ -125,7 +126,7 @@ def test_what_goes_wrong_on_a_worker_names_its_case(cluster):
             raise DrivelineError(f"no {case}")
         return case
 
-    with many(fails, scheduler=cluster.scheduler_address) as answered:
+    with dask_executor(cluster.scheduler_address) as executor, many(fails, executor=executor) as answered:
         found = answered(range(5))
         assert [next(found), next(found)] == [0, 1]
         with pytest.raises(DrivelineError, match="case 2: no 2"):
@@ -156,24 +157,23 @@ def test_a_case_that_ends_its_workers_is_named(cluster, monkeypatch):
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "foo://here:80", ""])
 def test_no_scheduler_is_one_line(address, monkeypatch):
-    monkeypatch.setattr("driveline.harness.simulation.cluster.TIMEOUT", 0.3)
+    monkeypatch.setattr("driveline.harness.simulation.executors.TIMEOUT", 0.3)
     with pytest.raises(DrivelineError, match=f"^no Dask scheduler answers at '{address}'(: | within 0.3 s$)"):
-        many(abs, scheduler=address).__enter__()
+        dask_executor(address).__enter__()
 
 
 def test_what_takes_the_connection_and_says_nothing_is_no_scheduler(monkeypatch):
-    monkeypatch.setattr("driveline.harness.simulation.cluster.TIMEOUT", 0.3)
+    monkeypatch.setattr("driveline.harness.simulation.executors.TIMEOUT", 0.3)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(DrivelineError, match=f"^no Dask scheduler answers at '{address}' within 0.3 s$"):
-            many(abs, scheduler=address).__enter__()
+            dask_executor(address).__enter__()
 
 
 def test_without_the_package_the_extra_is_named(monkeypatch):
-    monkeypatch.delitem(sys.modules, "driveline.harness.simulation.cluster", raising=False)
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(MissingExtra, match=r"the extra `cluster`.*driveline-damping\[cluster\]"):
-        many(abs, scheduler="tcp://127.0.0.1:1").__enter__()
+        dask_executor("tcp://127.0.0.1:1").__enter__()
 
 
 @pytest.mark.slow
@@ -187,3 +187,9 @@ def test_loops_that_are_closed_are_loaded_again(native, tmp_path):
     assert not any(Path(tmp_path).iterdir())
     assert loops.loop(system, (), ()) is not first
     loops.close()
+
+
+@pytest.mark.parametrize("kind", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_the_executors_of_the_standard_library_share_cases(kind):
+    with kind(2) as executor:
+        assert run_many(abs, range(-40, 0), executor=executor, batch=3) == list(range(40, 0, -1))
