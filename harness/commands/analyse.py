@@ -1,8 +1,8 @@
 """Analyses the loop with a controller of the project and prints its margins with the true delays: gain, phase, delay
-and M_s. The output folder gets the page analysis.md, sensitivity.csv, analysis.json (what made them) and the figures.
+and M_s. The output folder gets margins.csv, sensitivity.csv, analysis.json (all results, and what made them) and the
+figures: Bode, Nyquist, poles, the describing function of the backlash, the sensitivity of the metrics.
 
-On the page are Bode and Nyquist figures, poles, the describing function of the backlash, the error of the estimate and
-the sensitivity of the metrics. The linear model is that of the blocks themselves, with the teeth in contact.
+The linear model is that of the blocks themselves, with the teeth in contact.
 
 examples:
   driveline analyse --controller SpeedWashout --output results/washout
@@ -20,7 +20,6 @@ from .arguments import option
 from .jobs import distinguishing, job
 from .options import FmuFolder, OurController, Replacing, output, record
 from .printing import JsonPrinting
-from .settings import as_given
 
 
 @record
@@ -28,7 +27,7 @@ class Arguments(OurController, FmuFolder, Replacing, JsonPrinting):
     plant: tuple[str, ...] = option(
         (), f"the car: {' or '.join(PLANTS)} (repeatable; default: both)", choices=PLANTS, metavar="NAME"
     )
-    output: Path = output("results/analyse", "the page, the table of sensitivities and the figures")
+    output: Path = output("results/analyse", "the tables and the figures")
 
 
 def run(args: Arguments) -> int:
@@ -40,10 +39,10 @@ def run(args: Arguments) -> int:
     loops = [Settings(plant, args.controller, folder=args.fmus) for plant in dict.fromkeys(args.plant or PLANTS)]
     given = {each.plant_name: built_with(each, args.vehicle, args.parameters, {}) for each in loops}
     same = {plant: distinguishing(each) for plant, each in given.items()}
-    with job(args, args.output / "analysis.json", same, given, [args.output / "analysis.md"]) as made:
+    with job(args, args.output / "analysis.json", same, given, [args.output / "margins.csv"]) as made:
         found = analyse(given)
         made.begin()
-        made.wrote(*write(found, f" {as_given(args)}".rstrip(), args.output))
+        made.wrote(*write(found, args.output))
         made.tell(announce, found, **finite(found.record))
     return 0
 

@@ -26,7 +26,7 @@ from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controller, output, seed
 from .printing import JsonPrinting
-from .settings import as_given, caption, plants_settings
+from .settings import caption, plants_settings
 
 if TYPE_CHECKING:
     from ..cosimulation.system import System
@@ -47,7 +47,7 @@ class Arguments(Campaign, JsonPrinting):
     )
     controller: str = controller()
     seed: int = option(1, "of the faults and the sensor noise (default: %(default)s)", seed)
-    output: Path = output("results/faults", "the cases, the page and the figures")
+    output: Path = output("results/faults", "the cases and the figures")
 
 
 def run(args: Arguments) -> int:
@@ -80,7 +80,7 @@ def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: 
     ):
         outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, executor=executor, plan=plan)
         archive.sort(lambda case: case.number)
-        made.wrote(*write(outcomes, f" {as_given(args)}", args.output))
+        made.wrote(*write(outcomes, args.output))
         return _tell(made, outcomes, runner)
 
 

@@ -14,13 +14,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..loop.places import PLACES
 from ..loop.settings import Settings
 from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controllers, output, seed
 from .printing import JsonPrinting
-from .settings import all_settings, as_given, caption
+from .settings import all_settings, caption
 
 if TYPE_CHECKING:
     from ..studies.robustness.case_runs import CaseRunner
@@ -35,7 +34,7 @@ class Arguments(Campaign, JsonPrinting):
     case: int | None = case(MOST, "only the draw of this number, with figures")
     controller: tuple[str, ...] = controllers("all of these")
     seed: int = option(1, "of the cars and the sensor noise (default: %(default)s)", seed)
-    output: Path = output("results/robustness", "the runs, the page and the figures")
+    output: Path = output("results/robustness", "the runs and the figures")
 
 
 def run(args: Arguments) -> int:
@@ -61,7 +60,7 @@ def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Map
     ):
         outcomes = campaign(runner, range(1, args.cases + 1), archive, executor=executor)
         archive.sort(order(runner))
-        made.wrote(*write(outcomes, runner, _as_given(args), caption(args), args.output))
+        made.wrote(*write(outcomes, runner, caption(args), args.output))
         _tell(made, outcomes, runner)
     return 0
 
@@ -90,10 +89,3 @@ def _tell(made: Job[Any], outcomes: Sequence["Outcome"], runner: "CaseRunner") -
     for provenance, path in made.reports():
         robustness_report_html.report(outcomes, runner, provenance, path)
     made.tell(announce, outcomes, summaries=[summary.record for summary in summaries(outcomes)])
-
-
-def _as_given(args: Arguments) -> str:
-    """The options that make the runs what they are; here our controller alone is not what is usual."""
-    ours = PLACES["controller"][0]
-    alone = f" --controller {ours}" if args.controller == (ours,) else ""
-    return f"{alone} {as_given(args)}".rstrip()

@@ -7,7 +7,7 @@ from shlex import quote
 from typing import Any
 
 from ..base.known_names import require_different
-from ..loop.places import BUILD, PLACES, PLANTS
+from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from ..views.metrics_table import DAMPINGS
 from .options import OTHERS, Loop
@@ -79,14 +79,6 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
 def plants_settings(args: Any) -> dict[str, Settings]:
     """What the options say for each plant, with the one controller that they name; by the names of the plants."""
     return {plant: made for (plant, _), made in all_settings(args, args.plant, [args.controller]).items()}
-
-
-def as_given(args: Any) -> str:
-    """The options that make runs what they are, as they are given."""
-    given = vars(args)
-    plants, fmus = [("plant", plant) for plant in given["plant"]], None if args.fmus == BUILD else args.fmus
-    first = [(name, given.get(name)) for name in ("seed", "campaign")]
-    return _joined([*first, *plants, *_set(given), ("build", given.get("build")), ("fmus", fmus)])
 
 
 def caption(args: Any) -> str:

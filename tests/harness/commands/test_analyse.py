@@ -1,4 +1,4 @@
-"""`driveline analyse` says what is wrong in one line, and writes a page that stands beside its figures."""
+"""`driveline analyse` says what is wrong in one line, and writes tables and figures."""
 
 import json
 import re
@@ -11,7 +11,7 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.analyse import finite
 from driveline.harness.commands.cli import main
 from driveline.harness.metrics.estimate import EstimateMetrics
-from driveline.harness.studies.margins.analysis_report import write
+from driveline.harness.studies.margins.analysis_report import announce, write
 from driveline.harness.studies.margins.describing_function import LimitCycle, Swing
 from driveline.harness.studies.margins.loop_analysis import Analysis, Part, linear_part
 from driveline.harness.studies.margins.parameter_sweeps import SWEEPS, Swept
@@ -38,15 +38,14 @@ def found() -> Analysis:
 
 
 @pytest.mark.slow
-def test_the_page_shows_the_figures_that_are_written(found: Analysis, tmp_path: Path) -> None:
-    files = write(found, " --controller SpeedWashout", tmp_path)
+def test_tables_and_figures_are_written_and_limit_cycles_are_told(
+    found: Analysis, tmp_path: Path, capsys: Capsys
+) -> None:
+    files = write(found, tmp_path)
     assert all(file.is_file() for file in files)
-    page = (tmp_path / "analysis.md").read_text(encoding="utf-8")
-    shown = {tmp_path / name for name in re.findall(r"\]\((.*?)\)", page)}
-    assert shown == {file for file in files if file.suffix == ".png"}
-    assert "`driveline analyse --output FOLDER --controller SpeedWashout`" in page
-    assert "one that lasts, 1.50 φ_B at 2.5 Hz (N = 0.22)" in page
-    assert "{" not in page
+    assert (tmp_path / "margins.csv").read_text(encoding="utf-8").splitlines()[1].startswith(f"{PLANT},15,")
+    announce(found)
+    assert "one that lasts, 1.50 φ_B at 2.5 Hz (N = 0.22)" in " ".join(capsys.readouterr().out.split())
 
 
 def test_the_document_has_nothing_that_json_does_not_know(found: Analysis) -> None:

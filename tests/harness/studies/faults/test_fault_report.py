@@ -3,7 +3,6 @@
 import csv
 import json
 import re
-import shlex
 from dataclasses import replace
 from math import inf, isnan, nan
 
@@ -13,7 +12,6 @@ import pytest
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands import faults
 from driveline.harness.commands.cli import main
-from driveline.harness.commands.settings import as_given
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
@@ -21,7 +19,7 @@ from driveline.harness.studies.faults.fault_campaign import Outcome, campaign, t
 from driveline.harness.studies.faults.fault_cases import PLANS, Fault, case
 from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS, KINDS
 from driveline.harness.studies.faults.fault_figures import case_panels
-from driveline.harness.studies.faults.fault_report import announce, page, write, write_case
+from driveline.harness.studies.faults.fault_report import announce, write, write_case
 from driveline.harness.studies.faults.judges import JUDGES
 from tests.harness.commands import given
 
@@ -46,14 +44,10 @@ def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path)
 
 
 @pytest.mark.slow
-def test_the_page_has_a_row_for_each_kind_and_names_its_figures(outcomes, tmp_path):
-    files = write(outcomes, " --cases 6", tmp_path)
+def test_the_figures_of_a_campaign_are_drawn(outcomes, tmp_path):
+    files = write(outcomes, tmp_path)
+    assert {file.stem for file in files} == {"faults", "fault_pairs"}
     assert all(file.is_file() for file in files)
-    page = (tmp_path / "faults.md").read_text(encoding="utf-8")
-    assert all(f"| {kind} |" in page for kind in IN_SITUATIONS)
-    for name in ("faults", "fault_pairs"):
-        assert f"figures/{name}.png" in page
-        assert (tmp_path / "figures" / f"{name}.png").is_file()
 
 
 def test_the_figure_of_a_case_names_the_causes_that_were_found():
@@ -65,14 +59,6 @@ def test_the_figure_of_a_case_names_the_causes_that_were_found():
     assert (panel.label, panel.ticks) == ("cause", {1.0: "none", 4.0: "speed frozen"})
     bare = run[[name for name in run.dtype.names or () if name != "controller.cause"]]
     assert len(case_panels(case(1, 1, PLANTS), fault_injection.Runs(bare, bare, bare))) == len(others)
-
-
-def test_pairs_that_are_not_clean_are_named_too(outcomes):
-    bad = [replace(outcome, measured=dict.fromkeys(outcome.measured, 1e6)) for outcome in outcomes]
-    singles, pairs = page(bad, "").partition("## What is not clean")[2].split("Pairs of faults:")
-    for outcome in bad:
-        assert f"| {' + '.join(sorted(outcome.kinds))} |" in (pairs if len(outcome.kinds) == 2 else singles)
-    assert page([], "").count("There are no cases.") == 2
 
 
 def test_the_terminal_shows_what_is_not_clean_alone(outcomes, capsys):
@@ -113,14 +99,6 @@ def test_sizes_have_the_units_of_their_meanings():
         assert kind.unit in kind.meaning.replace("ms", "s"), kind.name
 
 
-def test_cases_without_a_fault_are_not_counted_as_single_faults():
-    measured = dict.fromkeys((judge.name for judge in JUDGES), -1e6)
-    on_roads = [Outcome(case(number, 1, PLANTS, PLANS["roads"]), measured) for number in range(1, 101)]
-    none = sum(outcome.kinds == ("nothing",) for outcome in on_roads)
-    assert 0 < none < 50
-    assert f"{none} have no fault, {50 - none} have one fault, 50 a pair." in page(on_roads, "")
-
-
 def _clean(numbers, plan, plants=PLANTS):
     return [Outcome(case(k, 1, plants, plan), {judge.name: -1e6 for judge in JUDGES}) for k in numbers]
 
@@ -131,7 +109,6 @@ def test_a_few_cases_say_which_kinds_no_case_has_alone(capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "Single faults are of 3 of 35 kinds; without motor speed zero, motor speed offset," in said
     assert said.endswith("wheel lock on ice, wheel spin on ice.")
-    assert "Single faults are of 3 of 35 kinds; without motor speed zero" in page(few, "")
 
 
 @pytest.mark.parametrize("plants", [PLANTS, PLANTS[:1]])
@@ -156,15 +133,6 @@ def test_the_help_tells_how_many_cases_have_every_kind_in_every_situation(plan, 
 )
 def test_the_figure_of_a_case_names_its_campaign(options, caption):
     assert faults.case_caption(given("faults", *options)) == caption
-
-
-def test_the_page_tells_how_a_case_is_run_again(outcomes):
-    options = ["--plant", "my car.fmu", "--set", "controller.k_d=0.1", "--seed", "7", "--controller", "mine.fmu"]
-    first = given("faults", *options)
-    text = page(outcomes, f" {as_given(first)}")
-    again = next(line for line in text.splitlines() if line.startswith("    driveline faults --case NUMBER"))
-    words = shlex.split(again)[2:]
-    assert given("faults", "--case", "3", *words[2:]) == replace(first, case=3)
 
 
 @pytest.mark.slow

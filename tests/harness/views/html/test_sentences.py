@@ -13,7 +13,6 @@ from driveline.harness.studies.compare import compare_report
 from driveline.harness.studies.compare.compare_report import verdict
 from driveline.harness.studies.drives import replay_report
 from driveline.harness.studies.drives.replay_report import PIECE, WHOLE, _densities, _figures, _worst, roughest
-from driveline.harness.studies.faults.fault_report import _classes
 from driveline.harness.studies.faults.fault_report_html import _ratio, _table
 from driveline.harness.studies.faults.judges import JUDGES
 from driveline.harness.views.html import metric_dots
@@ -74,16 +73,6 @@ def test_what_a_case_is_ordered_by_is_over_the_limit_or_for_what_must_not_be_twi
         assert (ratio(0.0), ratio(0.1)) == (0.0, 2.0)
     else:
         assert (ratio(-1.0), ratio(0.5 * judge.limit), ratio(3.0 * judge.limit)) == pytest.approx((0.0, 0.5, 3.0))
-
-
-@pytest.mark.parametrize(("judge", "shown"), [("kick", "12.3 N.m"), ("rms", "12.3"), ("back", "12.3 s")])
-def test_the_worst_of_a_kind_stands_with_its_unit_and_its_number(judge: str, shown: str) -> None:
-    def outcome(number: int, value: float) -> Any:
-        case = SimpleNamespace(number=number, situation="drive")
-        return SimpleNamespace(kinds=("late",), case=case, plant="Car", failed=(judge,), measured={judge: value})
-
-    table = _classes([outcome(3, 1.0), outcome(7, 12.34), outcome(9, 2.0)])
-    assert f"| late | drive | Car | {judge} | 3 | {shown} | 7 |" in re.sub(" +", " ", table)
 
 
 def test_the_density_of_a_swing_is_largest_at_its_frequency() -> None:
