@@ -5,21 +5,13 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-LARGEST = 1_000_000
-"""Bytes of a file: those of a hundred thousand points, which are read in a second."""
-
-DEEPEST = 10
-"""Parts of a key, and brackets in brackets. No key that is read has more than three, no value more than two; time and
-memory grow with the square of the parts, and Python does not follow hundreds of brackets."""
-
-MOST_DIGITS = 300
-"""Of a number. Those of a thousand digits are no floating-point numbers, and Python does not print them."""
+from .file_limits import DEEPEST_TOML, LARGEST_TOML, MOST_DIGITS
 
 SHOWN = 40
 """Characters of what is refused, as a message shows them."""
 
 PART = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')[ \t]*\.[ \t]*"""
-TOO_DEEP = re.compile(rf"(?<![\w-])(?:{PART}){{{DEEPEST}}}", re.ASCII)
+TOO_DEEP = re.compile(rf"(?<![\w-])(?:{PART}){{{DEEPEST_TOML}}}", re.ASCII)
 TOO_LONG = re.compile(rf"\b[0-9](?:[xob]?[0-9A-Fa-f_]){{{MOST_DIGITS}}}", re.ASCII)
 
 TEXT = r'''"""(?:[^\\]|\\.)*?"""|\'\'\'.*?\'\'\'|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|#[^\n]*'''
@@ -37,14 +29,14 @@ def toml_entries(path: Path) -> dict[str, Any]:
     if not path.is_file():
         lacks = "it is no regular file" if path.exists() else "there is no such file"
         raise ValueError("it is a folder, not a file" if path.is_dir() else lacks)
-    if (size := path.stat().st_size) > LARGEST:
-        raise ValueError(f"{size / 1e6:.1f} MB is too long; at most {LARGEST / 1e6:g} MB")
+    if (size := path.stat().st_size) > LARGEST_TOML:
+        raise ValueError(f"{size / 1e6:.1f} MB is too long; at most {LARGEST_TOML / 1e6:g} MB")
     try:
         text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
     except UnicodeDecodeError as error:
         raise ValueError(f"not TOML: {error}") from error
     if found := TOO_DEEP.search(text):
-        raise ValueError(f"the key {found[0]!r:.{SHOWN}} has more than {DEEPEST} parts")
+        raise ValueError(f"the key {found[0]!r:.{SHOWN}} has more than {DEEPEST_TOML} parts")
     if found := TOO_LONG.search(text):
         raise ValueError(f"the number {found[0]:.{SHOWN}} ... has more than {MOST_DIGITS} digits")
     _require_shallow(text)
@@ -58,6 +50,6 @@ def _require_shallow(text: str) -> None:
     depth = 0
     for found in BRACKET.finditer(text):
         depth += bool(found["opens"]) - bool(found["closes"])
-        if depth > DEEPEST:
+        if depth > DEEPEST_TOML:
             line = text.count("\n", 0, found.start()) + 1
-            raise ValueError(f"line {line} has brackets in brackets, more than {DEEPEST} deep")
+            raise ValueError(f"line {line} has brackets in brackets, more than {DEEPEST_TOML} deep")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.documentation import tables, timing
+from driveline.fmus.file_limits import LIMITS
 from driveline.fmus.fmu import Fmu
 from driveline.harness.exchange.compliance import check
 from driveline.harness.recordings import plausibility, relations, signal_checks
@@ -48,6 +49,12 @@ def check_rules() -> str:
     ]
     headings = ("rule", "severity", "FMI 2.0", "FMI 3.0", "what an FMU does that keeps it")
     return markdown_table(headings, rows, labels=5)
+
+
+def file_limits() -> str:
+    """What files may take."""
+    rows = ((of, f"{most:,}".replace(",", " ") + f" {unit}", reason) for of, most, unit, reason in LIMITS)
+    return markdown_table(("of what", "at most", "why"), rows, labels=3)
 
 
 def recording_columns() -> str:
@@ -95,6 +102,6 @@ def _each(value: str) -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     function.__name__: function
-    for function in (causes, check_rules, recording_columns, recording_plausibility, recording_checks)
+    for function in (causes, check_rules, file_limits, recording_columns, recording_plausibility, recording_checks)
 }
 """By the names that pages call them."""

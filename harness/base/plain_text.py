@@ -7,7 +7,9 @@ LONGEST = 500
 
 def plain(text: object, longest: int = LONGEST) -> str:
     """The text in one line, without what a terminal would obey."""
-    line = " ".join("".join(sign if sign.isprintable() else " " for sign in str(text)).split())
+    line = str(text)
+    if not line.isprintable() or "  " in line or line[:1] == " " or line[-1:] == " ":
+        line = " ".join("".join(sign if sign.isprintable() else " " for sign in line).split())
     return line if len(line) <= longest else f"{line[:longest]} ... ({len(line)} characters)"
 
 

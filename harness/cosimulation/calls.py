@@ -96,7 +96,8 @@ def _change(
 def receives(instance: Instance, row: bytearray, layout: Layout, outputs: Collection[str]) -> list[Call]:
     """Calls that read outputs into the row, one for each piece of it."""
     calls: list[Call] = []
-    read = [v for v in instance.interface.of_causality("output") if v.name in outputs]
+    names = frozenset(outputs)
+    read = [v for v in instance.interface.of_causality("output") if v.name in names]
     for access, variables in instance.interface.by_access(read).items():
         ctype = KINDS[type_of(variables[0])].ctype
         size = sizeof(ctype)

@@ -1,9 +1,8 @@
 """Reading a model description that anybody may have written: what a run relies on is there and is a number."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from io import BytesIO
 from math import isfinite, isnan
 from pathlib import Path
 from typing import Any, cast
@@ -13,6 +12,7 @@ from xml.etree.ElementTree import Element
 import fmpy
 from fmpy.model_description import ModelDescription
 
+from ...fmus.file_limits import DEEPEST_XML, LONGEST_ATTRIBUTE, MOST_PARTS
 from ..base.errors import WiringError
 from ..base.plain_text import plain
 from .fmu_archive import described
@@ -37,6 +37,9 @@ KINDS = {
 
 OURS = {"Float64": "Real", "Int32": "Integer"}
 """Types of FMI 3.0 by the names of FMI 2.0."""
+
+REFERENCES = ("dependencies", "dependenciesKind", "clocks")
+"""Attributes that are lists."""
 
 MOST_KEPT = 16
 """Descriptions."""
@@ -92,18 +95,49 @@ def attributes(path: Path, limits: Limits, where: str) -> Iterator[dict[str, str
     Raises:
         WiringError: there is none that can be read.
     """
-    return (element.attrib for element in _root(described(path, limits), path).iterfind(where))
+    return (element.attrib for element in _kept_root(described(path, limits), path).iterfind(where))
 
 
 def _root(text: bytes, path: Path) -> Element:
     try:
-        return ElementTree.parse(BytesIO(text), ElementTree.XMLParser(target=_Elements())).getroot()
+        parser = ElementTree.XMLParser(target=_Elements())
+        parser.feed(
+            text
+        )  # at once: what comes piece by piece is looked at again from the beginning of a long attribute
+        return parser.close()
     except Exception as error:  # what it raises depends on the encoding that the text claims to have
         raise WiringError(f"the model description of {path} cannot be read: {plain(error)}") from error
 
 
+_kept_root = lru_cache(1)(_root)
+"""Many rules look at one description."""
+
+
 class _Elements(ElementTree.TreeBuilder):
-    """Those of a text, in whatever encoding, that stands for itself: no entities, no other files."""
+    """Those of a text, in whatever encoding, that stands for itself: no entities, no other files; as many as the limits
+    allow."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._parts = self._depth = 0
+
+    def start(self, tag: Any, attrs: dict[Any, Any], /) -> Element:
+        self._depth += 1
+        self._parts += 1 + len(attrs)
+        for name, text in attrs.items():
+            if len(text) > LONGEST_ATTRIBUTE:
+                raise ValueError(f"{plain(name)} has {len(text)} characters; {LONGEST_ATTRIBUTE} are allowed")
+            if name in REFERENCES:
+                self._parts += text.count(" ")
+        if self._parts > MOST_PARTS:
+            raise ValueError(f"it has more than {MOST_PARTS} elements, attributes and references")
+        if self._depth > DEEPEST_XML:
+            raise ValueError(f"it has more than {DEEPEST_XML} elements in one another")
+        return super().start(tag, attrs)
+
+    def end(self, tag: str, /) -> Element:
+        self._depth -= 1
+        return super().end(tag)
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
         raise ValueError("it declares a document type, which FMI does not know")
@@ -127,8 +161,9 @@ def _problems(root: Element, offered: Iterable[Element]) -> Iterator[str]:
         yield from _of_variable(variable, position)
         if variable.get("name"):
             yield from _of_kind(variable) if fmi2 else _of_fmi3(variable)
+    known = {variable.get("valueReference") for variable in variables}
     for unknown in root.iterfind("ModelStructure/*/Unknown" if fmi2 else "ModelStructure/*"):
-        yield from _of_unknown(unknown, len(variables)) if fmi2 else _of_unknown_of_fmi3(unknown, variables)
+        yield from _of_unknown(unknown, len(variables)) if fmi2 else _of_unknown_of_fmi3(unknown, known)
 
 
 def _of_variable(variable: Element, position: int) -> Iterator[str]:
@@ -156,8 +191,7 @@ def _of_fmi3(variable: Element) -> Iterator[str]:
         yield from _not_numbers(variable, plain(variable.get("name")), NUMBERS_OF_FMI3.get(variable.tag, {}))
 
 
-def _of_unknown_of_fmi3(unknown: Element, variables: Sequence[Element]) -> Iterator[str]:
-    known = {variable.get("valueReference") for variable in variables}
+def _of_unknown_of_fmi3(unknown: Element, known: Collection[str | None]) -> Iterator[str]:
     for attribute in ("valueReference", "dependencies"):
         for text in unknown.get(attribute, "").split():
             if text not in known:

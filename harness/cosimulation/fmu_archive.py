@@ -2,10 +2,12 @@
 
 import stat
 from collections.abc import Iterator, Sequence
+from io import FileIO
 from pathlib import Path
 from typing import NamedTuple
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
+from ...fmus.file_limits import LARGEST_DESCRIPTION, LARGEST_DIRECTORY, MOST_ENTRIES
 from ..base.errors import UnpackingError, WiringError
 from ..base.plain_text import plain, reason
 from .limits import USUAL_LIMITS, Limits
@@ -15,8 +17,8 @@ DESCRIPTION = "modelDescription.xml"
 NOT_NEEDED = ("sources/", "documentation/")
 """Folders of an FMU that only people and compilers read."""
 
-LARGEST_DESCRIPTION = 4 * 10**7
-"""Bytes of a model description: those of 300 000 variables, which are read in half a minute."""
+DESCRIPTIONS = (DESCRIPTION, "sources/buildDescription.xml")
+"""What is read, with a limit for its size."""
 
 
 class Problem(NamedTuple):
@@ -28,6 +30,9 @@ class Problem(NamedTuple):
 
 def problems(entries: Sequence[ZipInfo], limits: Limits) -> Iterator[Problem]:
     """Everything for which an archive with these entries is not unpacked."""
+    if len(entries) > MOST_ENTRIES:
+        yield Problem("archive-entries", f"it has {len(entries)} entries; {MOST_ENTRIES} are allowed")
+        return
     size = sum(entry.file_size for entry in entries)
     if size > limits.unpacked:
         yield Problem("archive-size", f"it unpacks to {megabytes(size)}; {megabytes(limits.unpacked)} are allowed")
@@ -44,6 +49,9 @@ def megabytes(size: int) -> str:
 
 def _problems(entry: ZipInfo) -> Iterator[tuple[str, str]]:
     name = entry.orig_filename
+    if name in DESCRIPTIONS and entry.file_size > LARGEST_DESCRIPTION:
+        allowed = megabytes(LARGEST_DESCRIPTION)
+        yield "archive-description", f"unpacks to {megabytes(entry.file_size)}; {allowed} are allowed"
     if "\\" in name:
         yield "archive-path", "has a backslash in its path"
     if name.startswith("/") or ":" in name or ".." in name.split("/"):
@@ -56,6 +64,17 @@ def _problems(entry: ZipInfo) -> Iterator[tuple[str, str]]:
         yield "archive-method", f"is packed with the method {entry.compress_type}; FMI allows 0 and 8"
 
 
+class _Bounded(FileIO):
+    """An archive of which nothing but the list of its entries is read, at once."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        if (size or 0) > LARGEST_DIRECTORY:
+            raise ValueError(
+                f"the list of its entries has {megabytes(size or 0)}; {megabytes(LARGEST_DIRECTORY)} are allowed"
+            )
+        return super().read(size)
+
+
 def entries(path: Path) -> list[ZipInfo]:
     """What is in an archive.
 
@@ -63,7 +82,7 @@ def entries(path: Path) -> list[ZipInfo]:
         WiringError: it is none.
     """
     try:
-        with ZipFile(path) as archive:
+        with _Bounded(path, "rb") as file, ZipFile(file) as archive:
             return archive.infolist()
     except Exception as error:  # whatever strange bytes lead zipfile to
         raise WiringError(f"{path} is not an FMU: {reason(error)}") from error
@@ -78,11 +97,8 @@ def described(path: Path, limits: Limits = USUAL_LIMITS) -> bytes:
     found = entries(path)
     for problem in problems(found, limits):
         raise WiringError(f"{path} is not unpacked: {problem.text}")
-    sizes = {entry.filename: entry.file_size for entry in found}
-    if DESCRIPTION not in sizes:
+    if not any(entry.filename == DESCRIPTION for entry in found):
         raise WiringError(f"{path} is not an FMU: there is no {DESCRIPTION} in it")
-    if sizes[DESCRIPTION] > LARGEST_DESCRIPTION:
-        raise WiringError(f"{path}: {DESCRIPTION} has {megabytes(sizes[DESCRIPTION])}")
     try:
         with ZipFile(path) as archive:
             return archive.read(DESCRIPTION)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from numbers import Real
 
+from ...fmus.file_limits import UNPACKED
 from ..base.errors import WiringError
 from ..base.plain_text import plain
 
@@ -20,7 +21,7 @@ class Limits:
     """
 
     call: float = 60.0
-    unpacked: int = 10**9
+    unpacked: int = UNPACKED
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():

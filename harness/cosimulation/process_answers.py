@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from struct import Struct
 from typing import Any, BinaryIO, NamedTuple
 
+from ...fmus.file_limits import LARGEST_ANSWER
 from ..base.errors import DrivelineError, InstantiationError, SimulationError, UnpackingError, WiringError
 from ..base.plain_text import plain
 
@@ -20,9 +21,6 @@ ERRORS: dict[str, type[Exception]] = {
 
 LENGTH = Struct("<Q")
 """Of the JSON."""
-
-LONGEST = 10**8
-"""Bytes of it."""
 
 AT_ONCE = 2**16
 """Bytes that are read at once; memory is taken for those alone that have come."""
@@ -67,7 +65,7 @@ def receive(read: Callable[[int], bytes], expected_size: Callable[[], int]) -> A
         InvalidAnswer: it is none.
     """
     (length,) = LENGTH.unpack(_exactly(read, LENGTH.size))
-    if length > LONGEST:
+    if length > LARGEST_ANSWER:
         raise InvalidAnswer
     try:
         header = json.loads(_exactly(read, length))

@@ -83,7 +83,7 @@ class Layout:
         self.known = offsets[first_output] if names[first_output:] else self.dtype.itemsize
         self._types = types
         self._truths = [name for name, kind in types.items() if kind == "Boolean"]
-        for place in map(names.index, self._truths):
+        for place in (place for place, kind in enumerate(types.values()) if kind == "Boolean"):
             formats[place], offsets[place] = "?", offsets[place] + TRUTH_BYTE
         self.recorded = np.dtype(
             {"names": names, "formats": formats, "offsets": offsets, "itemsize": self.dtype.itemsize}

@@ -18,11 +18,11 @@ from tempfile import TemporaryDirectory
 from typing import Any, TypeVar, cast
 
 from ...fmus.child_process import run
+from ...fmus.file_limits import MEMORY, PATIENCE, SECONDS, SMALL_TEXT
 from ..base.errors import DrivelineError
 from ..base.interruption import end_with
 from ..base.plain_text import plain, words
 from .format_detection import is_text
-from .limits import MEMORY, PATIENCE, SECONDS, SMALL_TEXT
 from .source import RecordingError
 
 try:

@@ -13,12 +13,12 @@ from typing import TextIO
 
 import numpy as np
 
+from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from ..base.plain_text import plain
 from ..base.written_numbers import real
 from .clock_times import EXAMPLES, seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
-from .limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from .source import Column, RecordingError, Samples, Where, not_finite
 
 LONGEST_CELL = 60

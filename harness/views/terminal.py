@@ -66,11 +66,14 @@ def plain_table(title: str, headings: Iterable[str], rows: Iterable[Sequence[str
     return table
 
 
+MOST_PROBLEMS = 50
+"""Of a rule, that are printed for people."""
+
 SEVERITY_STYLES = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
 def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str, tried: bool = True) -> None:
-    """Prints a rule, whether it is kept, and each problem on a line of its own; or that it was not tried."""
+    """Prints a rule, whether it is kept, and the first problems on lines of their own; or that it was not tried."""
     console = Console(highlight=False, soft_wrap=True)
     if problems:
         console.print(Text(f"  {severity:8}", style=SEVERITY_STYLES[severity]) + f"not: {title} [{rule}]", markup=False)
@@ -78,8 +81,10 @@ def print_verdict(title: str, problems: Sequence[str], severity: str, rule: str,
         console.print(Text("  ok      ", style="green") + title)
     else:
         console.print(f"  -       not tried: {title}", markup=False)
-    for problem in problems:
+    for problem in problems[:MOST_PROBLEMS]:
         console.print(Text(f"        - {problem}"))
+    if more := len(problems[MOST_PROBLEMS:]):
+        console.print(f"        ... and {more} more; `--quiet` and `--format json` have all", markup=False)
 
 
 def runs_table(rows: Sequence[Row], title: str = DAMPINGS) -> Table:

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus.toml_file import DEEPEST, LARGEST, MOST_DIGITS, toml_entries
+from driveline.fmus.file_limits import DEEPEST_TOML, LARGEST_TOML, MOST_DIGITS
+from driveline.fmus.toml_file import toml_entries
 from tests.together import together
 
 
@@ -17,9 +18,9 @@ def read(folder: Path, text: str) -> dict:
 
 @together("part", ["a", "1", '"a b"', "'='", r'"\""', "a "])
 def test_a_key_has_ten_parts_at_the_most(tmp_path: Path, part: str) -> None:
-    assert read(tmp_path, f"{'.'.join([part] * DEEPEST)} = 1")
-    assert read(tmp_path, f"[{'.'.join([part] * DEEPEST)}]")
-    for text in (f"{'.'.join([part] * (DEEPEST + 1))} = 1", f"x = {{{'.'.join([part] * 20_000)} = 1}}"):
+    assert read(tmp_path, f"{'.'.join([part] * DEEPEST_TOML)} = 1")
+    assert read(tmp_path, f"[{'.'.join([part] * DEEPEST_TOML)}]")
+    for text in (f"{'.'.join([part] * (DEEPEST_TOML + 1))} = 1", f"x = {{{'.'.join([part] * 20_000)} = 1}}"):
         with pytest.raises(ValueError, match=r"^the key .* has more than 10 parts$"):
             read(tmp_path, text)
 
@@ -38,9 +39,9 @@ def test_a_list_of_points_is_no_key(tmp_path: Path) -> None:
 
 
 def test_a_file_has_a_megabyte_at_the_most(tmp_path: Path) -> None:
-    assert read(tmp_path, "x = 1".ljust(LARGEST)) == {"x": 1}
+    assert read(tmp_path, "x = 1".ljust(LARGEST_TOML)) == {"x": 1}
     with pytest.raises(ValueError, match=r"^1\.0 MB is too long; at most 1 MB$"):
-        read(tmp_path, "x = 1".ljust(LARGEST + 1))
+        read(tmp_path, "x = 1".ljust(LARGEST_TOML + 1))
 
 
 @together("text", ["x", "x = [", "x = '[", "\ud800"])
@@ -52,7 +53,7 @@ def test_what_is_no_toml_is_said(tmp_path: Path, text: str) -> None:
 
 @together("opens, closes", [("[", "]"), ("{a = ", "}"), ("[{a = ", "}]")])
 def test_brackets_are_ten_deep_at_the_most(tmp_path: Path, opens: str, closes: str) -> None:
-    pairs = DEEPEST // len(closes)
+    pairs = DEEPEST_TOML // len(closes)
     assert read(tmp_path, f"x = {opens * pairs}{closes[:0] if '=' not in opens else '1'}{closes * pairs}")
     for count in (pairs + 1, 20_000):
         with pytest.raises(ValueError, match=r"^line 2 has brackets in brackets, more than 10 deep$"):
@@ -61,7 +62,7 @@ def test_brackets_are_ten_deep_at_the_most(tmp_path: Path, opens: str, closes: s
 
 @together("text", ['"""\n{}\\""" {}"""', "'''{}\\'''", '"{}\\""', "'{}'", '1 # " {}', "1 # {}"])
 def test_brackets_in_texts_and_comments_are_none(tmp_path: Path, text: str) -> None:
-    brackets = "[" * (DEEPEST + 1)
+    brackets = "[" * (DEEPEST_TOML + 1)
     assert "x" in read(tmp_path, f"x = {text.replace('{}', brackets)}\ny = [1]")
 
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from driveline.fmus.file_limits import PATIENCE
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
 from driveline.harness.recordings.bounded_reading import outcome
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.format_detection import is_text
-from driveline.harness.recordings.limits import PATIENCE
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.recordings.source import RecordingError
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text

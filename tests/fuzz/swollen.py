@@ -1,5 +1,5 @@
 """Files that are small and take much: units, keys and numbers without end, lines and columns without number, and packed
-recordings that unpack to gigabytes."""
+recordings that unpack to gigabytes, descriptions and archives of FMUs with one thing again and again."""
 
 import resource
 import zlib
@@ -8,6 +8,7 @@ from pathlib import Path
 from random import Random
 from struct import pack
 from time import process_time
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import asammdf
 import numpy as np
@@ -16,11 +17,13 @@ import pyarrow.parquet as pq
 
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import BuildError
+from driveline.fmus.file_limits import SECONDS
 from driveline.harness.base.errors import DrivelineError
+from driveline.harness.cosimulation.system import System
 from driveline.harness.cosimulation.unit_conversion import SI, factor
+from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
 from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.limits import SECONDS
 from driveline.harness.recordings.quantities import aliases
 from tests.fuzz.target import Attempt, Unclean, target
 from tests.harness.recordings.test_bus_log import drive as frames
@@ -116,7 +119,74 @@ def log(random: Random, folder: Path) -> None:
     read_drive(path, databases=databases)
 
 
-QUICK = (in_heading, in_manoeuvre, in_fmu, toml, text)
+DESCRIPTION = {
+    2: """<fmiModelDescription fmiVersion="2.0" modelName="m" guid="g" {in_root}><CoSimulation modelIdentifier="m"/>
+<UnitDefinitions>{units}</UnitDefinitions><VendorAnnotations>{notes}</VendorAnnotations><ModelVariables>
+<ScalarVariable name="x" valueReference="0" causality="output"><Real/></ScalarVariable>{variables}</ModelVariables>
+<ModelStructure><Outputs><Unknown index="1"/>{unknowns}</Outputs></ModelStructure></fmiModelDescription>""",
+    3: """<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="g" {in_root}>
+<CoSimulation modelIdentifier="m"/><UnitDefinitions>{units}</UnitDefinitions><Annotations>{notes}</Annotations>
+<ModelVariables><Float64 name="x" valueReference="0" causality="output"/>{variables}</ModelVariables>
+<ModelStructure><Output valueReference="0"/>{unknowns}</ModelStructure></fmiModelDescription>""",
+}
+
+SWOLLEN = {
+    2: {
+        "in_root": ('a{k}="" ',),
+        "units": ('<Unit name="u{k}"/>',),
+        "notes": ("<a/>", "<a>", "<a {again}/>"),
+        "variables": (
+            '<ScalarVariable name="v{k}" valueReference="{k}" causality="output"><Real/></ScalarVariable>',
+            '<ScalarVariable name="{again}" valueReference="1"><Real start="1"/></ScalarVariable>',
+        ),
+        "unknowns": ('<Unknown index="1"/>', '<Unknown index="1" dependencies="{again}"/>'),
+    },
+    3: {
+        "in_root": ('a{k}="" ',),
+        "units": ('<Unit name="u{k}"/>',),
+        "notes": ("<a/>", "<a>", "<a {again}/>"),
+        "variables": (
+            '<Float64 name="v{k}" valueReference="{k}" causality="output"/>',
+            '<Boolean name="v{k}" valueReference="{k}" causality="output"/>',
+            '<Float64 name="v" valueReference="1" clocks="{again}"/>',
+            '<Float64 name="v" valueReference="1">{again}</Float64>',
+        ),
+        "unknowns": ('<Output valueReference="0"/>', '<Output valueReference="0" dependencies="{again}"/>'),
+    },
+}
+"""What is there again and again, by the place in the description; `again` stands for one of AGAIN."""
+
+AGAIN = ("1 ", "0 ", "x", 'a{k}="" ', '<Alias name="a{k}"/>', '<Dimension start="1"/>', "&#9;1")
+
+
+def repeated(pattern: str, count: int) -> str:
+    return "".join(pattern.replace("{k}", str(k)) for k in range(1, count + 1))
+
+
+def fmu(random: Random, folder: Path) -> None:
+    """A description or an archive with one thing again and again."""
+    fmi = random.choice((2, 3))
+    parts = dict.fromkeys(SWOLLEN[fmi], "")
+    place = random.choice([*parts, "entries"])
+    count, entries = scale(random, 5e6), 0
+    if place == "entries":
+        entries = scale(random, 2e5)
+    elif "{again}" in (pattern := random.choice(SWOLLEN[fmi][place])):
+        parts[place] = pattern.replace("{again}", repeated(random.choice(AGAIN), count).strip())
+    else:
+        parts[place] = repeated(pattern, count)
+    name = random.choice(("modelDescription.xml", "modelDescription.xml", "sources/buildDescription.xml"))
+    written = {"modelDescription.xml": DESCRIPTION[fmi].format_map(dict.fromkeys(parts, ""))}
+    written[name] = DESCRIPTION[fmi].format_map(parts)
+    with ZipFile(folder / "theirs.fmu", "w", ZIP_DEFLATED, compresslevel=1) as archive:
+        for path, content in written.items():
+            archive.writestr(path, content)
+        for k in range(entries):
+            archive.writestr(f"resources/{k}", "")
+    fit(System({"theirs": folder / "theirs.fmu"}))
+
+
+QUICK = (in_heading, in_manoeuvre, in_fmu, fmu, toml, text)
 PACKED = (parquet, mdf, log)
 SHARE = 0.1
 """Of the tries that are packed files."""
@@ -128,8 +198,8 @@ def written(path: Path, content: str) -> Path:
 
 
 @target(
-    "small files that take much: units, keys, numbers, lines and columns without end, Parquet, MDF and BLF that unpack "
-    "to gigabytes",
+    "small files that take much: units, keys, numbers, lines, columns, variables, references and entries without end, "
+    "Parquet, MDF and BLF that unpack to gigabytes",
     "read or refused in a line, with at most 30 s of computing and 2 GB",
     short=15,
     long=1000,

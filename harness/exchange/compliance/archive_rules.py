@@ -45,6 +45,8 @@ ZIP = Clause("2.3", "2.5.1")
 
 REFUSING_RULES = (
     _refusing("archive-size", "the archive unpacks to no more than the limit"),
+    _refusing("archive-entries", "the archive has no more entries than the limit"),
+    _refusing("archive-description", "no description unpacks to more than the limit"),
     _refusing("archive-path", "no entry of the archive leads outside, or by a backslash", ZIP),
     _refusing("archive-link", "no entry of the archive is a link"),
     _refusing("archive-encrypted", "no entry of the archive is encrypted"),

@@ -1,14 +1,15 @@
 """Archives and model descriptions of strangers: one line that says what is wrong, and nothing is unpacked outside."""
 
+import sys
+from collections import Counter
 from shutil import copyfile
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
 
 from driveline.harness.base.errors import DrivelineError, WiringError
-from driveline.harness.cosimulation import fmu_archive
+from driveline.harness.cosimulation import description, fmu_archive
 from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.fmu_archive import described
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.limits import Limits
 from driveline.harness.cosimulation.runs import run
@@ -50,13 +51,50 @@ def test_an_archive_may_unpack_to_the_limit_and_no_further(stranger, tmp_path):
         Interface(path, Limits(unpacked=size - 1))
 
 
-def test_a_model_description_has_so_many_bytes_at_the_most(stranger, monkeypatch):
-    size = len(described(stranger))
-    monkeypatch.setattr(fmu_archive, "LARGEST_DESCRIPTION", size)
-    assert len(described(stranger)) == size
-    monkeypatch.setattr(fmu_archive, "LARGEST_DESCRIPTION", size - 1)
-    with pytest.raises(WiringError, match=rf"modelDescription.xml has {size / 1e6} MB$"):
-        described(stranger)
+SMALL = """<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="g">
+<CoSimulation modelIdentifier="m"/>
+<ModelVariables><Float64 name="velocity" valueReference="0" causality="output"/></ModelVariables>
+<ModelStructure><Output valueReference="0" dependencies="0 0"/></ModelStructure></fmiModelDescription>"""
+
+
+def written(path, xml, *others):
+    with ZipFile(path, "w", ZIP_DEFLATED) as archive:
+        for name in ("modelDescription.xml", *others):
+            archive.writestr(name, xml)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("module", "limit", "most", "refusal"),
+    [
+        (fmu_archive, "LARGEST_DESCRIPTION", len(SMALL), r"modelDescription.xml unpacks to .* MB; .* MB are allowed"),
+        (fmu_archive, "MOST_ENTRIES", 2, "it has 2 entries; 1 are allowed"),
+        (fmu_archive, "LARGEST_DIRECTORY", 2 * 46 + len("modelDescription.xmlx"), "the list of its entries has .* MB"),
+        (description, "MOST_PARTS", 6 + 9 + 1, "it has more than 15 elements, attributes and references"),
+        (description, "LONGEST_ATTRIBUTE", len("velocity"), "name has 8 characters; 7 are allowed"),
+        (description, "DEEPEST_XML", 3, "it has more than 2 elements in one another"),
+    ],
+)
+def test_each_limit_is_reached_and_not_passed(tmp_path, monkeypatch, module, limit, most, refusal):
+    monkeypatch.setattr(module, limit, most)
+    Interface(written(tmp_path / "small.fmu", SMALL, "x"))
+    monkeypatch.setattr(module, limit, most - 1)
+    with pytest.raises(WiringError, match=refusal):
+        Interface(written(tmp_path / "too_large.fmu", SMALL, "x"))
+
+
+def test_the_time_for_a_description_grows_with_its_variables_alone(tmp_path):
+    """A set of all references made for each output would be 4e6 calls."""
+    many = "".join(f'<Float64 name="q{k}" valueReference="{k}" causality="output"/>' for k in range(1, 2000))
+    listed = "".join(f'<Output valueReference="{k}" dependencies="0 {k}"/>' for k in range(1, 2000))
+    wide = SMALL.replace("</ModelVariables>", f"{many}</ModelVariables>").replace("<Output", f"{listed}<Output")
+    calls = Counter()
+    sys.setprofile(lambda _, event, called: calls.update([called]) if event == "c_call" else None)
+    try:
+        assert len(Interface(written(tmp_path / "wide.fmu", wide)).variables) == 2000
+    finally:
+        sys.setprofile(None)
+    assert calls.total() < 100 * 2000
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from driveline.fmus import file_limits as limits
 from driveline.harness.base.interruption import stoppable
-from driveline.harness.recordings import bounded_reading, limits, text_file
+from driveline.harness.recordings import bounded_reading, text_file
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.test_bus_log import drive as frames
