@@ -26,6 +26,11 @@ SHOWN = re.compile(r"^\[(table|figure): (\w+)(?:/([^\]]+))?\]\([^)\s]+\)$", re.M
 INLINE = re.compile(r"\[([^\]\[]+)\]\((?:\.\./)*(?:docs/)?studies/data/(\w+)\.json#([^)\s]+)\)")
 """A number in a sentence, with study and place."""
 
+TYPED = re.compile(
+    r"\|\s*([-+<>≤≥]?\s*\d[\d.,]*(?: (?:to|instead of) [\d.,]+)?(?:\.\d+| ?(?:%|m?s|N[·.]m|Hz|rad/s|kB|MB)))\s*(?=\|)"
+)
+"""A cell of a table that is a measured number, written by hand: it has a decimal fraction or a unit."""
+
 FIGURES = "figures/studies"
 """Folder of the site for figures of studies."""
 

@@ -1,5 +1,6 @@
 """Numbers that are kept: what counts as the same, what a file gives back, and what pages say of them."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -109,6 +110,24 @@ def test_the_numbers_of_a_page_are_those_of_the_studies(page: Path) -> None:
             assert part in data_file.read(name).measured.tables
         else:
             assert name in numbers.TABLES
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_no_table_of_a_page_has_a_measured_number_typed_by_hand(page: Path) -> None:
+    ours = results.readme_table(data_file.read("results").measured.tables)
+    assert not numbers.TYPED.findall(re.sub(r"^```.*?^```", "", text_of(page).replace(ours, ""), flags=re.M | re.S))
+
+
+@pytest.mark.parametrize(
+    ("row", "typed"),
+    [
+        ("| tip-in | 70 ms | 9 % |", ["70 ms", "9 %"]),
+        ("| rms | 1.9 | 10.1 instead of 12 N·m |", ["1.9", "10.1 instead of 12 N·m"]),
+        ("| exit code | 2 | `0.5` | 1.9 of those | [70 ms](studies/data/one.json#a/b/c) |", []),
+    ],
+)
+def test_what_is_typed_is_told_from_what_is_linked(row: str, typed: list[str]) -> None:
+    assert numbers.TYPED.findall(row) == typed
 
 
 def test_the_table_of_the_readme_is_that_of_the_results() -> None:
