@@ -1,5 +1,9 @@
 """What the user of the build can mend."""
 
+import os
+from errno import ENOSPC
+from tempfile import gettempdir
+
 
 class BuildError(Exception):
     """What was asked for cannot be built; the text says why."""
@@ -7,3 +11,8 @@ class BuildError(Exception):
 
 class ParameterFileError(BuildError):
     """A file with parameters is refused; the text names the lines and says what is allowed."""
+
+
+def full_disk() -> OSError:
+    """That there is no room for temporary files."""
+    return OSError(ENOSPC, os.strerror(ENOSPC), f"temporary files in {gettempdir()}")

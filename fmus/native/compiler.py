@@ -7,13 +7,14 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from errno import ENOSPC
 from importlib.util import find_spec
 from pathlib import Path
 
 import fmpy
 
 from ..child_process import run
-from ..errors import BuildError
+from ..errors import BuildError, full_disk
 
 FLAGS = (
     # the header of FMI 3.0 declares callbacks without prototypes
@@ -191,8 +192,11 @@ def run_compiler(command: Sequence[str], folder: Path) -> None:
 
     Raises:
         CompilerError: it complains; the text is what it says.
+        OSError: the disk of temporary files is full.
     """
     done = run(command, folder)
+    if done.returncode and os.strerror(ENOSPC) in done.stderr:
+        raise full_disk()
     if done.returncode:
         raise CompilerError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
 

@@ -1,10 +1,13 @@
 """Building an FMU with PythonFMU, which packs block and slave; then the archive is put in its final form."""
 
+import os
+import shutil
 import sys
 import tempfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import ENOSPC
 from importlib.metadata import distribution, version
 from pathlib import Path, PurePosixPath
 from threading import Lock
@@ -16,6 +19,7 @@ from ..archive import guid_of, write_archive
 from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
+from ..errors import full_disk
 from ..fmu import Fmu
 from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES, LOG_DISCARD
@@ -107,7 +111,10 @@ def _packed_by_pythonfmu(fmu: Fmu, package: str, files: dict[str, bytes]) -> dic
         script = folder / f"{package}_main.py"
         script.write_bytes(script_text(fmu, package))
         archive = folder / f"{fmu.name}.fmu"
-        FmuBuilder.build_FMU(script, dest=archive, project_files=[folder / package])
+        try:
+            FmuBuilder.build_FMU(script, dest=archive, project_files=[folder / package])
+        except shutil.Error as error:  # a list of what could not be copied
+            raise (full_disk() if os.strerror(ENOSPC) in str(error) else error) from error
         with zipfile.ZipFile(archive) as packed:
             names = (name for name in packed.namelist() if "__pycache__" not in name)
             return {name: packed.read(name) for name in names}

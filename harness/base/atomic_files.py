@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from errno import ELOOP, ENOLCK, ENOTSUP
+from errno import ELOOP, ENOLCK, ENOSPC, ENOTSUP
 from pathlib import Path
 
 try:
@@ -84,11 +84,14 @@ def _set_aside(path: Path) -> None:
 
 @contextmanager
 def naming(file: str | Path, unfinished: Path | None = None) -> Iterator[None]:
-    """An error of the system that names no file, as that of a full disk, or names the unfinished one names this."""
+    """An error of the system that names no file, as that of a full disk, or names the unfinished one names this. What
+    cannot be copied to names what it is copied from first."""
     try:
         yield
     except OSError as error:
-        if error.errno is None or (error.filename is not None and error.filename != str(unfinished)):
+        full = error.errno == ENOSPC and error.filename2 is not None
+        named = error.filename2 if full else error.filename
+        if error.errno is None or (named is not None and str(named) != str(unfinished)):
             raise
         raise OSError(error.errno, error.strerror, str(file)) from error
 

@@ -1,12 +1,15 @@
-"""What is made once and kept for the next time, in the user's folder for that."""
+"""What is made once and kept for the next time, in the user's folder for that: each file with its digest beside it."""
 
+import os
 import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import rmtree
 
 from ...fmus.user_cache import user_cache as user_cache
+from .atomic_files import complete, write_text
+from .digest import digest
 from .errors import DrivelineError
 from .plain_text import plain
 
@@ -34,6 +37,38 @@ def named_as_cache(folder: Path) -> Iterator[None]:
             f"the cache {plain(folder)} cannot be written: {plain(error.strerror or error)}; "
             f"the environment variable {MOVED_BY} names another place"
         ) from error
+
+
+def kept(path: Path, make: Callable[[Path], object]) -> Path:
+    """A file of the cache, which is made if it is not there as it was made; its folder has been used then.
+
+    Args:
+        make: writes it to another path.
+    """
+    if not is_as_made(path):
+        with complete(path) as unfinished:
+            make(unfinished)
+        seal(path)
+    os.utime(path.parent)
+    forget(path.parent.parent.iterdir())
+    return path
+
+
+def seal(path: Path) -> None:
+    """Keeps the digest of a file of the cache that has just been made."""
+    write_text(digest(path), _seal(path))
+
+
+def is_as_made(path: Path) -> bool:
+    """Whether a file is there as it was when it was sealed. A library that is cut off would end the process that loads
+    it, one that is damaged gives wrong numbers."""
+    with suppress(OSError):
+        return _seal(path).read_bytes() == digest(path).encode()
+    return False
+
+
+def _seal(path: Path) -> Path:
+    return path.with_name(f"{path.name}.digest")
 
 
 def forget(folders: Iterable[Path]) -> None:

@@ -323,9 +323,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if error.filename == STDOUT:
             forget_stdout()
         elif error.errno == ENOSPC and error.filename is None:  # whoever writes results names them
-            from tempfile import gettempdir
+            from ...fmus.errors import full_disk
 
-            error.filename = f"temporary files in {gettempdir()}"
+            error = full_disk()
         print(f"{name}: {reason(error)}", file=sys.stderr)
         return 1
     except MemoryError as error:

@@ -139,8 +139,8 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
         manoeuvre: None: several.
     """
     from ...fmus.origin import origin_of
+    from ..base.digest import digest
     from ..loop.fmu_cache import as_built
-    from ..simulation.provenance import digest
     from ..simulation.simulate import start
 
     system = loop(made)

@@ -62,7 +62,7 @@ class Recorded(Headings):
     @property
     def distinguishing(self) -> dict[str, Any]:
         """What distinguishes a run by these files, which have been read, and by what the columns are said to be."""
-        from ..simulation.provenance import digest
+        from ..base.digest import digest
 
         given = {"databases": self.dbc, "aliases": self.aliases}
         others = {name: [digest(path) for path in paths] for name, paths in given.items() if paths}

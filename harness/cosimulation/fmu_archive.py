@@ -68,9 +68,9 @@ class _Bounded(FileIO):
     """An archive of which nothing but the list of its entries is read, at once."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        if (size or 0) > LARGEST_DIRECTORY:
+        if size is not None and size > LARGEST_DIRECTORY:
             raise ValueError(
-                f"the list of its entries has {megabytes(size or 0)}; {megabytes(LARGEST_DIRECTORY)} are allowed"
+                f"the list of its entries has {megabytes(size)}; {megabytes(LARGEST_DIRECTORY)} are allowed"
             )
         return super().read(size)
 
@@ -117,6 +117,9 @@ def unpack(path: Path, folder: str) -> None:
             for name in archive.namelist():
                 if not name.startswith(NOT_NEEDED):
                     archive.extract(name, folder)
+    except OSError as error:
+        moved = "the environment variable TMPDIR names another place"
+        raise UnpackingError(f"{path.name} cannot be unpacked to {folder}: {reason(error)}; {moved}") from error
     except Exception as error:
         raise UnpackingError(f"{path.name} cannot be unpacked: {reason(error)}") from error
 

@@ -5,6 +5,7 @@ import logging
 import os
 import shutil
 import subprocess
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,7 +13,7 @@ from tempfile import TemporaryDirectory
 import casadi as ca
 
 from ...fmus.child_process import run
-from ..base.user_cache import forget, user_cache
+from ..base.user_cache import kept, user_cache
 
 FLAGS = ("-shared", "-fPIC", "-O1", "-ffp-contract=off")
 """Each operation rounds on its own, as in CasADi."""
@@ -30,35 +31,16 @@ def compiled(function: ca.Function) -> ca.Function:
     generator.add(function)
     source = generator.dump()
     key = sha256("\n".join([source, compiler, *FLAGS]).encode()).hexdigest()
-    folder = user_cache() / "functions" / key[:32]
-    library = folder / f"{function.name()}.so"
+    library = user_cache() / "functions" / key[:32] / f"{function.name()}.so"
     try:
-        if not _whole(library):
-            _compile(source, compiler, library)
-        os.utime(folder)  # it has been used
-        forget(folder.parent.iterdir())
-        return ca.external(function.name(), str(library))
+        return ca.external(function.name(), str(kept(library, partial(_compile, source, compiler))))
     except (OSError, subprocess.CalledProcessError, RuntimeError) as error:
         _log.info("%s is not compiled, which makes it slower: %s", function.name(), error)
         return function
 
 
 def _compile(source: str, compiler: str, library: Path) -> None:
-    library.parent.mkdir(parents=True, exist_ok=True)
-    with TemporaryDirectory(dir=library.parent) as folder:
-        written, made = Path(folder) / "source.c", Path(folder) / library.name
+    with TemporaryDirectory() as folder:
+        written = Path(folder) / "source.c"
         written.write_text(source, encoding="utf-8")
-        run([compiler, *FLAGS, str(written), "-o", str(made), "-lm"], Path(folder)).check_returncode()
-        made.replace(library)
-    _sum(library).write_text(sha256(library.read_bytes()).hexdigest(), encoding="utf-8")
-
-
-def _whole(library: Path) -> bool:
-    """Whether it is there as it was made: one that is cut off would end the process that loads it."""
-    if not (library.is_file() and _sum(library).is_file()):
-        return False
-    return _sum(library).read_text(encoding="utf-8", errors="replace") == sha256(library.read_bytes()).hexdigest()
-
-
-def _sum(library: Path) -> Path:
-    return library.with_suffix(".sha256")
+        run([compiler, *FLAGS, str(written), "-o", str(library), "-lm"], Path(folder)).check_returncode()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ...fmus.building.builds import located, rebuilt
 from ...fmus.origin import is_stale, origin_of, sources_digest
 from ..base.atomic_files import alone, complete
-from ..base.user_cache import forget, named_as_cache, user_cache
+from ..base.user_cache import forget, is_as_made, named_as_cache, seal, user_cache
 from .places import BUILD, BUILDS
 
 if TYPE_CHECKING:
@@ -42,13 +42,14 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
         os.utime(kept)  # at once: another run that ends meanwhile forgets what was used longest ago
         for fmu in fmus:
             there, here = (located(fmu.name, each, build) for each in (folder, kept))
-            if not is_stale(here):
+            if is_as_made(here) and not is_stale(here):
                 continue
             if is_stale(there):
                 new += rebuilt(fmu, there, kept, build)
             else:
                 with complete(here) as unfinished:
                     copyfile(there, unfinished)
+            seal(here)
     forget(cache.iterdir())
     return kept, new
 

@@ -3,14 +3,13 @@
 import logging
 import zipfile
 from ctypes import CDLL
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...fmus.lanes_here import lanes_here
 from ...fmus.origin import is_stale, sources_digest
-from ..base.atomic_files import complete
-from ..base.user_cache import forget, user_cache
+from ..base.user_cache import kept, user_cache
 from ..cosimulation.system import System
 
 if TYPE_CHECKING:
@@ -51,14 +50,9 @@ def _is_ours(path: Path) -> bool:
 def _library(name: str, sources: str) -> CDLL | None:
     """That of a block; None if it cannot be made here."""
     lanes = lanes_here()
-    folder = user_cache() / "lanes" / sources[:32]
-    path = folder / f"{name}-{lanes}.so"
+    path = user_cache() / "lanes" / sources[:32] / f"{name}-{lanes}.so"
     try:
-        if not path.is_file():
-            with complete(path) as unfinished:
-                _make(name, lanes, unfinished)
-            forget(folder.parent.iterdir())
-        return CDLL(str(path))
+        return CDLL(str(kept(path, partial(_make, name, lanes))))
     except Exception as reason:  # it is faster, but needed for nothing
         LOG.info("%s: its runs are made one after the other, as there is no library for lanes: %s", name, reason)
         return None

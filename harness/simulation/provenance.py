@@ -1,6 +1,5 @@
 """What made a result: a JSON file beside it, and by it two runs that are not the same are told apart."""
 
-import hashlib
 import json
 import shlex
 import subprocess
@@ -14,6 +13,7 @@ from typing import Any
 
 from ...fmus.child_process import output_of
 from ..base.atomic_files import alone, as_before_if_stopped, remove, replaceable, write_text
+from ..base.digest import digest
 from ..base.errors import DrivelineError
 from ..cosimulation import row_layout
 from ..cosimulation.system import System
@@ -232,12 +232,6 @@ def commit() -> str | None:
         return output_of(*command)
     except (OSError, subprocess.CalledProcessError):
         return None
-
-
-def digest(path: Path) -> str:
-    """Of the content of a file, which may be larger than the memory."""
-    with path.open("rb") as file:
-        return f"sha256:{hashlib.file_digest(file, 'sha256').hexdigest()}"
 
 
 def _text(content: Any) -> str:

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
+from ..base.digest import digest
 from ..base.errors import DrivelineError
 from ..cosimulation.system import System
 from ..loop.settings import Settings
-from .provenance import digest
 
 
 def absolute(block: str) -> str:

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from driveline.harness.loop import fmu_cache
 from driveline.harness.loop.fmu_cache import as_built, refreshed_copy
 from driveline.harness.loop.places import BUILD
 from tests import ROOT
+from tests.harness.base.test_user_cache import DAMAGES
 
 CAN, LOOP = EVERY["WheelSpeedCan"], EVERY["MotorTorqueLoop"]
 
@@ -64,10 +66,12 @@ def test_what_is_stale_stays_the_car_that_it_was_built_as(given: Path, monkeypat
     assert refreshed_copy([CAN], given, "python")[0] != kept, "another car"
 
 
-def test_a_file_that_is_cut_off_is_built_again(given: Path) -> None:
+def test_a_file_that_was_damaged_is_built_again(given: Path) -> None:
     _, (path,) = refreshed_copy([CAN], given, "python")
-    path.write_bytes(path.read_bytes()[:1000])
+    whole = path.read_bytes()
+    path.write_bytes(DAMAGES["a byte"](whole))
     assert refreshed_copy([CAN], given, "python")[1] == [path]
+    assert path.read_bytes() == whole
 
 
 @pytest.mark.slow
@@ -80,7 +84,7 @@ def test_two_processes_at_once_build_it_once_and_nothing_unfinished_is_left(give
     both = [subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE) for _ in range(2)]
     made = [int(each.communicate(timeout=60.0)[0]) for each in both]
     assert sorted(made) == [0, 1]
-    assert [path.name for path in cache.rglob("*") if path.is_file()] == ["WheelSpeedCan.fmu"]
+    assert {path.name for path in cache.rglob("*.*")} == {"WheelSpeedCan.fmu", "WheelSpeedCan.fmu.digest"}
 
 
 def test_folders_that_were_used_last_are_kept(given: Path, cache: Path) -> None:
@@ -139,6 +143,18 @@ def test_the_name_of_a_cache_that_cannot_be_written_stays_in_its_line(
     ) as refused:
         refreshed_copy([CAN], given, "python")
     assert str(refused.value).isprintable()
+
+
+def test_a_full_disk_of_the_cache_is_not_told_of_what_is_copied_to_it(
+    given: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def copyfile(source: Path, target: Path) -> None:
+        raise OSError(ENOSPC, "No space left on device", str(source), None, str(target))
+
+    build(CAN, given)
+    monkeypatch.setattr(fmu_cache, "copyfile", copyfile)
+    with pytest.raises(DrivelineError, match=f"^the cache {cache} cannot be written: No space left on device; "):
+        refreshed_copy([CAN], given, "python")
 
 
 def test_what_cannot_be_read_elsewhere_is_no_fault_of_the_cache(
