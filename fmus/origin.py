@@ -4,7 +4,7 @@ import hashlib
 import json
 import os
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache, lru_cache
 from importlib.metadata import version
@@ -17,6 +17,9 @@ from .user_cache import user_cache
 
 ENTRY = "extra/driveline.damping/origin.json"
 """Where it stands in the archive."""
+
+ROOT = Path(__file__).parents[1]
+"""That the packages are in."""
 
 PACKAGES, KINDS = ("models", "fmus"), (".py", ".c", ".h", ".toml")
 """What the sources of every FMU of the project are."""
@@ -49,19 +52,23 @@ class Origin(NamedTuple):
 
 @cache
 def sources_digest() -> str:
-    """SHA-256 of the code of the sources of the FMUs (`code_of`), as they were when this was asked first.
-
-    It is kept in the user's cache by the bytes of the sources, as to parse them takes longer than to start.
-    """
-    root = Path(__file__).parents[1]
+    """That of the sources of the FMUs, as they were when this was asked first."""
     found = (
         os.path.join(folder, name)
         for package in PACKAGES
-        for folder, _, names in os.walk(root / package)
+        for folder, _, names in os.walk(ROOT / package)
         for name in names
         if name.endswith(KINDS) and os.path.basename(folder) not in BUILDING
     )
-    files = {path.relative_to(root).as_posix(): path for path in map(Path, sorted(found))}
+    return code_digest(map(Path, found))
+
+
+def code_digest(paths: Iterable[Path]) -> str:
+    """SHA-256 of the code of sources of the project (`code_of`).
+
+    It is kept in the user's cache by the bytes of the sources, as to parse them takes longer than to start.
+    """
+    files = {path.relative_to(ROOT).as_posix(): path for path in sorted(paths)}
     kept = user_cache() / "sources" / _digest({name: path.read_bytes() for name, path in files.items()})
     with suppress(OSError, ValueError):
         digest, check = kept.read_text(encoding="ascii").split()

@@ -21,6 +21,7 @@ from ..base.csv_file import write_rows
 from ..base.errors import DrivelineError
 from ..cosimulation.system import System
 from ..cosimulation.wiring import fit
+from .code_behind import digest_behind
 from .provenance import content, require_files, require_same_run, write_record
 
 Case = TypeVar("Case", bound=Hashable)
@@ -137,7 +138,7 @@ def resumable(
 
     Args:
         path: of the archive.
-        table: what its lines are.
+        table: what its lines are; it belongs to the module that computes them, whose code distinguishes the campaign.
         record: the JSON file beside it that tells what makes the files.
         run: all that distinguishes the campaign, but for the versions of PACKAGES.
         systems: that run, by their names.
@@ -148,7 +149,8 @@ def resumable(
     Raises:
         DrivelineError: there are results of another campaign, or a folder in the place of one; nothing has been run.
     """
-    run = {**run, "versions": {name: version(name) for name in PACKAGES}}
+    code = digest_behind(table.parsed.__module__)
+    run = {**run, "code": code, "versions": {name: version(name) for name in PACKAGES}}
     require_files([path, *results, record])
     with alone(record.parent):
         try:

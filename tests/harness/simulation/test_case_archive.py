@@ -48,6 +48,17 @@ def test_a_line_that_was_torn_is_forgotten_and_what_follows_is_whole(path: Path,
     assert CaseArchive(path, TABLE) == {"a": 1.0, "c": 3.0}
 
 
+def test_answers_of_other_code_are_not_gone_on_with(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with begun(path) as made:
+        made.archive["a"] = 1.0
+    monkeypatch.setattr(case_archive, "digest_behind", lambda module: f"sha256:another of {module}")
+    with pytest.raises(DrivelineError, match=rf"code: sha256:\w+ there, sha256:another of {__name__} here\); give"):
+        begun(path).__enter__()
+    assert CaseArchive(path, TABLE) == {"a": 1.0}
+    with begun(path, replace=True) as made:
+        assert made.archive == {}
+
+
 def test_lines_can_be_ordered_by_their_cases(path: Path) -> None:
     archive = CaseArchive(path, TABLE)
     for case, answer in (("c", 3.0), ("a", 1.0), ("b", 2.0)):
