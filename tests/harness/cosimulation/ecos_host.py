@@ -1,4 +1,4 @@
-"""A loop in ecos: see hosts.py."""
+"""A loop in ecos: see test_hosts.py."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""A loop in libcosim: see hosts.py."""
+"""A loop in libcosim: see test_hosts.py."""
 
 import json
 import sys

@@ -55,6 +55,14 @@ def running(system):
         yield found
 
 
+@pytest.fixture
+def lanes(both_built, libraries):
+    """The loop with the design model alone, and in lanes."""
+    system = loop("TwoMassDriveline", folder=both_built, build="native")
+    with running(system) as alone:
+        yield alone, LaneLoop(alone.fitted, libraries(system, WIDTHS[0]))
+
+
 def car(number, manoeuvre="tipin15", duration=0.4, scheme=Scheme.PROPAGATED, **parameters):
     """An experiment with a car of its own, without control if its number is 2."""
     of = replace(MANOEUVRES[manoeuvre], duration=duration)
@@ -76,18 +84,18 @@ def torques_apart(one, other):
     return max(np.abs(one[name] - other[name]).max() for name in torques)
 
 
-@pytest.mark.parametrize("lanes", slow(WIDTHS, but=WIDTHS[:1]))
+@pytest.mark.parametrize("width", slow(WIDTHS, but=WIDTHS[:1]))
 @pytest.mark.parametrize("plant", slow(["TwoMassDriveline", "ValidationVehicle"], but=["ValidationVehicle"]))
 @pytest.mark.parametrize("manoeuvre", slow(["tipin15", "launch_brake"], but=["tipin15"]))
 @pytest.mark.slow
-def test_they_are_those_of_single_runs(both_built, libraries, lanes, plant, manoeuvre):
+def test_they_are_those_of_single_runs(both_built, libraries, width, plant, manoeuvre):
     system = loop(plant, folder=both_built, build="native")
-    cars = [car(number, manoeuvre, 1.2) for number in range(lanes)]
+    cars = [car(number, manoeuvre, 1.2) for number in range(width)]
     with running(system) as alone:
-        in_lanes = LaneLoop(alone.fitted, libraries(system, lanes))
+        in_lanes = LaneLoop(alone.fitted, libraries(system, width))
         for made, each in zip(in_lanes.run(alone, cars), cars, strict=True):
             assert torques_apart(made, alone.run(each)) < TOLERANCE
-        assert 0 < in_lanes.alone < 0.05 * lanes * 1200
+        assert 0 < in_lanes.alone < 0.05 * width * 1200
 
 
 @pytest.mark.parametrize("scheme", slow(Scheme, but=[Scheme.JACOBI]))
@@ -104,56 +112,48 @@ def test_every_scheme_and_controller_has_lanes(both_built, native_builder, libra
             assert torques_apart(made, alone.run(each)) < TOLERANCE
 
 
-def test_any_number_of_cars_of_any_length(both_built, libraries):
-    system = loop("TwoMassDriveline", folder=both_built, build="native")
+def test_any_number_of_cars_of_any_length(lanes):
+    alone, in_lanes = lanes
     cars = [car(0, duration=0.05), car(1, duration=0.3), car(2, duration=0.2)]
-    with running(system) as alone:
-        in_lanes = LaneLoop(alone.fitted, libraries(system, WIDTHS[0]))
-        for count in (1, 3, 2):
-            for made, each in zip(in_lanes.run(alone, cars[:count]), cars[:count], strict=True):
-                assert torques_apart(made, alone.run(each)) < TOLERANCE
+    for count in (1, 3, 2):
+        for made, each in zip(in_lanes.run(alone, cars[:count]), cars[:count], strict=True):
+            assert torques_apart(made, alone.run(each)) < TOLERANCE
 
 
-def test_a_car_that_is_refused_something_is_given_up_and_the_others_go_on(both_built, libraries):
-    system = loop("TwoMassDriveline", folder=both_built, build="native")
+def test_a_car_that_is_refused_something_is_given_up_and_the_others_go_on(lanes):
+    alone, in_lanes = lanes
     absurd = replace(car(1), inputs=dict(car(1).inputs) | {"plant.T_brake": lambda t: np.where(t < 0.1, 0.0, -1.0)})
     cars = [car(0), absurd, car(2, controller__k_d=-1.0), car(3)]
-    with running(system) as alone:
-        in_lanes = LaneLoop(alone.fitted, libraries(system, WIDTHS[0]))
-        first, given_up, refused, last = in_lanes.run(alone, cars)
-        assert given_up is None
-        with pytest.raises(SimulationError, match=r"T_brake = -1\.0 N\.m"):
-            alone.run(absurd)
-        assert isinstance(refused, SimulationError)
-        assert "k_d" in str(refused)
-        assert torques_apart(first, alone.run(cars[0])) < TOLERANCE
-        assert torques_apart(last, alone.run(cars[3])) < TOLERANCE
-        assert in_lanes.run(alone, [absurd, absurd]) == [None, None]
-        (again,) = in_lanes.run(alone, cars[:1])
-        assert torques_apart(again, first) == 0.0
+    first, given_up, refused, last = in_lanes.run(alone, cars)
+    assert given_up is None
+    with pytest.raises(SimulationError, match=r"T_brake = -1\.0 N\.m"):
+        alone.run(absurd)
+    assert isinstance(refused, SimulationError)
+    assert "k_d" in str(refused)
+    assert torques_apart(first, alone.run(cars[0])) < TOLERANCE
+    assert torques_apart(last, alone.run(cars[3])) < TOLERANCE
+    assert in_lanes.run(alone, [absurd, absurd]) == [None, None]
+    (again,) = in_lanes.run(alone, cars[:1])
+    assert torques_apart(again, first) == 0.0
 
 
-def test_a_run_that_changes_a_parameter_goes_alone(both_built, libraries):
-    system = loop("TwoMassDriveline", folder=both_built, build="native")
+def test_a_run_that_changes_a_parameter_goes_alone(lanes):
+    alone, in_lanes = lanes
     constant = car(1)
     changed, never = (
         replace(constant, parameters=dict(constant.parameters) | {f"controller.k_d@{at:g}": 0.0}) for at in (0.1, 7.0)
     )
-    with running(system) as alone:
-        in_lanes = LaneLoop(alone.fitted, libraries(system, WIDTHS[0]))
-        first, given_up, refused = in_lanes.run(alone, [constant, changed, never])
-        assert given_up is None
-        assert isinstance(refused, WiringError)
-        assert torques_apart(first, alone.run(constant)) < TOLERANCE
-        assert in_lanes.run(alone, [changed, changed]) == [None, None]
+    first, given_up, refused = in_lanes.run(alone, [constant, changed, never])
+    assert given_up is None
+    assert isinstance(refused, WiringError)
+    assert torques_apart(first, alone.run(constant)) < TOLERANCE
+    assert in_lanes.run(alone, [changed, changed]) == [None, None]
 
 
-def test_a_run_whose_rows_are_in_a_file_goes_alone(both_built, libraries, monkeypatch):
-    system = loop("TwoMassDriveline", folder=both_built, build="native")
-    with running(system) as alone:
-        in_lanes = LaneLoop(alone.fitted, libraries(system, WIDTHS[0]))
-        size = alone.run(car(0)).nbytes
-        for most, alike in ((size - 1, False), (size, True)):
-            monkeypatch.setattr(row_file, "MOST_IN_MEMORY", most)
-            (made,) = in_lanes.run(alone, [car(0)])
-            assert (made is not None) == alike
+def test_a_run_whose_rows_are_in_a_file_goes_alone(lanes, monkeypatch):
+    alone, in_lanes = lanes
+    size = alone.run(car(0)).nbytes
+    for most, alike in ((size - 1, False), (size, True)):
+        monkeypatch.setattr(row_file, "MOST_IN_MEMORY", most)
+        (made,) = in_lanes.run(alone, [car(0)])
+        assert (made is not None) == alike

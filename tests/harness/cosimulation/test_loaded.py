@@ -1,31 +1,30 @@
-"""A loop that is loaded once: every run is that of a freshly loaded one, whatever the run before has done."""
+"""Loops that are loaded once, or kept from run to run: each run is that of a fresh one, whatever was run before."""
 
-import tempfile
 from dataclasses import replace
+from pathlib import Path
+from shutil import copyfile
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation import loading
+from driveline.harness.cosimulation import loading, runs
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.runs import run
+from driveline.harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
 from driveline.harness.cosimulation.system import Connection, Scheme, System
+from driveline.harness.cosimulation.unpacked_fmu import UnpackingError
+from driveline.harness.cosimulation.unpacked_fmu import unpacked as unpacked_into
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
-from tests.foreign import build_relay
 from tests.slow import slow
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)
 LAUNCH = replace(MANOEUVRES["launch"], duration=0.3)
-
-
-@pytest.fixture(scope="module")
-def relay(tmp_path_factory):
-    return build_relay(tmp_path_factory.mktemp("relay"))
 
 
 def drive(running, manoeuvre=TIPIN, step_size=1e-3, scheme=Scheme.PROPAGATED, **changes):
@@ -113,13 +112,12 @@ def test_a_loop_that_has_ended_with_fatal_says_that_it_must_be_loaded_anew(relay
     assert (run(system, Experiment(0.01, inputs={"a.u": 3.0}))["b.y"][2:] == 3.0).all()
 
 
-def test_nothing_is_left_behind(relay, tmp_path, monkeypatch):
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+def test_nothing_is_left_behind(relay, unpacked):
     with loaded(System({"a": relay, "b": relay})) as running:
         for _ in range(3):
             running.run(Experiment(0.01))
-        assert len(list(tmp_path.iterdir())) == 1
-    assert list(tmp_path.iterdir()) == []
+        assert len(files(unpacked)) == 1
+    assert files(unpacked) == []
 
 
 @pytest.mark.parametrize(
@@ -148,3 +146,87 @@ def test_that_the_steps_run_in_python_is_said_once(relay, monkeypatch, caplog):
         with loaded(System({"a": relay})):
             pass
     assert caplog.messages.count("the steps are old") == 1
+
+
+def files(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def gains(system, *values):
+    cases = [Experiment(0.01, inputs={"a.u": 1.0}, parameters={"a.gain": value}) for value in values]
+    return [run(system, case)["a.y"][-1] for case in cases]
+
+
+def test_a_system_is_kept_loaded_and_unloaded_in_the_end(relay, unpacked):
+    system = System({"a": relay})
+    with kept_loaded():
+        assert gains(system, 2.0) == [2.0]
+        first = files(unpacked)
+        assert len(first) == 1
+        assert gains(System({"a": relay}), 3.0, 4.0) == [3.0, 4.0]
+        assert files(unpacked) == first
+    assert files(unpacked) == []
+    assert gains(system, 5.0) == [5.0]
+    assert files(unpacked) == []
+
+
+def test_a_file_that_has_changed_is_loaded_anew(native, tmp_path):
+    block = tmp_path / "block.fmu"
+    copyfile(native / "MotorTorqueLoop.fmu", block)
+    with kept_loaded():
+        assert "block.T_mot" in (run(System({"block": block}), Experiment(0.01)).dtype.names or ())
+        copyfile(native / "WheelSpeedCan.fmu", block)
+        assert "block.counter" in (run(System({"block": block}), Experiment(0.01)).dtype.names or ())
+        block.unlink()
+        with pytest.raises(WiringError, match="there is no FMU"):
+            run(System({"block": block}), Experiment(0.01))
+
+
+@pytest.mark.slow
+def test_only_the_last_ones_are_kept(relay, unpacked):
+    systems = [System({f"a{k}": relay}) for k in range(MOST_KEPT + 1)]
+    with kept_loaded():
+        for system in systems[:-1]:
+            run(system, Experiment(0.01))
+        first, *others = unpacked.iterdir()
+        first = min((first, *others), key=lambda path: path.stat().st_ctime_ns).name
+        assert len(others) == MOST_KEPT - 1
+        run(systems[0], Experiment(0.01))
+        assert first in files(unpacked)
+        run(systems[-1], Experiment(0.01))
+        assert len(files(unpacked)) == MOST_KEPT
+        assert first in files(unpacked)
+
+
+def test_one_that_has_ended_with_fatal_is_loaded_anew(relay, unpacked):
+    system = System({"a": relay})
+    with kept_loaded():
+        gains(system, 1.0)
+        with pytest.raises(SimulationError, match="with fatal"):
+            run(system, Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
+        assert gains(system, 7.0) == [7.0]
+        assert len(files(unpacked)) == 1
+
+
+def test_what_is_wrong_is_told_in_every_run(relay):
+    with kept_loaded():
+        for _ in range(2):
+            with pytest.raises(WiringError, match="no parameter gian; did you mean gain"):
+                run(System({"a": relay}), Experiment(0.01, parameters={"a.gian": 1.0}))
+            gains(System({"a": relay}), 1.0)
+
+
+def test_an_error_within_unloads_too(relay, unpacked):
+    with pytest.raises(SimulationError), kept_loaded():
+        run(System({"a": relay}), Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
+    assert files(unpacked) == []
+    assert runs._here.kept is None
+
+
+def test_an_fmu_is_not_unpacked_to_where_its_uri_would_need_an_encoding(tmp_path):
+    folder, car = tmp_path / "Fahrzeuge für Anfänger", cast(Any, SimpleNamespace(path=Path("car.fmu")))
+    folder.mkdir()
+    message = r"^car\.fmu cannot be unpacked to .*: FMUs need a plain ASCII folder$"
+    with pytest.raises(UnpackingError, match=message), unpacked_into(car, folder):
+        pass
+    assert list(folder.iterdir()) == []

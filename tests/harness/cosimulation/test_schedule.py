@@ -16,12 +16,7 @@ from driveline.harness.cosimulation.schedule import Get, Move, Set, Step, Transf
 from driveline.harness.cosimulation.system import Connection, Scheme, System
 from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.loop.settings import loop
-from tests.foreign import build_relay, tampered
-
-
-@pytest.fixture(scope="module")
-def relay(tmp_path_factory):
-    return build_relay(tmp_path_factory.mktemp("relay"))
+from tests.foreign import tampered
 
 
 def planned(system, scheme=Scheme.PROPAGATED):

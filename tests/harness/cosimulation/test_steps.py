@@ -15,7 +15,6 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
-from tests.foreign import build_relay
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
 
@@ -36,27 +35,15 @@ def both(system, experiment):
     return results
 
 
-@pytest.fixture(scope="module")
-def relay(tmp_path_factory):
-    return build_relay(tmp_path_factory.mktemp("relay"))
-
-
 @pytest.mark.parametrize("scheme", Scheme)
 @pytest.mark.parametrize("plant", PLANTS)
-def test_native_fmus_make_the_same_steps(native, plant, scheme):
-    system = loop(plant, folder=native.parent, build="native")
-    compiled, in_python = both(system, tipin(scheme))
-    assert compiled == in_python
-
-
-@pytest.mark.parametrize("scheme", Scheme)
-@pytest.mark.parametrize("plant", PLANTS)
-def test_fmus_of_fmi_3_make_the_same_steps_as_those_of_fmi_2(native, fmi3_as_native, plant, scheme):
+def test_native_fmus_of_fmi_2_and_3_make_the_same_steps(native, fmi3_as_native, plant, scheme):
     """Each alone, and those of one kind with the others."""
     of_fmi2, of_fmi3 = (loop(plant, folder=folder, build="native") for folder in (native.parent, fmi3_as_native))
     kinds = of_fmi2.instances, of_fmi3.instances
     mixed = replace(of_fmi2, instances={name: kinds[k % 2][name] for k, name in enumerate(of_fmi2.instances)})
     expected = both(of_fmi2, tipin(scheme))
+    assert expected[0] == expected[1]
     assert both(of_fmi3, tipin(scheme)) == expected
     assert both(mixed, tipin(scheme)) == expected
 

@@ -247,6 +247,12 @@ def test_an_answer_arrives_as_it_was_sent():
         receive(pipe.read, lambda: 0)
 
 
+@pytest.mark.parametrize(("length", "error"), [(10**8, EOFError), (10**8 + 1, InvalidAnswer)])
+def test_an_answer_that_is_longer_than_any_is_not_waited_for(length, error):
+    with pytest.raises(error):
+        receive(BytesIO(LENGTH.pack(length)).read, lambda: 0)
+
+
 @pytest.mark.parametrize("own_session", ["", "setsid();"])
 def test_what_a_stranger_leaves_behind_is_not_waited_for(tmp_path, own_session):
     """A child that it has forked holds the pipe of the answers for 20 s."""
@@ -264,13 +270,14 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import System
 
-run(System({"car": Path(sys.argv[1])}), Experiment(0.1))
+for _ in range(2): run(System(dict(zip("ab", map(Path, sys.argv[1:])))), Experiment(0.1))
 """
 
 
-def test_what_a_stranger_prints_goes_nowhere(tmp_path):
+def test_what_strangers_print_goes_nowhere_and_the_process_of_the_master_ends_well(tmp_path, relay):
     path = build_stranger(tmp_path, IN_DO_STEP='puts("hello"), fprintf(stderr, "hello")', IN_FREE="fflush(0)")
-    done = subprocess.run([sys.executable, "-c", RUN, path], cwd=ROOT, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-c", RUN, path, relay]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 

@@ -1,9 +1,10 @@
-"""The complete loop in a host that we did not write, against our master."""
+"""The complete loop in co-simulation tools that we did not write: what our master gets under Jacobi."""
 
 import json
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Scheme
+from driveline.harness.loop.places import BUILDS, PLANTS
 from driveline.harness.loop.settings import loop
 
 STEPS, STEP_SIZE = 400, 1e-3
@@ -19,17 +21,23 @@ START = {"plant.v_0": 5.0, "plant.T_0": 20.0}
 OUTPUTS = ("plant.T_gear", "plant.omega_1", "plant.v", "motor.T_mot", "controller.T_ref", "can.omega_2_can")
 TYPES = {"can.valid": "boolean", "can.counter": "integer"}
 
+LIBRARIES = {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
+"""Where PyPI's tbb puts what ecos loads."""
 
-def check_loop(script: str, plant: str, build: str, fmus: Path, folder: Path, **environment: str) -> None:
-    """Fails unless a host gets what our master gets under Jacobi.
 
-    Args:
-        script: beside this file; it reads the loop as JSON and writes its last outputs to the file that it is given.
-        fmus: folder of both builds.
-        folder: in which the script runs.
-        environment: added to that of the process.
-    """
-    system = loop(plant, folder=fmus, build=build)
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize(
+    ("tool", "folder", "build"),
+    [
+        *((tool, "both_built", build) for tool in ("libcosim", "ecos") for build in BUILDS),
+        ("ecos", "fmi3_as_native", "native"),
+    ],
+)
+def test_a_tool_gets_what_our_master_gets_with_jacobi(request, tmp_path, tool, folder, build, plant) -> None:
+    """A script reads the loop as JSON and writes its last outputs to the file that it is given."""
+    if find_spec(f"{tool}py") is None:
+        pytest.skip(f"{tool}py is not installed")
+    system = loop(plant, folder=request.getfixturevalue(folder), build=build)
     job = {
         "fmus": {name: str(path) for name, path in system.instances.items()},
         "start": START | {"controller.T_driver": T_DRIVER},
@@ -38,16 +46,10 @@ def check_loop(script: str, plant: str, build: str, fmus: Path, folder: Path, **
         "step_size": STEP_SIZE,
         "outputs": OUTPUTS,
     }
-    answer = folder / "outputs.json"
-    done = subprocess.run(
-        [sys.executable, Path(__file__).with_name(script), answer],
-        input=json.dumps(job),
-        capture_output=True,
-        text=True,
-        cwd=folder,
-        env=os.environ | environment,
-        check=False,
-    )
+    answer = tmp_path / "outputs.json"
+    command = [sys.executable, Path(__file__).with_name(f"{tool}_host.py"), answer]
+    where = {"cwd": tmp_path, "env": os.environ | LIBRARIES}
+    done = subprocess.run(command, input=json.dumps(job), capture_output=True, text=True, check=False, **where)
     assert done.returncode == 0, done.stdout + done.stderr
     theirs = json.loads(answer.read_text())
     inputs = {"controller.T_driver": T_DRIVER, "controller.enable": True, "plant.T_brake": 0.0, "plant.slope": 0.0}
