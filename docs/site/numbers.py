@@ -8,6 +8,7 @@ comes from declarations is `[table: NAME](the file that declares it)`.
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -82,7 +83,8 @@ def as_markdown(table: Table) -> str:
         [_escaped(row), *(_escaped(number(cell, of)) for cell, of in zip(cells, table.columns, strict=True))]
         for row, cells in table.rows.items()
     ]
-    return markdown_table([table.label, *headings], rows, labels=1)
+    words = [any(isinstance(cells[k], str) for cells in table.rows.values()) for k in range(len(table.columns))]
+    return markdown_table([table.label, *headings], rows, labels=1 + len([*takewhile(bool, words)]))
 
 
 def _escaped(text: str) -> str:
