@@ -32,7 +32,7 @@ class Supervised(Generic[E, L]):
             wheel=wheel_messages.start(u, motor.omega_1, p),
             swings=oscillation.SwingState(),
             launch=launch.start(T_S, p),
-            trust=trust.start(motor.omega_1, p),
+            trust=trust.start(),
             level=where(u.enable, 1.0, 0.0),
             quiet=where(standstill.is_still(T_driver, motor.omega_1, p), standstill.longest(p), 0.0),
             T_ref=T_driver,
@@ -99,8 +99,8 @@ class Supervised(Generic[E, L]):
         unclear = logical_or(wheel_messages.tells_a_speed(u, p), bad)
         rested = logical_and(standstill.is_complete(x.quiet, p), logical_not(unclear))
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
-        pushed = logical_or(against, logical_and(rested, abs(T_driver) > p.T_still))
-        direction = trust.direction(x.trust, u, pushed, omega_1, logical_not(bad), T_S, p)
+        pushed = logical_and(rested, abs(T_driver) > p.T_still)
+        direction = trust.direction(x.trust, u, against, pushed, omega_1, logical_not(bad), T_S, p)
         side = trust.sign_of(direction)
         turned = side * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, side, T_S, p)

@@ -4,8 +4,9 @@ While there is trust, a clock runs for each time after which causes count (t_bad
 found. Without trust, the first of them runs as long as nothing is found, until trust is back.
 
 A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which it is driven out of
-rest. A motor that turns the other way turns it round within t_apart, which goes on if trust is lost meanwhile: at once
-would be too soon, as wheels that lock throw the motor back for about as long.
+rest, until the motor turns. Its magnitude says how sure it is: it grows for t_apart as the motor turns, and the other
+way it shrinks as slowly, since wheels that lock throw the motor back for about as long. While it is not sure that goes
+on without trust, so that a start with any signals heals.
 """
 
 from collections.abc import Mapping
@@ -13,7 +14,7 @@ from functools import reduce
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, where
+from ..block.operators import logical_and, logical_not, logical_or, maximum, minimum, where
 from .causes import CLOCKS, NONE, first_of
 from .supervision_interface import Input, Parameters
 
@@ -24,31 +25,42 @@ class TrustState(NamedTuple):
     cause: Annotated[int, Real("1", "number of the cause, that of none while the motor signals are trusted")]
     clock: Annotated[float, Real("s", "time for which motor signals have been bad, or good where there is a cause")]
     apart: Annotated[float, Real("s", "time for which the motor speed has been contradicted")]
-    direction: Annotated[float, Real("1", "of the car, 1 forwards, -1 backwards, between them as it turns round")]
+    direction: Annotated[
+        float, Real("1", "of the car, 1 forwards, -1 backwards, between them as far as it is not sure")
+    ]
 
 
-def start(omega_1: float, p: Parameters) -> TrustState:
-    return TrustState(NONE, 0.0, 0.0, where(omega_1 < -p.omega_still, -1.0, 1.0))
+def start() -> TrustState:
+    return TrustState(NONE, 0.0, 0.0, 0.0)
 
 
 def is_trusted(x: TrustState) -> bool:
     return x.cause == NONE
 
 
-def direction(x: TrustState, u: Input, pushed: bool, omega_1: float, good: bool, T_s: float, p: Parameters) -> float:
-    """Of the car in this sample: of the demand where that has `pushed` it, else of the motor speed (rad/s) if good."""
+def direction(
+    x: TrustState, u: Input, against: bool, pushed: bool, omega_1: float, good: bool, T_s: float, p: Parameters
+) -> float:
+    """Of the car in this sample.
+
+    Args:
+        against: whether the motor has set off against its torque, which tells it then.
+        pushed: whether a demand has ended the rest, which tells it until the motor turns.
+        omega_1: motor speed, rad/s.
+        good: whether that is good.
+    """
     turning = logical_and(good, abs(omega_1) > p.omega_still)
     turning = logical_and(turning, logical_or(is_trusted(x), abs(x.direction) < 1.0))
-    towards = sign_of(where(pushed, u.T_driver, omega_1))
-    later = x.direction + T_s / p.t_apart * towards
-    later = where(logical_or(pushed, later * towards >= 0.0), towards, later)
-    seen = where(logical_or(pushed, turning), later, x.direction)
+    step, towards, demanded = T_s / p.t_apart, sign_of(omega_1), sign_of(u.T_driver)
+    along = x.direction * towards + step
+    seen = where(turning, towards * minimum(where(along >= 0.0, maximum(along, step), along), 1.0), x.direction)
+    seen = where(against, demanded, where(pushed, step * demanded, seen))
     return where(u.direction > 0, 1.0, where(u.direction < 0, -1.0, seen))
 
 
 def sign_of(value: float) -> float:
-    """1 for what is forwards, -1 for what is not."""
-    return where(value > 0.0, 1.0, -1.0)
+    """1 for what is forwards, also for what is not sure at all, -1 for what is backwards."""
+    return where(value >= 0.0, 1.0, -1.0)
 
 
 def update(x: TrustState, found: Mapping[int, bool], turned: bool, T_s: float, p: Parameters) -> TrustState:

@@ -26,8 +26,9 @@ class Outcome:
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """The judges that found more than their limit."""
-        return tuple(judge.name for judge in JUDGES if not self.measured[judge.name] <= judge.limit)
+        """The judges that found more than their limit, but for those that the campaign excuses."""
+        counting = (judge for judge in JUDGES if judge.name not in self.case.plan.excused)
+        return tuple(judge.name for judge in counting if not self.measured[judge.name] <= judge.limit)
 
     @property
     def kinds(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 from ...manoeuvres.catalogue import EVERYDAY, GRADE, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import lines
-from .fault_catalogue import IN_SITUATIONS, KINDS, ON_ROADS, Kind, pairs, uniform
+from .fault_catalogue import AT_STARTS, IN_SITUATIONS, KINDS, ON_ROADS, Kind, pairs, uniform
 
 DURATION = 4.0
 """Of a run in a situation in s."""
@@ -109,6 +109,12 @@ _ROADS = {
 }
 
 
+_STARTS = {
+    f"starts in {name}": Situation(f"starts in {name}", MANOEUVRES[name].description, _short(name), 0.0, 0.0)
+    for name in ("tipin15", "tipin50", "tipout", "creep", "one_pedal_soft", "regen")
+}
+
+
 @dataclass(frozen=True)
 class Plan:
     """What the cases of a campaign are drawn from.
@@ -116,22 +122,31 @@ class Plan:
     Attributes:
         name: as on the command line.
         to_the_end: share of the faults that last to the end of the run, whatever their kind.
+        excused: judges that do not count: nothing before the first samples tells that these are wrong.
     """
 
     name: str
     situations: Mapping[str, Situation]
     kinds: Mapping[str, Kind]
     to_the_end: float = 0.0
+    excused: frozenset[str] = frozenset()
     pairs: Sequence[tuple[Kind, Kind]] = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "pairs", pairs(self.kinds.values()))
 
 
-PLANS = {plan.name: plan for plan in (Plan("dry", _SITUATIONS, IN_SITUATIONS), Plan("roads", _ROADS, ON_ROADS, 0.5))}
+PLANS = {
+    plan.name: plan
+    for plan in (
+        Plan("dry", _SITUATIONS, IN_SITUATIONS),
+        Plan("roads", _ROADS, ON_ROADS, 0.5),
+        Plan("starts", _STARTS, AT_STARTS, excused=frozenset({"noticed", "kick", "rms", "swing"})),
+    )
+}
 """Of the campaigns, by name."""
 
-SITUATIONS = _SITUATIONS | _ROADS
+SITUATIONS = _SITUATIONS | _ROADS | _STARTS
 
 
 @dataclass(frozen=True)

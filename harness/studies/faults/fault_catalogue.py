@@ -159,7 +159,31 @@ ON_ROADS = {
 }
 """What goes wrong on roads that are slippery themselves."""
 
-KINDS = IN_SITUATIONS | ON_ROADS
+_BRIEF = by_ratio(0.002, 0.09)
+"""How long in s first samples are not those of the car: until t_apart a direction is not believed for good."""
+
+AT_STARTS = {
+    kind.name: kind
+    for kind in (
+        Kind(
+            "first speeds zero", MOTOR_SPEED, GAIN, "the motor speed reads 0 from the start on", fixed(0.0), lasts=LASTS
+        ),
+        Kind("first speeds negative", MOTOR_SPEED, GAIN, "times -1 from the start on", fixed(-1.0), lasts=_BRIEF),
+        Kind("first speeds frozen", MOTOR_SPEED, FROZEN, "the first value stays", lasts=LASTS),
+        Kind("first speeds NaN", MOTOR_SPEED, NO_NUMBER, "no number from the start on", lasts=LASTS),
+        Kind("first speeds late", MOTOR_SPEED, LATE, "4 ms to 0.2 s", by_ratio(0.004, 0.2), lasts=LASTS, unit="s"),
+        Kind("first torques zero", MOTOR_TORQUE, GAIN, "the motor torque reads 0", fixed(0.0), lasts=LASTS),
+        Kind("first torques negative", MOTOR_TORQUE, GAIN, "times -1", fixed(-1.0), lasts=_BRIEF),
+        Kind(
+            "first messages zero", WHEEL_SPEED, GAIN, "the wheel speed reads 0", fixed(0.0), lasts=LASTS, tolerable=True
+        ),
+        Kind("no first messages", WHEEL_SPEED, LOST, "none arrives from the start on", lasts=LASTS, tolerable=True),
+    )
+}
+"""What first samples can be: of a host that exchanges nothing before its first step, or of a control unit that starts
+while the car drives."""
+
+KINDS = IN_SITUATIONS | ON_ROADS | AT_STARTS
 
 
 def can_be_together(first: Kind, second: Kind) -> bool:

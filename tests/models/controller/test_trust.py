@@ -24,7 +24,7 @@ from driveline.models.controller.trust import TrustState
 P = Parameters(t_bad=1.0, t_apart=2.0, t_proof=1.0, t_turn=2.0, omega_still=3.0)
 T_S = 0.25
 U = Input()
-TRUSTED = trust.start(150.0, P)
+TRUSTED = trust.start()._replace(direction=1.0)
 
 each_cause = pytest.mark.parametrize("row", FAILURES, ids=lambda row: row.word)
 each_side = pytest.mark.parametrize("side", [1.0, -1.0])
@@ -178,7 +178,7 @@ def test_the_first_of_those_that_count_is_the_cause_and_stays_it() -> None:
 def turning(samples: int, x: TrustState, omega_1: float, good: bool = True, u: Input = U) -> float:
     """The direction after samples with this motor speed (rad/s)."""
     for _ in range(samples):
-        x = x._replace(direction=trust.direction(x, u, False, omega_1, good, T_S, P))
+        x = x._replace(direction=trust.direction(x, u, False, False, omega_1, good, T_S, P))
     return x.direction
 
 
@@ -198,11 +198,18 @@ def test_the_direction_is_that_in_which_a_trusted_motor_has_turned_for_t_apart(s
 
 @each_side
 def test_a_demand_that_pushes_the_car_tells_its_direction(side: float) -> None:
-    """At once, whatever the motor does."""
+    """At once, whatever the motor does; a motor that turns the other way is believed, unless it has set off so."""
+    u = U._replace(T_driver=side * 50.0)
     for x in (TRUSTED, lost(SPEED_JUMP)):
-        for pushed, way in ((True, side), (False, -side)):
-            u = U._replace(T_driver=side * 50.0)
-            assert trust.direction(x._replace(direction=-side), u, pushed, -side * 99.0, True, T_S, P) == way
+        x = x._replace(direction=-side)
+        assert trust.direction(x, u, False, False, -side * 99.0, True, T_S, P) == -side
+        pushed, against = (
+            trust.direction(x, u, *how, -side * 99.0, True, T_S, P) for how in ((False, True), (True, False))
+        )
+        assert (trust.sign_of(pushed), against) == (side, side)
+        x = lost(SPEED_JUMP)
+        assert trust.sign_of(turning(2, x._replace(direction=pushed), -side * 99.0)) == -side
+        assert turning(99, x._replace(direction=against), -side * 99.0) == side
 
 
 @each_side
@@ -210,9 +217,9 @@ def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
     """By its sign, whatever number it has."""
     for x, number in product((TRUSTED, lost(SPEED_JUMP)), (1, 4)):
         told = U._replace(direction=number * int(side))
-        for pushed in (False, True):
+        for how in ((False, False), (False, True), (True, False)):
             x = x._replace(direction=-side)
-            assert trust.direction(x, told, pushed, -side * 99.0, True, T_S, P) == side
+            assert trust.direction(x, told, *how, -side * 99.0, True, T_S, P) == side
 
 
 @each_side
@@ -222,9 +229,15 @@ def test_the_direction_of_the_sample_is_kept(side: float) -> None:
         assert trust.update(x._replace(direction=side), nothing, False, T_S, P).direction == side
 
 
-def test_it_starts_with_the_direction_of_the_motor() -> None:
-    for omega_1, way in ((60.0, 1.0), (-3.0, 1.0), (math.nextafter(-3.0, -9.0), -1.0)):
-        assert trust.start(omega_1, P) == TrustState(NONE, 0.0, 0.0, way)
+@each_side
+def test_nothing_is_known_at_the_start_and_after_t_apart_of_motion_it_is_sure(side: float) -> None:
+    """Until then a motor that turns the other way turns it round without trust too."""
+    x, samples = trust.start(), round(P.t_apart / T_S)
+    assert (x.direction, trust.sign_of(x.direction)) == (0.0, 1.0)
+    for n, sure in ((1, False), (samples - 1, False), (samples, True)):
+        there = lost(SPEED_JUMP)._replace(direction=turning(n, x, side * 99.0))
+        assert (trust.sign_of(there.direction), abs(there.direction) == 1.0) == (side, sure)
+        assert trust.sign_of(turning(2 * samples, there, -side * 99.0)) == (side if sure else -side)
 
 
 def test_each_cause_is_a_row_with_a_number_a_word_and_a_parameter() -> None:

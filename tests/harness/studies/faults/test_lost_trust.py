@@ -1,5 +1,7 @@
 """Lost trust comes back in the loop, and damping on a late motor speed does not last, however the foot moves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,10 +15,13 @@ from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.simulate import signals, start
-from driveline.harness.studies.faults.fault_injection import with_faults
+from driveline.harness.studies.faults.fault_campaign import campaign
+from driveline.harness.studies.faults.fault_cases import PLANS
+from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
 from driveline.models.controller import causes, supervision
-from driveline.models.signal_faults import GAIN, LATE, MOTOR_SPEED, MOTOR_TORQUE, NO_NUMBER
+from driveline.models.signal_faults import GAIN, LATE, MOTOR_SPEED, MOTOR_TORQUE, NO_NUMBER, WHEEL_SPEED
 
+ACTING = supervision.WITH_WHEEL_SPEED, supervision.WITHOUT_WHEEL_SPEED
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 LOCKED = Manoeuvre(
     "wheels lock on snow", "", 4.0, 15.0, lines((0.0, 0.0)), lines((1.0, 0.0), (1.0, 2500.0), (2.0, 2500.0), (2.0, 0.0))
@@ -27,10 +32,12 @@ COASTING = Manoeuvre("brakes out of coasting", "", 6.0, 12.0, lines((2.0, 0.0), 
 CREEPING = Manoeuvre("creeps, then backwards", "", 4.0, 0.0, lines((1.0, 0.0), (1.0, 5.0), (1.03, 5.0), (1.03, -80.0)))
 
 
-def faulty(injector, settings, manoeuvre, fault, *, control=True, plant=None):
-    """The samples of a run with a fault: its kind, signal, begin, end and size."""
-    given = dict(zip(("kind_1", "signal_1", "begin_1", "end_1", "size_1"), fault, strict=True))
-    parameters = start(manoeuvre, 1) | {f"faults.{name}": value for name, value in given.items()}
+def faulty(injector, settings, manoeuvre, *faults, control=True, plant=None):
+    """The samples of a run with faults: the kind, signal, begin, end and size of each."""
+    parameters = start(manoeuvre, 1)
+    for k, fault in enumerate(faults, 1):
+        given = zip(("kind", "signal", "begin", "end", "size"), fault, strict=True)
+        parameters |= {f"faults.{name}_{k}": value for name, value in given}
     parameters |= {f"plant.{name}": value for name, value in (plant or {}).items()}
     inputs = signals(manoeuvre, control)
     experiment = Experiment(manoeuvre.duration, inputs=inputs, parameters=parameters)
@@ -55,6 +62,31 @@ def test_a_signal_that_was_lost_while_the_direction_is_new_heals(
         y = faulty(injector, settings[plant], manoeuvre, fault, plant=road)
         late = y["time"] > begin + lasting + 0.25
         assert [supervision.FALLBACK in y["controller.status"][k] for k in (~late, late)] == [True, False]
+
+
+def late(demand, end):
+    """A demand that is not there before its end in s."""
+    return lambda t: np.where(np.asarray(t) < end - 1e-9, 0.0, demand(t))
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+@pytest.mark.parametrize("name", ["tipin15", "one_pedal_soft"])
+@pytest.mark.parametrize(("first", "sign"), [(0.002, 0.0), (0.05, 0.0), (0.004, -1.0), (0.09, -1.0)])
+def test_a_start_with_first_samples_that_are_not_those_of_the_car_heals(injector, settings, plant, name, first, sign):
+    """Nothing, with a negative demand one sample before the speeds, which looks like a car that is pushed backwards out
+    of rest; or a motor that seems to turn backwards, for less than t_apart."""
+    drive = MANOEUVRES[name]
+    manoeuvre = replace(drive, duration=1.0, T_driver=late(drive.T_driver, first) if sign == 0.0 else drive.T_driver)
+    end = first + 0.002
+    faults = [(GAIN, MOTOR_SPEED, 0.0, end, sign), (GAIN, WHEEL_SPEED, 0.0, end, abs(sign))]
+    y = faulty(injector, settings[plant], manoeuvre, *faults)
+    assert np.isin(y["controller.status"], ACTING)[y["time"] > end + 0.5].all()
+
+
+@pytest.mark.slow
+def test_cases_of_the_campaign_of_starts_are_clean(injector, settings):
+    outcomes = campaign(FaultRunner(injector, settings), range(1, 55), 3, workers=1, plan=PLANS["starts"])
+    assert not [outcome for outcome in outcomes if outcome.failed]
 
 
 @pytest.mark.parametrize("plant", PLANTS)
