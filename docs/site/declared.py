@@ -9,6 +9,7 @@ from driveline.fmus.file_limits import LIMITS
 from driveline.fmus.fmu import Fmu
 from driveline.harness.exchange.compliance import check
 from driveline.harness.recordings import plausibility, relations, signal_checks
+from driveline.harness.recordings.missing_values import FILLED
 from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
 from driveline.harness.views.markdown import markdown_table
 from driveline.models.controller.causes import FAILURES, FEEDING, Cause
@@ -84,7 +85,8 @@ def recording_checks() -> str:
     limits = ((name, QUANTITIES[name]) for name in ("v", "elevation", "omega_1", "T_mot", "T_wheel"))
     return CHECKS.format(
         limits="; ".join(f"`{name}` {q.limit:g} {q.unit}" for name, q in limits),
-        gaps=(gaps[0], gaps[-1]),
+        gaps=(gaps[0], gaps[1]),
+        FILLED=FILLED,
         slowest=_each("more than {q.slowest:g} s between samples"),
         least_swing=_each("{q.least_swing:g} {q.unit} or less"),
         signals=signal_checks,

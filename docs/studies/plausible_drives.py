@@ -20,8 +20,9 @@ from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.drive import Drive
 from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.recordings.findings import Finding
 from driveline.harness.recordings.force_balance import Balance, balance, forces
-from driveline.harness.recordings.plausibility import Finding, not_followed, of_drive
+from driveline.harness.recordings.plausibility import not_followed, of_drive
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.drives.replay import car_of, followed, speed_error
 from driveline.harness.studies.robustness.case_runs import CaseRunner

@@ -89,7 +89,7 @@ def add_arguments(parser: ArgumentParser, record: type) -> None:
             how = {"action": "append", **how, "default": []}
         elif isinstance(default, Path):
             how["default"] = str(default)  # which is checked as what is typed is
-        action = place.add_argument(f"--{each.name.replace('_', '-')}", **how)
+        action = place.add_argument(f"--{each.name.rstrip('_').replace('_', '-')}", dest=each.name, **how)
         if said["complete"]:
             action.complete = said["complete"]  # type: ignore[attr-defined]  # of shtab
 

@@ -49,7 +49,7 @@ def run(args: Arguments) -> int:
 
     recording = None
     if args.recording is not None:
-        recording = read_drive(args.recording, dict(args.column), args.aliases, args.dbc)
+        recording = read_drive(args.recording, **args.as_read)
     car = read_vehicle(args.vehicle) if args.vehicle else {}
     runner = RequestRunner(given, car, offered, recording)
     fits = {plant: runner.fit(plant, runner.controllers[0]) for plant in runner.plants}

@@ -68,7 +68,7 @@ def run(args: Arguments) -> int:
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
     require_possible(args.free, output)
     plant, _, _ = records(vehicle)
-    recording = read_measurement(args.recording, plant.i, plant.r, dict(args.column), args.aliases, args.dbc)
+    recording = read_measurement(args.recording, plant.i, plant.r, **args.as_read)
     options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "identification")
     from ..identification import car_file, identification_report_html

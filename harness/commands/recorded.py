@@ -1,12 +1,17 @@
 """The recording that a command reads: the file, and what its columns are called."""
 
 from argparse import ArgumentTypeError
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..base.plain_text import quoted
+from ..base.written_numbers import real
+from ..recordings.clock_times import Clock, read_clock
 from ..recordings.quantities import QUANTITIES, aliases, example
+from ..recordings.time_base import Cut
 from .arguments import option, positional
 from .options import record
 
@@ -28,6 +33,17 @@ def column(text: str) -> tuple[str, str]:
     return quantity, heading
 
 
+def instant(text: str) -> float | Clock:
+    """Seconds, or a time of day with or without a date."""
+    number = real(text)
+    if number is not None and isfinite(number):
+        return number
+    clock = read_clock(text) or read_clock(f"{text}:00")
+    if clock is None:
+        raise ArgumentTypeError(f"{quoted(text)} is neither seconds nor a time of day, as in 12.5 or 10:15:30.5")
+    return clock
+
+
 def recording(what: str, nargs: str | None = None) -> Any:
     """RECORDING, of what is recorded."""
     return positional(f"{what} (docs/recordings.md)", Path, "RECORDING", nargs)
@@ -35,7 +51,12 @@ def recording(what: str, nargs: str | None = None) -> Any:
 
 @record
 class Headings:
-    """What the columns of a recording are called."""
+    """What of a recording is read, and what its columns are called."""
+
+    from_: float | Clock | None = option(
+        None, "read it from then on: seconds, or a time of day", instant, metavar="TIME"
+    )
+    to: float | Clock | None = option(None, "read it up to then", instant, metavar="TIME")
 
     dbc: tuple[Path, ...] = option(
         (), "of a log of a bus (BLF, ASC): what its frames mean (repeatable)", Path, metavar="FILE.dbc"
@@ -46,6 +67,18 @@ class Headings:
     aliases: tuple[Path, ...] = option(
         (), "more names of quantities, as in omega_1 = ['n_EM1'] (repeatable)", Path, metavar="FILE.toml"
     )
+
+    @property
+    def as_read(self) -> dict[str, Any]:
+        """How `read_drive` and `read_measurement` are to read it."""
+        by_quantity: dict[str, str] = {}
+        for quantity, heading in self.column:
+            if by_quantity.setdefault(quantity, heading) != heading:
+                raise DrivelineError(
+                    f"--column {quantity}: {by_quantity[quantity]} and {heading} are given; it can be one"
+                )
+        cut = Cut(self.from_, self.to)
+        return {"columns": by_quantity, "names": self.aliases, "databases": self.dbc, "cut": cut}
 
 
 @record
@@ -66,4 +99,5 @@ class Recorded(Headings):
 
         given = {"databases": self.dbc, "aliases": self.aliases}
         others = {name: [digest(path) for path in paths] for name, paths in given.items() if paths}
-        return {"recording": digest(self.recording), "columns": dict(self.column), **others}
+        cut = {name: each for name, each in (("from", self.from_), ("to", self.to)) if each is not None}
+        return {"recording": digest(self.recording), "columns": dict(self.column), **others, **cut}

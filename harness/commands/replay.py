@@ -41,7 +41,7 @@ from .settings import all_settings, caption
 if TYPE_CHECKING:
     from ..manoeuvres.road_load import RoadLoad, Track
     from ..recordings.drive import Drive
-    from ..recordings.plausibility import Finding
+    from ..recordings.findings import Finding
     from ..studies.drives.replay import Ride
 
 IN_HELP = {"columns": ", ".join(examples("time", "v", "elevation", "T_mot")), "metrics": legend(RideMetrics)}
@@ -70,7 +70,7 @@ def run(args: Arguments) -> int:
     if args.look and args.report:
         raise DrivelineError("--look runs nothing, so that there is nothing to --report")
     require_held(args.held)
-    recording = read_drive(args.recording, dict(args.column), args.aliases, args.dbc)
+    recording = read_drive(args.recording, **args.as_read)
     same = args.distinguishing | {"held": args.held} | args.other_format
     found = all_settings(args, [args.plant], args.controller or PLACES["controller"][:1])
     given = {controller: made for (_, controller), made in found.items()}

@@ -13,9 +13,14 @@ import numpy as np
 
 from .channels import Channel
 from .source import RecordingError
+from .thresholds import Threshold
 
-SLOWER = 1.5
-"""Times the interval of the base from which on a wheel speed is taken as sent in messages, and held between them."""
+SLOWER = Threshold(
+    1.5,
+    "1",
+    "interval over that of the base from which on a wheel speed is held between messages",
+    "loggers jitter by less",
+)
 
 
 def is_slower(channel: Channel, base: Channel) -> bool:

@@ -2,6 +2,7 @@
 them in the metadata of the column (`unit`)."""
 
 from collections.abc import Sequence
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +10,15 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
+from .clock_times import Clock
 from .headings import split
 from .source import Column, RecordingError, Samples, Where, samples
 
 PARQUET, FEATHER = b"PAR1", b"ARROW1"
 """With which such files begin."""
+
+
+EPOCH = date(1970, 1, 1).toordinal()
 
 
 class ArrowFile:
@@ -39,17 +44,20 @@ class ArrowFile:
         return [self._samples(table.column(name), place) for name, place in zip(names, places, strict=True)]
 
     def _samples(self, column: Any, place: int) -> Samples:
-        values = column.to_numpy()
+        values, begin = column.to_numpy(), None
         if values.dtype.kind in "mM":
-            values = (values - values[:1]) / np.timedelta64(1, "s")
-        if values.dtype.kind not in "biuf":
-            raise RecordingError(
-                f"{self.path}: {self.columns[place].heading} holds no numbers, or has rows without one"
-            )
-        values = values.astype(float)
-
+            first = values[~np.isnat(values)][:1]
+            if len(first) and values.dtype.kind == "M":
+                day = first.astype("datetime64[D]")
+                begin = Clock(int(day[0].astype(int)) + EPOCH, float((first - day)[0] / np.timedelta64(1, "s")))
+            values = (values - first) / np.timedelta64(1, "s") if len(first) else np.full(len(values), np.nan)
+        elif values.dtype.kind not in "biuf":
+            try:
+                values = column.cast("double").to_numpy()  # decimals, flags, texts of numbers
+            except Exception as error:  # pyarrow has many
+                raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers") from error
         rows = Where("row {0}", range(len(values)))
-        return samples(self.path, self.columns[place], values, None, rows)
+        return samples(self.path, self.columns[place], values.astype(float), None, rows, begin)
 
     def _done(self, work: Any) -> Any:
         try:

@@ -1,26 +1,24 @@
-"""Logs of a bus, BLF and ASC, read by python-can, whose frames are decoded by cantools with databases (DBC, ...)."""
+"""Logs of a bus, whose frames are decoded by cantools with databases (DBC, ...)."""
 
-import re
 from array import array
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.optional_packages import required
 from ..base.plain_text import plain
+from .bus_database import Messages, known_messages, the_one, without_value
+from .bus_readers import messages
+from .clock_times import Clock
 from .source import Column, RecordingError, Samples, Where, samples
 
-BLF = b"LOGG"
-"""With which such files begin."""
-
-ASC = re.compile(rb"\s*date [^\n]*\n\s*base\s+(hex|dec)", re.IGNORECASE)
-"""And how these do."""
-
 IDENTIFIERS_SHOWN = 5
+
+DATED = 1e8
+"""Seconds since 1970 from which on a time is one of a clock, and not since the beginning."""
 
 
 class Kind(NamedTuple):
@@ -59,13 +57,10 @@ class BusLog:
             raise RecordingError(
                 f"{path} holds frames of a bus; give the database that says what they mean, --dbc FILE"
             )
-        known = {key: message for database in databases for key, message in _messages(database).items()}
-        self._frames = _read(path, known, databases)
-        self._places = [
-            (kind, known[kind.identifier, kind.extended], signal)
-            for kind in self._frames
-            for signal in known[kind.identifier, kind.extended].signals
-        ]
+        known = known_messages(databases)
+        self._frames, self._begin = _read(path, known, databases)
+        declared = {kind: the_one(path, known[kind.identifier, kind.extended]) for kind in self._frames}
+        self._places = [(kind, declared[kind], signal) for kind in self._frames for signal in declared[kind].signals]
         self.columns: Sequence[Column] = _columns(self._places)
 
     def read(self, places: Sequence[int]) -> list[Samples]:
@@ -105,27 +100,17 @@ class BusLog:
             raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers") from None
 
     def _samples(self, place: int, values: np.ndarray, time: np.ndarray) -> Samples:
-        return samples(self.path, self.columns[place], values, time, Where("frame at {1:g} s", time))
+        none = np.isin(values, without_value(self._places[place][2]))
+        where = Where("frame at {1:g} s", time)
+        return samples(self.path, self.columns[place], np.where(none, np.nan, values), time, where, self._begin)
 
 
-def _messages(path: Path) -> Mapping[tuple[int, bool], Any]:
-    """The messages of a database by identifier, and whether that is an extended one."""
-    cantools = required("cantools", "decoding the frames of a bus", "recordings")
-    if not path.is_file():
-        raise RecordingError(f"there is no database {path}")
-    try:
-        database = cantools.database.load_file(path, strict=False)
-        return {(message.frame_id, message.is_extended_frame): message for message in database.messages}
-    except Exception as error:
-        raise RecordingError(f"{path} is no database of a bus (DBC, KCD, SYM, ARXML): {plain(error, 200)}") from error
-
-
-def _read(path: Path, known: Mapping[tuple[int, bool], Any], databases: Sequence[Path]) -> dict[Kind, Frames]:
-    """The frames that are in a database."""
+def _read(path: Path, known: Messages, databases: Sequence[Path]) -> tuple[dict[Kind, Frames], Clock | None]:
+    """The frames that are in a database, and what the clock says at the first one."""
     frames: dict[Kind, Frames] = {}
     others: set[int] = set()
     begin = None
-    with _opened(path) as log:
+    with messages(path) as log:
         for message in log:
             begin = message.timestamp if begin is None else begin
             if message.is_error_frame or message.is_remote_frame:
@@ -142,23 +127,11 @@ def _read(path: Path, known: Mapping[tuple[int, bool], Any], databases: Sequence
     if not frames:
         shown = ", ".join(f"0x{identifier:X}" for identifier in sorted(others)[:IDENTIFIERS_SHOWN])
         raise RecordingError(f"{path}: no frame is in {', '.join(map(str, databases))}; there are {shown}, ...")
-    return frames
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[Any]:
-    """The log, while it is read; whatever python-can meets in a damaged one is a RecordingError."""
-    can = required("can", "reading logs of a bus", "recordings")
-    with path.open("rb") as file:
-        blf = file.read(len(BLF)) == BLF
-    try:
-        with can.BLFReader(path) if blf else can.ASCReader(path) as log:
-            yield log
-    except (RecordingError, MemoryError):
-        raise
-    except Exception as error:
-        detail = plain(error, 200) or type(error).__name__
-        raise RecordingError(f"{path} is a damaged log of a bus: {detail}") from error
+    if begin < DATED:
+        return frames, None
+    moment = datetime.fromtimestamp(begin)  # as the clock on the wall said, which python-can takes for local time
+    within = 3600.0 * moment.hour + 60.0 * moment.minute + moment.second + 1e-6 * moment.microsecond
+    return frames, Clock(moment.toordinal(), within)
 
 
 def _columns(places: Sequence[tuple[Kind, Any, Any]]) -> list[Column]:

@@ -1,25 +1,37 @@
 """The channels of a recording in SI units, with the checks that each of them has to pass alone."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import inf
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ..base.plain_text import plain
+from .clock_times import EXAMPLES, Clock
 from .column_choice import Choice, Chooser
 from .file_units import FileUnit
 from .format_detection import opened
-from .missing_values import is_code
+from .missing_values import FILLED, coded, holes
 from .quantities import QUANTITIES, aliases
-from .source import RecordingError, Samples
+from .source import Column, Kept, RecordingError, Samples, not_finite
+from .time_base import MOST, WHOLE, Break, Cut, around, longest_piece, spread, time_breaks, typed
 
 LEAST = 2
 """Samples that every recording has."""
 
-INTERVALS = (1e-6, 1e6)
-"""In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
+LONGEST_CELL = 100
+"""Characters of a cell that are shown."""
+
+
+class Lack(NamedTuple):
+    """Samples without a value: the number that the file has there, None if it has none, their times in s, and the place
+    of the first in the file."""
+
+    code: float | None
+    times: np.ndarray
+    place: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +47,7 @@ class Channel:
         where: of a value in the file by its index, as in "line 12".
         file_unit: its unit in the file.
         clock: heading of the column of its time; "time" where a channel has its own.
+        lacks: samples that the file has without a value and that were left out, or filled in short holes.
     """
 
     quantity: str
@@ -45,6 +58,17 @@ class Channel:
     where: Callable[[int], str]
     file_unit: FileUnit
     clock: str = "time"
+    lacks: Sequence[Lack] = ()
+
+
+class Rows(NamedTuple):
+    """Of a file in which a column is the time of all: times in s, NaN in rows without one, what the clock says at 0,
+    heading of the column, and where a time cannot be read."""
+
+    time: np.ndarray
+    begin: Clock | None
+    heading: str
+    breaks: list[Break]
 
 
 class Channels:
@@ -61,18 +85,21 @@ class Channels:
         columns: Mapping[str, str] | None = None,
         names: Sequence[Path] = (),
         databases: Sequence[Path] = (),
+        cut: Cut = WHOLE,
     ) -> None:
         """
         Args:
             columns: the headings of quantities that are not to be found by name, see `Chooser`.
             names: files of aliases beside ours.
             databases: of the bus, if the file is a log of its frames.
+            cut: the part that is read.
 
         Raises:
             RecordingError: there is no such file; it is of no kind that can be read; a file of aliases is refused.
         """
         self.path = path
         self.names = aliases(*names)
+        self._cut = cut
         self._source = opened(path, databases)
         self._chooser = Chooser(self._source, self.names, columns or {})
 
@@ -88,45 +115,156 @@ class Channels:
         """What to say of them."""
         return self._chooser.absence(missing)
 
-    def read(self, *quantities: str, drawn: bool = False) -> dict[str, Channel]:
-        """The channels of these quantities.
+    def read(self, *quantities: str, optional: Collection[str] = (), drawn: bool = False) -> dict[str, Channel]:
+        """The channels of these quantities. Samples without a value are left out; those in short holes are filled.
 
         Args:
+            optional: those of them that are left out where their columns have no number at all.
             drawn: the samples are corners of straight lines, so that two at one instant are a jump and no step of time
                 is a gap.
 
         Raises:
-            RecordingError: a column is missing, doubled or of an unknown unit; a value is not a finite number, or
-                larger than any car has; time does not increase, has a gap or steps that no recording has; there are
-                less than two samples.
+            RecordingError: a column is missing, doubled or of an unknown unit; a cell cannot be read, or is larger than
+                any car has; time does not increase, has a gap or steps that no recording has; there are less than two
+                samples. The longest piece without all that is named.
         """
         if missing := self.missing(*quantities):
             raise RecordingError(self.absence(missing))
         clock = [] if self._source.own_time else [self._chooser.needed("time")]
         choices = [*clock, *(self._chooser.needed(quantity) for quantity in quantities)]
         samples = self._source.read([choice.place for choice in choices])
-        time = clock[0].factor * samples[0].values if clock else None
-        channels = {
-            choice.quantity: _channel(choice, one, time, *(each.column.heading for each in clock))
-            for choice, one in zip(choices[len(clock) :], samples[len(clock) :], strict=True)
-        }
+        rows = self._rows(clock[0], samples[0]) if clock else None
+        breaks = list(rows.breaks) if rows else []
+        channels: dict[str, Channel] = {}
+        for choice, one in zip(choices[len(clock) :], samples[len(clock) :], strict=True):
+            if np.isfinite(one.values).any() or choice.quantity not in optional:
+                channel, more = self._channel(choice, one, rows, [each.time for each in channels.values()], drawn)
+                channels[choice.quantity] = channel
+                breaks += more
         for together in _by_time(channels.values()):
-            first = together[0]
-            if len(first.time) < LEAST:
-                raise RecordingError(f"{self.path}: {len(first.time)} samples; a drive needs at least two")
-            gap = min(QUANTITIES[channel.quantity].gap for channel in together)
-            check_time(self.path, first.time, first.where, inf if drawn else gap, jumps=drawn)
-        for channel in channels.values():
-            check_limit(self.path, channel)
+            gap = inf if drawn else min(QUANTITIES[channel.quantity].gap for channel in together)
+            breaks += time_breaks(self.path, together[0].time, together[0].where, gap, jumps=drawn)
+        breaks += [each for channel in channels.values() for each in _beyond_limit(self.path, channel)]
+        if breaks:
+            raise _refusal(list(channels.values()), breaks)
         return channels
 
+    def _rows(self, choice: Choice, samples: Samples) -> Rows:
+        """The rows; what some write below the last time is none of them."""
+        time, column = choice.factor * samples.values, choice.column
+        there = np.flatnonzero(np.isfinite(time))
+        if not len(there):
+            raise self._no_numbers(column, samples)
+        kept = there[self._inside(time[there], samples.begin)]
+        within = range(kept[0], kept[-1]) if len(kept) else ()
+        odd = {k: text for k, text in samples.unreadable.items() if k in within}
+        breaks = self._unreadable(column, samples.where, odd, kept, time, f", nor a time such as {EXAMPLES}")
+        return Rows(time, samples.begin, column.heading, breaks)
 
-def _channel(choice: Choice, samples: Samples, time: np.ndarray | None, *clock: str) -> Channel:
-    own = samples.time if time is None else time
-    assert own is not None, "a file has a column of time, or its channels have their own"
-    values = choice.factor * samples.values
-    file_unit = FileUnit(plain(choice.file_unit), abs(choice.factor))
-    return Channel(choice.quantity, choice.column.heading, choice.unit, own, values, samples.where, file_unit, *clock)
+    def _inside(self, time: np.ndarray, begin: Clock | None) -> np.ndarray:
+        """Which times are in the part that is read."""
+        try:
+            return self._cut.within(time, begin)
+        except ValueError as reason:
+            raise RecordingError(f"{self.path}: {reason}") from reason
+
+    def _channel(
+        self, choice: Choice, samples: Samples, rows: Rows | None, times: Sequence[np.ndarray], drawn: bool
+    ) -> tuple[Channel, list[Break]]:
+        """A channel, and where it cannot be used.
+
+        Args:
+            times: of the channels before, so that those that were sampled together have the same array.
+        """
+        declared, column = QUANTITIES[choice.quantity], choice.column
+        if not np.isfinite(samples.values).any():
+            raise self._no_numbers(column, samples)
+        time, begin = (rows.time, rows.begin) if rows else (samples.time, samples.begin)
+        assert time is not None, "a file has a column of time, or its channels have their own"
+        index = np.flatnonzero(self._inside(time, begin))
+        time, written = time[index], samples.values[index]
+        is_code = np.zeros(len(index), dtype=bool) if drawn or declared.unit == "1" else coded(written)
+        found = holes(
+            time, np.where(is_code, np.nan, written), inf if drawn else max(FILLED, declared.hole), declared.held
+        )
+        kept = np.flatnonzero(np.isfinite(found.values))
+        places = {int(k): j for j, k in enumerate(index)} if samples.unreadable else {}
+        odd = {places[k]: text for k, text in samples.unreadable.items() if k in places}
+        where = Kept(samples.where, index)
+        breaks = self._unreadable(column, where, odd, kept, time)
+        if drawn and len(none := np.flatnonzero(np.isnan(written))):
+            breaks.append(Break(-inf, inf, f"{self.path}, {where(int(none[0]))}: {column.heading} has no value"))
+        breaks += [
+            Break(
+                float(time[a]),
+                float(time[b]),
+                f"{self.path}, {where(a + 1)}: {column.heading} has no value for {time[b] - time[a]:g} s "
+                f"after {typed(float(time[a]))} s; holes of {FILLED:g} s at most are filled",
+            )
+            for a, b in found.long
+        ]
+        lacking = {code: np.flatnonzero(written == code) for code in np.unique(written[is_code]).tolist()}
+        lacking |= {None: found.filled[~is_code[found.filled]]}
+        lacks = [Lack(code, time[at], where(at[0])) for code, at in lacking.items() if len(at)]
+        time = time[kept] if drawn else spread(time[kept])
+        if not drawn and len(once := _not_twice(time, found.values[kept])) < len(time):
+            time, kept = time[once], kept[once]
+        if len(kept) < LEAST:
+            raise RecordingError(f"{self.path}: {len(kept)} samples; a drive needs at least two")
+        channel = Channel(
+            choice.quantity,
+            column.heading,
+            choice.unit,
+            next((same for same in times if np.array_equal(same, time)), time),
+            choice.factor * found.values[kept],
+            Kept(samples.where, index[kept]),
+            FileUnit(plain(choice.file_unit), abs(choice.factor)),
+            rows.heading if rows else "time",
+            lacks,
+        )
+        return channel, breaks
+
+    def _unreadable(
+        self,
+        column: Column,
+        where: Callable[[int], str],
+        odd: Mapping[int, str],
+        kept: np.ndarray,
+        time: np.ndarray,
+        forms: str = "",
+    ) -> list[Break]:
+        """A break for each sample that cannot be read; without a time around it if there are too many.
+
+        Args:
+            odd: what stands there by index.
+            kept: indices of the samples that have a value, in `time`.
+        """
+        breaks = []
+        for k, text in list(odd.items())[: MOST + 1]:
+            j = int(np.searchsorted(kept, k))
+            before = float(time[kept[j - 1]]) if j else -inf
+            after = float(time[kept[j]]) if j < len(kept) else inf
+            few = len(odd) <= MOST
+            problem = not_finite(self.path, where(k), column, plain(text, LONGEST_CELL))
+            breaks.append(Break(before if few else -inf, after if few else inf, f"{problem}{forms}"))
+        return breaks
+
+    def _no_numbers(self, column: Column, samples: Samples) -> RecordingError:
+        """What to say of a column without any."""
+        if not len(samples.values):
+            return RecordingError(f"{self.path}: 0 samples; a drive needs at least two")
+        for k, text in samples.unreadable.items():
+            return RecordingError(
+                f"{not_finite(self.path, samples.where(k), column, plain(text, LONGEST_CELL))}, and no other is there"
+            )
+        return RecordingError(f"{self.path}: {column.heading} holds no numbers")
+
+
+def _not_twice(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Indices of the samples that are not the one before once more."""
+    return np.flatnonzero(
+        np.append(np.ones(len(time[:1]), dtype=bool), (np.diff(time) != 0.0) | (np.diff(values) != 0.0))
+    )
 
 
 def _by_time(channels: Iterable[Channel]) -> Iterable[list[Channel]]:
@@ -137,54 +275,25 @@ def _by_time(channels: Iterable[Channel]) -> Iterable[list[Channel]]:
     return groups.values()
 
 
-def check_limit(path: Path, channel: Channel) -> None:
-    """
-    Raises:
-        RecordingError: a value is larger than any car has.
-    """
+def _beyond_limit(path: Path, channel: Channel) -> list[Break]:
+    """Where a value is larger than any car has."""
     limit = QUANTITIES[channel.quantity].limit
     beyond = np.flatnonzero(np.abs(channel.values) > limit)
-    if len(beyond):
-        k, unit = int(beyond[0]), channel.file_unit
-        written = channel.values[k] / unit.factor
-        missing = (
-            f", and {written:g} is what loggers write where there is no value"
-            if is_code(written)
-            else f"; --column {channel.quantity}='... [UNIT]' gives another unit"
+    few, breaks = len(beyond) <= MOST, []
+    for k in beyond[:MOST].tolist():
+        problem = (
+            f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; at most {limit:g} "
+            f"{channel.unit} in magnitude can be; --column {channel.quantity}='... [UNIT]' gives another unit"
         )
-        raise RecordingError(
-            f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; "
-            f"at most {limit:g} {channel.unit} in magnitude can be{missing}"
-        )
+        breaks.append(around(channel.time, k, k, problem) if few else Break(-inf, inf, problem))
+    return breaks
 
 
-def check_time(path: Path, time: np.ndarray, where: Callable[[int], str], gap: float, jumps: bool = False) -> None:
-    """
-    Args:
-        path: of the recording, for messages.
-        time: in s.
-        where: of a sample in the file.
-        gap: longest step that is still no gap, in median steps.
-        jumps: whether two samples may have one time.
-
-    Raises:
-        RecordingError: it does not increase, has a gap, or steps that no recording has.
-    """
-    steps = np.diff(time)
-    backward = np.flatnonzero((steps < 0.0) | ((steps == 0.0) & (not jumps)))
-    if len(backward):
-        k = int(backward[0])
-        raise RecordingError(f"{path}, {where(k + 1)}: time {time[k + 1]:g} s does not come after {time[k]:g} s")
-    median = float(np.median(steps))
-    least, most = INTERVALS
-    if not jumps and not least <= median <= most:
-        raise RecordingError(
-            f"{path}, {where(1)}: the sample interval is {median:g} s; {least:g} to {most:g} s are allowed"
-        )
-    gaps = np.flatnonzero(steps > gap * median) if isfinite(gap) else []
-    if len(gaps):
-        k = int(gaps[0])
-        raise RecordingError(
-            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {time[k]:g} s; at most {gap * median:g} s "
-            f"({gap:g} times the median step) is allowed, so cut the file there"
-        )
+def _refusal(channels: Sequence[Channel], breaks: Sequence[Break]) -> RecordingError:
+    """What to say of breaks: the first, and the longest piece without any."""
+    problem = breaks[0].problem
+    begin, end = max(channel.time.min() for channel in channels), min(channel.time.max() for channel in channels)
+    piece = longest_piece(float(begin), float(end), breaks)
+    if piece is None:
+        return RecordingError(problem)
+    return RecordingError(f"{problem}; the longest piece without is --from {typed(piece[0])} --to {typed(piece[1])}")

@@ -14,15 +14,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from .filters import low
+from .thresholds import Threshold
 
-SHAFT, WHEEL, MOTOR = 2.0, 15.0, 40.0
-"""Frequencies in Hz below which the wheel speed, the load torque and the motor speed are compared."""
-
-EARLIEST, LATEST = -0.04, 0.1
-"""Delays in s that are looked at."""
-
-FITS = 0.95
-"""Share of the power of a channel that must be explained so that its delay means something."""
+SHAFT, WHEEL, MOTOR = (
+    Threshold(value, "Hz", f"frequency below which {what} is compared", source)
+    for value, what, source in (
+        (2.0, "the wheel speed", "a quarter of a drive train's 8 Hz, above which more than the shaft decides"),
+        (15.0, "the load torque", "wheels and tyres take what is faster"),
+        (40.0, "the motor speed", "five times the drive train's 8 Hz"),
+    )
+)
+EARLIEST, LATEST = (
+    Threshold(value, "s", f"{which} delay that is looked at", "loggers and a bus are within 60 ms")
+    for value, which in ((-0.04, "smallest"), (0.1, "largest"))
+)
+FITS = Threshold(
+    0.95,
+    "1",
+    "share of the power of a channel that must be explained",
+    "with less, the deviation is no longer that of noise",
+)
 
 
 @dataclass(frozen=True)

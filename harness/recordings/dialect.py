@@ -1,27 +1,30 @@
-"""How a text file separates its cells, writes its numbers, and where its names, units and numbers begin."""
+"""How a text separates its cells, writes its numbers, and where its names, units and numbers begin."""
 
 import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import StringIO
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
 from statistics import median
 
+from .cells import decimal_of, is_missing, is_number
 from .clock_times import is_clock_time
 from .recording_units import is_unit
 from .source import RecordingError
 
-SEPARATORS = ("\t", ";", ",")
+SEPARATORS = ("\t", ";", ",", "|", " ")
+"""Blanks, of any number, separate where nothing else does."""
 
 LOOKED_AT = 100
 """Rows at the beginning of the file that tell its dialect."""
 
-NUMBER = re.compile(r"\s*[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?\s*", re.ASCII | re.IGNORECASE)
-
 EXCEL = re.compile(r"sep=(?P<separator>.)\s*\n")
 """A first line that spreadsheets write and obey."""
+
+COMMENT, LINE = re.compile(r"\s*(#+|%+|//+)\s*"), re.compile(r"[-=_+:|*\s]*")
+"""With which a line of names may begin, and a line that only parts others."""
 
 Row = tuple[int, list[str]]
 """Number of its last line in the file, and its cells."""
@@ -34,7 +37,7 @@ class Dialect:
         decimal: point or comma.
         names: the cells of the line of names.
         units: those of the line of units below it; none if there is no such line.
-        clocks: for each cell of the first row of numbers whether it is a time of day.
+        clocks: for each column whether its first cell is a time of day or a duration.
         names_line: number of the line of names.
         first_line: number of the line with which the numbers begin.
     """
@@ -60,7 +63,7 @@ def dialect_of(text: str, path: Path) -> Dialect:
     """
     excel = EXCEL.match(text)
     found = {separator: _rows(text, separator, path) for separator in (excel["separator"] if excel else SEPARATORS)}
-    separator = max(found, key=lambda separator: _likely(found[separator]))
+    separator = max(found, key=lambda separator: _likely(separator, found[separator]))
     rows = found[separator][1:] if excel else found[separator]
     if not rows:
         raise RecordingError(f"{path} is empty")
@@ -71,29 +74,43 @@ def dialect_of(text: str, path: Path) -> Dialect:
     units_line, units = names_line, ()
     if len(above) > 1 and _are_units(names, above[-2][1]):
         (names_line, names), (units_line, units) = above[-2], above[-1]
-    clocks = tuple(is_clock_time(cell) for cell in below[0][1]) if below else ()
-    return Dialect(
-        separator, _decimal(separator, below), tuple(names), tuple(units), clocks, names_line, units_line + 1
-    )
+    names, units = _uncommented(names), _uncommented(units)
+    columns = zip_longest(*(cells for _, cells in below), fillvalue="")
+    firsts = (next((cell for cell in column if not is_missing(cell)), "") for column in columns)
+    clocks = tuple(not is_number(cell) and is_clock_time(cell) for cell in firsts)
+    decimal = decimal_of([cell for _, cells in below for cell in cells])
+    return Dialect(separator, decimal, tuple(names), tuple(units), clocks, names_line, units_line + 1)
+
+
+def _uncommented(cells: Sequence[str]) -> Sequence[str]:
+    """Without a mark of a comment before them."""
+    first = [COMMENT.sub("", cell, count=1) if not k else cell for k, cell in enumerate(cells)]
+    return first[1:] if first and not first[0] and cells[0] else first
 
 
 def _rows(text: str, separator: str, path: Path) -> list[Row]:
     """The first rows in which something stands."""
-    reader = csv.reader(StringIO(text, newline=""), delimiter=separator)
+    reader = csv.reader(StringIO(text, newline=""), delimiter=separator, skipinitialspace=separator == " ")
     try:
-        return [(reader.line_num, cells) for cells in islice(reader, LOOKED_AT) if any(map(str.strip, cells))]
+        return [
+            (reader.line_num, cells)
+            for cells in islice(reader, LOOKED_AT)
+            if any(map(str.strip, cells)) and not all(map(LINE.fullmatch, cells))
+        ]
     except csv.Error as error:
         raise RecordingError(f"{path} is no CSV file: {error}") from error
 
 
-def _likely(rows: Sequence[Row]) -> tuple[float, float]:
+def _likely(separator: str, rows: Sequence[Row]) -> tuple[float, float]:
     """Numbers in a row, on average; without any number, cells."""
     numbers = sum(_numbers(cells) for _, cells in rows) / max(len(rows), 1)
-    return numbers, 0.0 if numbers else sum(len(cells) for _, cells in rows) / max(len(rows), 1)
+    return numbers, 0.0 if numbers or separator == " " else sum(len(cells) for _, cells in rows) / max(len(rows), 1)
 
 
 def _numbers(cells: Sequence[str]) -> int:
-    return sum(NUMBER.fullmatch(cell) is not None for cell in cells)
+    """How many there are; where there is one, what stands for a missing one counts too."""
+    there = sum(map(is_number, cells))
+    return there + sum(map(is_missing, filter(None, cells))) if there else 0
 
 
 def _parted(rows: Sequence[Row]) -> tuple[Sequence[Row], Sequence[Row]]:
@@ -122,9 +139,3 @@ def _are_units(cells: Sequence[str], names: Sequence[str]) -> bool:
     return any(units) and all(
         not unit or (k < len(named) and named[k] and is_unit(unit)) for k, unit in enumerate(units)
     )
-
-
-def _decimal(separator: str, rows: Sequence[Row]) -> str:
-    """Point or comma: what most numbers of the rows have. Where the comma separates, it can do both in quotes."""
-    numbers = [cell for _, cells in rows for cell in cells if NUMBER.fullmatch(cell)]
-    return "," if sum("," in number for number in numbers) > sum("." in number for number in numbers) else "."

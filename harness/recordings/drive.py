@@ -11,6 +11,7 @@ from .bounded_reading import bounded
 from .channels import Channel, Channels
 from .file_units import FileUnit
 from .source import RecordingError
+from .time_base import WHOLE, Cut
 
 WHEELS = "omega_wheel"
 """Whose speed over ground is that of the vehicle where it was not recorded."""
@@ -55,6 +56,7 @@ def read_drive(
     columns: Mapping[str, str] | None = None,
     names: Sequence[Path] = (),
     databases: Sequence[Path] = (),
+    cut: Cut = WHOLE,
 ) -> Drive:
     """Reads a recorded drive. Columns are found by name and converted by unit; others are ignored.
 
@@ -62,16 +64,17 @@ def read_drive(
         columns: by quantity the heading of its column, where that is not to be found by name.
         names: files of aliases beside ours.
         databases: of the bus, if the file is a log of its frames.
+        cut: from and to when it is read, in s, or a `Clock`.
 
     Raises:
         RecordingError: names the file, the column and what is wrong. The elevation may be missing, and in the place of
             the speed of the vehicle there may be that of the wheels over ground, in km/h for example.
         MissingExtra: a package that reads such files is not installed.
     """
-    recording = Channels(path, columns, names, databases)
+    recording = Channels(path, columns, names, databases, cut)
     speed = "v" if recording.has("v") or not recording.has(WHEELS) else WHEELS
     elevation = [quantity for quantity in ("elevation",) if recording.has(quantity)]
-    channels = recording.read(speed, *elevation, "T_mot")
+    channels = recording.read(speed, *elevation, "T_mot", optional=elevation)
     if speed == WHEELS and channels[speed].unit != "m/s":
         raise RecordingError(
             f"{path}: no speed of the vehicle, and {channels[speed].heading} is none over ground, in km/h for example; "

@@ -37,7 +37,7 @@ def read_course(path: Path) -> Course:
     """
     recording = Channels(path)
     given = ["T_driver", *(quantity for quantity in (*OPTIONAL, "v") if recording.has(quantity))]
-    channels = recording.read(*given, drawn=True)
+    channels = recording.read(*given, optional=given[1:], drawn=True)
     time, values = aligned(channels, base="T_driver")
     v_0 = float(values.pop("v")[0]) if "v" in values else 0.0
     if "slope" in values:

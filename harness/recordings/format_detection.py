@@ -6,7 +6,8 @@ from typing import Any
 from zipfile import BadZipFile, ZipFile
 
 from .arrow_file import FEATHER, PARQUET, ArrowFile
-from .bus_log import ASC, BLF, BusLog
+from .bus_log import BusLog
+from .bus_readers import LOGS, LOOKED_AT, kind_of
 from .mdf_file import MARKS, MdfFile
 from .source import RecordingError, Source
 from .text_file import TextFile
@@ -19,14 +20,25 @@ FOREIGN = {
     b"\x89HDF": "an HDF5 file, such as one of MATLAB 7.3",
     b"MATLAB": "a MATLAB file",
     b"\x1f\x8b": "a gzip archive",
+    b"BZh": "a bzip2 archive",
+    b"\xfd7zXZ": "an xz archive",
+    b"7z\xbc\xaf": "a 7z archive",
+    b"\x28\xb5\x2f\xfd": "a Zstandard archive",
     b"%PDF": "a PDF document",
+    b"TDSm": "a TDMS file of LabVIEW",
+    b"|CF,": "a file of FAMOS",
+    b"DIAEXTENDED": "the head of a DIAdem file",
+    b"#ROSBAG": "a bag of ROS",
+    b"\x89MCAP": "an MCAP file",
+    b"SQLite format 3": "an SQLite database",
+    b"\x93NUMPY": "an array of NumPy",
+    b"\x0a\x0d\x0d\x0a": "a capture of network packets",
+    b"<?xml": "an XML document",
+    b"{": "a JSON document",
 }
 """What is not read, by the bytes with which it begins."""
 
 ZIP = b"PK\x03\x04"
-
-LOOKED_AT = 200
-"""Bytes at the beginning that tell what a file is."""
 
 
 def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
@@ -48,7 +60,8 @@ def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
     if kind is BusLog:
         return BusLog(path, databases)
     if databases:
-        raise RecordingError(f"{path} is no log of a bus (BLF, ASC), which {databases[0]} is for")
+        logs = ", ".join(log.name for log in LOGS)
+        raise RecordingError(f"{path} is no log of a bus ({logs}), which {databases[0]} is for")
     if named := _foreign(path, begin):
         raise RecordingError(f"{path} is {named}, which is not read; save the recording as a text file (CSV)")
     return kind(path)
@@ -77,6 +90,6 @@ def _begin(path: Path) -> bytes:
 
 
 def _kind(begin: bytes) -> Any:
-    if begin.startswith(BLF) or ASC.match(begin):
+    if kind_of(begin):
         return BusLog
     return next((kind for mark, kind in KINDS.items() if begin.startswith(mark)), TextFile)

@@ -36,6 +36,13 @@ def without_brackets(name: str) -> Iterator[tuple[str, str]]:
             yield first, "/".join(last)
 
 
+DEVICE = re.compile(r"(.*::)?([^\\]+?)(\s*\\.*)?", re.DOTALL)
+"""What stands before and behind a name: the message in `ABS_1::Speed`, the device in `Speed\\XCP:1`."""
+
+
 def key(name: str) -> str:
-    """The same for names that differ in case, spaces and underscores alone, or in how an umlaut is written."""
-    return normalize("NFC", " ".join(name.replace("_", " ").split()).casefold())
+    """The same for names that differ in case, spaces, underscores and their device alone, or in how an umlaut is
+    written."""
+    found = DEVICE.fullmatch(name)
+    bare = found[2] if found else name
+    return normalize("NFC", " ".join(bare.replace("_", " ").split()).casefold())

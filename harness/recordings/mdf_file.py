@@ -6,6 +6,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
+from .clock_times import Clock
 from .source import Column, RecordingError, Samples, Where, samples
 
 MARKS = (b"MDF     ", b"UnFinMF ")
@@ -48,8 +50,8 @@ class MdfFile:
         ]
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`. Samples that the logger has marked as invalid are left out, so
-        that a gap is where they were; channels of a group have the same array of times."""
+        """See `harness.recordings.source.Source.read`. Samples that the logger has marked as invalid are left out;
+        those for which a conversion gives a text are none; channels of a group have the same array of times."""
         times: dict[int, np.ndarray] = {}
         with _opened(self.path) as file:
             return [self._samples(file, place, times) for place in places]
@@ -57,14 +59,15 @@ class MdfFile:
     def _samples(self, file: Any, place: int, times: dict[int, np.ndarray]) -> Samples:
         (group, index), column = self._places[place], self.columns[place]
         signal = file.get(group=group, index=index)
+        if signal.samples.dtype.kind == "S" and not column.unit:  # the names of states, of which numbers are meant
+            signal = file.get(group=group, index=index, raw=True)
         if signal.samples.dtype.kind not in "biuf" or signal.samples.ndim != 1:
             raise RecordingError(f"{self.path}: {column.heading} holds no numbers")
         time = np.asarray(signal.timestamps, dtype=float)
         same = times.setdefault(group, time)
         time = same if np.array_equal(same, time) else time
-        values = signal.samples.astype(float)
-
-        return samples(self.path, column, values, time, Where("sample {0} at {1:g} s", time))
+        where = Where("sample {0} at {1:g} s", time)
+        return samples(self.path, column, signal.samples.astype(float), time, where, _clock(file.start_time))
 
 
 @contextmanager
@@ -86,6 +89,13 @@ def _opened(path: Path) -> Iterator[Any]:
         sys.unraisablehook = before
     if damage:
         raise RecordingError(f"{path} is a damaged MDF file: {damage}")
+
+
+def _clock(start: datetime) -> Clock | None:
+    """What the clock of the logger says at 0; None of a file that does not say."""
+    if start.year < 1990:
+        return None
+    return Clock(start.toordinal(), 3600.0 * start.hour + 60.0 * start.minute + start.second + 1e-6 * start.microsecond)
 
 
 def _channels(file: Any) -> Iterator[tuple[int, int, Any]]:

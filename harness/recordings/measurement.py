@@ -15,6 +15,7 @@ from .plausibility import of_channels
 from .relations import check_relations
 from .signal_checks import check_signal, too_slow
 from .source import RecordingError
+from .time_base import WHOLE, Cut
 
 BASE = "omega_1"
 """Whose samples are the time base."""
@@ -22,6 +23,8 @@ BASE = "omega_1"
 WHEEL_SPEEDS = (("omega_2",), ("omega_wheel",), ("omega_wheel_L", "omega_wheel_R"))
 LOADS = (("T_load",), ("T_wheel",), ("T_wheel_L", "T_wheel_R"))
 """What each may have been recorded as; the first that a file has is taken."""
+
+LOADED = [load for form in LOADS for load in form]
 
 MESSAGE = ("valid", "counter")
 
@@ -72,6 +75,7 @@ def read_measurement(
     columns: Mapping[str, str] | None = None,
     names: Sequence[Path] = (),
     databases: Sequence[Path] = (),
+    cut: Cut = WHOLE,
 ) -> Measurement:
     """Reads a recording to identify a model from. Columns are found by name and converted by unit; others are ignored.
 
@@ -85,17 +89,21 @@ def read_measurement(
         columns: by quantity the heading of its column, where that is not to be found by name.
         names: files of aliases beside ours.
         databases: of the bus, if the file is a log of its frames.
+        cut: from and to when it is read, in s, or a `Clock`.
 
     Raises:
         RecordingError: names the file, the column and what is wrong: a column that is missing, unreadable or in
             another unit, a signal that is frozen or impossible, signals that contradict each other.
         MissingExtra: a package that reads such files is not installed.
     """
-    recording = Channels(path, columns, names, databases)
+    recording = Channels(path, columns, names, databases, cut)
     wheels, loads = _present(recording, WHEEL_SPEEDS) or ("omega_wheel",), _present(recording, LOADS)
     _require_columns(recording, BASE, "T_mot", *wheels)
     held = [quantity for quantity in HELD if recording.has(quantity)]
-    channels = recording.read(BASE, "T_mot", *wheels, *loads, *held)
+    channels = recording.read(BASE, "T_mot", *wheels, *loads, *held, optional=(*loads, *held))
+    held = [quantity for quantity in held if quantity in channels]
+    loads = loads if all(load in channels for load in loads) else ()
+    channels = {quantity: each for quantity, each in channels.items() if quantity not in LOADED or quantity in loads}
     judged = [channel for quantity, channel in channels.items() if quantity not in MESSAGE]
     for channel in judged:
         check_signal(path, channel)

@@ -27,6 +27,10 @@ BY_UNIT: Mapping[str, Sequence[str]] = {
 """Names that leave open what they mean, by quantity: they count with a unit of it, where no column has a better one."""
 
 
+STEPS = 3.0
+"""Longest step of time that is no gap, in median steps, of what is sampled and not sent."""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A quantity of a recording, in SI units.
@@ -41,6 +45,7 @@ class Quantity:
         slowest: longest interval in s from which a model can be identified.
         least_swing: by how much it must vary so that a model can be identified.
         gap: longest step of time that is still no gap, in median steps; messages come late and are lost.
+        hole: longest time in s without a value that is filled, if it is longer than that of all.
     """
 
     meaning: str
@@ -50,7 +55,13 @@ class Quantity:
     also: str | None = None
     slowest: float = inf
     least_swing: float = 0.0
-    gap: float = 3.0
+    gap: float = STEPS
+    hole: float = 0.0
+
+    @property
+    def held(self) -> bool:
+        """Whether a value holds until the next, as those of messages do."""
+        return STEPS < self.gap < inf
 
 
 def _wheel_speed(meaning: str) -> Quantity:
@@ -64,7 +75,7 @@ def _wheel_torque(meaning: str) -> Quantity:
 QUANTITIES: dict[str, Quantity] = {
     "time": Quantity("time", "s", "s", inf),
     "v": Quantity("speed of the vehicle", "m/s", "km/h", 200.0),
-    "elevation": Quantity("height of the road", "m", "m", 10_000.0),
+    "elevation": Quantity("height of the road", "m", "m", 10_000.0, gap=inf, hole=inf),
     "T_mot": Quantity("motor torque", "N.m", "Nm", 10_000.0, slowest=0.01, least_swing=2.0),
     "T_ref": Quantity(
         "motor torque as motor control is to make it", "N.m", "Nm", 10_000.0, slowest=0.1, least_swing=2.0, gap=10.0

@@ -15,22 +15,38 @@ import numpy as np
 
 from .filters import band, low
 from .source import RecordingError
+from .thresholds import Threshold
 
-RATIO = 0.1
-"""Largest part by which motor speed over wheel speed times i may differ from 1; slip and tyre radius take less."""
+RATIO = Threshold(
+    0.1, "1", "part by which motor speed over wheel speed times i may differ from 1", "slip and tyres take less"
+)
+STANDSTILL = Threshold(
+    1.0,
+    "rad/s",
+    "speed, rms, motor side, below which the ratio of two speeds tells nothing",
+    "twice the step of the bus",
+)
+FAST = (20.0, 60.0)
+"""Band in Hz in which torques and rates of speeds are compared."""
 
-STANDSTILL = 1.0
-"""Speed in rad/s, rms, motor side, below which the ratio of two speeds tells nothing."""
-
-FAST, LINK, OTHERS = (20.0, 60.0), 0.5, 0.7
-"""Band in Hz, and correlation from which on a torque is certain to belong to a rate of speed: the motor's, others. In
-test drives of both plants with 15 and 30 N.m, at 15 and 50 km/h, with and without damping, that of T_mot and omega_1 is
-.54 to .98 and always the largest; no other is above .48. Of 60 random cars it is .35 at least, and another one .63 at
-most: in a wide gap the teeth hit hard, and wheels and motor feel that alike."""
-
-SLOW, OPPOSED, SIZE = 2.0, 0.5, 3.0
-"""Frequency in Hz below which load and demand are compared with the motor torque, the correlation from which on it is
-certain that one goes with it or against it, and by which factor it may be larger or smaller."""
+LINK = Threshold(
+    0.5,
+    "1",
+    "correlation there from which on T_mot certainly belongs to the rate of omega_1",
+    "0.54 to 0.98, and always the largest, in test drives of both plants with 15 and 30 N.m, at 15 and 50 km/h; 0.35 "
+    "at least of 60 random cars",
+)
+OTHERS = Threshold(
+    0.7,
+    "1",
+    "the same of another torque and speed",
+    "0.48 at most in those test drives; 0.63 of 60 random cars: in a wide gap wheels and motor feel the teeth alike",
+)
+SLOW = Threshold(
+    2.0, "Hz", "frequency below which load and demand are compared with the motor torque", "below all swings"
+)
+OPPOSED = Threshold(0.5, "1", "correlation there from which on one certainly goes with it or against it", "as for LINK")
+SIZE = Threshold(3.0, "1", "factor by which it may be larger or smaller", "gear ratios are larger")
 
 TURNS = "--column QUANTITY='-HEADING' turns it"
 SAYS = "--column QUANTITY='HEADING [UNIT]' says what a column is"

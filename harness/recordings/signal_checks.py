@@ -7,9 +7,9 @@ import numpy as np
 from .channels import Channel
 from .quantities import QUANTITIES
 from .source import RecordingError
+from .thresholds import Threshold
 
-SHORTEST = 2.0
-"""Length in s below which a recording is refused: sixteen periods of a drive train of 8 Hz."""
+SHORTEST = Threshold(2.0, "s", "length of a recording to identify from", "sixteen periods of a drive train of 8 Hz")
 
 
 def check_signal(path: Path, channel: Channel) -> None:

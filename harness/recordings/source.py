@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -11,6 +11,8 @@ from ..base.errors import DrivelineError
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from .clock_times import Clock
 
 
 class RecordingError(DrivelineError):
@@ -33,6 +35,17 @@ class Where(NamedTuple):
         return self.pattern.format(k + 1, self.numbers[k])
 
 
+class Kept(NamedTuple):
+    """The same of values of which only some were kept, by their indices."""
+
+    where: Callable[[int], str]
+    index: np.ndarray
+
+    def __call__(self, k: int) -> str:
+        """Of the value with that index among those kept."""
+        return self.where(int(self.index[k]))
+
+
 @dataclass(frozen=True)
 class Column:
     """A column or channel of a file, before its values are read.
@@ -53,14 +66,18 @@ class Samples:
     """The values of a column as the file has them.
 
     Attributes:
-        values: finite.
+        values: finite, or NaN where there is none.
         time: of each, in s, if the channel has its own; None if a column of the file is the time of all.
         where: of a value in the file by its index, as in "line 12".
+        unreadable: what stands in the place of some values that are NaN, by their indices.
+        begin: what the clock says at the time 0, None if that is not known.
     """
 
     values: np.ndarray
     time: np.ndarray | None
     where: Callable[[int], str]
+    unreadable: Mapping[int, str] = field(default_factory=dict)
+    begin: Clock | None = None
 
 
 class Source(Protocol):
@@ -80,29 +97,33 @@ class Source(Protocol):
         """The values of some of the columns.
 
         Raises:
-            RecordingError: one is not a finite number, naming place and column.
+            RecordingError: one of them holds no numbers.
         """
         ...
 
 
 def samples(
-    path: Path, column: Column, values: np.ndarray, time: np.ndarray | None, where: Callable[[int], str]
+    path: Path,
+    column: Column,
+    values: np.ndarray,
+    time: np.ndarray | None,
+    where: Callable[[int], str],
+    begin: Clock | None = None,
 ) -> Samples:
     """The values of a column that a package has read.
 
     Raises:
-        RecordingError: one, or its time, is not a finite number.
+        RecordingError: one of their times is not a finite number.
     """
     import numpy as np
 
-    odd = np.flatnonzero(~np.isfinite(values) | (False if time is None else ~np.isfinite(time)))
-    if len(odd):
-        raise not_finite(path, where(int(odd[0])), column, f"{values[odd[0]]:g}")
-    return Samples(values, time, where)
+    if time is not None and len(odd := np.flatnonzero(~np.isfinite(time))):
+        raise not_finite(path, where(int(odd[0])), column, f"its time, {time[odd[0]]:g},")
+    infinite = np.isinf(values)
+    unreadable = {int(k): f"{values[k]:g}" for k in np.flatnonzero(infinite)}
+    return Samples(np.where(infinite, np.nan, values), time, where, unreadable, begin)
 
 
 def not_finite(path: Path, where: str, column: Column, value: str) -> RecordingError:
     """The message about a value that cannot be used."""
-    return RecordingError(
-        f"{path}, {where}, column {column.heading}: {value or 'an empty cell'} is not a finite number"
-    )
+    return RecordingError(f"{path}, {where}, column {column.heading}: {value} is not a finite number")

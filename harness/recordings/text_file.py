@@ -4,27 +4,31 @@ of the other formats are made for it too."""
 import codecs
 import csv
 import json
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
-from math import isfinite
 from pathlib import Path
-from typing import TextIO
+from typing import NamedTuple, TextIO
 
 import numpy as np
 
 from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from ..base.plain_text import plain
-from ..base.written_numbers import real
-from .clock_times import EXAMPLES, seconds
+from .cells import is_missing, numbers
+from .clock_times import seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
-from .source import Column, RecordingError, Samples, Where, not_finite
+from .logger_dialects import logger_dialect
+from .source import Column, RecordingError, Samples, Where
 
 LONGEST_CELL = 60
 """Characters of a cell that are shown."""
 
-PLAIN_NUMBERS = frozenset("0123456789+-.eE")
+DIGIT, COMMENT = re.compile(r"\d", re.ASCII), re.compile(r"\s*(#|//|%)\s")
+
+PADDING = "\x00\x1a"
+"""What some write behind the last line."""
 
 TRUTHS = ("true", "false")
 """What pandas takes for numbers."""
@@ -50,43 +54,36 @@ class TextFile:
                 "as Parquet or MDF"
             )
         self._encoding = encoding_of(path)
-        self._dialect = dialect_of(self._head(), path)
+        head = self._head()
+        self._dialect = logger_dialect(head, path) or dialect_of(head, path)
         self.headings = f"{path}, line {self._dialect.names_line}"
         if len(self._dialect.names) > MOST_COLUMNS:
             raise self._too_wide(self._dialect.names_line, len(self._dialect.names))
         self.columns: Sequence[Column] = _columns(self._dialect, units_beside(path))
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`; lines in which nothing stands are passed over."""
-        blank = "\t " + self._dialect.separator
-        pieces: dict[int, list[np.ndarray]] = {place: [] for place in places}
-        numbers: list[np.ndarray] = []
-        for first, lines in self._pieces():
-            kept = [k for k, line in enumerate(lines) if line.strip(blank)]
-            at = first + np.array(kept, dtype=int)
-            for place, values in self._parsed([lines[k] for k in kept], places, at).items():
-                pieces[place].append(values)
-            numbers.append(at)
-        where = Where("line {1}", np.concatenate([*numbers, np.empty(0, dtype=int)]))
-        whole = {place: np.concatenate([*pieces[place], np.empty(0)]) for place in places}
-        return [Samples(self._values(whole[place], place, where), None, where) for place in places]
-
-    def _values(self, cells: np.ndarray, place: int, where: Callable[[int], str]) -> np.ndarray:
-        """The numbers of a column; times in s.
-
-        Raises:
-            RecordingError: in a column of times of day one is no such time.
-        """
-        if not _is_clock(self._dialect, place):
-            return cells
-        values = seconds(cells.tolist())
-        if isinstance(values, int):
-            cell = plain(cells[values], LONGEST_CELL) or "an empty cell"
-            raise RecordingError(
-                f"{self.path}, {where(values)}, column {self.columns[place].heading}: {cell} is no time as in the "
-                f"first row, such as {EXAMPLES}"
+        """See `harness.recordings.source.Source.read`; lines without a number in these columns are passed over."""
+        pieces: list[Piece] = [
+            piece for first, lines in self._pieces() for piece in [self._parsed(lines, places, first)]
+        ]
+        where = Where("line {1}", np.concatenate([*(piece.at for piece in pieces), np.empty(0, dtype=int)]))
+        begins = np.cumsum([0, *(len(piece.at) for piece in pieces)])
+        read = []
+        for place in places:
+            values = np.concatenate([*(piece.values[place] for piece in pieces), np.empty(0)])
+            refused = (piece.unreadable.get(place, {}) for piece in pieces)
+            unreadable = {int(b) + k: cell for b, of in zip(begins, refused, strict=False) for k, cell in of.items()}
+            read.append(
+                self._clock(values, where) if self._is_clock(place) else Samples(values, None, where, unreadable)
             )
-        return values
+        return read
+
+    def _clock(self, cells: np.ndarray, where: Callable[[int], str]) -> Samples:
+        """Times in s, of times of day or durations."""
+        values, begin = seconds(cells.tolist())
+        odd = np.flatnonzero(np.isnan(values))
+        unreadable = {int(k): cells[k] for k in odd if not is_missing(cells[k])}
+        return Samples(values, None, where, unreadable, begin)
 
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
@@ -105,47 +102,65 @@ class TextFile:
         return head
 
     def _pieces(self) -> Iterator[tuple[int, list[str]]]:
-        """The lines below the names, some at a time, and the number of the first of them in the file."""
-        number = self._dialect.first_line
+        """The lines below the names, some at a time, and the number of the first of them in the file. A last line that
+        was cut off is left out."""
+        number, separator = self._dialect.first_line, self._dialect.separator
         with self._text() as file:
             for _ in range(1, number):
                 file.readline()
             while piece := file.read(PIECE):
-                lines = (piece + file.readline(LONGEST_LINE + 1)).removesuffix("\n").split("\n")
+                lines = (piece + (end := file.readline(LONGEST_LINE + 1))).split("\n")
                 self._require_short(lines, number)
-                yield number, lines
+                if lines[-1] and not end and len(lines) > 1 and lines[-1].count(separator) < lines[-2].count(separator):
+                    lines[-1] = ""
+                if not lines[-1]:
+                    del lines[-1]
+                yield number, [" ".join(line.split()) for line in lines] if separator == " " else lines
                 number += len(lines)
 
-    def _parsed(self, lines: Sequence[str], places: Sequence[int], at: np.ndarray) -> dict[int, np.ndarray]:
-        """The numbers in some columns of lines; of times of day the cells.
+    def _parsed(self, lines: Sequence[str], places: Sequence[int], first: int) -> "Piece":
+        """Some columns of lines.
 
         Args:
-            at: the numbers of the lines in the file.
+            first: number of the first of them in the file.
         """
+        separator = self._dialect.separator
+        blank = f"\t {separator}{PADDING}"
+        kept = [k for k, line in enumerate(lines) if line.strip(blank)]
+        lines, at = [lines[k].rstrip(PADDING) for k in kept], first + np.array(kept, dtype=int)
         if not lines:
-            return {place: np.empty(0) for place in places}
-        widths = [line.count(self._dialect.separator) for line in lines]
+            return Piece(at, {place: np.empty(0) for place in places}, {})
+        widths = [line.count(separator) for line in lines]
         widest = max(len(self.columns), 1 + max(widths))
         if widest > MOST_COLUMNS:
             raise self._too_wide(int(at[int(np.argmax(widths))]), widest)
-        clocks = [place for place in places if _is_clock(self._dialect, place)]
-        numbers = [place for place in places if place not in clocks]
-        values = self._all_numbers(lines, numbers, widest) if numbers else {}
+        clocks = [place for place in places if self._is_clock(place)]
+        plain_numbers = [place for place in places if place not in clocks]
+        values = self._all_numbers(lines, plain_numbers, widest) if plain_numbers else {}
         if values is not None and not clocks:
-            return values
-        try:
-            cells = self._table(lines, places if values is None else clocks, widest, str)
-            if all(len(column) == len(lines) for column in cells.values()):
-                values = values or {
-                    place: self._numbers(cells[place], self.columns[place], lambda k: f"line {at[k]}")
-                    for place in numbers
-                }
-                return values | {place: cells[place] for place in clocks}
-            self._refuse_many_lines(lines, at)
-            problem = "a quote has no end"
-        except (ValueError, csv.Error) as error:
-            problem = plain(error)
-        raise RecordingError(f"{self.path} is no CSV file: {problem}")
+            return Piece(at, values, {})
+        cells = self._cells(lines, places, widest)
+        return (
+            Piece(at, values | {place: cells[place] for place in clocks}, {})
+            if values
+            else self._told_apart(cells, lines, at)
+        )
+
+    def _told_apart(self, cells: Mapping[int, np.ndarray], lines: Sequence[str], at: np.ndarray) -> "Piece":
+        """Numbers, what says that there is none, and what cannot be read; without lines of names and comments, and
+        those in which no digit is."""
+        values, unreadable = {}, {}
+        names = np.ones(len(at), dtype=bool)
+        for place, column in cells.items():
+            names &= column == self._dialect.names[place] if place < len(self._dialect.names) else False
+        digits = [any(DIGIT.search(cell) for cell in row) for row in zip(*cells.values(), strict=True)]
+        kept = np.array(digits) & ~names & ~np.array([COMMENT.match(line) is not None for line in lines])
+        for place, column in cells.items():
+            if self._is_clock(place):
+                values[place] = column[kept]
+            else:
+                values[place], unreadable[place] = numbers(column[kept].tolist(), self._dialect.decimal)
+        return Piece(at[kept], values, unreadable)
 
     def _all_numbers(self, lines: Sequence[str], places: Sequence[int], widest: int) -> dict[int, np.ndarray] | None:
         """The numbers, found all at once; None if something else is, or may be, among them."""
@@ -159,8 +174,21 @@ class TextFile:
         sound = all(len(column) == len(lines) and np.isfinite(column).all() for column in values.values())
         return values if sound else None
 
+    def _cells(self, lines: Sequence[str], places: Sequence[int], widest: int) -> dict[int, np.ndarray]:
+        """The cells of some columns. Quotes that enclose no cell are characters like others."""
+        for quoting in (csv.QUOTE_MINIMAL, csv.QUOTE_NONE):
+            try:
+                cells = self._table(lines, places, widest, str, quoting)
+            except (ValueError, csv.Error) as error:
+                problem = plain(error)
+            else:
+                if all(len(column) == len(lines) for column in cells.values()):
+                    return cells
+                problem = "a quote has no end"
+        raise RecordingError(f"{self.path} is no CSV file: {problem}")
+
     def _table(
-        self, lines: Sequence[str], places: Sequence[int], widest: int, kind: type[float | str]
+        self, lines: Sequence[str], places: Sequence[int], widest: int, kind: type[float | str], quoting: int = 0
     ) -> dict[int, np.ndarray]:
         """
         Raises:
@@ -180,44 +208,13 @@ class TextFile:
             dtype=kind,
             na_filter=False,
             skip_blank_lines=False,
+            quoting=quoting,  # type: ignore[arg-type]
             engine="c",
         )
         return {place: table[place].to_numpy()[1:] for place in places}
 
-    def _refuse_many_lines(self, lines: Sequence[str], at: np.ndarray) -> None:
-        """Names a cell that goes over several lines, as only quoted ones can."""
-        reader, before = csv.reader(StringIO("\n".join(lines), newline=""), delimiter=self._dialect.separator), 0
-        for row in reader:
-            if reader.line_num > before + 1:
-                place = next((k for k, cell in enumerate(row) if "\n" in cell), len(row) - 1)
-                named = self.columns[place].heading if place < len(self.columns) else f"number {place + 1}"
-                raise RecordingError(
-                    f"{self.path}, line {at[before]}, column {named}: "
-                    f"{plain(row[place], LONGEST_CELL)} is a cell over several lines"
-                )
-            before = reader.line_num
-
-    def _numbers(self, cells: np.ndarray, column: Column, where: Callable[[int], str]) -> np.ndarray:
-        """
-        Raises:
-            RecordingError: one is not a finite number.
-        """
-        decimal = self._dialect.decimal
-        texts = [cell.strip().replace(",", ".") for cell in cells] if decimal == "," else [c.strip() for c in cells]
-        if PLAIN_NUMBERS.issuperset("".join(texts)) and (decimal == "." or not any("." in cell for cell in cells)):
-            try:
-                values = np.array(texts, dtype=float)  # the same numbers, all at once
-            except ValueError:
-                pass
-            else:
-                if np.isfinite(values).all():
-                    return values
-        for k, cell in enumerate(cells):
-            value = real(texts[k])
-            if value is None or not isfinite(value) or (decimal == "," and "." in cell):
-                refusal = not_finite(self.path, where(k), column, plain(cell, LONGEST_CELL))
-                raise RecordingError(f"{refusal}, nor a time such as {EXAMPLES}") if ":" in cell else refusal
-        return np.array(texts, dtype=float)
+    def _is_clock(self, place: int) -> bool:
+        return place < len(self._dialect.clocks) and self._dialect.clocks[place]
 
     def _require_short(self, lines: Sequence[str], first: int) -> None:
         """
@@ -232,19 +229,24 @@ class TextFile:
         return RecordingError(f"{self.path}, line {line} has {cells} cells; at most {MOST_COLUMNS} are read")
 
 
+class Piece(NamedTuple):
+    """Some lines: their numbers in the file, the values of columns, of times of day the cells, and by column and index
+    what cannot be read."""
+
+    at: np.ndarray
+    values: dict[int, np.ndarray]
+    unreadable: dict[int, dict[int, str]]
+
+
 def _columns(dialect: Dialect, beside: dict[str, str]) -> list[Column]:
     """The columns with their units: beside the name, in the line below it, or in the file beside results of ours."""
     columns = []
     for k, cell in enumerate(dialect.names):
         name, unit = split(cell)
         below = dialect.units[k].strip(" []()") if k < len(dialect.units) else ""
-        own = "s" if _is_clock(dialect, k) else unit or below or beside.get(name)
+        own = "s" if k < len(dialect.clocks) and dialect.clocks[k] else unit or below or beside.get(name)
         columns.append(Column(plain(cell, LONGEST_CELL), plain(name, LONGEST_CELL), own))
     return columns
-
-
-def _is_clock(dialect: Dialect, place: int) -> bool:
-    return place < len(dialect.clocks) and dialect.clocks[place]
 
 
 MARKS = (

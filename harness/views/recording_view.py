@@ -8,7 +8,7 @@ import numpy as np
 
 from ..recordings.channels import Channel
 from ..recordings.drive import Drive
-from ..recordings.plausibility import Finding
+from ..recordings.findings import Finding
 from .colours import BLUE, VERMILION
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import plot

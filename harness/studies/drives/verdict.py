@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from os import PathLike
 
 from ...recordings.drive import Drive
-from ...recordings.plausibility import Finding, not_followed
+from ...recordings.findings import Finding
+from ...recordings.plausibility import not_followed
 from ...recordings.source import RecordingError
 from .replay import Ride
 

@@ -134,7 +134,7 @@ def test_a_table_needs_the_demand_alone_and_may_have_gaps(tmp_path):
     ("rows", "message"),
     [
         ("0,1\n2,3\n1,4\n", "line 4: time 1 s does not come after 2 s"),
-        ("0,1\n2,nan\n", "line 3, column T_driver .*: nan is not a finite number"),
+        ("0,1\n2,nan\n3,1\n", "line 3: T_driver .* has no value"),
         ("0,1\n", "1 samples; a drive needs at least two"),
         ("1,1\n1,2\n", "it lasts 0 s; it must be 0.001 to 3600 s"),
         ("0,1\n3601,2\n", "it lasts 3601 s"),

@@ -96,7 +96,7 @@ def test_of_two_columns_that_one_is_taken_that_is_said_to_be_meant(write):
     assert read_drive(path, {quantity: heading}).v.tolist() == [1.0, 1.0]
 
 
-@pytest.mark.parametrize("cell", ["nan", "inf", "fast", ""])
+@pytest.mark.parametrize("cell", ["inf", "fast"])
 def test_a_cell_that_is_no_number_is_named_by_line_and_column(write, cell):
     with pytest.raises(RecordingError, match=r"line 4, column Velocity \[km/h\]"):
         read_drive(write(*rows(2), f"0.2,{cell},500,3,1"))
@@ -153,15 +153,11 @@ def test_the_largest_values_that_can_be_are_taken(write):
     assert (recording.v[-1], recording.elevation[-1], recording.T_mot[-1]) == (200.0, 1e4, -1e4)
 
 
-def test_a_short_line_is_refused(write):
-    with pytest.raises(RecordingError, match=r"line 4, column Motor Torque.*: an empty cell is"):
-        read_drive(write(*rows(2), "0.2,36,500"))
-
-
 @pytest.mark.parametrize("time", ["0.1", "0.05"])
 def test_time_that_does_not_increase_is_refused_with_its_line(write, time):
+    lines = [*rows(2), f"{time},36,500,3,1", *rows(200)[2:]]
     with pytest.raises(RecordingError, match=r"line 4.*does not come after"):
-        read_drive(write(*rows(2), f"{time},36,500,3,1"))
+        read_drive(write(*lines))
 
 
 @pytest.mark.parametrize(("interval", "shown"), [("1e300", "1e+300"), ("1e-320", "9.99989e-321"), ("9e-7", "9e-07")])
@@ -181,7 +177,7 @@ def test_a_gap_is_refused_with_its_line(write):
 
 def test_blank_lines_do_not_shift_the_line_numbers(write):
     with pytest.raises(RecordingError, match="line 6"):
-        read_drive(write(*rows(2), "", "", "0.1,36,500,3,1"))
+        read_drive(write(*rows(2), "", "", "0.05,36,500,3,1"))
 
 
 @pytest.mark.parametrize("lines", [[], rows(1)])

@@ -37,8 +37,9 @@ def test_the_same_drive_is_read_from_every_text(tmp_path: Path, variant: str) ->
 
 
 @pytest.mark.parametrize("variant", TEXTS)
-@pytest.mark.parametrize("cell", ["x", "nan", ""])
+@pytest.mark.parametrize("cell", ["x", "inf", ""])
 def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant: str, cell: str) -> None:
+    """Without a value it is filled, and so is said."""
     path = tmp_path / "drive.csv"
     text = TEXTS[variant](DRIVE)
     encodings = {"UTF-32 without": "utf-32-be", "UTF-32": "utf-32", "UTF-16 without": "utf-16-le", "UTF-16": "utf-16"}
@@ -50,10 +51,13 @@ def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant
     cells[1] = cell
     lines[-4] = f"{quote}{separator}{quote}".join(cells)
     path.write_bytes("\n".join(lines).encode(encoding))
-    with pytest.raises(
-        RecordingError, match=rf"line {len(lines) - 3}, column .?[Vv]elocity.*: {cell or 'an empty cell'} is"
-    ):
-        read_drive(path)
+    if cell:
+        with pytest.raises(RecordingError, match=rf"line {len(lines) - 3}, column .?[Vv]elocity.*: {cell} is"):
+            read_drive(path)
+    else:
+        found = read_drive(path)
+        assert len(found.time) == 200
+        assert [lack.place for lack in found.channels["v"].lacks] == [f"line {len(lines) - 3}"]
 
 
 @pytest.mark.parametrize("name", ["drive.parquet", "drive.feather"])
@@ -78,13 +82,12 @@ def test_groups_of_an_mdf_file_with_other_rates_come_onto_the_time_of_the_torque
     np.testing.assert_allclose(found.v, expected.v[:-1], atol=3e-3)  # between them, rounded to 0.01 km/h
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_a_bad_value_of_a_binary_file_is_named_with_its_row(tmp_path: Path, value: float) -> None:
+def test_a_bad_value_of_a_binary_file_is_named_with_its_row(tmp_path: Path) -> None:
     drive = recording()
-    drive["Velocity"][0][6] = value
+    drive["Velocity"][0][6] = np.inf
     for name, place in (("drive.parquet", "row 7"), ("drive.mf4", "sample 4 at 0.06 s")):
         (write_mdf if name.endswith("mf4") else write_arrow)(drive, tmp_path / name)
-        with pytest.raises(RecordingError, match=rf"{place}, column Velocity.*: {value:g} is not a finite number"):
+        with pytest.raises(RecordingError, match=rf"{place}, column Velocity.*: inf is not a finite number"):
             read_drive(tmp_path / name)
 
 
@@ -123,7 +126,7 @@ def test_points_among_decimal_commas_are_named(tmp_path: Path) -> None:
     text = table(DRIVE, ";", ",").split("\n")
     text[20] = text[20].replace(",", ".")
     (tmp_path / "drive.csv").write_text("\n".join(text), encoding="utf-8")
-    with pytest.raises(RecordingError, match=r"line 21, column .* is not a finite number"):
+    with pytest.raises(RecordingError, match=r"line 21, column .* 0\.19 \(the decimal of this file is a comma\) is"):
         read_drive(tmp_path / "drive.csv")
 
 

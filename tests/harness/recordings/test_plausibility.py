@@ -13,32 +13,38 @@ import pytest
 
 from driveline.harness.manoeuvres.road_load import RoadLoad
 from driveline.harness.manoeuvres.town_drive import CAR, PATH
-from driveline.harness.recordings import plausibility
-from driveline.harness.recordings.channels import Channel
+from driveline.harness.recordings import channel_rules, plausibility
+from driveline.harness.recordings.channel_rules import (
+    ACCELERATION,
+    AROUND,
+    BRIEF,
+    CLIMB,
+    LARGE,
+    LONE,
+    SPIKE,
+    STEP,
+    jumps,
+    lacking,
+    of_channels,
+    spikes,
+)
+from driveline.harness.recordings.channels import Channel, Lack
 from driveline.harness.recordings.drive import Drive, read_drive
 from driveline.harness.recordings.file_units import FileUnit
+from driveline.harness.recordings.findings import MOST_MARKED, Finding, Rule
 from driveline.harness.recordings.force_balance import EVERY, LARGEST, SMALLEST, Balance, Forces, balance, forces
-from driveline.harness.recordings.missing_values import ENDS, NINES, is_code
+from driveline.harness.recordings.missing_values import BITS, ENDS, NINES, RESERVED, coded, is_code
 from driveline.harness.recordings.plausibility import (
-    ACCELERATION,
     BEYOND,
-    CLIMB,
     FOLLOWED,
-    MOST_MARKED,
     MS,
     OSCILLATION,
     RULES,
     SHORTEST,
     SLOWEST,
-    SPIKE,
-    STEP,
-    Finding,
-    codes,
-    jumps,
+    UNABLE,
     not_followed,
-    of_channels,
     of_drive,
-    spikes,
 )
 from driveline.harness.recordings.source import RecordingError
 from tests import ROOT
@@ -176,13 +182,33 @@ def test_codes_are_those_of_loggers() -> None:
 
 
 @pytest.mark.parametrize("code", sorted(NINES | ENDS))
-def test_a_code_is_found_in_the_units_of_the_file_and_only_far_from_all_other_values(code: float) -> None:
+def test_a_code_is_found_only_far_from_all_other_values(code: float) -> None:
     range_ = 0.1 * abs(code)
-    for apart, expected in ((0.501, 1), (0.499, 0)):
+    for apart, expected in ((0.501, True), (0.499, False)):
         others = np.linspace(0.0, range_, 50) + code - np.sign(code) * apart * range_ - (code > 0.0) * range_
-        values = 1e3 * np.append(others, [code, code])
-        assert len(list(codes(channel("T_mot", values, factor=1e3)))) == expected
-        assert len(list(codes(channel("T_mot", values)))) == 0, "in N.m it is no code"
+        written = np.append(others, [code, code])
+        assert coded(written).tolist() == [False] * 50 + [expected] * 2
+        assert not coded(1.37 * written).any(), "it is no code"
+
+
+@pytest.mark.parametrize("resolution", [1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.001])
+@pytest.mark.parametrize("integer", sorted(RESERVED))
+def test_a_reserved_integer_times_the_resolution_is_a_code(resolution: float, integer: float) -> None:
+    """Of 8, 12, 16 and 32 bits, further from all others than their range."""
+    code = resolution * integer
+    for apart, expected in ((1.01, True), (0.99, False)):
+        others = code - np.sign(code) * np.linspace(apart, 1.0 + apart, 50) * 0.3 * abs(code)
+        written = np.append(others, code)
+        assert coded(written)[-1] == expected or is_code(code)
+        assert not coded(written)[:-1].any()
+        few = np.append(others[[0, -1]], code)
+        assert coded(few)[-1] == is_code(code), "a channel of few values is switched"
+
+
+def test_codes_of_several_kinds_are_all_found() -> None:
+    written = np.append(np.linspace(-50.0, 120.0, 100), [3276.7, 3276.6, -3276.8, -999.0])
+    assert coded(written).sum() == 4
+    assert {8, 12, 16, 32} == set(BITS)
 
 
 @pytest.mark.parametrize("width", [1, 2, 3])
@@ -192,9 +218,44 @@ def test_a_spike_is_what_no_tyre_can_do(width: int, interval: float) -> None:
     for factor, expected in ((0.99, 0), (1.01, 1)):
         v = np.full(60, 10.0)
         v[30 : 30 + width] += factor * least
+        v[20:25] += 1.5 * least / LONE  # so that it is no lone one
         findings = list(spikes(channel("v", v, interval, "m/s")))
         assert len(findings) == expected
         assert [finding.time for finding in findings] == pytest.approx([30 * interval] * expected)
+
+
+@pytest.mark.parametrize("quantity", ["T_mot", "T_ref", "T_load", "T_wheel", "omega_1", "omega_2", "omega_wheel"])
+@pytest.mark.parametrize("width", [1, 2, 3])
+def test_a_lone_spike_of_any_channel_is_found(quantity: str, width: int) -> None:
+    """By the range of its neighbours, and by that of the channel."""
+    wave = 500.0 + 100.0 * np.sin(np.arange(2000) / 300.0)
+    longest = BRIEF / width if width > 1 else 0.1
+    k = int(np.argmax(wave))
+    around = np.ptp(np.delete(wave[k - AROUND : k + AROUND + width], slice(AROUND, AROUND + width)))
+    for size, interval, expected in (
+        (1.05 * LARGE * 200.0, longest, 1),
+        (0.95 * LARGE * 200.0, longest, 0),
+        (60.0, longest, 1),
+        (60.0, 1.01 * longest, int(width == 1)),
+    ):
+        x = wave.copy()
+        x[k : k + width] -= max(size, MOTOR_STEP if quantity == "omega_2" else 0.0) if expected else size
+        assert size > LONE * around
+        assert len(list(spikes(channel(quantity, x, interval, "N.m")))) == expected, (size, interval)
+
+
+def test_what_its_neighbours_do_too_is_no_spike() -> None:
+    for factor, expected in ((0.95, 0), (1.05, 1)):
+        x = np.linspace(0.0, 1.0, 400)
+        x[100:140] += 10.0 * (np.arange(40) % 8 >= 4)
+        x[200:400] = 0.0
+        x[300] = factor * LONE
+        x[290] = x[310] = 0.0
+        x[292:296] = x[304:308] = 1.0
+        assert len(list(spikes(channel("T_mot", x, 0.002)))) == expected
+
+
+MOTOR_STEP = 1.1 * channel_rules.MOTOR
 
 
 def test_a_car_that_brakes_and_pulls_away_has_no_spike() -> None:
@@ -202,7 +263,14 @@ def test_a_car_that_brakes_and_pulls_away_has_no_spike() -> None:
     for acceleration in (3.0, 12.0):
         v = np.abs(np.interp(time % 8.0, [0.0, 4.0, 8.0], [0.0, 4.0 * acceleration, 0.0]))
         assert list(spikes(channel("v", v, unit="m/s"))) == []
-    assert list(spikes(channel("omega_wheel", 50.0 * (time == 10.0), unit="rad/s"))) == [], "no speed over ground"
+
+
+@pytest.mark.parametrize("late", [1, 2, 3])
+def test_a_message_that_comes_late_is_no_spike(late: int) -> None:
+    """Speed in steps of 4.3 rad/s, as the largest in 200 drives."""
+    omega = np.full(3000, 130.0)
+    omega[1000 : 1000 + late] -= 4.33
+    assert list(spikes(channel("omega_2", omega, 0.002, "rad/s"))) == []
 
 
 @pytest.mark.parametrize("interval", [0.1, 1.0])
@@ -247,6 +315,16 @@ def test_a_share_of_torques_beyond_the_motor() -> None:
     for share, expected in ((0.99 * BEYOND, []), (1.5 * BEYOND, ["T_max"])):
         limit = float(torques[round((1.0 - share) * len(torques)) - 1])
         assert [finding.rule.name for finding in of_drive(one, CAR, limit)] == expected
+
+
+@pytest.mark.parametrize(("factor", "expected"), [(0.99, []), (1.01, ["T_max"])])
+def test_not_even_one_torque_is_far_beyond_the_motor(factor: float, expected: list[str]) -> None:
+    one = drive()
+    T_mot = one.T_mot.copy()
+    T_mot[300] = factor * UNABLE * 120.0
+    (*findings,) = plausibility.beyond_T_max(replace(one, T_mot=T_mot), 120.0)
+    assert [finding.rule.name for finding in findings] == expected
+    assert [finding.time for finding in findings] == pytest.approx([one.time[300]] * len(expected))
 
 
 def test_the_ratio_of_the_forces_and_its_bounds() -> None:
@@ -327,10 +405,8 @@ def test_a_speed_that_is_not_followed() -> None:
 
 @pytest.mark.parametrize("count", [3, MOST_MARKED, MOST_MARKED + 1, 5000])
 def test_all_samples_that_are_odd_are_marked_or_many_of_them(count: int) -> None:
-    values = np.zeros(10_000)
     at = np.linspace(500, 9_500, count).astype(int)
-    values[at] = -999.0
-    (finding,) = codes(channel("T_mot", values))
+    (finding,) = lacking(replace(channel("T_mot", np.zeros(9)), lacks=[Lack(-999.0, 0.1 * at, "line 502")]))
     assert (finding.samples[0], finding.samples[-1]) == pytest.approx((50.0, 950.0))
     assert finding.samples[0] == finding.time
     assert len(set(finding.samples)) == min(count, MOST_MARKED)
@@ -340,17 +416,19 @@ def test_all_samples_that_are_odd_are_marked_or_many_of_them(count: int) -> None
 def test_every_rule_is_found_by_something_and_has_a_name_of_its_own() -> None:
     names = [rule.name for rule in RULES]
     assert len(set(names)) == len(names)
-    assert {rule for _, rule, _ in SPOILED.values()} | {"cut off", "following"} == set(names)
-    declared = {id(each) for each in vars(plausibility).values() if isinstance(each, plausibility.Rule)}
+    assert {rule for _, rule, _ in SPOILED.values()} | {"cut off", "following", "hole"} == set(names)
+    rooms = (*vars(plausibility).values(), *vars(channel_rules).values())
+    declared = {id(each) for each in rooms if isinstance(each, Rule)}
     assert declared == {id(rule) for rule in RULES}
 
 
-def test_a_speed_beyond_all_cars_is_refused_as_the_code_that_it_is(tmp_path: Path) -> None:
+def test_a_code_is_a_hole_that_is_filled_if_it_is_short(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
     at(V, -999.0, 100)(pd.read_csv(PATH)).to_csv(path, index=False)
-    with pytest.raises(
-        RecordingError, match=r"line 102: Velocity \[km/h\] is -277\.5 m/s; .*, and -999 is what loggers"
-    ):
+    (finding,) = found(path)
+    assert str(finding).startswith("line 102: Velocity [km/h] at 10 s is -999, which loggers write where there is no")
+    at(V, -999.0, *range(100, 103))(pd.read_csv(PATH)).to_csv(path, index=False)
+    with pytest.raises(RecordingError, match=r"line 102: Velocity .* no value for 0\.4 s after 9\.9 s; holes"):
         read_drive(path)
 
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.harness.recordings.channel_rules import CUT_OFF
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.plausibility import CUT_OFF
 from driveline.harness.recordings.quantities import QUANTITIES
 from driveline.harness.recordings.signal_checks import SHORTEST, check_signal
 from driveline.harness.recordings.source import RecordingError
@@ -84,7 +84,7 @@ def test_a_channel_that_was_cut_off_is_named(read: Read, name: str, sign: float)
     one = drive()
     values = sign * one[name]
     top = int(np.argmax(values[50:-50])) + 50
-    for length in (CUT_OFF - 1, CUT_OFF):
+    for length in (int(CUT_OFF) - 1, int(CUT_OFF)):
         flat = values.copy()
         flat[top : top + length] = values[top]
         warnings = read(one | {name: sign * flat}).warnings

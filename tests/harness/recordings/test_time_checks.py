@@ -1,16 +1,19 @@
 """Which steps of time are gaps."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from driveline.harness.recordings import channels
-from driveline.harness.recordings.channels import Channels, check_time
+from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.quantities import QUANTITIES
 from driveline.harness.recordings.source import Column, RecordingError, Samples
+from driveline.harness.recordings.time_base import Break, longest_piece, spread, time_breaks
 
 JUST = 1e-6
 """How far from the longest step, as a share of it."""
@@ -21,12 +24,13 @@ def with_one_longer_step(steps: float, interval: float = 0.1) -> np.ndarray:
     return interval * np.append(np.arange(10.0), 9.0 + steps)
 
 
-@pytest.mark.parametrize("gap", sorted({quantity.gap for quantity in QUANTITIES.values()}))
+@pytest.mark.parametrize("gap", sorted({quantity.gap for quantity in QUANTITIES.values()} - {inf}))
 def test_the_longest_step_that_is_no_gap(gap: float) -> None:
     path = Path("measured.csv")
-    check_time(path, with_one_longer_step(gap * (1.0 - JUST)), "line {}".format, gap)
-    with pytest.raises(RecordingError, match=rf"line 10: gap of .* s after 0\.9 s; .*\({gap:g} times the median step"):
-        check_time(path, with_one_longer_step(gap * (1.0 + JUST)), "line {}".format, gap)
+    assert time_breaks(path, with_one_longer_step(gap * (1.0 - JUST)), "line {}".format, gap) == []
+    (found,) = time_breaks(path, with_one_longer_step(gap * (1.0 + JUST)), "line {}".format, gap)
+    assert re.search(rf"line 10: gap of .* s after 0\.9 s; .*\({gap:g} times the median step", found.problem)
+    assert (found.end, found.begin) == pytest.approx((0.9, 0.9 + 0.1 * gap), rel=1e-5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,3 +72,36 @@ def test_messages_may_stay_away_for_longer_unless_they_share_the_time_of_a_senso
             Channels(logger.path).read("omega_1", "omega_wheel")
     else:
         assert Channels(logger.path).read("omega_1", "omega_wheel").keys() == {"omega_1", "omega_wheel"}
+
+
+@pytest.mark.parametrize(
+    ("breaks", "piece"),
+    [
+        ([], (0.0, 10.0)),
+        ([(3.0, 4.0)], (4.0, 10.0)),
+        ([(7.0, 9.0), (2.0, 2.5)], (2.5, 7.0)),
+        ([(2.0, 8.0), (3.0, 4.0)], (0.0, 2.0)),
+        ([(8.0, inf)], (0.0, 8.0)),
+        ([(-inf, 1.0)], (1.0, 10.0)),
+        ([(-inf, inf)], None),
+    ],
+)
+def test_the_longest_piece_is_the_one_between_the_breaks(
+    breaks: list[tuple[float, float]], piece: tuple[float, float] | None
+) -> None:
+    assert longest_piece(0.0, 10.0, [Break(*each, "") for each in breaks]) == piece
+
+
+@pytest.mark.parametrize("resolution", [0.2, 0.25, 0.5])
+def test_equal_times_at_the_resolution_of_the_clock_are_those_of_a_steady_one(resolution: float) -> None:
+    time = 5.0 + 0.1 * np.arange(300)
+    np.testing.assert_allclose(spread(np.floor(time / resolution + 1e-9) * resolution), time, atol=0.02)
+
+
+def test_equal_times_of_a_clock_that_is_not_steady_are_spread_up_to_the_next() -> None:
+    assert spread(np.array([0.0, 0.0, 1.0, 5.0, 5.0, 5.0, 5.0, 6.0])).tolist() == [0, 0.5, 1, 5, 5.25, 5.5, 5.75, 6]
+
+
+def test_one_pair_of_equal_times_among_many_is_left() -> None:
+    time = np.sort(np.append(0.1 * np.arange(200), 5.0))
+    assert spread(time) is time

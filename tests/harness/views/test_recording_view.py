@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from driveline.harness.recordings.channel_rules import SPIKED
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.plausibility import RATE, Finding, codes
+from driveline.harness.recordings.findings import Finding, at_samples
+from driveline.harness.recordings.plausibility import RATE
 from driveline.harness.views.panels import Points
 from driveline.harness.views.recording_view import _parts
 
@@ -14,7 +16,8 @@ def test_each_sample_that_is_odd_is_marked_in_the_units_of_the_file() -> None:
     written = np.where(np.isin(np.arange(100), (10, 40, 41)), -999.0, 1.0)
     time = 0.1 * np.arange(100)
     channel = Channel("T_mot", "T_mot", "N.m", time, 1e3 * written, "sample {}".format, FileUnit("kN.m", 1e3))
-    (points,) = (part for part in _parts(channel, list(codes(channel))) if isinstance(part, Points))
+    found = [at_samples(channel, SPIKED, np.array([10, 40, 41]), "")]
+    (points,) = (part for part in _parts(channel, found) if isinstance(part, Points))
     assert np.asarray(points.x) == pytest.approx([1.0, 4.0, 4.1])
     assert list(points.y) == [-999.0] * 3
     (points,) = (part for part in _parts(channel, [Finding(RATE, "T_mot", 2.0, "")]) if isinstance(part, Points))

@@ -1,0 +1,138 @@
+"""Logs of a bus as python-can reads them, and what it does not know of some of them."""
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from io import TextIOBase
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..base.optional_packages import required
+from ..base.plain_text import plain
+from .source import RecordingError
+
+
+class Kind(NamedTuple):
+    """A kind of log.
+
+    Attributes:
+        name: of the kind.
+        begin: with which such files begin, after empty lines.
+        reader: its class in python-can.
+        lines: turns its lines into those that python-can reads; None if they are, or if it is no text.
+    """
+
+    name: str
+    begin: re.Pattern[bytes]
+    reader: str
+    lines: Callable[[Iterable[str]], Iterator[str]] | None = None
+
+
+STAMP = re.compile(r"\s*(\d+(?:[.,]\d*)?|[.,]\d+)\s+(.*)", re.DOTALL)
+DATE = re.compile(r"\s*(?:date|begin\s+triggerblock)\s+\w+\s+(.+)", re.IGNORECASE)
+EMPTY_FD = re.compile(r"(CANFD\s+\d+\s+[TR]x\s+\S+(?:\s+\S+)?\s+[01]\s+[01]\s+0\s+0)\s*", re.IGNORECASE)
+
+
+def asc_lines(lines: Iterable[str]) -> Iterator[str]:
+    """Lines of an ASC log with times from its begin on. Relative ones are each from the line before; those of a second
+    measurement in the file begin again, and go on by the dates of both."""
+    relative, at, begin, shift, block = False, 0.0, None, 0.0, 0.0
+    for line in lines:
+        if line.lower().lstrip().startswith("base"):
+            relative = "relative" in line.lower()
+        elif found := DATE.match(line):
+            date = _seconds(found[1])
+            begin = date if begin is None else begin
+            block = 0.0 if date is None or begin is None else date - begin
+            at = max(at, block) if relative else at
+        elif found := STAMP.fullmatch(line):
+            time = float(found[1].replace(",", "."))
+            last, at = at, at + time if relative else time + shift
+            if at < last < block:
+                shift = block
+                at = time + shift
+            rest = EMPTY_FD.fullmatch(found[2])
+            line = f"{at:.9f} {f'{rest[1]} 00' if rest else found[2]}"
+        yield line
+
+
+def _seconds(text: str) -> float | None:
+    from dateutil.parser import ParserError, parse
+
+    try:
+        return parse(text).timestamp()
+    except (ParserError, OverflowError, ValueError):
+        return None
+
+
+CONSOLE = re.compile(
+    r"\s*(\(\S+\))\s+(\S+)\s+(?:[TR]X\s+\S+\s+)?([0-9A-F]+)\s+\[(\d+)\]\s*(.*)", re.IGNORECASE | re.DOTALL
+)
+
+
+def candump_lines(lines: Iterable[str]) -> Iterator[str]:
+    """Lines as `candump -l` writes them, of those and of what it prints."""
+    for line in lines:
+        if found := CONSOLE.fullmatch(line):
+            data = found[5].partition("'")[0]
+            data = "R" if data.startswith("remote") else data.replace(" ", "").strip()
+            mark = "##0" if len(found[4]) > 1 else "#"
+            yield f"{found[1]} {found[2]} {found[3]}{mark}{data}\n"
+        else:
+            yield line
+
+
+LOGS = (
+    Kind("BLF", re.compile(rb"LOGG"), "BLFReader"),
+    Kind("ASC", re.compile(rb"\s*date [^\n]*\n\s*base\s+(hex|dec)", re.IGNORECASE), "ASCReader", asc_lines),
+    Kind(
+        "candump",
+        re.compile(rb"\s*\(\d+\.\d+\)\s+\S+\s+(\S+\s+){0,2}[0-9A-Fa-f]+(#|\s+\[)"),
+        "CanutilsLogReader",
+        candump_lines,
+    ),
+    Kind("CSV of python-can", re.compile(rb"timestamp,arbitration_id,"), "CSVReader"),
+    Kind("TRC", re.compile(rb"\s*;(\$FILEVERSION|#{20}|-{20})"), "TRCReader"),
+)
+
+
+def kind_of(begin: bytes) -> Kind | None:
+    """The kind of log that begins so."""
+    return next((kind for kind in LOGS if kind.begin.match(begin)), None)
+
+
+class Lines(TextIOBase):
+    """A text whose lines are made as they are read."""
+
+    def __init__(self, lines: Iterator[str]) -> None:
+        super().__init__()
+        self._lines = lines
+
+    def __next__(self) -> str:
+        return next(self._lines)
+
+
+@contextmanager
+def messages(path: Path) -> Iterator[Iterable[Any]]:
+    """The messages of a log, while it is read; whatever python-can meets in a damaged one is a RecordingError."""
+    can = required("can", "reading logs of a bus", "recordings")
+    with path.open("rb") as file:
+        kind = kind_of(file.read(LOOKED_AT))
+    assert kind is not None, "only logs are read so"
+    reader = getattr(can, kind.reader, None) or getattr(can.io, kind.reader)
+    try:
+        if kind.lines is None:
+            with reader(path) as log:
+                yield log
+        else:
+            with path.open(encoding="utf-8", errors="replace") as text:
+                yield reader(Lines(kind.lines(text)))
+    except (RecordingError, MemoryError):
+        raise
+    except Exception as error:
+        detail = plain(error, 200) or type(error).__name__
+        raise RecordingError(f"{path} is a damaged log of a bus: {detail}") from error
+
+
+LOOKED_AT = 1000
+"""Bytes at the beginning that tell which kind it is."""

@@ -1,0 +1,104 @@
+"""What stands in a cell of a text: a number, nothing, or something else."""
+
+import re
+from collections.abc import Sequence
+from math import isfinite, nan
+
+import numpy as np
+
+from ..base.written_numbers import real
+
+SIGNS = str.maketrans(
+    dict.fromkeys("−–‒﹣－", "-") | {"＋": "+", "\N{NO-BREAK SPACE}": " ", "\N{NARROW NO-BREAK SPACE}": " "}
+)
+"""Of a true minus sign, and what stands for one."""
+
+WORDS = """
+    - -- --- ---- . ? ?? ??? # na n/a n.a. n.a nan -nan +nan nan(ind) -nan(ind) null (null) <null> \\n <na> nat none nil
+    nv n/v k.a. void invalid missing undefined undef unavailable sna nodata no_data ungültig --.- -.- err error fehler
+    #n/a #na #nv #value! #wert! #ref! #bezug! #num! #zahl! #name? #null! #div/0!
+    1.#qnan -1.#qnan 1.#snan 1.#ind -1.#ind 1.#nan
+"""
+
+EMPTY = frozenset(WORDS.split()) | {"", "no data", "not available", "no value", "signal not available"}
+"""What loggers and spreadsheets write where there is no value, in small letters."""
+
+NUMBER = re.compile(
+    r"[+-]?(\d+[.,]?\d*|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE
+)
+
+GROUPED = {
+    ".": re.compile(r"[+-]?[1-9]\d{0,2}(?:([,' ’])\d{3})(?:\1\d{3})*(\.\d*)?", re.ASCII),
+    ",": re.compile(r"[+-]?[1-9]\d{0,2}(?:([.' ’])\d{3})(?:\1\d{3})*(,\d*)?", re.ASCII),
+}
+"""Numbers with a mark between thousands, by the decimal."""
+
+THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}(\1\d{3})*", re.ASCII)
+"""Numbers that are whole in one country and have decimals in another."""
+
+PLAIN_NUMBERS = frozenset("0123456789+-.eE")
+
+
+def cleaned(cell: str) -> str:
+    """Without blanks around it, and with plain signs."""
+    return cell.translate(SIGNS).strip()
+
+
+def is_number(cell: str) -> bool:
+    """Whether it is a number in any of the forms that are read."""
+    return NUMBER.fullmatch(cleaned(cell)) is not None
+
+
+def is_missing(cell: str) -> bool:
+    """Whether it says that there is no value."""
+    text = cleaned(cell).casefold()
+    return text in EMPTY or set(text) <= {"#", "*"}
+
+
+def decimal_of(cells: Sequence[str]) -> str:
+    """Point or comma: what most numbers have last. A mark before three digits counts where there is no other."""
+    there = [text for text in map(cleaned, cells) if NUMBER.fullmatch(text)]
+    for among in ([text for text in there if not THOUSANDS.fullmatch(text)], there):
+        commas = sum(text.rfind(",") > text.rfind(".") for text in among)
+        points = sum(text.rfind(".") > text.rfind(",") for text in among)
+        if commas != points:
+            return "," if commas > points else "."
+    return "."
+
+
+def numbers(cells: Sequence[str], decimal: str) -> tuple[np.ndarray, dict[int, str]]:
+    """The numbers of a column, NaN where there is none, and what stands in the place of those that cannot be read."""
+    texts = [cell.strip().replace(",", ".") for cell in cells] if decimal == "," else [cell.strip() for cell in cells]
+    if PLAIN_NUMBERS.issuperset("".join(texts)) and (decimal == "." or not any("." in cell for cell in cells)):
+        try:
+            values = np.array(texts, dtype=float)  # the same numbers, all at once
+        except ValueError:
+            pass
+        else:
+            if np.isfinite(values).all():
+                return values, {}
+    known = {cell: _number(cell, decimal) for cell in set(cells)}
+    other, mark = (".", "comma") if decimal == "," else (",", "point")
+    unreadable = {
+        k: f"{cell} (the decimal of this file is a {mark})" if other in cell and is_number(cell) else cell
+        for k, cell in enumerate(cells)
+        if known[cell] is None
+    }
+    return np.array([nan if (value := known[cell]) is None else value for cell in cells], dtype=float), unreadable
+
+
+def _number(cell: str, decimal: str) -> float | None:
+    """The number, NaN where the cell says that there is none, None if it is something else."""
+    if is_missing(cell):
+        return nan
+    text = cleaned(cell)
+    if len(text) > 1 and text[0] == text[-1] == '"':
+        text = text[1:-1].strip()
+    if found := GROUPED[decimal].fullmatch(text):
+        text = text.replace(found[1], "")
+    if decimal == ",":
+        if "." in text:
+            return None
+        text = text.replace(",", ".")
+    value = real(text)
+    return value if value is not None and isfinite(value) else None

@@ -1,0 +1,173 @@
+"""What a channel shows by itself: numbers that are none, cut-off peaks, spikes, jumps."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from ..base.longest_interval import longest_run
+from .channels import Channel
+from .findings import Finding, Rule, at_samples, marked, more
+from .missing_values import ALONE, FILLED, SCALED
+from .thresholds import Threshold
+
+CUT_OFF = Threshold(
+    5,
+    "1",
+    "samples in a row at the largest or smallest value of a channel from which on it looks cut off",
+    "noise of the size of the resolution hardly leaves three",
+)
+LEAST = 10
+"""Samples in which a spike can be told."""
+
+WIDEST = 3
+"""Samples of a spike at the most."""
+
+BRIEF = Threshold(0.01, "s", "longest spike of more than one sample", "a bit of a test drive lasts 40 ms")
+AROUND = 15
+"""Samples before and after a spike with which it is compared."""
+
+LONE = Threshold(
+    5.0,
+    "1",
+    "how far a spike leaves its neighbours, over the range of the 15 samples before and after it",
+    "1.8 at most in 200 simulated drives at 2 ms to 0.1 s, 1.5 in the recordings",
+)
+LARGE = Threshold(
+    0.05, "1", "the same over the range of the whole channel", "smaller ones do not move what is computed of a drive"
+)
+ACCELERATION = Threshold(15.0, "m/s2", "acceleration of a car", "tyres transmit 12 m/s2")
+SPIKE = Threshold(
+    1.0,
+    "m/s",
+    "smallest spike of a speed over ground",
+    "0.12 m/s in the recorded trips; 0.14 m/s of messages that come late",
+)
+WHEEL, MOTOR = (
+    Threshold(3.0, "rad/s", "smallest spike of the speed of a wheel", "that of a speed over ground, tyre of 0.3 m"),
+    Threshold(30.0, "rad/s", "the same of a wheel speed on the motor side", "4.3 rad/s of messages that come late"),
+)
+CLIMB = Threshold(20.0, "m/s", "rate at which no road climbs", "40 % at 50 m/s")
+STEP = Threshold(10.0, "m", "resolution of an elevation", "GPS resolves some metres; 0.02 m in the recorded trips")
+
+SENTINEL = Rule(
+    "code",
+    "a number that loggers write where there is no value: -999, 65535, 3276.7, ...; it is taken for none",
+    f"further from all other values than {ALONE:g} of their range, or {SCALED:g} of it if it is such a number times a "
+    "resolution",
+    "a signal comes to its largest value by way of others",
+)
+HOLE = Rule(
+    "hole",
+    "samples without a value that were filled by a straight line",
+    f"up to {FILLED:g} s; longer ones are gaps",
+    FILLED.source,
+)
+CLIPPED = Rule(
+    "cut off",
+    "motor speed or load that stays at its largest or smallest value",
+    f"{CUT_OFF} samples in a row",
+    "noise of the size of the resolution hardly leaves three",
+)
+SPIKED = Rule(
+    "spike",
+    f"a channel that leaves its neighbours and comes back after a sample, or up to {WIDEST} within {1e3 * BRIEF:g} ms",
+    f"{LONE:g} times the range of its neighbours, and {LARGE:.0%} of that of the channel; a speed over ground "
+    f"{SPIKE:g} m/s and more than {ACCELERATION:g} m/s² allow",
+    f"{LONE.source}; {ACCELERATION.source}",
+)
+JUMP = Rule(
+    "jump",
+    "an elevation that jumps",
+    f"{STEP:g} m and {CLIMB:g} m/s times the step of time",
+    f"40 % at 50 m/s climb {CLIMB:g} m/s; GPS resolves some metres; the recorded trips have 0.02 m",
+)
+RULES = (SENTINEL, HOLE, CLIPPED, SPIKED, JUMP)
+
+
+def of_channels(channels: Iterable[Channel]) -> list[Finding]:
+    """What is odd in channels, each by itself and as sampled."""
+    rules = (lacking, cut_off, spikes, jumps)
+    return [finding for channel in channels for rule in rules for finding in rule(channel)]
+
+
+def lacking(channel: Channel) -> Iterator[Finding]:
+    """Samples without a value: codes of loggers, and holes that were filled."""
+    for code, times, place in channel.lacks:
+        rule, odd = HOLE, "has no value, and is filled by a straight line"
+        if code is not None:
+            rule, odd = SENTINEL, f"is {code:g}, which loggers write where there is no value, and is taken for none"
+        odd += more(len(times))
+        yield Finding(rule, channel.heading, float(times[0]), odd, place, marked(times))
+
+
+def cut_off(channel: Channel) -> Iterator[Finding]:
+    """A motor speed or load that stays at its largest or smallest value as if it were cut off.
+
+    The motor torque is not judged: under a binary demand it stays at two values. Nor are demands and messages.
+    """
+    if channel.quantity != "omega_1" and not channel.quantity.startswith(("T_load", "T_wheel")):
+        return
+    for bound, word in ((channel.values.max(), "largest"), (channel.values.min(), "smallest")):
+        first, length = longest_run(channel.values == bound)
+        if length >= CUT_OFF:
+            odd = (
+                f"stays at its {word} value, {bound:g} {channel.unit}, for {length} samples; it may have been cut off "
+                "there"
+            )
+            yield at_samples(channel, CLIPPED, np.arange(first, first + length), odd)
+            return
+
+
+def spikes(channel: Channel) -> Iterator[Finding]:
+    """Samples that leave their neighbours and come back as nothing does that a car or its motor makes."""
+    x = channel.values
+    if len(x) < LEAST or channel.unit == "1":
+        return
+    from scipy.ndimage import median_filter
+
+    interval = float(np.median(np.diff(channel.time)))
+    smallest = max(LARGE * float(np.ptp(median_filter(x, 2 * WIDEST + 1, mode="nearest"))), _smallest(channel))
+    odd = np.zeros(len(x), dtype=bool)
+    for width in range(1, WIDEST + 1):
+        off = np.abs(x - median_filter(x, 2 * width + 1, mode="nearest"))
+        if len(x) > 2 * (AROUND + width) and (width == 1 or width * interval <= BRIEF * (1.0 + 1e-6)):
+            at = np.flatnonzero(off > smallest)
+            odd[at[off[at] > LONE * _range_around(x, at, width)]] = True
+        if channel.unit == "m/s":
+            odd |= off > max(SPIKE, ACCELERATION * interval * width)
+    at = np.flatnonzero(odd)
+    if len(at):
+        k, unit = int(at[0]), channel.file_unit
+        off = (x[k] - np.median(x[max(k - WIDEST, 0) : k + WIDEST + 1])) / unit.factor
+        yield at_samples(
+            channel, SPIKED, at, f"is {off:+.3g} {unit.printed} off its neighbours, a spike{more(len(at))}"
+        )
+
+
+def _smallest(channel: Channel) -> float:
+    """What a spike must have at least: of what comes as messages, some are late, and their steps are no spikes."""
+    if channel.unit == "m/s":
+        return SPIKE
+    if channel.quantity.startswith("omega_wheel"):
+        return WHEEL
+    return MOTOR if channel.quantity == "omega_2" else 0.0
+
+
+def _range_around(x: np.ndarray, at: np.ndarray, width: int) -> np.ndarray:
+    """Range of the AROUND samples before and after those at some indices, but for `width - 1` on either side."""
+    distance = np.arange(width, width + AROUND)
+    index = np.abs(at[:, None] + np.concatenate((-distance[::-1], distance)))
+    index = np.where(index >= len(x), 2 * (len(x) - 1) - index, index)
+    return np.ptp(x[index], axis=1) if len(at) else np.empty(0)
+
+
+def jumps(channel: Channel) -> Iterator[Finding]:
+    """Elevations between which no road leads."""
+    if channel.quantity != "elevation":
+        return
+    rise, steps = np.diff(channel.values), np.diff(channel.time)
+    at = np.flatnonzero(np.abs(rise) > STEP + CLIMB * steps)
+    if len(at):
+        k = int(at[0])
+        odd = f"jumps by {rise[k]:+.4g} m within {steps[k]:.3g} s, as no road does{more(len(at), 'jump')}"
+        yield at_samples(channel, JUMP, at + 1, odd)

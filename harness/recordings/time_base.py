@@ -1,0 +1,167 @@
+"""The times of a channel: equal ones at the resolution of a clock, gaps, and the longest piece without any."""
+
+from collections.abc import Callable, Iterable
+from math import inf, isfinite
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from .clock_times import Clock
+from .source import RecordingError
+
+INTERVALS = (1e-6, 1e6)
+"""In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
+
+OFTEN = 0.01
+"""Share of the steps that are zero from which on the resolution of the clock is why."""
+
+
+def typed(time: float) -> str:
+    """A time in s without the last digits, as it is typed."""
+    return f"{round(time, 9):.15g}"
+
+
+class Cut(NamedTuple):
+    """The part of a recording that is read: from and to when, in s or by a clock; None: its begin or end."""
+
+    begin: float | Clock | None = None
+    end: float | Clock | None = None
+
+    def within(self, time: np.ndarray, begin: Clock | None) -> np.ndarray:
+        """Which times in s are in it.
+
+        Args:
+            begin: what the clock says at 0.
+
+        Raises:
+            ValueError: there is no clock, and the cut is by one; nothing is in it.
+        """
+        if self == WHOLE:
+            return np.isfinite(time)
+        first, last = (self._second(each, time, begin) for each in self)
+        inside = np.isfinite(time)
+        # the last digits of written times must not decide
+        if first is not None:
+            inside &= time >= first - 1e-12 * abs(first) - 1e-9
+        if last is not None:
+            inside &= time <= last + 1e-12 * abs(last) + 1e-9
+        if not inside.any():
+            given = " ".join(
+                f"--{name} {limit}" for name, limit in zip(("from", "to"), self, strict=True) if limit is not None
+            )
+            clock = f" ({begin} at 0)" if begin else ""
+            raise ValueError(
+                f"no sample is within {given}; it goes from {typed(float(np.nanmin(time)))} to "
+                f"{typed(float(np.nanmax(time)))} s{clock}"
+            )
+        return inside
+
+    @staticmethod
+    def _second(limit: float | Clock | None, time: np.ndarray, begin: Clock | None) -> float | None:
+        if not isinstance(limit, Clock):
+            return limit
+        if begin is None:
+            raise ValueError("it has no times of day; --from and --to must be seconds")
+        return limit.after(begin, float(np.nanmax(time)))
+
+
+WHOLE = Cut()
+
+MOST = 100
+"""Samples that cannot be used up to which the longest piece without any is looked for."""
+
+
+class Break(NamedTuple):
+    """Where a recording cannot be used.
+
+    Attributes:
+        end: time in s up to which what is before can be, -inf if nothing can.
+        begin: time from which on what is after can be, inf if nothing can.
+        problem: in words.
+    """
+
+    end: float
+    begin: float
+    problem: str
+
+
+def around(time: np.ndarray, first: int, last: int, problem: str) -> Break:
+    """A break at the samples between two indices, these included."""
+    low, high = time[first : last + 1].min(), time[first : last + 1].max()
+    before, after = time[time < low], time[time > high]
+    return Break(before.max(initial=-inf), after.min(initial=inf), problem)
+
+
+def longest_piece(begin: float, end: float, breaks: Iterable[Break]) -> tuple[float, float] | None:
+    """The longest time in s without a break."""
+    pieces, at = [], begin
+    for each in sorted(breaks):
+        pieces.append((at, min(each.end, end)))
+        at = max(at, each.begin)
+    pieces.append((at, end))
+    longest = max(pieces, key=lambda piece: piece[1] - piece[0])
+    return longest if longest[1] > longest[0] else None
+
+
+def spread(time: np.ndarray) -> np.ndarray:
+    """Times (n,) in s of which those that are equal, because the clock is coarse, are spread up to the next one.
+
+    Where all times are those of a steady clock within that resolution, they are its times. Single equal ones are left.
+    """
+    steps = np.diff(time)
+    if not len(steps) or not (steps == 0.0).any() or not (steps > 0.0).any() or np.mean(steps == 0.0) < OFTEN:
+        return time
+    k = np.arange(len(time))
+    if (steps >= 0.0).all():
+        steady = time[0] + np.polyfit(k, time - time[0], 1)[0] * k
+        if np.ptp(steady - time) <= 1.05 * steps[steps > 0.0].min():
+            return steady
+    first = np.flatnonzero(np.append(True, steps != 0.0))
+    length = np.diff(np.append(first, len(time)))
+    until = np.append(time[first[1:]], time[first[-1]] + np.median(steps[steps > 0.0]))
+    run = np.repeat(np.arange(len(first)), length)
+    return time + (k - first[run]) * np.maximum(until - time[first], 0.0)[run] / length[run]
+
+
+def time_breaks(
+    path: Path, time: np.ndarray, where: Callable[[int], str], gap: float, jumps: bool = False
+) -> list[Break]:
+    """Where time does not increase, or has a gap.
+
+    Args:
+        path: of the recording, for messages.
+        time: in s.
+        where: of a sample in the file.
+        gap: longest step that is still no gap, in median steps.
+        jumps: whether two samples may have one time.
+
+    Raises:
+        RecordingError: the steps are such as no recording has.
+    """
+    steps = np.diff(time)
+    backward = np.flatnonzero((steps < 0.0) | ((steps == 0.0) & (not jumps)))
+    found = []
+    for k in backward[:MOST].tolist():
+        problem = (
+            f"{path}, {where(k + 1)}: time {typed(float(time[k + 1]))} s does not come after {typed(float(time[k]))} s"
+        )
+        found.append(around(time, k, k + 1, problem) if len(backward) <= MOST else Break(-inf, inf, problem))
+    if jumps:
+        return found
+    median = float(np.median(steps))
+    least, most = INTERVALS
+    if not found and not least <= median <= most:
+        raise RecordingError(
+            f"{path}, {where(1)}: the sample interval is {median:g} s; {least:g} to {most:g} s are allowed"
+        )
+    gaps = np.flatnonzero(steps > gap * median) if isfinite(gap) and median > 0.0 else np.empty(0, dtype=int)
+    return found + [
+        Break(
+            float(time[k]),
+            float(time[k + 1]),
+            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {typed(float(time[k]))} s; at most {gap * median:g} "
+            f"s ({gap:g} times the median step) is allowed",
+        )
+        for k in gaps.tolist()
+    ]
