@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from driveline.harness.commands.cli import main
+from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.views.signals_file import FORMATS
@@ -48,32 +49,19 @@ def test_a_recorded_test_drive_is_the_same_measurement_in_every_format(driven, n
 
 @pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
 @pytest.mark.slow
-def test_a_run_in_another_format_can_be_driven_again(driven, name, native, tmp_path):
-    options = ["--fmus", str(native.parent), "--output", str(tmp_path), "--quiet", "--format", name]
-    assert main(["replay", str(path(driven, name)), "--plant", "TwoMassDriveline", *options]) == 0
-    rides = [
-        tmp_path / f"{path(driven, name).stem}_{what}{FORMATS[name].ending}" for what in ("off", "DampingController")
-    ]
-    record = json.loads((tmp_path / f"{path(driven, name).stem}.json").read_text())
+def test_rides_and_comparisons_are_written_in_the_format(driven, name, native, tmp_path):
+    recording, ending = path(driven, name), FORMATS[name].ending
+    options = ["--plant", "TwoMassDriveline", "--fmus", str(native.parent), "--quiet", "--format", name]
+    assert main(["replay", str(recording), *options, "--output", str(tmp_path)]) == 0
+    rides = [tmp_path / f"{recording.stem}_{what}{ending}" for what in ("off", "DampingController")]
+    record = json.loads((tmp_path / f"{recording.stem}.json").read_text())
     assert {ride.name for ride in rides} <= set(record["files"])
-    assert all(read_drive_speed(ride) for ride in rides)
-
-
-def read_drive_speed(ride):
-    from driveline.harness.recordings.channels import Channels
-
-    return Channels(ride).read("v")["v"].unit == "m/s"
-
-
-@pytest.mark.parametrize("name", slow(OTHERS, but=["mf4"]))
-@pytest.mark.slow
-def test_a_comparison_writes_its_runs_in_the_format(native, tmp_path, name):
-    options = ["--plant", "TwoMassDriveline", "--manoeuvre", "prbs15", "--fmus", str(native.parent), "--quiet"]
-    assert main(["compare", *options, "--output", str(tmp_path), "--format", name]) == 0
-    files = {file.name for file in (tmp_path / "runs").iterdir()}
+    assert main(["compare", "--manoeuvre", "prbs15", *options, "--output", str(tmp_path)]) == 0
     stems = ("TwoMassDriveline_prbs15_off", "TwoMassDriveline_prbs15_on")
-    assert files == {f"{stem}{ending}" for stem in stems for ending in (FORMATS[name].ending, ".json")}
-    assert read_drive_speed(tmp_path / "runs" / f"{stems[0]}{FORMATS[name].ending}")
+    runs = {tmp_path / "runs" / f"{stem}{kind}" for stem in stems for kind in (ending, ".json")}
+    assert set((tmp_path / "runs").iterdir()) == runs
+    for file in (*rides, tmp_path / "runs" / f"{stems[0]}{ending}"):
+        assert Channels(file).read("v")["v"].unit == "m/s"
 
 
 def test_another_format_is_another_run(driven, native, capsys):

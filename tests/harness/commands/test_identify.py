@@ -18,10 +18,8 @@ from driveline.harness.design.design_weights import PLANT
 from driveline.harness.loop.settings import Settings
 from tests.harness.commands import Capsys
 
-FIGURES = {
-    f"car_{name}.{ending}" for name in ("simulation", "innovations", "cost", "response") for ending in ("png", "pdf")
-}
-FILES = {"car.toml", "car_identified.json", "car.json", *FIGURES}
+DRAWN = {f"car_{name}.png" for name in ("simulation", "innovations", "cost", "response")}
+FILES = {"car.toml", "car_identified.json", "car.json"}
 
 Identify = Callable[..., int]
 
@@ -60,12 +58,9 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
     folder = tmp_path / "out"
     assert identify() == 0
     message = capsys.readouterr().out
-    assert {path.name for path in folder.iterdir()} == FILES
-    assert {line.split(": ")[1] for line in message.splitlines() if line.startswith("written")} == {
-        f"{folder / name} (and .pdf)" if name.endswith(".png") else str(folder / name)
-        for name in FILES
-        if not name.endswith(".pdf")
-    }
+    assert {path.name for path in folder.iterdir()} == FILES | DRAWN | {name[:-3] + "pdf" for name in DRAWN}
+    written = {str(folder / name) for name in FILES} | {f"{folder / name} (and .pdf)" for name in DRAWN}
+    assert {line.split(": ")[1] for line in message.splitlines() if line.startswith("written")} == written
     assert "identified with load torque, by prediction error: J_2 is that of the wheels alone, C that" in message
     assert "warning" not in message
     document = found(folder)
@@ -103,6 +98,13 @@ def test_more_parameters_can_be_freed(identify: Identify, tmp_path: Path, withou
 def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """They are drawn in another test."""
     monkeypatch.setattr("driveline.harness.commands.identify.draw", lambda *_: [])
+
+
+def test_without_casadi_the_extra_is_named(identify, tmp_path, monkeypatch, capsys) -> None:
+    monkeypatch.setitem(sys.modules, "casadi", None)
+    assert identify() == 2
+    assert "identifying a model needs the package casadi: install the extra `identification`" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_without_load_torque_and_demand_the_result_has_another_name(
@@ -227,12 +229,3 @@ def test_files_of_another_origin_are_not_replaced(identify: Identify, tmp_path: 
         assert f"{folder / name} is there" in capsys.readouterr().err
         assert (folder / name).read_text() == "mine"
         (folder / name).unlink()
-
-
-def test_without_casadi_the_extra_is_named(
-    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
-) -> None:
-    monkeypatch.setitem(sys.modules, "casadi", None)
-    assert identify() == 2
-    assert "identifying a model needs the package casadi: install the extra `identification`" in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()

@@ -1,13 +1,9 @@
 """What the shared options take and what they refuse, and what is said of them."""
 
-import os
-import subprocess
-import sys
 from argparse import ArgumentTypeError
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from shutil import copytree, ignore_patterns
 from typing import Any
 
 import pytest
@@ -29,11 +25,9 @@ from driveline.harness.commands.options import (
 from driveline.harness.commands.printing import JsonPrinting, Printing
 from driveline.harness.commands.recorded import Recorded
 from driveline.harness.commands.settings import caption
-from driveline.harness.loop.places import BUILD
 from driveline.harness.studies.compare.compare import Case
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.models.block.declaration import Integer, variables
-from tests import ROOT
 from tests.harness.commands import Capsys, given
 
 Parse = Callable[[str], Any]
@@ -110,7 +104,7 @@ def test_a_seed_is_what_the_blocks_declare() -> None:
             seed(text)
 
 
-def test_a_window_shows_something_of_every_run() -> None:
+def test_a_window_and_the_kinds_of_figures_are_those_that_are_asked_for() -> None:
     def options_for(start: float, end: float) -> FigureOptions:
         return Figures(window=(start, end)).options("", ("tipin15", 0.0, 6.0), ("drive", 0.0, 20.0))
 
@@ -119,9 +113,6 @@ def test_a_window_shows_something_of_every_run() -> None:
     for start, end in ((6.0, 9.0), (-1.0, 0.0), (30.0, 40.0)):
         with pytest.raises(DrivelineError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
             options_for(start, end)
-
-
-def test_figures_are_of_the_kinds_that_are_asked_for_each_once() -> None:
     asked = Figures(figures=("svg", "png", "svg"))
     assert asked.options("said") == FigureOptions("said", None, ("svg", "png"))
     assert Figures().options("") == FigureOptions("", None, ("png", "pdf"))
@@ -151,24 +142,6 @@ def test_a_folder_for_results_is_tried_and_nothing_is_left_of_it(tmp_path: Path)
     for text in ("/proc/results", str(tmp_path / "file" / "results")):
         with pytest.raises(ArgumentTypeError, match="cannot be written to"):
             output_folder(text)
-
-
-def test_fmus_are_in_the_checkout_or_else_in_the_working_directory(tmp_path: Path) -> None:
-    assert BUILD == ROOT / "build"
-    package, left_out = tmp_path / "site/driveline", ignore_patterns("__pycache__", "*.so", "models", "fmus", "harness")
-    copytree(ROOT / "driveline", package, ignore=left_out)
-    for name in ("fmus", "models", "harness"):
-        copytree(ROOT / name, package / name, ignore=ignore_patterns("__pycache__", "*.so"))
-    statement = "from driveline.harness.loop.places import BUILD; print(BUILD)"
-    done = subprocess.run(
-        [sys.executable, "-c", statement],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.strip() == "build"
 
 
 def test_other_samples_columns_names_or_frames_make_another_run(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from driveline.fmus.errors import ParameterFileError
@@ -35,7 +34,7 @@ def gains(tmp_path):
     return str(path)
 
 
-def test_the_entries_reach_every_block_that_has_them(given, gains):
+def test_the_entries_reach_every_block_that_has_them_unless_they_are_set(given, gains):
     parameters = given("--vehicle", VAN, "--parameters", gains)
     of_i = {name: value for name, value in parameters.items() if name.endswith(".i")}
     of_T_max = {name: value for name, value in parameters.items() if name.endswith(".T_max")}
@@ -43,21 +42,12 @@ def test_the_entries_reach_every_block_that_has_them(given, gains):
     assert of_T_max == {"motor.T_max": 250.0, "controller.T_max": 250.0}
     assert (parameters["controller.k_d"], parameters["controller.T_take_max"]) == (3.6, 80.0)
     assert "plant.k_s" not in parameters
-
-
-def test_each_plant_gets_what_it_has(given):
     parameters = given("--vehicle", VAN, plant="ValidationVehicle")
     assert parameters["plant.k_s"] == pytest.approx(52333.7)
     assert "plant.C" not in parameters
     assert parameters["controller.C"] == 150.0
-
-
-def test_what_is_set_goes_before_the_files(given, gains):
     parameters = given("--vehicle", VAN, "--parameters", gains, "--set", "plant.i=10", "--set", "controller.k_d=1")
     assert (parameters["plant.i"], parameters["can.i"], parameters["controller.k_d"]) == (10.0, 12.0, 1.0)
-
-
-def test_without_files_only_what_is_set_is_given(given):
     assert given("--set", "plant.i=10") == {"plant.i": 10.0}
 
 
@@ -97,6 +87,12 @@ def test_a_parameter_of_the_same_name_in_another_unit_is_refused_unless_it_is_ma
     ):
         given("--vehicle", VAN, plant=plant)
     assert given("--vehicle", VAN, "--map", "plant.m=m", plant=plant)["plant.m"] == 3500.0
+    odd = build_car(tmp_path / "metres", m=("m", "m", 1.0))
+    for mapped in ([], ["--map", "plant.m=m"]):
+        with pytest.raises(
+            WiringError, match=r"plant\.m is in m, which does not convert into kg, the unit of the file"
+        ):
+            given("--vehicle", VAN, *mapped, plant=odd)
 
 
 @pytest.mark.slow
@@ -110,36 +106,6 @@ def test_a_comparison_gives_each_plant_its_own(both_built, tmp_path):
 def test_every_command_that_runs_or_builds_the_loop_takes_both_files(command, gains):
     args = record(*command, "--vehicle", VAN, "--parameters", gains)
     assert (str(args.vehicle), str(args.parameters)) == (VAN, gains)
-
-
-@pytest.mark.slow
-def test_a_vehicle_file_reaches_a_parameter_in_another_unit_once_it_is_mapped(
-    both_built: Path, tmp_path: Path, capsys: Capsys
-) -> None:
-    heavy = tmp_path / "heavy.toml"
-    heavy.write_text("m = 2000.0\n")
-    plain, theirs = (
-        build_car(tmp_path / name, m=("m", unit, factor)) for name, unit, factor in (("si", "kg", 1.0), ("t", "t", 1e3))
-    )
-    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(both_built), "--quiet"]
-    assert main([*options, "--plant", str(theirs), "--output", str(tmp_path)]) == 2
-    assert "plant.m is in t; the file gives it in kg (--map plant.m=m converts it)" in capsys.readouterr().err
-    for name, plant, mapped in (("si", plain, []), ("t", theirs, ["--map", "plant.m=m"])):
-        assert main([*options, "--plant", str(plant), *mapped, "--output", str(tmp_path / name)]) == 0
-    runs = [np.genfromtxt(next((tmp_path / name).glob("*.csv")), delimiter=",", names=True) for name in ("si", "t")]
-    np.testing.assert_allclose(runs[1]["plantv"], runs[0]["plantv"], rtol=1e-9)
-
-
-def test_a_parameter_of_the_same_name_and_another_dimension_is_refused_even_if_mapped(
-    both_built: Path, tmp_path: Path, capsys: Capsys
-) -> None:
-    heavy = tmp_path / "heavy.toml"
-    heavy.write_text("m = 2000.0\n")
-    plant = build_car(tmp_path / "metres", m=("m", "m", 1.0))
-    options = ["simulate", "--vehicle", str(heavy), "--fmus", str(both_built), "--plant", str(plant)]
-    for mapped in ([], ["--map", "plant.m=m"]):
-        assert main([*options, *mapped, "--output", str(tmp_path)]) == 2
-        assert "plant.m is in m, which does not convert into kg, the unit of the file" in capsys.readouterr().err
 
 
 @pytest.mark.slow

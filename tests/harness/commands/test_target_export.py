@@ -16,13 +16,6 @@ def exported(folder: Path, *options: str) -> int:
     return main([*EXPORT, "--output", str(folder), *options])
 
 
-def test_it_writes_headers_and_source(tmp_path: Path) -> None:
-    assert exported(tmp_path / "c") == 0
-    files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "c").iterdir()}
-    assert sorted(files) == ["controller.h", "damping_controller.c", "damping_controller.h"]
-    assert not any("double" in text for text in files.values())
-
-
 def test_on_a_full_disk_it_writes_all_files_or_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
 ) -> None:
@@ -40,14 +33,16 @@ def test_on_a_full_disk_it_writes_all_files_or_none(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_it_takes_the_car_and_its_gains(tmp_path: Path) -> None:
+def test_it_writes_headers_and_source_with_the_car_and_its_gains(tmp_path: Path) -> None:
     gains = tmp_path / "gains.toml"
     gains.write_text("k_d = 4.0\n", encoding="utf-8")
     car = ROOT / "examples" / "cars" / "van.toml"
-    assert exported(tmp_path, "--vehicle", str(car), "--parameters", str(gains)) == 0
-    text = (tmp_path / "damping_controller.c").read_text(encoding="utf-8")
+    assert exported(tmp_path / "c", "--vehicle", str(car), "--parameters", str(gains)) == 0
+    files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "c").iterdir()}
+    assert sorted(files) == ["controller.h", "damping_controller.c", "damping_controller.h"]
+    assert not any("double" in text for text in files.values())
     for line in (".k_d = 4.0f,", ".T_max = 250.0f,", ".phi_B = 0.314f,", ".omega_w = 3.0f,"):
-        assert line in text
+        assert line in files["damping_controller.c"]
 
 
 @pytest.mark.parametrize(

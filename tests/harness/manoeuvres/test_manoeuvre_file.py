@@ -52,9 +52,11 @@ def test_the_lines_of_python_on_the_page_print_what_they_say(
     assert absent == "the manoeuvre is no step"
 
 
-def test_only_the_duration_is_needed(tmp_path):
+def test_a_file_needs_a_duration_alone_and_is_not_too_long(tmp_path):
     manoeuvre = read(tmp_path, "duration = 2")
     assert (manoeuvre.v_0, manoeuvre.T_0, manoeuvre.dT) == (0.0, 0.0, None)
+    with pytest.raises(DrivelineError, match=r"1\.2 MB is too long; at most 1 MB"):
+        read(tmp_path, "duration = 5\n" + "# " * 600_000)
 
 
 @pytest.mark.parametrize(
@@ -105,11 +107,6 @@ def test_what_is_wrong_is_said_in_one_line_with_file_key_and_value(tmp_path, tex
         read(tmp_path, text)
     assert str(refusal.value).startswith(f"{tmp_path / 'mine.toml'}: ")
     assert str(refusal.value).isprintable()
-
-
-def test_a_file_that_is_too_long_is_not_parsed(tmp_path):
-    with pytest.raises(DrivelineError, match=r"1\.2 MB is too long; at most 1 MB"):
-        read(tmp_path, "duration = 5\n" + "# " * 600_000)
 
 
 def test_a_table_is_read_as_straight_lines_with_jumps(tmp_path):

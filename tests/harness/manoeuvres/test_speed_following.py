@@ -36,23 +36,17 @@ def track(
     return Track("drive", interval, np.arange(samples) * interval, *signals)
 
 
-def test_a_steady_drive_needs_what_the_motor_leaves_over():
+def test_a_steady_drive_needs_what_the_motor_leaves_over_and_more_speed_the_mass():
     expected = RESISTANCE + 0.42 * 100.0 - 9.0 * 40.0 / 0.29
     assert needed_force(track(10.0, 40.0), LOAD) == pytest.approx(expected)
-
-
-def test_to_gain_speed_needs_the_mass_with_what_rotates():
     level = needed_force(track(10.0), LOAD)[200]
     gaining = needed_force(track(10.0 + 0.1 * (np.arange(400) - 200)), LOAD)[200]
     assert gaining - level == pytest.approx(1.09 * 1450.0, rel=1e-3)
 
 
-def test_a_car_as_fast_as_the_recorded_one_lacks_nothing():
+def test_a_car_lacks_the_force_that_slows_it_and_nothing_else():
     recorded = track(10.0 + np.sin(np.arange(400) * 0.1))
     assert lacking_force(recorded, LOAD, recorded.t, recorded.v) == pytest.approx(0.0)
-
-
-def test_a_car_that_falls_behind_lacks_the_force_that_slows_it():
     recorded, pull = track(10.0), 150.0
     behind = 10.0 - pull / (1.09 * 1450.0) * recorded.t[:50]
     lacking = lacking_force(track(10.0, samples=50), LOAD, recorded.t[:50], behind)
@@ -80,7 +74,7 @@ def test_of_1_hz_less_than_a_hundredth_is_left_and_of_the_drive_train_nothing(fr
     assert np.abs(of_speed[middle]).max() < most * np.abs(force[middle]).max()
 
 
-def test_brake_and_grade_are_the_force_together_while_the_car_rolls():
+def test_brake_and_grade_are_the_force_but_for_the_band_of_the_drive_train():
     town = Track.of(read_drive(PATH))
     F = needed_force(town, LOAD)
     rolling = ~holding(town, LOAD, F)
@@ -88,9 +82,6 @@ def test_brake_and_grade_are_the_force_together_while_the_car_rolls():
     done = -manoeuvre.T_brake(town.t) / 0.29 - 1450.0 * 9.81 * np.sin(manoeuvre.slope(town.t))
     assert done[rolling] == pytest.approx(F[rolling])
     assert manoeuvre.T_brake(town.t)[rolling].max() > 100.0
-
-
-def test_nothing_of_it_is_in_the_band_of_the_drive_train_while_the_car_rolls():
     town = Track.of(read_drive(PATH))
     manoeuvre = drive(town, LOAD, needed_force(town, LOAD))
     t = np.arange(2.5, 22.0, 0.002)

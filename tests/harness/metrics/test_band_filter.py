@@ -1,4 +1,4 @@
-"""Signals within a band, over time."""
+"""Signals within a band over time, low-passed, and over frequency, against scipy and systems that are known."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,8 @@ from scipy.signal import butter, sosfiltfilt
 
 from driveline.harness.metrics import band_filter, spectrum
 from driveline.harness.metrics.band_filter import band_part, derivative, envelope, forwards_and_backwards
+from driveline.harness.metrics.declaration import Absent
+from driveline.harness.metrics.oscillation import low_passed
 from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
 
 T_S = 0.002
@@ -17,8 +19,12 @@ def wave(f: float) -> np.ndarray:
     return 3.0 * np.sin(2.0 * np.pi * f * T)
 
 
-def test_the_envelope_of_an_oscillation_on_a_ramp_is_its_amplitude() -> None:
+def test_the_envelope_is_that_of_the_band_and_nothing_is_shifted() -> None:
     assert envelope(100.0 * T + wave(8.0), T_S)[MIDDLE] == pytest.approx(3.0, rel=0.02)
+    assert band_part(wave(12.0), T_S)[MIDDLE] == pytest.approx(wave(12.0)[MIDDLE], abs=0.02)
+    x = np.random.default_rng(1).standard_normal(len(T))
+    assert (np.abs(band_part(x, T_S)) <= envelope(x, T_S) + 1e-12).all()
+    assert envelope(np.array([0.0, 1.0]), T_S).shape == (2,)
 
 
 @pytest.mark.parametrize("f", [1.0, 150.0])
@@ -26,18 +32,11 @@ def test_what_is_slower_or_faster_has_none(f: float) -> None:
     assert envelope(wave(f), T_S)[MIDDLE].max() < 0.01
 
 
-def test_no_sample_is_above_the_envelope() -> None:
-    x = np.random.default_rng(1).standard_normal(len(T))
-    assert (np.abs(band_part(x, T_S)) <= envelope(x, T_S) + 1e-12).all()
-
-
-def test_nothing_is_shifted() -> None:
-    assert band_part(wave(12.0), T_S)[MIDDLE] == pytest.approx(wave(12.0)[MIDDLE], abs=0.02)
-
-
-def test_the_derivative_of_what_is_slow_is_that_of_the_signal() -> None:
+def test_the_derivative_is_that_of_the_signal_and_of_numpy() -> None:
     expected = 2.0 * np.pi * 8.0 * 3.0 * np.cos(2.0 * np.pi * 8.0 * T)
     assert derivative(wave(8.0), T_S)[MIDDLE] == pytest.approx(expected[MIDDLE], abs=1.0)
+    x = np.random.default_rng(3).standard_normal(len(T))
+    np.testing.assert_array_equal(derivative(x, T_S), np.gradient(band_part(x, T_S, TO_50_HZ), T_S))
 
 
 @pytest.mark.parametrize("at_once", [100, 2**17])
@@ -49,11 +48,6 @@ def test_a_filter_in_pieces_gives_what_scipy_gives(at_once: int, ends: int, monk
         butter(4, (5.0, 50.0), "band", fs=500.0, output="sos"),
     )
     np.testing.assert_array_equal(forwards_and_backwards(sos, x, ends), sosfiltfilt(sos, x, padlen=ends))
-
-
-def test_the_derivative_is_that_of_numpy() -> None:
-    x = np.random.default_rng(3).standard_normal(len(T))
-    np.testing.assert_array_equal(derivative(x, T_S), np.gradient(band_part(x, T_S, TO_50_HZ), T_S))
 
 
 @pytest.mark.parametrize(("band", "of_slope"), [(DRIVE_TRAIN, False), (TO_50_HZ, True)])
@@ -76,5 +70,20 @@ def test_samples_that_are_too_far_apart_have_nothing_of_a_band() -> None:
     assert np.isfinite(derivative(np.arange(20.0), 0.1)).all()
 
 
-def test_a_record_of_two_samples_has_an_envelope() -> None:
-    assert envelope(np.array([0.0, 1.0]), T_S).shape == (2,)
+@pytest.mark.parametrize(("samples", "T_s"), [(10, 2e-3), (500, 1e-2), (3001, 2e-3), (4097, 1e-3)])
+def test_the_low_pass_is_that_of_scipy_to_rounding(samples, T_s):
+    x = np.random.default_rng(1).standard_normal(samples)
+    expected = sosfiltfilt(butter(2, 12.0, fs=1.0 / T_s, output="sos"), x)
+    assert low_passed(x, T_s, 12.0) == pytest.approx(expected, abs=1e-13)
+
+
+def test_the_low_pass_leaves_a_straight_line_in_its_middle():
+    x = 3.0 + 0.01 * np.arange(2000)
+    assert low_passed(x, 2e-3, 12.0)[500:1500] == pytest.approx(x[500:1500], rel=1e-10)
+
+
+@pytest.mark.parametrize(("samples", "T_s"), [(9, 2e-3), (0, 2e-3), (500, 1.0 / 24.0)])
+def test_too_few_samples_for_the_low_pass_have_no_answer(samples, T_s):
+    with pytest.raises(Absent, match=f"{samples} samples every"):
+        low_passed(np.ones(samples), T_s, 12.0)
+    assert low_passed(np.ones(10), 0.99 / 24.0, 12.0) == pytest.approx(np.ones(10))

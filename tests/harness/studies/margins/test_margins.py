@@ -3,19 +3,21 @@
 from collections.abc import Callable
 from dataclasses import replace
 from math import ceil, floor, inf, isnan, pi, sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
-from driveline.harness.studies.margins.jacobians import NotLinear
+from driveline.harness.studies.margins.averaged_messages import messages
+from driveline.harness.studies.margins.jacobians import NotLinear, like, names, numbers, rates
 from driveline.harness.studies.margins.linear_controller import settled
 from driveline.harness.studies.margins.linear_loop import linear_loop
 from driveline.harness.studies.margins.linear_plant import in_contact_and_gap
 from driveline.harness.studies.margins.margins import FREQUENCIES, margins
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
+from driveline.models.block.operators import clip
 from driveline.models.block.types import SampledBlock
 from driveline.models.controller import T_S
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
@@ -121,13 +123,10 @@ def test_a_loop_that_feeds_nothing_back_bears_everything() -> None:
     assert isnan(found.gain_frequency)
 
 
-def test_the_loop_is_as_late_as_it_is_said_to_be() -> None:
-    """A dead time of whole samples turns the loop gain and does nothing else."""
+def test_a_delay_of_the_loop_takes_from_its_margin() -> None:
+    # A dead time of whole samples turns the loop gain and does nothing else.
     prompt, late = (linear_loop(Point(late=late, wheel=False)).gain(FREQUENCIES) for late in (0.0, 3.0 * T_S))
     np.testing.assert_allclose(late, prompt * np.exp(-2j * pi * FREQUENCIES * 3.0 * T_S), rtol=1e-6, atol=1e-9)
-
-
-def test_a_delay_between_samples_is_between_its_neighbours() -> None:
     margin = [margins(linear_loop(Point(late=late, wheel=False))).delay_margin for late in (0.0, 0.5 * T_S, T_S)]
     assert margin[1] == pytest.approx(0.5 * (margin[0] + margin[2]), rel=1e-3)
 
@@ -145,3 +144,42 @@ def test_a_controller_in_fallback_does_not_damp() -> None:
     point = Point(plant=validation_vehicle.BLOCK).with_parameters(controller={"omega_max": 50.0})
     with pytest.raises(NotLinear, match=r"does not damp at 4\.16667 m/s and 40 N\.m: it is in fallback"):
         linear_loop(point)
+
+
+def test_messages_count_in_samples_of_two_milliseconds() -> None:
+    """Between two and four milliseconds they come half a sample later on average."""
+    found = messages(Point().with_parameters(can={"T_cyc": 0.02, "d_min": 0.002, "d_max": 0.004}))
+    assert found == (10, 2)
+
+
+class Inner(NamedTuple):
+    a: float
+    b: tuple[float, ...]
+
+
+class Outer(NamedTuple):
+    inner: Inner
+    c: float
+
+
+RECORD = Outer(Inner(1.0, (2.0, 3.0)), 4.0)
+
+
+def test_a_record_is_its_numbers_with_their_names() -> None:
+    assert names(RECORD) == ["inner.a", "inner.b.0", "inner.b.1", "c"]
+    assert numbers(RECORD) == [1.0, 2.0, 3.0, 4.0]
+    assert like(RECORD, [5.0, 6.0, 7.0, 8.0]) == Outer(Inner(5.0, (6.0, 7.0)), 8.0)
+
+
+def test_the_rates_of_a_straight_function_are_its_factors_and_a_bend_is_no_kink() -> None:
+    found = rates(lambda x: [3.0 * x[0] - x[1], 0.5 * x[1]], [130.0, -20.0], [0, 1])
+    np.testing.assert_allclose(found.mean, [[3.0, -1.0], [0.0, 0.5]], atol=1e-8)
+    assert not found.has_kink.any()
+    found = rates(lambda x: [sqrt(x[0]), abs(x[0] - 0.25)], [0.25], [0])
+    assert found.mean.tolist() == [[pytest.approx(1.0, rel=1e-6)], [pytest.approx(0.0, abs=1e-9)]]
+    assert found.has_kink.tolist() == [[False], [True]]
+
+
+@pytest.mark.parametrize(("limit", "has_kink"), [(1.0, True), (1.0 + 2e-4, False)])
+def test_a_kink_is_seen_at_its_place_and_not_beside_it(limit: float, has_kink: bool) -> None:
+    assert bool(rates(lambda x: [clip(x[0], -limit, limit)], [1.0], [0]).has_kink.any()) is has_kink

@@ -1,10 +1,12 @@
 """A campaign: all draws with every controller, resumed where it was stopped, the same runs on one process or more."""
 
+from shutil import copytree
 from typing import Any
 
 import numpy as np
 import pytest
 
+from driveline.fmus.catalogue import EVERY
 from driveline.harness.base.errors import DrivelineError, SimulationError, UnpackingError
 from driveline.harness.design.uncertainty_box import Deviation, changed, deviating
 from driveline.harness.loop.places import PLACES
@@ -17,7 +19,7 @@ from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.draws import draw
 from driveline.harness.studies.robustness.outcome import ROBUSTNESS_MANOEUVRES, Case
 from driveline.harness.studies.robustness.robustness_campaign import RUNS, campaign, cases
-from tests.harness.studies.robustness.outcomes import outcome
+from tests.harness.studies.robustness import outcome
 
 LOOPS = [("TwoMassDriveline", "DampingController"), ("TwoMassDriveline", "NoDamping")]
 
@@ -77,10 +79,6 @@ def test_a_campaign_goes_on_where_it_was_stopped(tmp_path, fails_at):
 @pytest.fixture(scope="module")
 def controllers(native_builder, native, tmp_path_factory):
     """Folder with the native FMUs of both plants and two controllers."""
-    from shutil import copytree
-
-    from driveline.fmus.catalogue import EVERY
-
     folder = tmp_path_factory.mktemp("controllers")
     copytree(native, folder / "native")
     native_builder(EVERY["SpeedWashout"], folder)
@@ -122,8 +120,6 @@ def test_an_fmu_that_refuses_the_run_is_a_run_without_metrics(controllers):
 
 
 def test_an_fmu_that_was_changed_since_is_refused(controllers, tmp_path):
-    from shutil import copytree
-
     copytree(controllers, tmp_path / "fmus")
     made = runner(tmp_path / "fmus")
     one = tmp_path / "fmus" / "native" / "WheelSpeedCan.fmu"
