@@ -210,7 +210,8 @@ class Channels:
         if not drawn and len(once := _not_twice(time, found.values[kept])) < len(time):
             time, kept = time[once], kept[once]
         if len(kept) < LEAST:
-            raise RecordingError(f"{self.path}: {len(kept)} samples; a drive needs at least two")
+            few = f"{self.path}: {len(kept)} samples; a drive needs at least two"
+            raise RecordingError(breaks[0].problem if breaks else few)
         channel = Channel(
             choice.quantity,
             column.heading,
