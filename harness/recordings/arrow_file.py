@@ -2,7 +2,6 @@
 them in the metadata of the column (`unit`)."""
 
 from collections.abc import Sequence
-from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -10,15 +9,12 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
-from .clock_times import Clock
+from .clock_times import EPOCH, Clock
 from .headings import split
 from .source import Column, RecordingError, Samples, Where, samples
 
 PARQUET, FEATHER = b"PAR1", b"ARROW1"
 """With which such files begin."""
-
-
-EPOCH = date(1970, 1, 1).toordinal()
 
 
 class ArrowFile:

@@ -3,7 +3,6 @@
 from array import array
 from collections import Counter
 from collections.abc import Sequence
-from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,14 +10,11 @@ import numpy as np
 
 from ..base.plain_text import plain
 from .bus_database import Messages, known_messages, the_one, without_value
-from .bus_readers import messages
+from .bus_readers import began, messages
 from .clock_times import Clock
 from .source import Column, RecordingError, Samples, Where, samples
 
 IDENTIFIERS_SHOWN = 5
-
-DATED = 1e8
-"""Seconds since 1970 from which on a time is one of a clock, and not since the beginning."""
 
 
 class Kind(NamedTuple):
@@ -127,11 +123,7 @@ def _read(path: Path, known: Messages, databases: Sequence[Path]) -> tuple[dict[
     if not frames:
         shown = ", ".join(f"0x{identifier:X}" for identifier in sorted(others)[:IDENTIFIERS_SHOWN])
         raise RecordingError(f"{path}: no frame is in {', '.join(map(str, databases))}; there are {shown}, ...")
-    if begin < DATED:
-        return frames, None
-    moment = datetime.fromtimestamp(begin)  # as the clock on the wall said, which python-can takes for local time
-    within = 3600.0 * moment.hour + 60.0 * moment.minute + moment.second + 1e-6 * moment.microsecond
-    return frames, Clock(moment.toordinal(), within)
+    return frames, began(path, begin)
 
 
 def _columns(places: Sequence[tuple[Kind, Any, Any]]) -> list[Column]:

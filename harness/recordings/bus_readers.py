@@ -3,12 +3,14 @@
 import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from datetime import UTC
 from io import TextIOBase
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
+from .clock_times import DAY, EPOCH, Clock, read_clock
 from .source import RecordingError
 
 
@@ -57,16 +59,17 @@ def asc_lines(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _seconds(text: str) -> float | None:
+    """Of a date with a time of day, since 1970."""
     from dateutil.parser import ParserError, parse
 
     try:
-        return parse(text).timestamp()
+        return parse(text).replace(tzinfo=UTC).timestamp()
     except (ParserError, OverflowError, ValueError):
         return None
 
 
 CONSOLE = re.compile(
-    r"\s*(\(\S+\))\s+(\S+)\s+(?:[TR]X\s+\S+\s+)?([0-9A-F]+)\s+\[(\d+)\]\s*(.*)", re.IGNORECASE | re.DOTALL
+    r"\s*\(([^)]+)\)\s+(\S+)\s+(?:[TR]X\s+\S+\s+)?([0-9A-F]+)\s+\[(\d+)\]\s*(.*)", re.IGNORECASE | re.DOTALL
 )
 
 
@@ -77,20 +80,21 @@ def candump_lines(lines: Iterable[str]) -> Iterator[str]:
             data = found[5].partition("'")[0]
             data = "R" if data.startswith("remote") else data.replace(" ", "").strip()
             mark = "##0" if len(found[4]) > 1 else "#"
-            yield f"{found[1]} {found[2]} {found[3]}{mark}{data}\n"
+            clock = read_clock(found[1])
+            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else float(found[1])
+            yield f"({time:.6f}) {found[2]} {found[3]}{mark}{data}\n"
         else:
             yield line
 
 
+BLF = re.compile(rb"LOGG")
+ASC = re.compile(rb"(\xef\xbb\xbf)?\s*(date [^\n]*\n\s*)?base\s+(hex|dec)", re.IGNORECASE)
+CANDUMP = re.compile(rb"\s*\([-: \d]+\.\d+\)\s+\S+\s+(\S+\s+){0,2}[0-9A-Fa-f]+(#|\s+\[)")
+
 LOGS = (
-    Kind("BLF", re.compile(rb"LOGG"), "BLFReader"),
-    Kind("ASC", re.compile(rb"\s*date [^\n]*\n\s*base\s+(hex|dec)", re.IGNORECASE), "ASCReader", asc_lines),
-    Kind(
-        "candump",
-        re.compile(rb"\s*\(\d+\.\d+\)\s+\S+\s+(\S+\s+){0,2}[0-9A-Fa-f]+(#|\s+\[)"),
-        "CanutilsLogReader",
-        candump_lines,
-    ),
+    Kind("BLF", BLF, "BLFReader"),
+    Kind("ASC", ASC, "ASCReader", asc_lines),
+    Kind("candump", CANDUMP, "CanutilsLogReader", candump_lines),
     Kind("CSV of python-can", re.compile(rb"timestamp,arbitration_id,"), "CSVReader"),
     Kind("TRC", re.compile(rb"\s*;(\$FILEVERSION|#{20}|-{20})"), "TRCReader"),
 )
@@ -99,6 +103,27 @@ LOGS = (
 def kind_of(begin: bytes) -> Kind | None:
     """The kind of log that begins so."""
     return next((kind for kind in LOGS if kind.begin.match(begin)), None)
+
+
+def began(path: Path, first: float) -> Clock | None:
+    """What the clock said at the first frame, if the log tells.
+
+    Args:
+        first: time of that frame in s.
+    """
+    second = first
+    if first < DATED:
+        with path.open("rb") as file:
+            dates = filter(None, map(DATE.match, file.read(LOOKED_AT).decode("latin-1").splitlines()))
+            start = next((_seconds(date[1]) for date in dates), None)
+        if start is None:
+            return None
+        second += start
+    return Clock(EPOCH + int(second // DAY), second % DAY)
+
+
+DATED = 1e8
+"""Seconds since 1970 from which on a time is one of a clock, and not since the beginning."""
 
 
 class Lines(TextIOBase):
@@ -125,7 +150,7 @@ def messages(path: Path) -> Iterator[Iterable[Any]]:
             with reader(path) as log:
                 yield log
         else:
-            with path.open(encoding="utf-8", errors="replace") as text:
+            with path.open(encoding="utf-8-sig", errors="replace") as text:
                 yield reader(Lines(kind.lines(text)))
     except (RecordingError, MemoryError):
         raise

@@ -17,11 +17,13 @@ WORDS = """
     - -- --- ---- . ? ?? ??? # na n/a n.a. n.a nan -nan +nan nan(ind) -nan(ind) null (null) <null> \\n <na> nat none nil
     nv n/v k.a. void invalid missing undefined undef unavailable sna nodata no_data ungültig --.- -.- err error fehler
     #n/a #na #nv #value! #wert! #ref! #bezug! #num! #zahl! #name? #null! #div/0!
-    1.#qnan -1.#qnan 1.#snan 1.#ind -1.#ind 1.#nan
 """
 
 EMPTY = frozenset(WORDS.split()) | {"", "no data", "not available", "no value", "signal not available"}
 """What loggers and spreadsheets write where there is no value, in small letters."""
+
+NO_NUMBER = re.compile(r"[+-]?1\.#(qnan|snan|ind|nan)0*")
+"""As C of Microsoft prints it."""
 
 NUMBER = re.compile(
     r"[+-]?(\d+[.,]?\d*|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE
@@ -52,7 +54,7 @@ def is_number(cell: str) -> bool:
 def is_missing(cell: str) -> bool:
     """Whether it says that there is no value."""
     text = cleaned(cell).casefold()
-    return text in EMPTY or set(text) <= {"#", "*"}
+    return text in EMPTY or set(text) <= {"#", "*"} or NO_NUMBER.fullmatch(text) is not None
 
 
 def decimal_of(cells: Sequence[str]) -> str:

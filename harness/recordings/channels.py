@@ -187,9 +187,9 @@ class Channels:
         found = holes(
             time, np.where(is_code, np.nan, written), inf if drawn else max(FILLED, declared.hole), declared.held
         )
-        kept = np.flatnonzero(np.isfinite(found.values))
         places = {int(k): j for j, k in enumerate(index)} if samples.unreadable else {}
         odd = {places[k]: text for k, text in samples.unreadable.items() if k in places}
+        kept = np.setdiff1d(np.flatnonzero(np.isfinite(found.values)), list(odd))
         where = Kept(samples.where, index)
         breaks = self._unreadable(column, where, odd, kept, time)
         if drawn and len(none := np.flatnonzero(np.isnan(written))):

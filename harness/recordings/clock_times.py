@@ -9,6 +9,9 @@ import numpy as np
 
 DAY, HOUR = 86400.0, 3600.0
 
+EPOCH = date(1970, 1, 1).toordinal()
+"""Number of the day from which computers count."""
+
 EXAMPLES = "10:15:30.5 or 2026-11-22T10:15:30.5"
 
 ENGLISH = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")

@@ -68,13 +68,13 @@ def dialect_of(text: str, path: Path) -> Dialect:
     if not rows:
         raise RecordingError(f"{path} is empty")
     above, below = _parted(rows)
+    above = [(line, _uncommented(cells)) for line, cells in above]
     if not above:
         raise RecordingError(f"{path}, line {rows[0][0]}: there is no line of names above the numbers")
     names_line, names = above[-1]
     units_line, units = names_line, ()
     if len(above) > 1 and _are_units(names, above[-2][1]):
         (names_line, names), (units_line, units) = above[-2], above[-1]
-    names, units = _uncommented(names), _uncommented(units)
     columns = zip_longest(*(cells for _, cells in below), fillvalue="")
     firsts = (next((cell for cell in column if not is_missing(cell)), "") for column in columns)
     clocks = tuple(not is_number(cell) and is_clock_time(cell) for cell in firsts)

@@ -13,7 +13,7 @@ from .source import RecordingError
 INTERVALS = (1e-6, 1e6)
 """In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
 
-OFTEN = 0.01
+OFTEN = 0.05
 """Share of the steps that are zero from which on the resolution of the clock is why."""
 
 
@@ -113,11 +113,11 @@ def spread(time: np.ndarray) -> np.ndarray:
     if not len(steps) or not (steps == 0.0).any() or not (steps > 0.0).any() or np.mean(steps == 0.0) < OFTEN:
         return time
     k = np.arange(len(time))
-    if (steps >= 0.0).all():
-        steady = time[0] + np.polyfit(k, time - time[0], 1)[0] * k
+    first = np.flatnonzero(np.append(True, steps != 0.0))
+    if (steps >= 0.0).all() and len(first) > 3:
+        steady = time[0] + np.polyfit(first[:-1], time[first[:-1]] - time[0], 1)[0] * k  # the last may be cut short
         if np.ptp(steady - time) <= 1.05 * steps[steps > 0.0].min():
             return steady
-    first = np.flatnonzero(np.append(True, steps != 0.0))
     length = np.diff(np.append(first, len(time)))
     until = np.append(time[first[1:]], time[first[-1]] + np.median(steps[steps > 0.0]))
     run = np.repeat(np.arange(len(first)), length)

@@ -1,5 +1,6 @@
 """Logs of buses that others have recorded."""
 
+import re
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
@@ -10,9 +11,11 @@ import pytest
 
 from driveline.harness.base.errors import MissingExtra
 from driveline.harness.recordings.channels import Channels
+from driveline.harness.recordings.clock_times import read_clock
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.format_detection import opened
 from driveline.harness.recordings.source import RecordingError
+from driveline.harness.recordings.time_base import Cut
 
 pytestmark = pytest.mark.usefixtures("read_here")
 
@@ -178,3 +181,125 @@ def test_a_drive_without_the_speed_of_the_vehicle_takes_that_of_the_wheels_over_
     path.write_text("t [s],Torque [Nm],Wheel Speed [rad/s]\n0,1,2\n1,1,2\n")
     with pytest.raises(RecordingError, match=r"no speed of the vehicle, and Wheel Speed \[rad/s\] is none over ground"):
         read_drive(path)
+
+
+ASC_HEAD = """date Mon Jan 5 10:15:30.500 am 2026
+base hex  timestamps {times}
+internal events logged
+Begin TriggerBlock Mon Jan 5 10:15:30.500 am 2026
+   0.000000 Start of measurement
+"""
+
+
+def asc(line: str, stamps: Iterable[str] = (), times: str = "absolute") -> str:
+    stamps = list(stamps) or [f"{0.01 * k:.6f}" for k in range(100)]
+    rows = [f"   {stamp} {line.format(data=f'{k:02x} 00 00 00')}" for k, stamp in enumerate(stamps)]
+    return ASC_HEAD.format(times=times) + "\n".join(rows) + "\nEnd TriggerBlock\n"
+
+
+CLASSIC = "1  100             Rx   d 4 {data}"
+LINES = [f"{k:02X}000000" for k in range(100)]
+TEXTS = {
+    "ASC": asc(CLASSIC),
+    "ASC, relative": asc(CLASSIC, ["0.000000", *["0.010000"] * 99], "relative"),
+    "ASC, decimal comma": asc(CLASSIC, [f"{0.01 * k:.6f}".replace(".", ",") for k in range(100)]),
+    "ASC, BOM": "\ufeff" + asc(CLASSIC),
+    "ASC, no date": asc(CLASSIC).partition("\n")[2],
+    "ASC, CAN FD": asc("CANFD   1 Rx  100  Motor   1 0 4  4 {data}   130000  130 303000"),
+    "ASC, CAN FD without names": asc("CANFD   1 Rx  100   1 0 4  4 {data}   130000  130 303000"),
+    "ASC, empty CAN FD": asc("CANFD   1 Rx  100   1 0 4  4 {data}").replace(
+        "End Trigger", "   0.995000 CANFD   1 Rx   7FF   1 0 0 0\nEnd Trigger"
+    ),
+    "ASC, events": asc(CLASSIC).replace("\n   0.05", "\n   0.045 CAN 1 Status:chip status error active\n   0.05", 1),
+    "candump -l": "\n".join(f"({1.7e9 + 0.01 * k:.6f}) can0 100#{data}" for k, data in enumerate(LINES)),
+    "candump -L, Rx": "\n".join(f"({1.7e9 + 0.01 * k:.6f}) can0 100#{data} R" for k, data in enumerate(LINES)),
+    "candump, CAN FD": "\n".join(f"({1.7e9 + 0.01 * k:.6f}) can0 100##1{data}" for k, data in enumerate(LINES)),
+    "candump -t a": "\n".join(
+        f" ({1.7e9 + 0.01 * k:.6f})  can0  100   [4]  {k:02X} 00 00 00" for k in range(100)
+    ),
+    "candump -t A -a": "\n".join(
+        f" (2026-01-05 10:15:{30.0 + 0.01 * k:09.6f})  can0  100   [4]  {k:02X} 00 00 00   '....'" for k in range(100)
+    ),
+    "TRC 1.0": ";##########################################\n;   Message\n"
+    + "\n".join(f"{k + 1:6}) {10 * k:8}      0100  4  {k:02X} 00 00 00" for k in range(100)),
+    "TRC 1.1": ";$FILEVERSION=1.1\n;$STARTTIME=46027.4275\n"
+    + "\n".join(f"{k + 1:6}) {10 * k:10.1f}  Rx         0100  4  {k:02X} 00 00 00" for k in range(100)),
+    "TRC 2.1": ";$FILEVERSION=2.1\n;$STARTTIME=46027.4275\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n"
+    + "\n".join(f"{k + 1:7} {10 * k:13.3f} DT  1      0100 Rx -  4    {k:02X} 00 00 00" for k in range(100)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_log_of_every_kind_is_read(tmp_path: Path, name: str) -> None:
+    path, databases = write(tmp_path, [])
+    path.write_text(TEXTS[name], encoding="utf-8")
+    torque = Channels(path, databases=databases).read("T_mot")["T_mot"]
+    np.testing.assert_allclose(torque.time, 0.01 * np.arange(100), atol=1e-6)
+    np.testing.assert_allclose(torque.values, 0.1 * np.arange(100), atol=1e-9)
+
+
+def test_a_second_measurement_in_a_log_goes_on_by_its_date(tmp_path: Path) -> None:
+    path, databases = write(tmp_path, [])
+    second = asc(CLASSIC).replace("10:15:30", "10:15:40").partition("logged\n")[2]
+    path.write_text(asc(CLASSIC) + second, encoding="utf-8")
+    with pytest.raises(RecordingError, match=r"gap of 9\.01 s after 0\.99 s; .* --from (0 --to 0\.99|10 --to 10\.99)$"):
+        Channels(path, databases=databases).read("T_mot")
+    late = Channels(path, databases=databases, cut=Cut(read_clock("2026-01-05 10:15:40"))).read("T_mot")["T_mot"]
+    assert (late.time[0], late.time[-1]) == (10.0, pytest.approx(10.99))
+
+
+DATABASES = {
+    "byte-order mark": DBC.encode("utf-8-sig"),
+    "UTF-8": DBC.replace('"Nm"', '"N·m"').encode(),
+    "Latin-1": DBC.replace('"Nm"', '"N·m"').encode("latin-1"),
+    "no flag of an extended identifier": DBC.replace("BO_ 2566848786", f"BO_ {BRAKE}").encode(),
+}
+
+
+@pytest.mark.parametrize("name", DATABASES)
+def test_a_database_of_every_tool_is_read(tmp_path: Path, name: str) -> None:
+    path, databases = write(tmp_path, drive())
+    databases[0].write_bytes(DATABASES[name])
+    found = read_drive(path, databases=databases)
+    np.testing.assert_allclose(found.T_mot, 20.0 + np.round(100.0 * found.time), rtol=1e-12)
+    np.testing.assert_allclose(found.v, 10.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "differs"),
+    [
+        ("(0.1,0)", "(0.2,0)", r"scale of Motor_Torque \(0\.1 and 0\.2\)"),
+        ("0|16@1- (0.1,0)", "0|15@1- (0.1,0)", "length of Motor_Torque"),
+        ("0|16@1- (0.1,0)", "0|16@1+ (0.1,0)", "is signed of Motor_Torque"),
+        ('"Nm"', '"kNm"', r"unit of Motor_Torque \(Nm and kNm\)"),
+        ("Motor_Torque", "Torque", "signal Motor_Torque, which only one has"),
+        ("Motor: 4", "Motor: 8", "its length"),
+        ('1 "on"', '2 "on"', "the named values of State"),
+        ("ECU", "OTHER", ""),
+        ("BO_ 257 Many: 3 ECU\n SG_ Which M : 0|8@1+ (1,0)", "BO_ 258 Many: 3 ECU\n SG_ Which M : 0|8@1+ (1,0)", ""),
+    ],
+)
+def test_what_two_databases_declare_differently_is_refused_with_both_names(
+    tmp_path: Path, old: str, new: str, differs: str
+) -> None:
+    path, (first,) = write(tmp_path, drive())
+    second = tmp_path / "body.dbc"
+    second.write_text(DBC.replace(old, new), encoding="ascii")
+    for databases in ([first, second], [second, first]):
+        if differs:
+            with pytest.raises(
+                RecordingError, match=r"\.dbc and .*\.dbc both know frame 0x100, and differ in "
+            ) as said:
+                opened(path, databases)
+            assert {"bus.dbc", "body.dbc"} <= set(str(said.value).replace("/", " ").split())
+            assert databases == [second, first] or re.search(differs, str(said.value))
+        else:
+            assert len(read_drive(path, databases=databases).time) > 50
+
+
+def test_a_named_value_of_a_signal_with_a_unit_is_none(tmp_path: Path) -> None:
+    path, databases = write(tmp_path, drive())
+    databases[0].write_text(DBC + 'VAL_ 256 Motor_Torque 500 "SNA" 300 "Init" ;\n', encoding="ascii")
+    found = Channels(path, databases=databases).read("T_mot")["T_mot"]
+    np.testing.assert_allclose(found.values, 20.0 + np.round(100.0 * found.time))  # they are filled
+    assert [lack.times.tolist() for lack in found.lacks] == [pytest.approx([0.1, 0.3], abs=1e-6)]

@@ -1,0 +1,256 @@
+"""One drive as loggers, test benches and spreadsheets write it, a row for each habit.
+
+Most are from public reports and the documentation of vendors: asammdf and pandas issues, INCA, CANape, CANoe, VBOX,
+LabVIEW, MATLAB timetables, Excel in German, French and Swiss, DIAdem, PCAN-View, candump.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+COUNT = 61
+TIME = np.round(0.1 * np.arange(COUNT), 10)
+V = np.round(36.0 + 3.0 * np.sin(0.05 * np.arange(COUNT)), 2)
+T = np.round(20.0 + 30.0 * np.sin(0.3 * np.arange(COUNT)), 1)
+NAMES = ("Time [s]", "Velocity [km/h]", "Motor Torque [Nm]")
+
+Line = Callable[[int], str]
+
+
+@dataclass(frozen=True)
+class Habit:
+    """A text, and what reading it must give.
+
+    Attributes:
+        content: of the file.
+        kept: indices of the samples that are read.
+        refused: what is said of a text that is not read.
+        said: what the finding says.
+        columns: `--column`.
+    """
+
+    content: bytes
+    kept: Sequence[int] = range(COUNT)
+    refused: str = ""
+    said: str = ""
+    columns: tuple[tuple[str, str], ...] = ()
+
+
+def cells(k: int) -> list[str]:
+    return [f"{TIME[k]:.1f}", f"{V[k]:.2f}", f"{T[k]:.1f}"]
+
+
+def plain(k: int) -> str:
+    return ",".join(cells(k))
+
+
+def german(k: int) -> str:
+    return ";".join(cells(k)).replace(".", ",")
+
+
+def text(
+    line: Line = plain,
+    names: str = ",".join(NAMES),
+    above: str = "",
+    below: str = "",
+    end: str = "\n",
+    count: int = COUNT,
+    coding: str = "utf-8",
+    **expected: object,
+) -> Habit:
+    rows = [names, *map(line, range(count))]
+    return Habit((above + end.join(rows) + end + below).encode(coding), **expected)  # type: ignore[arg-type]
+
+
+def replaced(row: int, column: int, cell: str, separator: str = ",", **how: object) -> Habit:
+    """With another text in one cell."""
+
+    def line(k: int) -> str:
+        found = cells(k)
+        if k == row:
+            found[column] = cell
+        return separator.join(found)
+
+    return text(line, separator.join(NAMES), **how)  # type: ignore[arg-type]
+
+
+def at(row: int, other: str, line: Line = plain) -> Line:
+    """With another line before one."""
+    return lambda k: f"{other}\n{line(k)}" if k == row else line(k)
+
+
+def timed(stamp: Callable[[float], str], name: str = "Time", **how: object) -> Habit:
+    return text(
+        lambda k: ";".join([stamp(float(TIME[k])), *cells(k)[1:]]),
+        ";".join((name, *NAMES[1:])),
+        **how,  # type: ignore[arg-type]
+    )
+
+
+def clock(t: float) -> str:
+    return f"{int(t // 60):02}:{t % 60:06.3f}"
+
+
+def half(t: float) -> str:
+    """From 11:59:57 on, so that noon is passed."""
+    hour, second = (11, 57.0 + t) if t < 3.0 else (12, t - 3.0)
+    return f"{hour}:{59 if hour == 11 else 0:02}:{second:06.3f} {'AM' if hour == 11 else 'PM'}"
+
+
+FEW = [*range(30), *range(31, COUNT)]
+
+MISSING_WORDS = (
+    "", " ", "-", "--", "---", "NaN", "nan", "NAN", "-nan", "N/A", "n/a", "#N/A", "#NV", "#DIV/0!", "#VALUE!", "#WERT!",
+    "null", "NULL", "(null)", "None", "nil", "1.#QNAN", "-1.#IND", "1.#QNAN00", "?", "???", "*", "****", "####", ".",
+    "void", "invalid", "missing", "NA", "<NA>", "NaT", "\\N", "no data", "not available", "\N{EN DASH}", "nan(ind)",
+    "-nan(ind)", "ungültig", "SNA", "err",
+)  # fmt: skip
+
+TWO_LINES = "Time,Velocity 1,Motor Torque\ns,km/h,Nm"
+
+HABITS: dict[str, Habit] = {
+    **{f"no value: {word!r}": replaced(30, 2, word, ";", said="has no value") for word in MISSING_WORDS},
+    "no value: quoted": replaced(30, 2, '""', said="has no value"),
+    "no value in the last rows": text(lambda k: plain(k) if k < 58 else f"{TIME[k]:.1f},,", kept=range(58)),
+    "no value in the first rows": text(lambda k: plain(k) if k > 5 else f"{TIME[k]:.1f},NaN,NaN", kept=range(6, COUNT)),
+    "no time in a row": replaced(30, 0, "", kept=FEW),
+    "a hole of half a second": text(
+        lambda k: plain(k) if not 30 <= k < 35 else f"{TIME[k]:.1f},,{T[k]:.1f}",
+        refused=r"line 32: Velocity .* has no value for 0\.6 s after 2\.9 s; .* --from 0 --to 2\.9$",
+    ),
+    "a word in a needed column": replaced(
+        30, 1, "fast", refused=r"line 32, column Velocity .* fast is not a finite number; .*--from 0 --to 2\.9$"
+    ),
+    "infinite": replaced(30, 1, "inf", refused=r"inf is not a finite number"),
+    "a word in a column that nobody needs": text(
+        lambda k: plain(k) + (",see note" if k == 3 else ",5"), f"{','.join(NAMES)},Gear"
+    ),
+    "no numbers at all in an optional column": text(lambda k: plain(k) + ",-", f"{','.join(NAMES)},Elevation [m]"),
+    "inches in a comment": text(lambda k: plain(k) + ',"5" tyre' * (k == 7), f"{','.join(NAMES)},Note"),
+    "a comment over two lines": text(lambda k: plain(k) + ',"gate\nopen"' * (k == 7), f"{','.join(NAMES)},Note"),
+    "a quote without an end": text(lambda k: plain(k) + ',"gate' * (k == 7), f"{','.join(NAMES)},Note"),
+    "a cell for each time": text(
+        lambda k: f"{TIME[k]:.3f},{V[k]:.2f},\n{TIME[k] + 0.03:.3f},,{T[k]:.1f}", kept=[]
+    ),
+    "slow speed between": text(lambda k: plain(k) if k % 5 == 0 else f"{TIME[k]:.1f},,{T[k]:.1f}", kept=[]),
+    "device": text(names="time [s],Velocity\\XCP:1 [km/h],Motor Torque\\XCP:1 [Nm]"),
+    "device of INCA": text(
+        lambda k: ";".join(cells(k)), "time;v_veh\\ETKC:1;T_mot\\ETKC:1\ns;km/h;Nm", count=COUNT
+    ),
+    "device before": text(names="time [s],ABS_1::Velocity [km/h],MCU::Motor Torque [Nm]"),
+    "two devices": text(
+        lambda k: f"{plain(k)},0",
+        "time [s],Velocity\\XCP:1 [km/h],Motor Torque [Nm],Velocity\\ETKC:2 [km/h]",
+        refused=r"could each be v .*--column v=",
+    ),
+    "thousands, German": text(
+        lambda k: f"{german(k)};1.520,{k % 10}", ";".join((*NAMES, "Höhe [m]")), coding="utf-8-sig"
+    ),
+    "thousands, German, whole": text(lambda k: f"{german(k)};1.520", ";".join((*NAMES, "Höhe [m]"))),
+    "thousands, quoted": text(lambda k: f'{plain(k)},"1,520.5"', ",".join((*NAMES, "Height [m]"))),
+    "thousands, blank": text(lambda k: f"{german(k)};1 520,5", ";".join((*NAMES, "Height [m]"))),
+    "thousands, no-break blank": text(lambda k: f"{german(k)};1\u00a0520,5", ";".join((*NAMES, "Height [m]"))),
+    "thousands, narrow blank": text(lambda k: f"{german(k)};1\u202f520,5", ";".join((*NAMES, "Height [m]"))),
+    "thousands, Swiss": text(lambda k: f"{';'.join(cells(k))};1'520.5", ";".join((*NAMES, "Height [m]"))),
+    "thousands, Swiss, curly": text(lambda k: f"{';'.join(cells(k))};1’520.5", ";".join((*NAMES, "Height [m]"))),
+    "millions": text(lambda k: f"{german(k)};1.001.520,5", ";".join((*NAMES, "Note"))),
+    "a true minus sign": text(lambda k: plain(k).replace("-", "−")),
+    "a dash for a minus": text(lambda k: plain(k).replace("-", "–")),
+    "a plus sign": text(lambda k: plain(k).replace(",", ",+").replace("+-", "-")),
+    "exponents": text(lambda k: f"{TIME[k]:.6E},{V[k]:.6E},{T[k]:+.6e}"),
+    "exponents, German": text(lambda k: f"{TIME[k]:.6E};{V[k]:.6E};{T[k]:+.6e}".replace(".", ","), ";".join(NAMES)),
+    "points among commas": text(
+        lambda k: german(k).replace(",", ".") if k == 30 else german(k),
+        ";".join(NAMES),
+        refused=r"line 32, column .* \(the decimal of this file is a comma\) is not a finite number",
+    ),
+    "commas among points": text(
+        lambda k: ";".join(cells(k)).replace(".", ",") if k == 30 else ";".join(cells(k)),
+        ";".join(NAMES),
+        refused=r"line 32, column .* \(the decimal of this file is a point\) is not a finite number",
+    ),
+    "a last line cut off": text(below="6.1,3", kept=range(COUNT)),
+    "a last line cut off after a mark": text(below="6.1,", kept=range(COUNT)),
+    "a last line without an end": Habit(text().content.rstrip(b"\n")),
+    "a footer": text(below="End of file\n"),
+    "a footer with numbers": text(below="Min,0,-35\nMax,50,125\n"),
+    "a footer of dashes": text(below="-----\n"),
+    "a footer with a date": text(below="Created 2026-01-05 10:15:30\n"),
+    "end-of-file byte": text(below="\x1a"),
+    "end-of-file byte on the last line": Habit(text().content.rstrip(b"\n") + b"\x1a"),
+    "zeros behind the end": text(below="\0" * 500),
+    "blank lines": text(at(30, "\n")),
+    "blank cells in a line": text(at(30, ",,")),
+    "names in the middle": text(at(30, ",".join(NAMES))),
+    "names and units in the middle": text(
+        at(30, TWO_LINES), TWO_LINES, columns=(("v", "Velocity 1"),)
+    ),
+    "a comment in the middle": text(at(30, "# gate 7 opened")),
+    "an event in the middle": text(at(30, "Pause")),
+    "a number where the time is a word": text(at(30, "Pause,1,2"), refused=r"line 32, column Time .*: Pause is not"),
+    "# before the names": text(names="# " + ",".join(NAMES)),
+    "#before the names": text(names="#" + ",".join(NAMES)),
+    "% before the names": text(names="% " + ",".join(NAMES)),
+    "// before the names": text(names="// " + ",".join(NAMES)),
+    "# before names and units": text(names="# Time,Velocity,Motor Torque\n# s,km/h,Nm"),
+    "comments above": text(above="# logger 7\n# rate 10\n"),
+    "numpy.savetxt": text(lambda k: " ".join(cells(k)), "# t[s] v[km/h] T_mot[Nm]"),
+    "blanks, many": text(lambda k: "   ".join(cells(k)) + " ", "t[s]   v[km/h]  T_mot[Nm]"),
+    "blanks before": text(lambda k: "  " + "  ".join(cells(k)), "  t[s] v[km/h] T_mot[Nm]"),
+    "blanks, names in quotes": text(lambda k: " ".join(cells(k)), " ".join(f'"{name}"' for name in NAMES)),
+    "tabs": text(lambda k: "\t".join(cells(k)), "\t".join(NAMES)),
+    "pipes": text(lambda k: "|".join(cells(k)), "|".join(NAMES)),
+    "a table of Markdown": text(
+        lambda k: f"| {' | '.join(cells(k))} |", f"| {' | '.join(NAMES)} |\n| --- | ---: | ---: |"
+    ),
+    "a line below the names": text(names=",".join(NAMES) + "\n=====,=====,====="),
+    "an empty line below the names": text(names=",".join(NAMES) + "\n"),
+    "carriage returns": text(end="\r\n"),
+    "old Macintosh": text(end="\r"),
+    "UTF-16": text(coding="utf-16"),
+    "Latin-1": text(lambda k: f"{plain(k)},20 °C", ",".join((*NAMES, "Öl")), coding="latin-1"),
+    "sep=": text(above="sep=,\n"),
+    "all quoted": text(lambda k: ",".join(f'"{cell}"' for cell in cells(k)), ",".join(f'"{name}"' for name in NAMES)),
+    "a mark at each end of line": text(lambda k: plain(k) + ",", ",".join(NAMES) + ","),
+    "more cells than names": text(lambda k: plain(k) + ",7,8"),
+    "coarse clock": text(lambda k: f"{0.2 * (k // 2):.1f},{V[k]:.2f},{T[k]:.1f}"),
+    "coarse clock of three": text(lambda k: f"{0.3 * (k // 3):.1f},{V[k]:.2f},{T[k]:.1f}"),
+    "a row twice": text(at(30, plain(29))),
+    "a time twice": text(
+        at(30, "2.9,1,1"), refused=r"line 32: time 2\.9 s does not come after 2\.9 s; .* --from 3 --to 6$"
+    ),
+    "two recordings": text(below=f"{plain(0)}\n{plain(1)}\n", refused=r"line 63: time 0 s does not come after 6 s"),
+    "a gap": text(
+        lambda k: plain(k) if k < 40 else ",".join([f"{TIME[k] + 1.0:.1f}", *cells(k)[1:]]),
+        refused=r"line 42: gap of 1\.1 s after 3\.9 s; .*; the longest piece without is --from 0 --to 3\.9$",
+    ),
+    "seconds with a unit": timed(lambda t: f"{t:g} sec"),
+    "seconds with a unit, s": timed(lambda t: f"{t:g} s"),
+    "milliseconds with a unit": timed(lambda t: f"{1e3 * t:g} ms"),
+    "Timedelta of pandas": timed(lambda t: f"0 days 00:00:{t:09.6f}"),
+    "hours, minutes, seconds": timed(lambda t: f"00:{clock(t)}"),
+    "minutes and seconds": timed(lambda t: f"{clock(t)}", "Time [mm:ss.S]"),
+    "over the hour in minutes": timed(lambda t: clock((3598.0 + t) % 3600.0)),
+    "colon before milliseconds": timed(lambda t: f"10:{clock(t)}".replace(".", ":")),
+    "noon": timed(half),
+    "noon, points": timed(lambda t: half(t).replace("AM", "a.m.").replace("PM", "p.m.")),
+    "American date": timed(lambda t: f"1/5/2026 {half(t)}"),
+    "date of MATLAB": timed(lambda t: f"05-Jan-2026 00:{clock(t)}"),
+    "date in English": timed(lambda t: f"Jan 5, 2026 {half(t)}"),
+    "date in German": timed(lambda t: f"05.01.2026 10:{clock(t)}"),
+    "date with two digits": timed(lambda t: f"05.01.26 10:{clock(t)}"),
+    "ISO with comma": timed(lambda t: f"2026-01-05T10:{clock(t)}".replace(".", ",")),
+    "ISO with zone": timed(lambda t: f"2026-01-05 10:{clock(t)}+01:00"),
+    "over midnight": timed(lambda t: f"23:59:{57 + t:06.3f}" if t < 3.0 else f"00:{clock(t - 3.0)}"),
+    "a date of its own": text(
+        lambda k: f"2026-01-05;10:{clock(TIME[k])};{';'.join(cells(k)[1:])}", "Date;Time;" + ";".join(NAMES[1:])
+    ),
+    "epoch": timed(lambda t: f"{1.7e9 + t:.1f}", "Time [s]"),
+    "milliseconds of the epoch": timed(lambda t: f"{1.7e12 + 1e3 * t:.0f}", "Time [ms]"),
+    "code, 16 bits signed": replaced(30, 2, "-3276.8", said="is -3276.8, which loggers write where there is no value"),
+    "code, 16 bits": replaced(30, 2, "6553.5", said="is 6553.5, which loggers"),
+    "code, 32 bits": replaced(30, 1, "4294967295", said="which loggers"),
+    "code, 12 bits": replaced(30, 2, "409.5", said="is 409.5, which loggers"),
+    "a lone spike": replaced(30, 2, "1000", kept=[], said="a spike"),
+}  # fmt: skip

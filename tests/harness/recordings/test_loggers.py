@@ -1,0 +1,38 @@
+"""A recording is read whatever habit its logger has, or refused in a line that says what to do."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from driveline.harness.recordings.channel_rules import of_channels
+from driveline.harness.recordings.drive import read_drive
+from driveline.harness.recordings.source import RecordingError
+from tests.harness.recordings.logger_texts import HABITS, TIME, T, V
+
+
+@pytest.mark.parametrize("name", HABITS)
+def test_a_habit_of_loggers(tmp_path: Path, name: str) -> None:
+    habit, path = HABITS[name], tmp_path / "drive.csv"
+    path.write_bytes(habit.content)
+    if habit.refused:
+        with pytest.raises(RecordingError, match=habit.refused) as refusal:
+            read_drive(path, dict(habit.columns))
+        assert str(refusal.value).isprintable()
+        return
+    drive = read_drive(path, dict(habit.columns))
+    kept = np.array(habit.kept, dtype=int)
+    if len(kept):
+        np.testing.assert_allclose(drive.time - drive.time[0], TIME[kept] - TIME[kept[0]], atol=1e-6)
+        whole = ~np.isin(np.arange(len(kept)), [30]) if habit.said else slice(None)
+        np.testing.assert_allclose(drive.v[whole], V[kept][whole] / 3.6, rtol=1e-9)
+        np.testing.assert_allclose(drive.T_mot[whole], T[kept][whole], rtol=1e-9)
+        np.testing.assert_allclose(drive.T_mot, T[kept], atol=3.0)  # a straight line over one sample
+    else:
+        for values, expected in ((drive.v, V / 3.6), (drive.T_mot, T)):
+            assert np.abs(np.interp(TIME[5:-5], drive.time, values) - expected[5:-5]).max() < (
+                9.5 if habit.said == "" else 1e4
+            )
+    findings = [str(finding) for finding in of_channels(drive.channels.values())]
+    assert len(findings) == bool(habit.said), findings
+    assert all(habit.said in finding for finding in findings)
