@@ -9,6 +9,7 @@ from typing import TypedDict, Unpack
 
 from ..base.errors import WiringError
 from ..base.known_names import nearest
+from ..cosimulation.interface import Interface
 from ..cosimulation.limits import USUAL_LIMITS, Limits
 from ..cosimulation.system import Scheme, System
 from .arguments import ARGUMENTS, require_arguments
@@ -18,6 +19,7 @@ from .places import (
     CONNECTIONS,
     INPUTS,
     NATIVE,
+    NO_DAMPING,
     OPTIONAL,
     OUTPUTS,
     PARAMETERS,
@@ -137,6 +139,20 @@ def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Chang
     return Settings().replace(**changes)
 
 
+def running(made: Settings) -> Settings:
+    """The settings as they run: without damping, NoDamping stands in the place of a controller that has no `enable`."""
+    if made.control or str(made.controller) in PLACES["controller"]:
+        return made
+    enable = made.mapping.get("controller.enable", "enable")
+    if enable in Interface(_file("controller", made.controller, made.folder), made.limits).variables:
+        return made
+    others = {
+        name: {key: value for key, value in getattr(made, name).items() if not key.startswith("controller.")}
+        for name in ("parameters", "mapping")
+    }
+    return dataclasses.replace(made, controller=NO_DAMPING, **others)
+
+
 def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> System:
     """The closed loop of controller, motor, plant and the wheel speeds over CAN, as settings say; arguments as of
     `settings`.
@@ -144,7 +160,7 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
     Raises:
         WiringError: there is no such block or build.
     """
-    made = settings(given, **changes)
+    made = running(settings(given, **changes))
     files = _files(made, made.build or chosen_build(made))
     return System(
         instances=files,
