@@ -9,7 +9,6 @@ from typing import TypedDict, Unpack
 
 from ..base.errors import WiringError
 from ..base.known_names import nearest
-from ..cosimulation.interface import Interface
 from ..cosimulation.limits import USUAL_LIMITS, Limits
 from ..cosimulation.system import Scheme, System
 from .arguments import ARGUMENTS, require_arguments
@@ -143,6 +142,8 @@ def running(made: Settings) -> Settings:
     """The settings as they run: without damping, NoDamping stands in the place of a controller that has no `enable`."""
     if made.control or str(made.controller) in PLACES["controller"]:
         return made
+    from ..cosimulation.interface import Interface  # who asks for help alone needs no fmpy
+
     enable = made.mapping.get("controller.enable", "enable")
     if enable in Interface(_file("controller", made.controller, made.folder), made.limits).variables:
         return made

@@ -24,7 +24,7 @@ def factor_to(target_unit: str, unit: str) -> float:
     if unit.strip() == "g" and target_unit == "m/s2":
         return STANDARD_GRAVITY
     try:
-        return factor(unit, target_unit)
+        return factor(unit.replace("**", "^"), target_unit)
     except ValueError as reason:
         if (folded := FOLDED.get(unit.strip().casefold(), unit)) != unit:
             return factor_to(target_unit, folded)
