@@ -29,7 +29,7 @@ $(DEMO): $(INSTALLED)
 
 $(READY): $(INSTALLED)
 	$(environment)
-	$(INSTALL) '.[recordings,replay,design,identification,cluster,report,notebook,dev]'
+	$(INSTALL) '.[recordings,replay,design,identification,cluster,notebook,dev]'
 	@touch $(DEMO) $@
 
 setup: $(READY) ## the virtual environment alone, with all that the other targets need
@@ -97,6 +97,7 @@ site: $(SITE) ## the documentation as a site, into site/; once its packages are 
 dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked, and an archive of FMUs for all platforms
 	$(INSTALL) '.[publish,cross]'
 	rm -rf dist
+	$(BIN)/python -m driveline.harness.explorer
 	$(BIN)/python -m build --no-isolation
 	PATH="$(BIN):$$PATH" auditwheel repair --wheel-dir dist dist/*-linux_*.whl
 	rm dist/*-linux_*.whl
@@ -105,4 +106,4 @@ dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked,
 	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
 
 clean: ## everything that was made
-	rm -rf $(VENV) build dist results site fuzz.json .pytest_cache *.egg-info harness/cosimulation/_steps.*
+	rm -rf $(VENV) build dist results site fuzz.json .pytest_cache *.egg-info harness/cosimulation/_steps.* harness/explorer/page/loops.json

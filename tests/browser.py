@@ -54,7 +54,7 @@ class Browser:
     def __init__(self, chrome: Any) -> None:
         self.chrome = chrome
 
-    def open(self, address: str, drawn: str = "window.Bokeh?.documents[0]?.is_idle") -> None:
+    def open(self, address: str, drawn: str = "document.body?.dataset.drawn") -> None:
         """Opens a page and waits until its figures are drawn, as an expression says; what was logged before is
         forgotten."""
         for log in ("browser", "performance"):
@@ -124,34 +124,24 @@ class Browser:
         return [address for address in asked if not address.startswith(("data:", "chrome"))]
 
 
-FIND = """
-const views = (fits) => [...Bokeh.index.query(fits)]
-const [view] = views((view) => view.model.type === "Figure" && view.model.left[0].axis_label === arguments[0])
-const model = view.model
-"""
-
-
 class Figure:
-    """One of the figures of a page."""
+    """One of the figures of a page (kit.js)."""
 
     def __init__(self, page: Browser, label: str) -> None:
         self._page = page
         self._label = label
 
     def js(self, code: str, *given: Any) -> Any:
-        """The value of an expression of `view` and `model`."""
-        return self._page.chrome.execute_script(f"{FIND} return {code}", self._label, *given)
+        """The value of an expression of `figure`."""
+        find = "const figure = [...figures].find((each) => each.panel.label === arguments[0]);"
+        return self._page.chrome.execute_script(f"{find} return {code}", self._label, *given)
 
     def seen(self) -> tuple[float, float, float, float]:
         """Left, top, right and bottom of its frame in the window, after scrolling to it."""
-        self.js("view.el.scrollIntoView({block: 'center'})")
+        self.js("figure.element.scrollIntoView({block: 'center'})")
         self._page.painted()
-        return tuple(
-            self.js(
-                "(() => { const r = view.el.getBoundingClientRect(), b = view.frame.bbox;"
-                " return [r.left + b.left, r.top + b.top, r.left + b.right, r.top + b.bottom] })()"
-            )
-        )
+        box = "figure.plot.over.getBoundingClientRect()"
+        return tuple(self.js(f"[{box}.left, {box}.top, {box}.right, {box}.bottom]"))
 
     def pixels(self, colour: str) -> int:
         """How many in its frame are of a colour."""
@@ -159,7 +149,7 @@ class Figure:
 
     def x(self) -> tuple[float, float]:
         """From where to where its abscissa goes."""
-        return tuple(self.js("[model.x_range.start, model.x_range.end]"))
+        return tuple(self.js("[figure.plot.scales.x.min, figure.plot.scales.x.max]"))
 
     def zoom(self) -> None:
         """Drags a box over the middle of it."""
@@ -169,11 +159,5 @@ class Figure:
 
     def click_on_legend(self, entry: int) -> None:
         """On one of its names."""
-        self.seen()
-        legend = "views((view) => view.model === model.above.find((each) => each.type === 'Legend'))[0]"
-        box = self.js(
-            f"(() => {{ const r = {legend}.entries[arguments[1]].el.getBoundingClientRect();"
-            " return [r.left, r.top, r.width, r.height] })()",
-            entry,
-        )
-        self._page.click((box[0] + box[2] / 2, box[1] + box[3] / 2))
+        self.js("figure.legend.children[arguments[1]].click()", entry)
+        self._page.painted()

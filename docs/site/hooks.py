@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mkdocs.structure.files import File, Files  # pyright: ignore[reportMissingImports]
 
-from docs.site import ROOT, commands, declared, equations, gallery, links, numbers, reference
+from docs.site import ROOT, commands, declared, equations, explored, gallery, links, numbers, reference
 
 MADE = {gallery.PAGE: gallery.page(), "blocks.md": declared.blocks_page(), **commands.pages(), **reference.pages()}
 """Pages that are made for the site, by their path in it."""
@@ -49,6 +49,7 @@ def on_files(files: Files, config) -> Files:
     written = {each.src_uri: each.content_string for each in files.documentation_pages() if each.src_uri not in MADE}
     for name in links.files(written):
         files.append(File.generated(config, f"{links.FILES}/{name}", abs_src_path=str(ROOT / name)))
+    files.append(File.generated(config, explored.PAGE, content=explored.page()))
     for path in COPIED:
         files.append(File.generated(config, path.name, abs_src_path=str(path)))
     return files
@@ -57,7 +58,9 @@ def on_files(files: Files, config) -> Files:
 def on_page_markdown(markdown: str, page, config, files) -> str:
     """Numbers of studies, and links as they are on the site."""
     markdown = numbers.shown(markdown, "../" * page.file.src_uri.count("/"))
-    return markdown if page.file.src_uri in MADE else links.fitted(markdown, page.file.src_uri)
+    if page.file.src_uri not in MADE:
+        markdown = links.fitted(markdown, page.file.src_uri)
+    return explored.framed(markdown) if page.file.src_uri == "index.md" else markdown
 
 
 def on_page_content(html: str, page, config, files) -> str:

@@ -110,7 +110,7 @@ def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     _require_agreeing(car)
     if not any(name in car for name in SHAFTS) or ("C" in car and "k_s" not in car):
         return {}
-    wanted = _frequency(DETAILED, _with_details(car, 1.0)) / _apart()
+    wanted = _frequency(DETAILED, with_details(car, 1.0)) / frequencies_apart()
     C = _solved(lambda C: _frequency(DESIGN, car | {"C": C}), wanted, *DECLARED["C"][1].bounds(), "C")
     if "C" not in car:
         return _others_than_usual({"C": C})
@@ -128,18 +128,18 @@ def _detailed(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     car = dict(given)
     factor = 1.0
     if given and "k_s" not in car and ("C" in car or not any(name in car for name in SHAFTS)):
-        wanted = _frequency(DESIGN, car) * _apart()
+        wanted = _frequency(DESIGN, car) * frequencies_apart()
         what = f"{_told(car | {'C': car.get('C', DEFAULT_CAR['C'])}, 'C', 'c_slip', 'k_g', 'k_p')}: k_s"
         factor = _solved(
-            lambda factor: _frequency(DETAILED, _with_details(car, factor)), wanted, 1.0 / FURTHEST, FURTHEST, what
+            lambda factor: _frequency(DETAILED, with_details(car, factor)), wanted, 1.0 / FURTHEST, FURTHEST, what
         )
-    followed = _others_than_usual({name: _with_details(car, factor)[name] for name in FOLLOW if name not in car})
+    followed = _others_than_usual({name: with_details(car, factor)[name] for name in FOLLOW if name not in car})
     for name, value in followed.items():
         _require_possible(name, value, " as it follows from the other entries; give it")
     return followed
 
 
-def _with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
+def with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
     """The car with what follows in the validation vehicle.
 
     Args:
@@ -164,7 +164,7 @@ def _with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
 
 def _require_agreeing(car: Mapping[str, float]) -> None:
     """Refuses wheels that are heavier than J_2, and an axle that carries more than the car or less than its hubs."""
-    full = {**DEFAULT_CAR, **_with_details(car, 1.0)}
+    full = {**DEFAULT_CAR, **with_details(car, 1.0)}
     wheels, of_J_2 = full["J_w"] + full["J_g"], full["J_2"] * full["i"] ** 2
     if wheels > (1.0 + APART) * of_J_2:
         raise ParameterFileError(
@@ -188,7 +188,7 @@ def _frequency(plant: ContinuousBlock, car: Mapping[str, float]) -> float:
 
 
 @cache
-def _apart() -> float:
+def frequencies_apart() -> float:
     """Frequency of the validation vehicle over that of the design model, in the default car."""
     return _frequency(DETAILED, {}) / _frequency(DESIGN, {})
 

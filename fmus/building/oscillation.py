@@ -33,7 +33,7 @@ def oscillation(plant: ContinuousBlock, p: Any) -> Oscillation:
     Args:
         p: the parameters of the plant.
     """
-    T = _friction(p) + SHARE * getattr(p, "F_z0", p.m * p.g) * p.r / p.i
+    T = rolling_torque(p)
     here = {"v_0": SPEED, "T_0": T, **DRY_AND_SMOOTH}
     p = p._replace(**{name: value for name, value in here.items() if name in p._fields})
     u = plant.Input(T_mot=T)
@@ -52,6 +52,11 @@ def oscillation(plant: ContinuousBlock, p: Any) -> Oscillation:
     shown = vectors[speed] * np.linalg.solve(vectors, B[acts])
     s = poles[np.argmax(np.where(np.imag(poles) > 0.0, abs(shown), -1.0))]
     return Oscillation(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s)))
+
+
+def rolling_torque(p: Any) -> float:
+    """Torque in N.m of the motor there."""
+    return _friction(p) + SHARE * getattr(p, "F_z0", p.m * p.g) * p.r / p.i
 
 
 def _friction(p: Any) -> float:

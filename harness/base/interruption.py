@@ -7,7 +7,6 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from contextvars import ContextVar
 from pathlib import Path
 from time import sleep
 from types import FrameType
@@ -93,38 +92,6 @@ def unswallowed() -> Iterator[None]:
                 signal.signal(number, handler)
     if raised:
         raise raised[0]
-
-
-class Abandoned(BaseException):
-    """Nobody waits any more for what a thread is at."""
-
-
-def _never() -> bool:
-    return False
-
-
-_is_abandoned: ContextVar[Callable[[], bool]] = ContextVar("is_abandoned", default=_never)
-"""Each thread has its own."""
-
-
-@contextmanager
-def abandonable(asked: Callable[[], bool]) -> Iterator[None]:
-    """Within it what this thread does ends with Abandoned soon after that is asked for."""
-    outer = _is_abandoned.set(asked)
-    try:
-        yield
-    finally:
-        _is_abandoned.reset(outer)
-
-
-def end_if_abandoned() -> None:
-    """What takes long calls this now and then.
-
-    Raises:
-        Abandoned: it was asked for.
-    """
-    if _is_abandoned.get()():
-        raise Abandoned
 
 
 @contextmanager

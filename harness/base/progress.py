@@ -12,7 +12,7 @@ from threading import Event, Thread
 from time import monotonic
 from typing import Any, TextIO
 
-from .interruption import end_if_abandoned, uninterrupted_children
+from .interruption import uninterrupted_children
 from .plain_text import plain
 from .status_line import is_terminal
 
@@ -54,7 +54,6 @@ def progress(total: int, label: str) -> Iterator[Callable[[float], None]]:
             show = _nowhere
 
         def done(count: float) -> None:
-            end_if_abandoned()
             show(count)
 
         yield done

@@ -343,7 +343,7 @@ class Figures:
 
 
 def _drawable(path: Path | None) -> Path | None:
-    from ..views.html.report_page import require_report
+    from ..views.page.report import require_report
 
     require_report(path)
     return path

@@ -17,7 +17,6 @@ from time import monotonic
 from typing import Any
 
 from ..base.errors import SimulationError
-from ..base.interruption import end_if_abandoned
 from .call_trace import AT_START, FUNCTIONS, CallRecord
 from .process_answers import Answer, Bytes, InvalidAnswer, receive
 
@@ -119,7 +118,6 @@ class IsolatedProcess:
             alive = self.alive  # before the answers are read: the last one may just have come
             with suppress(Empty):
                 return self._answers.get(timeout=POLL)
-            end_if_abandoned()
             if not alive:
                 return None  # what it has begun and left behind may hold the pipe open
             now = self._at()

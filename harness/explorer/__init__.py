@@ -1,1 +1,1 @@
-"""The page of `driveline explore`: knobs, the runs that they ask for, and the server."""
+"""The page of `driveline explore`: the loop as WebAssembly, what can be turned, and what follows from a car."""

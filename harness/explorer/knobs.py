@@ -13,6 +13,9 @@ longest delay of the wheel speed on the bus."""
 GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "landing_brake", "demand_lead", "t_return")
 """Of the controller."""
 
+ROAD = ("mu",)
+"""Of the road, where the plant has it."""
+
 FAR = 5.0
 """A slider goes to so many times the value at the start, and down to this part of it, within what FMUs declare; further
 values can be typed."""
@@ -20,12 +23,17 @@ values can be typed."""
 NEAR = {"C": 2.0, "c_slip": 2.0}
 """The same where half shafts would follow that are stiffer than any."""
 
+SPORT: Mapping[str, float] = {"k_d": 0.88, "omega_w": 1.4, "T_gap": 1.7, "t_return": 0.5}
+COMFORT: Mapping[str, float] = {"k_d": 1.2, "omega_w": 0.75, "T_gap": 0.6, "t_return": 2.0}
+"""Factors on gains at both ends of the character; docs/explorer.md says what they do."""
+
 
 class Knob(NamedTuple):
     """A parameter.
 
     Attributes:
         low, high: ends of its slider.
+        least, most: what can be typed.
         value: at the start.
         unit: "" for none.
         meaning: as the FMU declares it.
@@ -34,6 +42,8 @@ class Knob(NamedTuple):
     name: str
     low: float
     high: float
+    least: float
+    most: float
     value: float
     unit: str
     meaning: str
@@ -63,4 +73,4 @@ def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float])
         low = max(least, value / far) if least > 0.0 else max(least, 0.0)
         unit = unit_of(variable) or ""
         high = min(most, far * value if value > 0.0 else most)
-        yield Knob(name, low, high, value, "" if unit == "1" else unit, str(variable.description))
+        yield Knob(name, low, high, least, most, value, "" if unit == "1" else unit, str(variable.description))

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..recordings.measurement import Measurement
-from ..views.html.figure_selector import chosen
-from ..views.html.linked_figures import linked, shown, stacked
-from ..views.html.report_page import Heading, Row, Section, Table, write_report
+from ..views.page.figures import Figure, figure
+from ..views.page.report import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within
 from .car_file import MEANS, NOT_DETERMINED, Interval, found, of_car, peak
 from .fit_figures import autocorrelations, distribution, innovations, simulated
@@ -121,22 +120,19 @@ def _worst(pieces: Sequence[tuple[float, float, float]]) -> Table:
 def _over_time(recording: Measurement, runs: FreeRuns, pieces: Sequence[tuple[float, float, float]]) -> Section:
     whole = float(np.nanmin(runs.time)), float(np.nanmax(runs.time))
     windows = {"all of it": whole} | {_name(a, b): (a, b) for a, b, _ in pieces}
-    x = Axis("time in s", whole)
-    x_range = shown(x)
-    control, _ = chosen("Piece", dict.fromkeys(windows, ()), windows, x_range)
-    figures = linked(within(simulated(recording, runs), *whole), x, x_range)
+    panels = within(simulated(recording, runs), *whole)
+    drawn = Figure(dict.fromkeys(windows, panels), Axis("time in s", whole), windows, "Piece")
     text = f"The last {whole[1] - whole[0]:.0f} s of the recording; each run starts where it fits best."
-    return Section("Measured and simulated", text, figures=[control, stacked(figures)])
+    return Section("Measured and simulated", text, figures=[drawn])
 
 
 def _over_frequency(identified: Identified) -> Section:
     text = "0 dB is 1 rad/s per N·m, teeth in contact; bands: 95 % by the covariance. The recording crosses the gap."
-    figures = linked(responses(identified), FREQUENCY)
-    return Section("Frequency response", text, figures=[stacked(figures)])
+    return Section("Frequency response", text, figures=[figure(responses(identified), FREQUENCY)])
 
 
 def _innovations(identified: Identified) -> Section:
     size = innovations(identified)
     panels = [distribution(size), autocorrelations(size, identified.drive.T_s)]
-    figures = linked(panels, Axis("", (0.0, 1.0)))
-    return Section("Distribution of the innovations", "What the filter did not foresee.", figures=[stacked(figures)])
+    drawn = figure(panels, Axis("", (0.0, 1.0)))
+    return Section("Distribution of the innovations", "What the filter did not foresee.", figures=[drawn])

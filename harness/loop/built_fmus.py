@@ -109,10 +109,9 @@ def _needed(loops: Iterable[Settings]) -> Needed:
     needed: dict[str, dict[str, None]] = {}
     for made in loops:
         build = made.build or NATIVE
-        for control in (made.control, False):
-            system = loop(made, build=build, control=control)
-            own = (path.stem for name, path in system.instances.items() if name in system.own)
-            needed.setdefault(build, {}).update(dict.fromkeys(own))
+        system = loop(made, build=build)
+        own = (path.stem for name, path in system.instances.items() if name in system.own)
+        needed.setdefault(build, {}).update(dict.fromkeys(own))
     return needed
 
 

@@ -1,6 +1,6 @@
 """Figures as data: panels one above the other, and what is in them.
 
-`harness.views.figure_style` draws them in files, `harness.views.html.linked_figures` on a page.
+`harness.views.figure_style` draws them in files, `harness/views/page/kit.js` on a page.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,254 +1,450 @@
 "use strict";
-// The page of `driveline explore`: controls that make up a request, and the curves and metrics of its answer.
+// The page of `driveline explore`: settings, which its link carries, and the runs that they ask for.
 
-const HEIGHT = 160, BELOW = 46; // of a panel, and of the time below the last one, in pixels
-const get = (id) => document.getElementById(id);
-const tab = String(Math.random());
-const controls = []; // each shows its part of a request: control.show(request)
-const sliders = {}; // by the name of the knob
-const hidden = new Set(); // curves that a click in a legend has hidden: "panel, label"
-let settings, wanted, shown, held;
-let plots = [], span;
+const OFF = "without control", LATE = 400; // ms after which a run is announced
+let data, start, wanted, stack;
+let held = [], shown = null; // shown: what is drawn: {wanted, runs: {controller: {run, worth}}}
+const controls = []; // each shows its part of the settings
+const knobs = {}; // by name
 
-function made(kind, parent, properties = {}) {
-  const element = Object.assign(document.createElement(kind), properties);
-  parent.append(element);
-  return element;
+async function unpacked() {
+  const bytes = Uint8Array.from(atob(get("data").textContent), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).json();
 }
 
 function say(text, refused = false) {
-  const status = get("status");
-  if (status.textContent !== text) status.textContent = text;
-  status.classList.toggle("refused", refused);
+  get("status").textContent = text;
+  get("status").classList.toggle("refused", refused);
 }
 
-// --- what is asked ---
+// --- runs: each controller has a worker, the latest settings are asked for ---
 
-let next = null, busy = false;
+const workers = new Map(); // by the name of the controller; null: without control
+let asked = 0, answered = 0, waiting = null, kept = new Map();
 
-// Changes the request and asks for its runs; while one is under way only the latest waits.
-async function ask(change) {
+function worker(controller) {
+  if (!workers.has(controller)) {
+    const code = Uint8Array.from(atob(data.loops.code), (c) => c.charCodeAt(0));
+    const one = new Worker(URL.createObjectURL(new Blob([get("worker").textContent], {type: "text/javascript"})));
+    const ready = new Response(new Blob([code]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+    const {code: _, ...loops} = data.loops;
+    one.onmessage = ({data: answer}) => took(answer);
+    one.onerror = (event) => say(`the worker has ended: ${event.message}`, true);
+    workers.set(controller, ready.then((bytes) => { one.postMessage({code: bytes, data: {...data, loops}}); return one; }));
+  }
+  return workers.get(controller);
+}
+
+const controllers = ({control, others}) => [null, ...(control ? [data.ours] : []), ...others];
+
+// Changes the settings and asks for the runs; while others are under way only the latest wait.
+function ask(change, by) {
   wanted = {...wanted, ...change};
-  next = wanted;
-  say("running ...");
-  if (busy) return;
-  busy = true;
-  while (next) {
-    const request = next;
-    next = null;
-    try {
-      const response = await post({request});
-      if (response.ok) take(decoded(await response.arrayBuffer()));
-      else refuse(await response.text());
-    } catch (error) {
-      say("the explorer has ended, or cannot be reached", true);
-      if (!(error instanceof TypeError)) throw error;
-    }
-  }
-  busy = false;
-}
-
-const post = (content) => fetch("answer", {method: "POST", body: JSON.stringify({tab, ...content})});
-
-function refuse(reason) {
-  if (next) return;
-  if (shown) wanted = shown.request;
   follow();
-  say(`${reason.trim()}${shown ? "; what was set before stays" : ""}`, true);
+  link(false);
+  waiting = {wanted, by, since: performance.now()};
+  if (!underWay || performance.now() - underWay.since > LATE) go();
 }
 
-function take(answer) {
-  const moved = shown?.request.manoeuvre !== answer.request.manoeuvre;
-  shown = answer;
-  if (moved) span = answer.window;
-  if (!next) {
-    wanted = answer.request;
-    follow();
-    say("");
-  }
-  draw();
-  get("hold").disabled = false;
+let underWay = null;
+
+async function go() {
+  underWay = {...waiting, number: ++asked, left: new Set(controllers(waiting.wanted)), answers: new Map()};
+  waiting = null;
+  const mine = underWay;
+  setTimeout(() => { if (underWay === mine) say("running ..."); }, LATE);
+  const all = await Promise.all([...mine.left].map(async (controller) => [controller, await worker(controller)]));
+  for (const [controller, one] of all) one.postMessage({number: mine.number, wanted: mine.wanted, controller});
 }
 
-// See answer_of in messages.py.
-function decoded(buffer) {
-  const length = new DataView(buffer).getUint32(0, true);
-  const answer = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  let place = 4 + length;
-  const column = () => new Float32Array(buffer, (place += 4 * answer.rows) - 4 * answer.rows, answer.rows);
-  answer.x = column();
-  for (const panel of answer.panels) for (const curve of panel.curves) curve.y = column();
-  answer.kept = answer.panels.map(column);
-  return answer;
+function took(answer) {
+  const {number, controller} = answer;
+  if (answer.run) kept.set(controller, answer);
+  if (!underWay || number !== underWay.number) return;
+  underWay.answers.set(controller, answer.same ? kept.get(controller) : answer);
+  underWay.left.delete(controller);
+  if (underWay.left.size) return;
+  const done = underWay, refusal = [...done.answers.values()].find(({refused}) => refused);
+  underWay = null;
+  if (refusal) refuse(refusal.refused, done.by);
+  else if (![...done.answers.values()].some((each) => each.given_up)) take(done);
+  if (waiting) go();
 }
 
-async function save(label) {
-  say("writing ...");
-  const response = await post({request: wanted, save: label});
-  const text = (await response.text()).trim();
-  say(response.ok ? `written: ${text}` : text, !response.ok);
+function refuse(reason, by) {
+  if (waiting) return;
+  say(`${reason}${shown ? "; the curves are of what was set before" : ""}`, true);
+  if (by && knobs[by]) knobs[by].refuse(reason);
 }
 
-// --- controls ---
-
-function follow() {
-  for (const control of controls) control.show(wanted);
-  for (const [name, slider] of Object.entries(sliders)) {
-    slider.disabled = shown !== undefined && !shown.turnable.includes(name);
-    slider.parentElement.classList.toggle("off", slider.disabled);
-  }
+function take({wanted: of, answers}) {
+  const moved = !shown || shown.wanted.manoeuvre !== of.manoeuvre || shown.duration !== length(of);
+  shown = {wanted: of, duration: length(of), runs: new Map(controllers(of).map((controller) => [controller, answers.get(controller)]))};
+  if (!waiting) say("");
+  draw(moved ? window_of(of) : undefined);
 }
 
-// An element that asks for a change when it is moved, and follows the request.
-function bind(element, event, change, show) {
-  element.addEventListener(event, () => ask(change(element)));
-  controls.push({show: (request) => show(element, request)});
-}
+const length = (of) => (of.manoeuvre === "free" ? of.free.duration : data.manoeuvres[of.manoeuvre].duration);
 
-function choice(name, options) {
-  for (const [value, textContent] of options) made("option", get(name), {value, textContent});
-  bind(get(name), "change", (e) => ({[name]: e.value}), (e, request) => { e.value = request[name]; });
-}
-
-function checkbox(element, change, of) {
-  bind(element, "change", (e) => change(e.checked), (e, request) => { e.checked = of(request); });
-}
-
-function slider(parent, knob, change, of) {
-  const label = made("label", parent, {title: knob.meaning});
-  const heading = made("span", label);
-  const element = made("input", label, {type: "range", id: knob.name, min: knob.low, max: knob.high, step: "any"});
-  const name = knob.unit ? `${knob.name} in ${knob.unit}` : knob.name;
-  const tell = (value) => { heading.textContent = `${name}: ${Number(value.toPrecision(4))}`; };
-  const turned = (e) => Number(Number(e.value).toPrecision(3));
-  element.addEventListener("input", () => tell(turned(element)));
-  bind(element, "input", (e) => change(turned(e)), (e, request) => {
-    if (e !== document.activeElement || of(request) !== turned(e)) e.value = of(request);
-    tell(of(request));
-  });
-  sliders[knob.name] = element;
-}
-
-function build() {
-  choice("plant", settings.plants.map((name) => [name, name]));
-  choice("manoeuvre", settings.manoeuvres);
-  get("control").nextElementSibling.textContent = `control by ${settings.ours}`;
-  checkbox(get("control"), (control) => ({control}), (request) => request.control);
-  for (const name of settings.others) {
-    const label = made("label", get("others"), {className: "switch"});
-    const element = made("input", label, {type: "checkbox", id: name});
-    label.append(name);
-    const without = () => wanted.others.filter((each) => each !== name);
-    checkbox(element, (on) => ({others: on ? [...without(), name] : without()}), (request) => request.others.includes(name));
-  }
-  const character = {name: "character", low: 0, high: 1, unit: "", meaning: "0 is sport, 1 is comfort"};
-  slider(get("gains"), character, (value) => ({character: value}), (request) => request.character);
-  for (const [kind, knobs] of Object.entries(settings.knobs)) {
-    for (const knob of knobs) {
-      const change = (value) => ({[kind]: {...wanted[kind], [knob.name]: value}});
-      slider(get(kind), knob, change, (request) => request[kind][knob.name] ?? knob.value);
-    }
-  }
-  const informed = made("label", get("car"), {className: "switch"});
-  const known = made("input", informed, {type: "checkbox", id: "informed"});
-  informed.append("the controllers know this car");
-  checkbox(known, (on) => ({informed: on}), (request) => request.informed);
-  const typed = made("label", get("car"), {textContent: "others, as plant.mu=0.3"});
-  const text = made("input", typed, {type: "text", id: "typed"});
-  bind(text, "change", (e) => ({typed: e.value}), (e, request) => { e.value = request.typed; });
-  made("button", get("car"), {id: "hold", textContent: "hold this run", disabled: true}).addEventListener("click", hold);
-  for (const label of settings.saves) {
-    made("button", get("car"), {id: label, textContent: label}).addEventListener("click", () => save(label));
-  }
+function window_of(of) {
+  if (of.manoeuvre !== "free") return data.manoeuvres[of.manoeuvre].window;
+  const found = stepOf(of.free.T_driver);
+  return found ? [Math.max(found[0] - 0.1, 0), Math.min(found[0] + 1.4, of.free.duration)] : [0, of.free.duration];
 }
 
 // --- curves and metrics ---
 
-// Keeps what is shown of the first controller beside what follows, or no longer.
-function hold() {
-  const [, cells] = shown.runs[1] ?? shown.runs[0];
-  held = held ? undefined : {manoeuvre: shown.request.manoeuvre, kept: shown.kept, cells};
-  get("hold").setAttribute("aria-pressed", held !== undefined);
-  draw();
+function added(run) {
+  return run["controller.T_ref"].map((value, k) => value - run["controller.T_driver"][Math.max(k - 1, 0)]);
 }
 
-function draw() {
-  const stays = held?.manoeuvre === shown.request.manoeuvre;
-  const rows = stays ? [...shown.runs, [settings.held.label, held.cells]] : shown.runs;
-  tabulate(rows);
-  shown.panels.forEach(({label, curves}, k) => {
-    const all = stays ? [{...settings.held, dash: [], width: 1.4, y: held.kept[k]}, ...curves] : curves;
-    plot(k, label, all);
-  });
+const column = (run, name) => (name === "controller.added" ? (run[name] ??= added(run)) : run[name]);
+
+function draw(window) {
+  const off = shown.runs.get(null).run, on = shown.runs.get(data.ours)?.run, runs = {off, on};
+  const stays = held.filter((each) => each.manoeuvre === manoeuvre_key(shown.wanted));
+  const curve = (run, name, label, color, dash, width) =>
+    ({kind: "curve", x: run.time, y: column(run, name), label, color, dash, width, held: false});
+  const panels = data.panels.map(({label, curves}, k) => ({
+    label,
+    parts: [
+      ...stays.map((each) => curve(each.run, curves.find(({name, run}) => name !== "controller.T_driver" && (run === "on" || k === 0)).name,
+        each.label, each.color, [], 1.4)),
+      ...curves.filter(({run}) => runs[run]).map((c) => curve(runs[c.run], c.name, c.label, c.color, c.dashes, c.width)),
+      ...(k ? [] : shown.wanted.others.map((name) => curve(shown.runs.get(name).run, "plant.T_gear", `with ${name}`, data.others[name], [], 1))),
+    ],
+  }));
+  stack.set(panels, window);
+  tabulate([...[...shown.runs].map(([name, {worth}]) => [name ?? OFF, worth]), ...stays.map(({label, worth}) => [label, worth])]);
+  get("hold").disabled = held.length >= data.held.length;
+  get("release").disabled = !held.length;
+  document.body.dataset.drawn = ++answered;
 }
 
 function tabulate(rows) {
   const table = get("metrics");
   table.replaceChildren();
-  const head = made("tr", table);
+  const head = made("tr", made("thead", table)), body = made("tbody", table);
   made("th", head);
-  for (const [textContent, title] of settings.columns) made("th", head, {textContent, title});
-  for (const [name, cells] of rows) {
-    const row = made("tr", table);
+  for (const {heading, meaning} of data.metrics) made("th", head, {textContent: heading, title: meaning});
+  for (const [name, worth] of rows) {
+    const row = made("tr", body);
     made("td", row, {textContent: name});
-    for (const [textContent, title] of cells) made("td", row, {textContent, title});
+    for (const {name: metric, factor, decimals} of data.metrics) {
+      const value = worth[metric];
+      made("td", row, {textContent: value !== value ? "-" : (Math.round(value * factor * 10 ** decimals) / 10 ** decimals + 0).toFixed(decimals)});
+    }
   }
 }
 
-function plot(k, label, curves) {
-  const shape = curves.map((curve) => curve.label).join("\n"), data = [shown.x, ...curves.map((curve) => curve.y)];
-  if (plots[k]?.shape === shape) {
-    plots[k].batch(() => { plots[k].setData(data, false); zoom(plots[k]); });
-    return;
+const manoeuvre_key = (of) => JSON.stringify([of.manoeuvre, of.manoeuvre === "free" && of.free]);
+
+function hold() {
+  const {run, worth} = shown.runs.get(data.ours) ?? shown.runs.get(null), color = data.held[held.length];
+  held.push({run, worth, color, label: `held ${held.length + 1}`, manoeuvre: manoeuvre_key(shown.wanted)});
+  draw();
+}
+
+// --- the link: only what is not as at the start ---
+
+function written(of) {
+  const found = new URLSearchParams();
+  for (const name of ["plant", "manoeuvre", "typed"]) if (of[name] !== start[name]) found.set(name, of[name]);
+  for (const name of ["control", "informed"]) if (of[name] !== start[name]) found.set(name, of[name] ? "on" : "off");
+  if (of.others.length) found.set("with", of.others.join(","));
+  if (of.character !== 0.5) found.set("character", of.character);
+  for (const kind of ["gains", "car", "road"]) for (const [name, value] of Object.entries(of[kind])) found.set(name, value);
+  if (of.manoeuvre === "free") {
+    const {T_driver, T_brake, v_0, duration} = of.free;
+    found.set("demand", as_text(T_driver));
+    found.set("brake", as_text(T_brake));
+    found.set("v_0", v_0);
+    found.set("duration", duration);
   }
-  plots[k]?.destroy();
-  const series = curves.map((curve) => ({
-    label: curve.label,
-    stroke: curve.color,
-    width: 1.4 * curve.width,
-    dash: curve.dash.map((length) => 2 * length),
-    points: {show: false},
-    show: !hidden.has(`${k}, ${curve.label}`),
-    value: (_, value) => (value == null ? "" : value.toFixed(2)),
-  }));
-  const last = k === settings.panels - 1;
-  plots[k] = new uPlot({
-    width: width(),
-    height: HEIGHT + (last ? BELOW : 0),
-    series: [{label: "time", value: (_, value) => (value == null ? "" : value.toFixed(3))}, ...series],
-    scales: {x: {time: false, min: span[0], max: span[1]}},
-    axes: [
-      last ? {label: "time in s", labelSize: 16, size: BELOW - 18} : {size: 6, values: (_, at) => at.map(() => "")},
-      {label, size: 46, labelSize: 18, labelFont: "12px system-ui"},
-    ],
-    cursor: {sync: {key: "time", setSeries: false}, drag: {x: true, y: false}, bind: {dblclick: () => () => turn(shown.window)}},
-    hooks: {
-      setScale: [(u, key) => { if (key === "x" && plots[k] === u) turn([u.scales.x.min, u.scales.x.max]); }],
-      setSeries: [(u, i, change) => {
-        if (i > 0 && change.show !== undefined) hidden[change.show ? "delete" : "add"](`${k}, ${u.series[i].label}`);
-      }],
-    },
-  }, data, get(`figure ${k}`));
-  plots[k].shape = shape;
+  return `#${found}`;
 }
 
-const zoom = (u) => u.setScale("x", {min: span[0], max: span[1]});
-
-// All panels show that span of time.
-function turn(to) {
-  if (to[0] === span[0] && to[1] === span[1]) return;
-  span = to;
-  for (const u of plots) if (u.scales.x.min !== to[0] || u.scales.x.max !== to[1]) zoom(u);
+function read(hash) {
+  const given = new URLSearchParams(hash.slice(1)), found = structuredClone(start);
+  const one_of = (name, all) => { if (all.includes(given.get(name))) found[name] = given.get(name); };
+  one_of("plant", data.plants);
+  one_of("manoeuvre", [...Object.keys(data.manoeuvres), "free"]);
+  for (const name of ["control", "informed"]) if (given.has(name)) found[name] = given.get(name) === "on";
+  found.typed = given.get("typed") ?? "";
+  found.others = (given.get("with") ?? "").split(",").filter((name) => name in data.others);
+  for (const {name, kind, least, most} of Object.values(knobs)) {
+    const value = Number(given.get(name));
+    if (!given.has(name) || !(value >= least && value <= most)) continue;
+    if (kind) found[kind][name] = value; else found[name] = value;
+  }
+  for (const [name, key] of [["demand", "T_driver"], ["brake", "T_brake"]]) {
+    const points = parsed(given.get(name) ?? "");
+    if (points) found.free[key] = points;
+  }
+  for (const name of ["v_0", "duration"]) if (given.has(name)) Object.assign(found.free, number_of(name, given.get(name)));
+  return found;
 }
 
-const width = () => get("figures").clientWidth;
+let linked;
 
-new ResizeObserver(() => plots.forEach((u) => u.setSize({width: width(), height: u.height}))).observe(get("figures"));
+// While a slider moves the present entry of the history follows; `entry`: what follows is a new one.
+function link(entry) {
+  clearTimeout(linked);
+  if (entry && location.hash !== written(wanted)) history.pushState(null, "", written(wanted));
+  else linked = setTimeout(() => history.replaceState(null, "", written(wanted)), 150);
+}
+
+addEventListener("popstate", () => ask(read(location.hash)));
+
+// --- settings ---
+
+function follow() {
+  for (const show of controls) show(wanted);
+  get("free").hidden = wanted.manoeuvre !== "free";
+}
+
+// An element that asks for a change, which is an entry of the history.
+function bind(element, event, change, show) {
+  element.addEventListener(event, () => {
+    const changed = change(element);
+    if (!changed) return;
+    history.pushState(null, "", written(wanted));
+    ask(changed);
+  });
+  controls.push((of) => show(element, of));
+}
+
+function choice(name, options) {
+  for (const [value, textContent] of options) made("option", get(name), {value, textContent});
+  bind(get(name), "change", (e) => ({[name]: e.value}), (e, of) => { e.value = of[name]; });
+}
+
+function checkbox(parent, id, text, change, of) {
+  const label = made("label", parent, {className: "switch"}), element = made("input", label, {type: "checkbox", id});
+  label.append(text);
+  bind(element, "change", (e) => change(e.checked), (e, settings) => { e.checked = of(settings); });
+}
+
+function knob(parent, {name, low, high, least, most, value, unit, meaning}, kind, idle) {
+  const row = made("div", parent, {className: "knob", title: meaning}), id = `knob ${name}`;
+  made("span", row, {textContent: unit ? `${name} in ${unit}` : name, id: `${id} name`});
+  const typed = made("input", row, {id: `${id} value`, inputmode: "decimal"});
+  const back = made("button", row, {type: "button", textContent: "↺", title: `${name} as at the start, ${short(value)}`});
+  const range = made("input", row, {type: "range", id, min: low, max: high, step: "any"});
+  const refusal = made("p", row, {className: "refusal"});
+  refusal.setAttribute("role", "alert");
+  for (const element of [typed, range]) element.setAttribute("aria-labelledby", `${id} name`);
+  const of = (settings) => (kind ? settings[kind][name] ?? value : settings[name]);
+  const change = (to) => {
+    if (!kind) return {[name]: to};
+    const {[name]: _, ...others} = wanted[kind];
+    return {[kind]: to === value ? others : {...others, [name]: to}};
+  };
+  const refuse = (reason) => {
+    refusal.textContent = reason;
+    typed.setAttribute("aria-invalid", Boolean(reason));
+  };
+  const turn = (to) => {
+    if (!(to >= least && to <= most)) return refuse(`${short(least)} to ${short(most)}${unit ? ` ${unit}` : ""} is allowed`);
+    refuse("");
+    return ask(change(to), name);
+  };
+  range.addEventListener("pointerdown", () => history.pushState(null, "", written(wanted)));
+  range.addEventListener("input", () => turn(Number(Number(range.value).toPrecision(3))));
+  typed.addEventListener("change", () => {
+    history.pushState(null, "", written(wanted));
+    turn(typed.value.trim() === "" ? NaN : Number(typed.value));
+  });
+  back.addEventListener("click", () => turn(value));
+  controls.push((settings) => {
+    const now = of(settings);
+    if (document.activeElement !== range || Math.abs(range.value - now) > 0.01 * (high - low)) range.value = now;
+    if (document.activeElement !== typed || typed.getAttribute("aria-invalid") !== "true") typed.value = short(now);
+    row.classList.toggle("changed", now !== value);
+    row.classList.toggle("idle", idle(settings));
+  });
+  knobs[name] = {name, kind, least, most, refuse};
+}
+
+const short = (value) => String(Number(value.toPrecision(6)));
+
+// Whether a parameter changes nothing of what is shown.
+function idle(name, settings, of_gains) {
+  const {loops, fmus} = data.loops, has = (loop, instance) => name in fmus[loops[loop].instances[instance]].parameters;
+  const loop = `${settings.plant} ${data.ours}`;
+  if (of_gains) return !settings.control || !has(loop, "controller");
+  const elsewhere = ["plant", "motor", "can"].some((instance) => has(loop, instance));
+  const follows = data.follow.shafts.every((each) => each in fmus[loops[loop].instances.plant].parameters);
+  return !elsewhere && !(follows && ["C", "J_2"].includes(name)) && !(settings.informed && has(loop, "controller"));
+}
+
+function build() {
+  choice("plant", data.plants.map((name) => [name, name]));
+  choice("manoeuvre", [["free", "free: drawn by hand"], ...Object.entries(data.manoeuvres).map(([name, {description}]) => [name, `${name}: ${description}`])]);
+  controls.push((of) => {
+    for (const option of get("manoeuvre").options)
+      option.disabled = option.value !== "free" && !data.manoeuvres[option.value].possible.includes(of.plant);
+  });
+  get("control").nextElementSibling.textContent = `control by ${data.ours}`;
+  bind(get("control"), "change", (e) => ({control: e.checked}), (e, of) => { e.checked = of.control; });
+  for (const name of Object.keys(data.others))
+    checkbox(get("others"), name, name, (on) => ({others: on ? [...wanted.others, name] : wanted.others.filter((each) => each !== name)}),
+      (of) => of.others.includes(name));
+  const character = {name: "character", low: 0, high: 1, least: 0, most: 1, value: 0.5, unit: "", meaning: "0 is sport, 1 is comfort"};
+  knob(get("gains"), character, null, (of) => !of.control);
+  for (const [kind, all] of Object.entries(data.knobs))
+    for (const each of all) knob(get(kind), each, kind, (of) => idle(each.name, of, kind === "gains"));
+  const slope = {name: "slope", low: -0.15, high: 0.15, least: -0.4, most: 0.4, value: 0, unit: "rad", meaning: "added to that of the manoeuvre"};
+  knob(get("road"), slope, "road", () => false);
+  checkbox(get("car"), "informed", "the controllers know this car", (on) => ({informed: on}), (of) => of.informed);
+  bind(get("typed"), "change", (e) => ({typed: e.value}), (e, of) => { e.value = of.typed; });
+  by_hand();
+  get("hold").addEventListener("click", hold);
+  get("release").addEventListener("click", () => { held = []; draw(); });
+  get("reset").addEventListener("click", () => { history.pushState(null, "", written(wanted)); ask(structuredClone(start)); });
+  get("save car").addEventListener("click", () => save("car.toml", "A car", car_entries()));
+  get("save gains").addEventListener("click", () => save("gains.toml", `Gains of ${data.ours}`, {...data.files.gains, ...gains()}));
+  for (const [name, {guid, sources}] of Object.entries(data.loops.fmus)) {
+    const row = made("tr", get("inside").querySelector("tbody"));
+    for (const textContent of [name, guid, sources]) made("td", row, {textContent, className: "word"});
+  }
+}
+
+// --- the manoeuvre that is drawn by hand ---
+
+const as_text = (points) => points.map(([t, value]) => `${short(t)}, ${short(value)}`).join("; ");
+
+// Points in ascending time; null if it is no text of such.
+function parsed(text) {
+  const points = text.split(";").filter((part) => part.trim()).map((part) => part.split(",").map((each) => (each.trim() ? Number(each) : NaN)));
+  const good = points.length && points.every((point, k) => point.length === 2 && point.every(Number.isFinite) && point[0] >= 0
+    && (k === 0 || point[0] >= points[k - 1][0]));
+  return good ? points : null;
+}
+
+const BOUNDS = {v_0: [0, 70], duration: [1, 60]};
+
+function number_of(name, text) {
+  const value = Number(text), [low, high] = BOUNDS[name];
+  return text.trim() && value >= low && value <= high ? {[name]: value} : null;
+}
+
+function by_hand() {
+  const asking = (change) => change && {free: {...wanted.free, ...change}};
+  const refused = (change, text) => {
+    get("free refusal").textContent = change ? "" : text;
+    return asking(change);
+  };
+  for (const [name, key] of [["demand", "T_driver"], ["brake", "T_brake"]])
+    bind(get(name), "change", (e) => {
+      const points = parsed(e.value);
+      return refused(points && {[key]: points}, `${name}: points in ascending time, as in 0, -12; 1, -12; 1, 100`);
+    }, (e, of) => { e.value = as_text(of.free[key]); });
+  for (const name of ["v_0", "duration"])
+    bind(get(name), "change", (e) => refused(number_of(name, e.value), `${name}: ${BOUNDS[name].join(" to ")} is allowed`),
+      (e, of) => { e.value = of.free[name]; });
+  controls.push((of) => { if (of.manoeuvre === "free") sketch(of.free); });
+  get("drawn").addEventListener("dblclick", (event) => {
+    if (event.target.tagName === "circle") return;
+    move([...wanted.free.T_driver, place_of(event)], true);
+  });
+}
+
+const MOST = 150; // N.m that the sketch reaches up and down
+
+const x_of = (t) => (300 * t) / wanted.free.duration, y_of = (T) => 60 - (55 * T) / MOST;
+
+function place_of(event) {
+  const box = get("drawn").getBoundingClientRect();
+  const t = ((event.clientX - box.left) / box.width) * wanted.free.duration;
+  const T = ((60 - (120 * (event.clientY - box.top)) / box.height) / 55) * MOST;
+  return [Math.round(20 * Math.min(Math.max(t, 0), wanted.free.duration)) / 20, Math.round(Math.min(Math.max(T, -MOST), MOST))];
+}
+
+function move(points, entry) {
+  if (entry) history.pushState(null, "", written(wanted));
+  ask({free: {...wanted.free, T_driver: points.toSorted(([a], [b]) => a - b)}});
+}
+
+function sketch({T_driver, duration}) {
+  const svg = get("drawn"), focused = [...svg.querySelectorAll("circle")].indexOf(document.activeElement);
+  const of = (kind, properties) => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", kind);
+    for (const [name, value] of Object.entries(properties)) element.setAttribute(name, value);
+    svg.append(element);
+    return element;
+  };
+  svg.replaceChildren();
+  of("line", {x1: 0, x2: 300, y1: 60, y2: 60});
+  of("text", {x: 2, y: 10}).textContent = `${MOST} N.m`;
+  of("text", {x: 298, y: 116, "text-anchor": "end"}).textContent = `${duration} s`;
+  const last = T_driver.at(-1), corners = [...T_driver, [duration, last[1]]];
+  of("polyline", {points: corners.map(([t, T]) => `${x_of(t)},${y_of(T)}`).join(" ")});
+  T_driver.forEach(([t, T], k) => {
+    const circle = of("circle", {cx: x_of(t), cy: y_of(T), r: 5, tabindex: 0, "aria-label": `${t} s, ${T} N.m`});
+    const others = T_driver.filter((_, j) => j !== k), to = (point) => [...T_driver.slice(0, k), point, ...T_driver.slice(k + 1)];
+    circle.addEventListener("keydown", (event) => {
+      const steps = {ArrowLeft: [-0.05, 0], ArrowRight: [0.05, 0], ArrowUp: [0, 2], ArrowDown: [0, -2]}[event.key];
+      if (event.key === "Delete" && others.length) move(others, true);
+      else if (steps) move(to([Math.max(Number((t + steps[0]).toFixed(3)), 0), T + steps[1]]));
+      else return;
+      event.preventDefault();
+    });
+    circle.addEventListener("pointerdown", (event) => {
+      event.preventDefault();
+      circle.focus();
+      history.pushState(null, "", written(wanted));
+      const drag = (moved) => { // between its neighbours
+        const [at, value] = place_of(moved), low = T_driver[k - 1]?.[0] ?? 0, high = T_driver[k + 1]?.[0] ?? duration;
+        move(to([Math.min(Math.max(at, low), high), value]));
+      };
+      addEventListener("pointermove", drag);
+      addEventListener("pointerup", () => removeEventListener("pointermove", drag), {once: true});
+    });
+  });
+  svg.querySelectorAll("circle")[focused]?.focus();
+}
+
+// --- files that other commands take ---
+
+// The car with what was turned; shafts follow from a C that was.
+function car_entries() {
+  const stays = Object.entries(data.files.car).filter(([name]) => !("C" in wanted.car && data.follow.shafts.includes(name)));
+  return {...Object.fromEntries(stays), ...wanted.car};
+}
+
+function gains() {
+  return Object.fromEntries(data.knobs.gains.map(({name, value}) => [name, turnedGains(data, wanted)[name] ?? value]));
+}
+
+function save(name, what, entries) {
+  const units = Object.fromEntries(Object.values(data.knobs).flat().map((each) => [each.name, [each.unit, each.meaning].filter(Boolean).join(", ")]));
+  const lines = Object.entries(entries).map(([key, value]) =>
+    `${key} = ${toml(value)}${units[key] ? `  # ${units[key]}` : ""}`);
+  const text = `# ${what}, by driveline explore (driveline-damping ${data.version}).\n\n${lines.join("\n")}\n`;
+  const link = made("a", document.body, {href: URL.createObjectURL(new Blob([text], {type: "application/toml"})), download: name});
+  link.click();
+  link.remove();
+}
+
+function toml(value) {
+  if (typeof value !== "number") return JSON.stringify(value);
+  const text = String(Number(value.toPrecision(6)));
+  return /[.e]/.test(text) ? text : `${text}.0`;
+}
+
+// --- the beginning ---
 
 (async () => {
-  settings = await (await fetch("settings")).json();
-  wanted = settings.request;
-  for (let k = 0; k < settings.panels; k++) made("div", get("figures"), {id: `figure ${k}`});
+  data = await unpacked();
+  start = {
+    plant: data.plants[0], manoeuvre: Object.keys(data.manoeuvres)[0], control: true, others: [], gains: {}, car: {}, road: {},
+    character: 0.5, informed: true, typed: "", free: data.free,
+  };
+  stack = new Stack(get("figures"), {label: "time in s", window: [0, 1], scale: "linear"});
+  wanted = structuredClone(start);
   build();
+  if (innerWidth < 760) for (const id of ["gains", "car", "road"]) get(id).open = false;
+  wanted = read(location.hash);
   ask({});
 })();

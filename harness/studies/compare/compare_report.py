@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...views.html.metric_dots import metric_dots
-from ...views.html.paired_runs import Pair, pair_sections
-from ...views.html.report_page import Heading, Section, Table, of_metrics, write_report
-from ...views.html.report_page import Row as Line
 from ...views.metrics_table import SHOWN, Row, cells, number, reasons
+from ...views.page.metric_dots import metric_dots
+from ...views.page.paired_runs import Pair, pair_sections
+from ...views.page.report import Heading, Section, Table, of_metrics, write_report
+from ...views.page.report import Row as Line
 
 RATIO = "gear_torque_rms"
 """The metric that every run has, by which the verdict goes."""

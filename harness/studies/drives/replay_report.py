@@ -11,11 +11,10 @@ from ...loop.places import T_S
 from ...metrics.oscillation import amplitude
 from ...metrics.run_metrics import RideMetrics
 from ...metrics.spectrum import TO_50_HZ
-from ...views.html.figure_selector import chosen
-from ...views.html.linked_figures import linked, shown, stacked, tables
-from ...views.html.report_page import Heading, Row, Section, Table, of_metrics, write_report
-from ...views.html.thinning import thinned
 from ...views.metrics_table import RIDES_SHOWN, ride_rows
+from ...views.page.figures import Figure, figure
+from ...views.page.report import Heading, Row, Section, Table, of_metrics, write_report
+from ...views.page.thinning import thinned
 from ...views.panels import Axis, Curve, Panel, within
 from ...views.replay_figure import PIECE, SI, How, looks_of, roughest, speeds, swings, torques
 from ...views.signal_lines import Line, column
@@ -105,20 +104,16 @@ def _figures(rides: Rides, recorded: tuple[np.ndarray, np.ndarray], starts: Sequ
     time = runs[damped]["time"]
     windows = {WHOLE: (float(time[0]), float(time[-1]))}
     windows |= {_name(start): (start, min(start + PIECE, float(time[-1]))) for start in starts}
-    choices = {name: tables(within(panels, *window)) for name, window in windows.items()}
-    choices[WHOLE] = thinned(tables(panels))
+    choices = {name: within(panels, *window) for name, window in windows.items()}
+    choices[WHOLE] = thinned(panels)
     x = Axis("time in s", windows[WHOLE])
-    x_range = shown(x)
-    control, sources = chosen("Piece", choices, windows, x_range)
     text = "The whole drive as the least and the largest value of each piece of it; a worst piece with every sample."
-    yield Section("Over time", text, figures=[control, stacked(linked(panels, x, x_range, sources))])
-    figures = linked([_densities(runs, looks)], Axis("frequency in Hz", (0.0, 25.0)))
-    yield Section("Over frequency", "Root of the power density of the gear torque.", figures=[stacked(figures)])
+    yield Section("Over time", text, figures=[Figure(choices, x, windows, "Piece")])
+    densities = figure([_densities(runs, looks)], Axis("frequency in Hz", (0.0, 25.0)))
+    yield Section("Over frequency", "Root of the power density of the gear torque.", figures=[densities])
     exceeded, largest = _exceeded(runs, looks)
-    figures = linked([exceeded], Axis("swing of the gear torque in N·m", (0.0, largest)))
-    yield Section(
-        "How often it swings how much", "Share of the time in which a swing is exceeded.", figures=[stacked(figures)]
-    )
+    shares = figure([exceeded], Axis("swing of the gear torque in N·m", (0.0, largest)))
+    yield Section("How often it swings how much", "Share of the time in which a swing is exceeded.", figures=[shares])
 
 
 def _acceleration(name: str, looks: Mapping[str, How]) -> Line:

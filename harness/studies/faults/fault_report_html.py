@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...views.colours import COLOURS
-from ...views.html.figure_selector import chosen
-from ...views.html.linked_figures import axes, linked, shown, stacked, tables
-from ...views.html.report_page import Heading, Row, Section, Table, write_report
-from ...views.html.thinning import thinned
+from ...views.page.figures import Figure, figure
+from ...views.page.report import Heading, Row, Section, Table, write_report
+from ...views.page.thinning import thinned
 from ...views.panels import Axis, Curve, Panel
 from .fault_campaign import Outcome, count, coverage, plan_of
 from .fault_figures import case_panels
@@ -42,10 +41,8 @@ def report(outcomes: Sequence[Outcome], runner: FaultRunner, provenance: Mapping
             f"Of each kind of fault how many each judge found not clean. {coverage(outcomes)}".strip(),
             _table(outcomes),
         ),
-        Section(
-            "Kinds of faults and judges", "The share of the cases that are not clean.", figures=[_matrix(outcomes)]
-        ),
-        Section("How near the limits", _READING, _judges(outcomes), [stacked(_distributions(outcomes))]),
+        Section("Kinds of faults and judges", "The cases that are not clean, in % of all.", _matrix(outcomes)),
+        Section("How near the limits", _READING, _judges(outcomes), [_distributions(outcomes)]),
         Section("The worst cases", "Those that come nearest to a limit, or are furthest beyond it.", _worst(worst)),
         _runs(worst, runner),
     ]
@@ -102,36 +99,28 @@ def _judges(outcomes: Sequence[Outcome]) -> Table:
     return Table(headings, rows)
 
 
-def _matrix(outcomes: Sequence[Outcome]) -> Any:
-    """Each kind against each judge."""
-    from bokeh.models import ColumnDataSource, HoverTool
-    from bokeh.transform import linear_cmap
-
+def _matrix(outcomes: Sequence[Outcome]) -> Table:
+    """Each kind against each judge; a cell without cases is empty."""
     names = [judge.name for judge in JUDGES]
-    kinds = list(plan_of(outcomes).kinds)
-    cells = [(kind, name, *count(outcomes, kind, name)) for kind in kinds for name in names]
-    kept = [(kind, name, failed, total, failed / total) for kind, name, failed, total in cells if total]
-    columns: dict[str, list[Any]] = dict(
-        zip(("kind", "judge", "failed", "cases", "share"), map(list, zip(*kept, strict=True)), strict=True)
-    )
-    figure = axes("", 80 + 18 * len(kinds), x_range=names, y_range=kinds[::-1], x_axis_location="above")
-    fill = linear_cmap("share", list(PALETTE), 0.0, 1.0)
-    cells = figure.rect(
-        "judge", "kind", 0.96, 0.92, source=ColumnDataSource(data=columns), fill_color=fill, line_color=None
-    )
-    tips = [("", "@kind, @judge"), ("not clean", "@failed of @cases")]
-    figure.add_tools(HoverTool(renderers=[cells], tooltips=tips))
-    return figure
+    rows = []
+    for kind in plan_of(outcomes).kinds:
+        shares = [
+            failed / total if total else None for failed, total in (count(outcomes, kind, name) for name in names)
+        ]
+        cells = ["" if share is None else f"{100.0 * share:.0f}" for share in shares]
+        shades = ["" if share is None else PALETTE[round((len(PALETTE) - 1) * share)] for share in shares]
+        rows.append(Row([kind, *cells], shades=["", *shades]))
+    return Table([Heading("kind"), *(Heading(name, number=True) for name in names)], rows)
 
 
-def _distributions(outcomes: Sequence[Outcome]) -> list[Any]:
+def _distributions(outcomes: Sequence[Outcome]) -> Figure:
     curves = []
     for k, name in enumerate(judge.name for judge in JUDGES if judge.limit >= 1e-6):
         ratios = np.array([_ratio(outcome, name) for outcome in outcomes])
         levels = np.quantile(ratios, SHARES / 100.0, method="inverted_cdf")
         curves.append(Curve(SHARES, levels, name, COLOURS[k % len(COLOURS)]))
     x = Axis("share of the cases that do not exceed it in %", (0.0, 100.0))
-    return linked([Panel("measured over limit", curves)], x)
+    return figure([Panel("measured over limit", curves)], x)
 
 
 def _worst(worst: Sequence[Outcome]) -> Table:
@@ -148,13 +137,9 @@ def _name(outcome: Outcome) -> str:
 
 def _runs(worst: Sequence[Outcome], runner: FaultRunner) -> Section:
     panels = {_name(each): case_panels(each.case, runner.runs(each.case)) for each in worst}
-    choices = {name: thinned(tables(each), len(worst)) for name, each in panels.items()}
+    choices = {name: thinned(each, len(worst)) for name, each in panels.items()}
     windows = {_name(each): _window(each) for each in worst}
-    first = next(iter(panels))
-    x = Axis("time in s", windows[first])
-    x_range = shown(x)
-    control, sources = chosen("Case", choices, windows, x_range)
-    return Section("Over time", "", figures=[control, stacked(linked(panels[first], x, x_range, sources))])
+    return Section("Over time", figures=[Figure(choices, Axis("time in s", (0.0, 1.0)), windows, "Case")])
 
 
 def _window(outcome: Outcome) -> tuple[float, float]:

@@ -9,11 +9,10 @@ import numpy as np
 
 from ...base.errors import SimulationError
 from ...manoeuvres.catalogue import MANOEUVRES
-from ...views.html.figure_selector import chosen
-from ...views.html.linked_figures import linked, stacked, tables
-from ...views.html.paired_runs import Pair, pair_sections
-from ...views.html.report_page import Heading, Row, Section, Table, write_report
-from ...views.html.thinning import thinned
+from ...views.page.figures import Figure
+from ...views.page.paired_runs import Pair, pair_sections
+from ...views.page.report import Heading, Row, Section, Table, write_report
+from ...views.page.thinning import thinned
 from ...views.panels import Axis
 from .case_runs import CaseRunner
 from .draws import draw
@@ -76,11 +75,9 @@ def _distributions(found: Sequence[Summary]) -> Section:
     for summary in found:
         groups.setdefault(f"{summary.manoeuvre} on {summary.plant}", []).append(summary)
     panels = {name: distributions(group) for name, group in groups.items()}
-    choices = {name: thinned(tables(each), len(panels)) for name, each in panels.items()}
-    control, sources = chosen("Runs", choices, name="distribution")
+    choices = {name: thinned(each, len(panels)) for name, each in panels.items()}
     text = "Which share of the draws stays below a value; a curve ends where the rest has none, as what never settles."
-    figures = linked(next(iter(panels.values())), Axis("", (0.0, 1.0)), sources=sources)
-    return Section("Distributions", text, figures=[control, stacked(figures)])
+    return Section("Distributions", text, figures=[Figure(choices, Axis("", (0.0, 1.0)), control="Runs")])
 
 
 def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[str, Pair]]:

@@ -1,5 +1,6 @@
-"""Panels as data: what is cut, what shares a table on a page, and that both renderers draw every part."""
+"""Panels as data: what is cut, and that every part is drawn in a file and is data of a page."""
 
+from base64 import b64decode
 from pathlib import Path
 from typing import get_args
 
@@ -9,7 +10,8 @@ from matplotlib.figure import Figure
 
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.figure_style import plot
-from driveline.harness.views.html.linked_figures import linked, tables
+from driveline.harness.views.page.document import HERE
+from driveline.harness.views.page.figures import Arrays, panel_data
 from driveline.harness.views.panels import (
     DRAWN,
     MOST_SPANS,
@@ -27,6 +29,8 @@ from driveline.harness.views.panels import (
     seen,
     within,
 )
+
+KIT = HERE / "kit.js"
 
 T = np.linspace(0.0, 4.0, 5)
 X = Axis("time in s", (0.0, 4.0))
@@ -51,9 +55,8 @@ def test_every_part_is_drawn_in_a_file_and_on_a_page(
     plot([[panel]], X, "title", tmp_path / "figure", FigureOptions(kinds=("png",)))
     (axes,) = drawn[0].axes
     assert [*axes.lines, *axes.patches, *axes.collections, *axes.texts]
-    (page,) = linked([panel], X)
-    plain = linked([Panel("a quantity in N·m", [])], X)[0]
-    assert len(page.renderers) + len(page.center) > len(plain.renderers) + len(plain.center)
+    (part,) = panel_data(panel, Arrays())["parts"]
+    assert f"  {part['kind']}(ctx, part" in KIT.read_text(encoding="utf-8")
 
 
 def test_outside_of_a_window_nothing_is_left_but_the_gaps_between_curves() -> None:
@@ -111,14 +114,19 @@ def test_of_many_spans_those_that_nobody_can_tell_apart_are_one() -> None:
     assert seen(few, 0.0, 10.0) is few
 
 
-def test_on_a_page_what_has_the_same_abscissas_is_one_table() -> None:
-    other = T[:3]
-    panels = [Panel("a", [Curve(T, T), Curve(other, other)]), Panel("b", [Band(T.copy(), T, T), PARTS[Level]])]
-    of_t, of_other = tables(panels)
-    assert len(of_t) == 4
-    assert len(of_other) == 2
-    (source,) = {renderer.data_source for renderer in linked(panels[1:], X)[0].renderers}  # type: ignore[attr-defined]
-    assert len(source.data) == 3
+def test_on_a_page_what_is_the_same_is_there_once_and_gaps_keep_their_place() -> None:
+    arrays = Arrays()
+    x = np.array([0.0, 1.0, np.nan, 2.0])
+    panels = [Panel("a", [Curve(T, T), Points(T[::-1], T)]), Panel("b", [Band(T.copy(), T, T), Curve(x, x)])]
+    a, b = (panel_data(panel, arrays)["parts"] for panel in panels)
+    assert a[0]["x"] == a[0]["y"] == a[1]["x"] == b[0]["x"] == b[0]["low"]
+    assert read(arrays, a[1]["y"]) == pytest.approx(T[::-1])
+    assert read(arrays, b[1]["x"]) == pytest.approx([0.0, 1.0, 1.0, 2.0])
+    assert read(arrays, b[1]["y"]) == pytest.approx(x, nan_ok=True)
+
+
+def read(arrays: Arrays, place: int) -> np.ndarray:
+    return np.frombuffer(b64decode(arrays.texts[place]), dtype="<f4")
 
 
 def test_a_legend_is_told_once_and_a_label_not_broken_on_a_page(
@@ -130,4 +138,4 @@ def test_a_legend_is_told_once_and_a_label_not_broken_on_a_page(
     plot([[one], [one], [other]], X, "title", tmp_path / "figure", FigureOptions(kinds=("png",)))
     assert [bool(axes.get_legend()) for axes in drawn[0].axes] == [True, False, True]
     assert [axes.get_xlabel() for axes in drawn[0].axes] == ["", "", "time in s"]
-    assert linked([one], X)[0].yaxis.axis_label == "gear torque in N·m"
+    assert panel_data(one, Arrays())["label"] == "gear torque in N·m"

@@ -1,0 +1,185 @@
+"""What a page of `driveline explore` has in it, and the page."""
+
+from collections.abc import Mapping
+from importlib.metadata import version
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.atomic_files import complete
+from ..base.errors import DrivelineError
+from ..cosimulation.wiring import Fit, fit
+from ..loop.places import PLACES, STEP_SIZE, T_S
+from ..loop.settings import Settings, loop
+from ..manoeuvres.catalogue import MANOEUVRES
+from ..manoeuvres.drivable import require_road
+from ..manoeuvres.manoeuvre import Manoeuvre
+from ..manoeuvres.road_load import Track
+from ..recordings.drive import Drive
+from ..studies.drives.replay import car_of, followed
+from ..views.colours import GREEN, ORANGE, PURPLE, SKY, VERMILION
+from ..views.metrics_table import SHOWN
+from ..views.page.document import document
+from ..views.page.paired_runs import PANELS, shown_at_first
+from .follow import following
+from .knobs import CAR, COMFORT, GAINS, ROAD, SPORT, knobs
+from .module import KINDS, loops_of, named, number
+from .signal_data import manoeuvre_data
+
+HERE = Path(__file__).parent / "page"
+
+WORTH = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "impact_speed", "withheld_time")
+"""The metrics of a page."""
+
+BESIDE = (VERMILION, GREEN, ORANGE, PURPLE, SKY, "#999933")
+"""Colours of the other controllers, in turn."""
+
+HELD = ("#8ab6d6", "#c3a5cf", "#d8b365")
+"""Colours of the runs that are held, which are so many at most."""
+
+FREE = {"T_driver": [[0.0, -12.0], [1.0, -12.0], [1.0, 100.0]], "T_brake": [[0.0, 0.0]], "v_0": 5.0, "duration": 6.0}
+"""The manoeuvre that is drawn by hand, at first."""
+
+Given = Mapping[tuple[str, str], Settings]
+"""The settings of the loops by the names of plant and controller."""
+
+
+def content(
+    given: Given,
+    of_car: Mapping[str, Any] | None = None,
+    gains: Mapping[str, Any] | None = None,
+    manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES,
+    recording: Drive | None = None,
+) -> dict[str, Any]:
+    """The data of a page.
+
+    Args:
+        of_car, gains: entries of the vehicle file and of the file of parameters that the loops were given.
+        manoeuvres: that can be chosen, by name.
+        recording: a recorded drive that can be chosen too.
+
+    Raises:
+        DrivelineError: there is no module of the loops, a manoeuvre has the name of the recording, or the plant cannot
+            follow it.
+    """
+    if recording is not None and recording.name in manoeuvres:
+        raise DrivelineError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
+    if mapped := next((each for each in given.values() if each.mapping), None):
+        raise DrivelineError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
+    fits = {key: fit(loop(settings)) for key, settings in given.items()}
+    plants, controllers = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
+    loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(given))
+    first = [fits[plant, controllers[0]] for plant in plants]
+    start = {name: value for plant in plants for name, value in given[plant, controllers[0]].parameters.items()}
+    turned = {"gains": knobs(GAINS, first, start), "car": knobs(CAR, first, start), "road": knobs(ROAD, first, start)}
+    return {
+        "version": version("driveline-damping"),
+        "step": STEP_SIZE,
+        "T_s": T_S,
+        "loops": loops,
+        "plants": plants,
+        "ours": controllers[0],
+        "others": dict(zip(controllers[1:], cycle(BESIDE), strict=False)),
+        "base": {named(*key): _base(settings, fits[key], loops) for key, settings in given.items()},
+        "manoeuvres": _recorded(recording, given, controllers[0], plants)
+        | {name: _shown(each, plants, first) for name, each in manoeuvres.items()},
+        "free": FREE,
+        "knobs": {kind: [knob._asdict() for knob in found] for kind, found in turned.items()},
+        "sport": SPORT,
+        "comfort": COMFORT,
+        "follow": following(of_car or {}),
+        "panels": [
+            {"label": label, "curves": [each._asdict() for each in signals]} for label, signals in PANELS.items()
+        ],
+        "held": HELD,
+        "metrics": [
+            {
+                "name": metric.name,
+                "heading": f"{column.plain_heading}\n{column.unit}",
+                "meaning": metric.description,
+                "factor": column.factor,
+                "decimals": column.decimals,
+            }
+            for metric, column in SHOWN
+            if metric.name in WORTH
+        ],
+        "files": {"car": dict(of_car or {}), "gains": dict(gains or {})},
+    }
+
+
+def write_page(data: Mapping[str, Any], path: Path) -> None:
+    """Writes the page; complete, or not at all."""
+    names = ("loop.js", "metrics.js", "follow.js", "settings.js", "worker.js")
+    worker = "\n".join((HERE / name).read_text(encoding="utf-8").replace('"use strict";\n', "") for name in names)
+    text = document(
+        "driveline explore",
+        (HERE / "explorer.html").read_text(encoding="utf-8"),
+        data,
+        [HERE / "settings.js", HERE / "explorer.js"],
+        [HERE / "explorer.css"],
+        extra=f'<script type="text/plain" id="worker">\n{worker}</script>',
+    )
+    with complete(path) as unfinished:
+        unfinished.write_text(text, encoding="utf-8")
+
+
+def _are_ours(given: Given) -> bool:
+    return all(str(block) in PLACES[place] for each in given.values() for place, block in each.blocks.items())
+
+
+def _base(settings: Settings, fitted: Fit, loops: Mapping[str, Any]) -> dict[str, float]:
+    """`instance.name` -> value that a run has and the module's FMU does not start with."""
+    found = {f"{place}.seed": float(settings.seed) for place in ("motor", "can")}
+    for instance, interface in fitted.interfaces.items():
+        declared = loops["fmus"][interface.identifier]["parameters"]
+        for variable in interface.of_causality("parameter"):
+            value = number(variable.start)
+            if variable.type in KINDS and value is not None and value != declared[variable.name]["start"]:
+                found[f"{instance}.{variable.name}"] = value
+    found |= {name: float(value) for name, value in settings.parameters.items()}
+    return {name: value for name, value in found.items() if _has(fitted, name)}
+
+
+def _has(fitted: Fit, name: str) -> bool:
+    instance, _, own = name.partition("@")[0].partition(".")
+    return instance in fitted.interfaces and own in fitted.interfaces[instance].variables
+
+
+def _shown(manoeuvre: Manoeuvre, plants: list[str], fits: list[Fit]) -> dict[str, Any]:
+    """A manoeuvre, and which plants have its road."""
+    return {
+        **manoeuvre_data(manoeuvre),
+        "window": shown_at_first(manoeuvre),
+        "possible": [plant for plant, fitted in zip(plants, fits, strict=True) if _has_road(manoeuvre, fitted)],
+    }
+
+
+def _has_road(manoeuvre: Manoeuvre, fitted: Fit) -> bool:
+    try:
+        require_road(manoeuvre, fitted)
+    except DrivelineError:
+        return False
+    return True
+
+
+def _recorded(recording: Drive | None, given: Given, ours: str, plants: list[str]) -> dict[str, Any]:
+    """The recorded drive: on each plant brake and grade keep the car without control at the recorded speed."""
+    if recording is None:
+        return {}
+    duration = float(np.ptp(recording.time))
+    on_plants = {}
+    for plant in plants:
+        settings = given[plant, ours]
+        load, T_max = car_of(settings)
+        on_plants[plant] = manoeuvre_data(followed(Track.of(recording, T_max), load, settings)[0])
+    return {
+        recording.name: {
+            "description": f"recorded drive of {duration:.0f} s",
+            "duration": duration,
+            "window": (0.0, duration),
+            "possible": plants,
+            "plants": on_plants,
+        }
+    }

@@ -1,0 +1,278 @@
+"""The module of a page: FMUs of which there is C source, and loops of them, as WebAssembly that needs nothing else."""
+
+import gzip
+import hashlib
+import json
+import zipfile
+from base64 import b64encode
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+from ...fmus.catalogue import EVERY
+from ...fmus.native.compiler import FLAGS, WHOLE, CompilerError, compile_in, run_compiler, zig_compiler
+from ...fmus.native.packaging import build_native
+from ...fmus.origin import sources_digest
+from ..base.atomic_files import complete
+from ..base.errors import DrivelineError
+from ..base.user_cache import forget, named_as_cache, user_cache
+from ..cosimulation.compiled_steps import SOURCE as STEPS
+from ..cosimulation.interface import Interface, type_of
+from ..cosimulation.wiring import Fit, fit
+from ..loop.places import NATIVE, PLACES
+from ..loop.settings import Settings
+from ..loop.settings import loop as system_of
+from ..metrics.evaluate import COLUMNS
+from .tables import ROWS, Loop, loop, tables
+
+HERE = Path(__file__).parent
+C_FILES = [HERE / "c" / name for name in ("page_loop.c", "page_mode.c")]
+TARGET = ("-target", "wasm32-wasi")
+EXPORTS = (
+    *("begin", "set", "start_run", "run_steps", "rows", "last_message"),
+    *("begin_mode", "set_of_mode", "mode_frequency"),
+)
+LINKED = ("-mexec-model=reactor", "-s", *(f"-Wl,--export={name}" for name in EXPORTS), "-Wl,-z,stack-size=262144")
+"""Nothing is imported: what would print is not linked."""
+
+SOURCES = "sources/"
+"""Of an FMU, in its archive."""
+
+PACKAGED = HERE / "page" / "loops.json"
+"""Of all loops of the project, made when the package is."""
+
+NO_MODULE = (
+    "there is no Zig that makes the loops of a page: pip install ziglang; or install driveline-damping from a wheel"
+)
+
+
+class Module(NamedTuple):
+    """A module, and what a page has to know of it.
+
+    Attributes:
+        code: WebAssembly.
+        content: names, GUIDs, digests and parameters of the FMUs; places, columns and numbers of the loops.
+    """
+
+    code: bytes
+    content: dict[str, Any]
+
+    def packed(self) -> str:
+        """JSON: the content, and the code compressed and in base64."""
+        code = b64encode(gzip.compress(self.code, 9, mtime=0)).decode()
+        return json.dumps({**self.content, "code": code}, separators=(",", ":"))
+
+
+def named(plant: str, controller: str) -> str:
+    """What a loop is called in a module."""
+    return f"{plant} {controller}"
+
+
+def loops_of(fits: Mapping[str, Fit], are_ours: bool) -> dict[str, Any]:
+    """What `packed` gives of loops, by their names; those of blocks of the project alone are in the standard module.
+
+    Raises:
+        DrivelineError: there is no Zig and no module, or an FMU has no C source of FMI 2.0.
+    """
+    if are_ours:
+        return standard()
+    paths = dict.fromkeys(each.path for fitted in fits.values() for each in fitted.interfaces.values())
+    return _kept(digest_of([repr(list(fits)).encode(), *(path.read_bytes() for path in paths)]), lambda: build(fits))
+
+
+def standard() -> dict[str, Any]:
+    """What `packed` gives of all loops of the project: made with the package, else by Zig and then kept.
+
+    Raises:
+        DrivelineError: it is not there, and there is no Zig.
+    """
+    made_of = _standard_digest()
+    if PACKAGED.is_file() and (found := json.loads(PACKAGED.read_text(encoding="utf-8")))["made_of"] == made_of:
+        return found
+    return _kept(made_of, _standard)
+
+
+def write_standard(path: Path = PACKAGED) -> None:
+    """Makes the module of all loops of the project, for a package.
+
+    Raises:
+        DrivelineError: there is no Zig.
+    """
+    made = _standard()
+    made.content["made_of"] = _standard_digest()
+    with complete(path) as unfinished:
+        unfinished.write_text(made.packed(), encoding="utf-8")
+
+
+def _standard_digest() -> str:
+    return digest_of([sources_digest().encode()])
+
+
+def _kept(made_of: str, make: Callable[[], Module]) -> dict[str, Any]:
+    """A module of the cache, which is made where it is not there."""
+    path = user_cache() / "pages" / made_of[:32] / PACKAGED.name
+    if path.is_file() and (found := json.loads(path.read_text(encoding="utf-8")))["made_of"] == made_of:
+        return found
+    made = make()
+    made.content["made_of"] = made_of
+    with named_as_cache(path.parents[1]), complete(path) as unfinished:
+        unfinished.write_text(made.packed(), encoding="utf-8")
+    forget(path.parents[1].iterdir())
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def _standard() -> Module:
+    with built_as_sources() as given:
+        return build({named(*key): fit(system_of(settings)) for key, settings in given.items()})
+
+
+@contextmanager
+def built_as_sources() -> Iterator[dict[tuple[str, str], Settings]]:
+    """The loops of all blocks of the project by the names of plant and controller, of FMUs without a binary, which are
+    there within it."""
+    with TemporaryDirectory() as folder, ThreadPoolExecutor() as pool:
+        without_binary = partial(build_native, folder=Path(folder) / NATIVE, binaries=lambda *_: {})
+        list(pool.map(without_binary, (EVERY[name] for each in PLACES.values() for name in each)))
+        yield {
+            (plant, controller): Settings(plant, controller, folder=Path(folder), build=NATIVE)
+            for plant in PLACES["plant"]
+            for controller in PLACES["controller"]
+        }
+
+
+def digest_of(sources: Iterable[bytes]) -> str:
+    """Of what a module is made of, beside the code that makes it."""
+    own = [file.read_bytes() for file in (*C_FILES, STEPS, Path(__file__), HERE / "tables.py")]
+    return hashlib.sha256(b"".join(hashlib.sha256(each).digest() for each in (*own, *sources))).hexdigest()
+
+
+def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
+    """Makes the module of loops, by their names.
+
+    Args:
+        columns: of the results that the page reads.
+
+    Raises:
+        CompilerError: Zig refuses a source.
+        DrivelineError: there is no Zig, or an FMU has no C source of FMI 2.0.
+    """
+    fmus = {each.identifier: each for fitted in fits.values() for each in fitted.interfaces.values()}
+    sources = {name: _sources(interface) for name, interface in fmus.items()}
+    names = list(fmus)
+    loops = [loop(k, fitted, _inputs(fitted), names) for k, fitted in enumerate(fits.values())]
+    exchanging = frozenset(name for name, each in fmus.items() if each.description.modelExchange)
+    guids = {name: str(interface.description.guid) for name, interface in fmus.items()}
+    code = _linked(sources, tables(loops, guids, exchanging), loops)
+    return Module(
+        code,
+        {
+            "rows": ROWS,
+            "fmus": {name: _fmu(interface, sources[name]) for name, interface in fmus.items()},
+            "loops": {
+                name: _loop(fitted, made, columns) for (name, fitted), made in zip(fits.items(), loops, strict=True)
+            },
+        },
+    )
+
+
+def _sources(interface: Interface) -> dict[str, bytes]:
+    """The C files of an FMU by name.
+
+    Raises:
+        DrivelineError: it has none of FMI 2.0.
+    """
+    with zipfile.ZipFile(interface.path) as archive:
+        found = {
+            name.removeprefix(SOURCES): archive.read(name) for name in archive.namelist() if name.startswith(SOURCES)
+        }
+    if WHOLE not in found or interface.fmi != 2:
+        raise DrivelineError(
+            f"{interface.path}: a page has loops of FMUs that were built from Python, whose C source is in them; "
+            "`driveline compare --report` and `simulate` run every FMU"
+        )
+    return found
+
+
+def _inputs(fitted: Fit) -> list[str]:
+    return [port.name for port in fitted.system.inputs if port.name not in fitted.absent]
+
+
+def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequence[Loop]) -> bytes:
+    try:
+        zig = [*zig_compiler(), *TARGET]
+    except CompilerError as reason:
+        raise DrivelineError(NO_MODULE) from reason
+    most = max(each.layout.dtype.itemsize for each in loops)
+    defined = (f"-DROWS={ROWS}", f"-DMOST_BYTES={-(-most // 8) * 8}", "-DMOST_ROUNDS=16")
+    own = {
+        **{file.name: file.read_bytes() for file in C_FILES},
+        "tables.h": head.encode(),
+        STEPS.name: STEPS.read_bytes(),
+        **{h.name: h.read_bytes() for h in Path(str(files("fmpy"))).glob("c-code/fmi2*.h")},
+    }
+    with TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
+
+        def compiled(name: str) -> bytes:
+            prefix = f"-DFMI2_FUNCTION_PREFIX={name}_"
+            return compile_in([*zig, *FLAGS, prefix, "-c", WHOLE, "-o", f"{name}.o"], f"{name}.o", sources[name])
+
+        folder = Path(temporary)
+        for name, made in zip(sources, pool.map(compiled, sources), strict=True):
+            (folder / f"{name}.o").write_bytes(made)
+        for name, content in own.items():
+            (folder / name).write_bytes(content)
+        objects = [f"{name}.o" for name in sources]
+        run_compiler([*zig, *FLAGS, *defined, C_FILES[0].name, *objects, *LINKED, "-o", "loop.wasm"], folder)
+        return (folder / "loop.wasm").read_bytes()
+
+
+KINDS = {"Real": 0, "Integer": 1, "Boolean": 2}
+"""As the module numbers them."""
+
+
+def _fmu(interface: Interface, sources: Mapping[str, bytes]) -> dict[str, Any]:
+    digest = hashlib.sha256(b"".join(name.encode() + b"\0" + sources[name] for name in sorted(sources)))
+    return {
+        "guid": interface.description.guid,
+        "sources": digest.hexdigest(),
+        **({"torque": interface.variables["T_mot"].valueReference} if "T_mot" in interface.variables else {}),
+        "parameters": {
+            v.name: {
+                "kind": KINDS[type_of(v)],
+                "reference": v.valueReference,
+                "start": number(v.start),
+                "min": number(v.min),
+                "max": number(v.max),
+                "tunable": v.variability == "tunable",
+            }
+            for v in interface.of_causality("parameter")
+            if type_of(v) in KINDS
+        },
+    }
+
+
+def number(value: Any) -> float | None:
+    """A start value or bound of a description; None if there is none."""
+    if value is None:
+        return None
+    return float(value == "true") if value in ("true", "false") else float(value)
+
+
+def _loop(fitted: Fit, made: Loop, columns: Sequence[str]) -> dict[str, Any]:
+    layout = made.layout
+
+    def is_real(name: str) -> bool:
+        instance, _, own = name.partition(".")
+        return type_of(fitted.interfaces[instance].variables[own]) == "Real"
+
+    return {
+        "instances": {name: each.identifier for name, each in fitted.interfaces.items()},
+        "size": layout.dtype.itemsize,
+        "inputs": {name: [layout.offset(name), int(is_real(name))] for name in made.inputs},
+        "columns": {name: layout.offset(name) for name in columns if name in (layout.dtype.names or ())},
+    }

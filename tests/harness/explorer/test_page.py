@@ -1,0 +1,254 @@
+"""The page of `driveline explore`: the file, what its settings mean, and what a user sees in a browser."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
+from driveline.harness.commands import explore
+from driveline.harness.commands.cli import main
+from driveline.harness.commands.settings import all_settings
+from driveline.harness.explorer import module
+from driveline.harness.explorer.content import content
+from driveline.harness.loop.places import PLANTS
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.demand_shape import step_of
+from driveline.harness.manoeuvres.parts import points
+from driveline.harness.metrics.evaluate import at_samples
+from driveline.harness.simulation.simulate import simulate
+from driveline.harness.views.colours import BLUE, GREY
+from tests import ROOT
+from tests.browser import Browser
+from tests.harness.explorer.made import column, in_node, loops
+
+LARGEST = 600_000
+"""Bytes of the page without a recording."""
+
+DESIGN, VEHICLE = PLANTS
+OURS, WASHOUT = "DampingController", "SpeedWashout"
+LIMITS = r"controller\.k_d = -1: it must be 0 to \d+"
+
+
+@pytest.fixture(scope="module")
+def data(native: Path, native_builder: Any) -> dict[str, Any]:
+    from driveline.fmus.catalogue import EVERY
+
+    loops()
+    native_builder(EVERY[WASHOUT], native.parent)
+    args = explore.Arguments(fmus=native.parent, build="native")
+    return content(all_settings(args, (), (OURS, WASHOUT)))
+
+
+@pytest.fixture(scope="module")
+def page(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    loops()
+    path = tmp_path_factory.mktemp("explored") / "page.html"
+    words = ["--controller", OURS, "--fmus", str(native.parent), "--build", "native"]
+    assert main(["explore", *words, "--output", str(path), "--no-browser", "--quiet"]) == 0
+    return path
+
+
+def asked(folder: Path, data: dict[str, Any], *questions: dict[str, Any], demands: Any = ()) -> Any:
+    """What the worker answers to settings; `controller` is ours unless it is among them."""
+    every = [
+        {"wanted": {"plant": DESIGN, "manoeuvre": "tipin15"} | each, "controller": each.pop("controller", OURS)}
+        for each in questions
+    ]
+    return in_node("answers.js", folder, {"data": data, "questions": every, "demands": list(demands)})
+
+
+def test_settings_become_the_parameters_of_the_run(data: dict[str, Any], native: Path, tmp_path: Path) -> None:
+    turned = {"car": {"phi_B": 0.1, "m": 1800.0}, "gains": {"k_d": 2.0}, "typed": "motor.tau=0.004"}
+    asked(tmp_path, data, turned | {}, turned | {"informed": False}, turned | {"controller": None})
+    car = {"phi_B": 0.1, "m": 1800.0}
+    of_plant = {f"plant.{name}": value for name, value in car.items()} | {"motor.tau": 0.004}
+    known = {"controller.k_d": 2.0, "controller.phi_B": 0.1}
+    with_m = known | ({"controller.m": 1800.0} if "m" in data["loops"]["fmus"][OURS]["parameters"] else {})
+    for k, (more, control) in enumerate(((with_m, True), ({"controller.k_d": 2.0}, True), (with_m, False))):
+        results = simulate(
+            MANOEUVRES["tipin15"],
+            DESIGN,
+            parameters=of_plant | more,
+            control=control,
+            folder=native.parent,
+            build="native",
+        )
+        assert column(tmp_path, k, "plant.T_gear") == pytest.approx(at_samples(results)["plant.T_gear"], abs=1e-7), k
+
+
+def test_what_cannot_be_is_refused_and_what_is_the_same_is_not_run_again(data: dict[str, Any], tmp_path: Path) -> None:
+    questions = [{"typed": text} for text in ("controller.k_d=-1", "plant.k_q=1", "k_d=1", "plant.v_0@1=5")]
+    same = [{"controller": None}, {"controller": None, "gains": {"k_d": 1.0}}, {"controller": None, "car": {"m": 1e3}}]
+    too_stiff = {"plant": VEHICLE, "car": {"C": 230.0, "c_slip": 72000.0}}
+    answers = asked(tmp_path, data, *questions, *same, too_stiff)["answers"]
+    refusals = [each.get("refused", "") for each in answers]
+    assert re.fullmatch(LIMITS, refusals[0])
+    assert refusals[1:4] == [
+        "there is no parameter plant.k_q",
+        "k_d=1 is not of the form plant.mu=0.3",
+        "plant.v_0@1: plant.v_0 cannot change in a run",
+    ]
+    assert [each.get("same") for each in answers[4:7]] == [False, True, False]
+    assert "k_s does not follow" in refusals[7]
+
+
+@pytest.mark.parametrize(
+    ("t_return", "sport", "comfort"), [(0.0035, 0.002, 0.007), (0.012, 0.006, 0.0175), (0.03, 0.015, 0.03)]
+)
+def test_the_character_turns_a_gain_as_far_as_its_slider_goes(
+    data: dict[str, Any], tmp_path: Path, t_return: float, sport: float, comfort: float
+) -> None:
+    """From 2 ms, the least that the FMU takes, to five times the value at the start; what is typed beyond stays."""
+    gains = {} if t_return == 0.0035 else {"t_return": t_return}
+    answers = asked(tmp_path, data, *({"gains": gains, "character": character} for character in (0.0, 1.0)))["answers"]
+    assert [each["gains"]["t_return"] for each in answers] == pytest.approx([sport, comfort])
+
+
+DEMANDS = (
+    [[0, -12], [1, -12], [1, 100]],
+    [[0, 5], [1, 5], [1.5, 60]],
+    [[0, 5], [1, 5], [1.6, 60]],
+    [[0, 0], [1, 0], [1, 50], [1.2, 20]],
+    [[0, 3], [2, 3]],
+)
+
+
+def test_a_step_that_is_drawn_is_the_one_that_a_manoeuvre_of_a_file_has(data: dict[str, Any], tmp_path: Path) -> None:
+    steps = asked(tmp_path, data, demands=DEMANDS)["steps"]
+    assert [each and tuple(each) for each in steps] == [
+        step_of(points([(float(t), float(T)) for t, T in demand])) for demand in DEMANDS
+    ]
+
+
+def test_the_page_is_small_and_names_the_fmus_inside(page: Path, data: dict[str, Any]) -> None:
+    assert page.stat().st_size < LARGEST
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"""(src|href)\s*=\s*["']https?:""", text)
+    for fmu in data["loops"]["fmus"].values():
+        assert re.fullmatch(r"\{[0-9a-f-]{36}\}", fmu["guid"])
+        assert re.fullmatch(r"[0-9a-f]{64}", fmu["sources"])
+
+
+@pytest.mark.slow
+def test_a_recording_and_a_car_are_on_the_page(native: Path, tmp_path: Path) -> None:
+    loops()
+    path, drive = tmp_path / "page.html", ROOT / "harness/manoeuvres/data/town_drive.csv"
+    given = ["--vehicle", "examples/cars/van.toml", "--plant", DESIGN, "--controller", OURS]
+    where = ["--fmus", str(native.parent), "--build", "native", "--output", str(path), "--no-browser", "--quiet"]
+    assert main(["explore", str(drive), *given, *where]) == 0
+    assert path.stat().st_size < 1_000_000
+
+
+def test_what_has_no_c_source_is_refused_with_what_takes_it(
+    built: Path, native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--controller", str(built / f"{OURS}.fmu"), "--plant", DESIGN, "--fmus", str(native.parent)]
+    assert main(["explore", *words, "--output", str(tmp_path / "page.html"), "--no-browser"]) == 2
+    error = capsys.readouterr().err
+    assert f"{OURS}.fmu: a page has loops of FMUs that were built from Python" in error
+    assert "`driveline compare --report`" in error
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_zig_and_module_one_line_says_what_is_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(module, "PACKAGED", tmp_path / "none")
+    monkeypatch.setattr(module, "user_cache", lambda: tmp_path)
+    monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda _: None)
+    with pytest.raises(module.DrivelineError, match=r"^there is no Zig .* pip install ziglang; or .* from a wheel$"):
+        module.standard()
+
+
+@pytest.fixture
+def opened(chromium: Browser, page: Path) -> Iterator[Browser]:
+    chromium.open("about:blank", "true")
+    chromium.open(page.as_uri())
+    yield chromium
+    assert chromium.console() == []
+
+
+def settled(browser: Browser, action: str) -> None:
+    """Does something and waits for the next curves."""
+    before = browser.js("document.body.dataset.drawn")
+    browser.js(action)
+    browser.until(f"document.body.dataset.drawn !== '{before}'")
+    browser.painted()
+
+
+TURN = (
+    "(() => {{ const e = document.getElementById('knob {0}'); e.value = {1}; e.dispatchEvent(new Event('input')) }})()"
+)
+TYPE = "(() => {{ const e = document.getElementById('{0}'); e.value = '{1}'; e.dispatchEvent(new Event('change')) }})()"
+
+
+def test_curves_are_drawn_and_nothing_is_loaded(opened: Browser, page: Path) -> None:
+    torque = opened.figure("gear torque in N·m")
+    assert torque.x() == (0.9, 2.4)
+    assert torque.pixels(BLUE) > 300
+    assert torque.pixels(GREY) > 300
+    assert [each for each in opened.fetched() if not each.startswith("blob:")][-1:] == [page.as_uri()]
+
+
+def test_the_numbers_in_the_browser_are_those_of_simulate(opened: Browser, native: Path) -> None:
+    settled(opened, TURN.format("k_d", 2.0))
+    shown = np.array(opened.js(f"Array.from(shown.runs.get('{OURS}').run['plant.T_gear'])"))
+    changes: Any = {"parameters": {"controller.k_d": 2.0}, "folder": native.parent, "build": "native"}
+    results = at_samples(simulate(MANOEUVRES["tipin15"], DESIGN, **changes))["plant.T_gear"]
+    assert shown == pytest.approx(results, abs=1e-9 * np.ptp(results))
+
+
+def test_a_slider_is_marked_and_the_link_carries_it_and_the_way_back_works(opened: Browser) -> None:
+    before = opened.js("document.getElementById('metrics').textContent")
+    opened.js("document.getElementById('knob phi_B').dispatchEvent(new Event('pointerdown'))")
+    settled(opened, TURN.format("phi_B", 0.05))
+    opened.until("location.hash === '#phi_B=0.05'")
+    assert opened.js("document.getElementById('knob phi_B').closest('.knob').className") == "knob changed"
+    assert opened.js("document.getElementById('metrics').textContent") != before
+    settled(opened, TYPE.format("plant", VEHICLE))
+    settled(opened, "history.back()")
+    assert opened.js("wanted.plant") == DESIGN
+    settled(opened, "history.back()")
+    assert opened.js("[Object.keys(wanted.car).length, document.getElementById('metrics').textContent]") == [0, before]
+
+
+def test_a_value_out_of_bounds_is_refused_beside_its_slider(opened: Browser) -> None:
+    opened.js(TYPE.format("knob k_d value", "-1"))
+    refusal = "document.getElementById('knob k_d').closest('.knob').querySelector('.refusal').textContent"
+    assert re.match(r"0 to \d+ N\.m\.s/rad is allowed", opened.js(refusal))
+    assert opened.js("wanted.gains.k_d ?? 'as it was'") == "as it was"
+    settled(opened, TYPE.format("knob k_d value", "1.5"))
+    assert opened.js(refusal) == ""
+
+
+def test_a_run_is_held_and_a_manoeuvre_drawn_and_files_are_those_that_commands_take(
+    opened: Browser, tmp_path: Path
+) -> None:
+    settled(opened, TYPE.format("manoeuvre", "free"))
+    settled(opened, TYPE.format("demand", "0, 0; 1, 0; 1.2, 80"))
+    settled(opened, "document.getElementById('hold').click()")
+    settled(opened, TURN.format("C", 150))
+    rows = "[...document.querySelectorAll('#metrics tbody tr')].map((row) => row.cells[0].textContent)"
+    assert opened.js(rows) == ["without control", OURS, "held 1"]
+    assert opened.js("document.querySelectorAll('#drawn circle').length") == 3
+    opened.js("(URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = text }); return '#' })")
+    for what, read, name, value in (("car", read_vehicle, "C", 150.0), ("gains", read_parameters, "k_d", 2.55)):
+        opened.js("window.saved = undefined")
+        opened.js(f"document.getElementById('save {what}').click()")
+        opened.until("window.saved")
+        (tmp_path / f"{what}.toml").write_text(opened.js("window.saved"), encoding="utf-8")
+        assert read(tmp_path / f"{what}.toml")[name] == pytest.approx(value)
+
+
+@pytest.mark.parametrize("width", [420, 1300])
+def test_the_page_is_as_wide_as_the_screen(opened: Browser, width: int) -> None:
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
+    opened.chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        opened.painted()
+        assert opened.js("document.documentElement.scrollWidth") <= width
+        assert opened.figure("gear torque in N·m").pixels(BLUE) > 100
+    finally:
+        opened.chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
